@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "core/error.h"
+
+namespace promin {
+namespace {
+
+std::string join_sentences(const std::vector<Problem>& problems) {
+  if (problems.empty()) return "unknown failure";
+  std::string text = problems.front().sentence();
+  if (problems.size() > 1) text += " (1 of " + std::to_string(problems.size()) + " problems)";
+  for (size_t i = 1; i < problems.size(); ++i) text += "\n  " + problems[i].sentence();
+  return text;
+}
+
+}  // namespace
+
+std::string Problem::sentence() const {
+  std::string text = what;
+  if (!where.empty()) text += ", " + where;
+  if (!cure.empty()) text += "; " + cure;
+  return text;
+}
+
+Error::Error(const std::vector<Problem>& problems) : std::runtime_error(join_sentences(problems)) {}
+
+}  // namespace promin

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bvh/builder.h"
+#include "image/image.h"
+#include "scene/features.h"
+#include "scene/scene.h"
+
+namespace promin {
+
+namespace gpu {
+class Device;
+}
+
+/// A window of pixels, half-open: x0 <= x < x1.
+struct PixelWindow {
+  uvec2 lo{0};
+  uvec2 hi{0};
+};
+
+/// One picture of the loaded scene.
+struct View {
+  Camera camera;
+  uvec2 size{1280, 720};
+  /// Pixels to trace; the whole picture where empty. A crop has the bits of the same pixels of the whole.
+  std::optional<PixelWindow> crop;
+  /// Samples a pixel, at fixed well-distributed points; 1 is the centre. 1...65536.
+  uint32_t samples_per_pixel = 1;
+  /// Mirror bounces; 0 traces no mirror rays. 0...1000.
+  uint32_t max_depth = 5;
+};
+
+struct RayCounts {
+  uint64_t primary = 0;
+  uint64_t shadow = 0;
+  uint64_t reflection = 0;
+  uint64_t total() const { return primary + shadow + reflection; }
+};
+
+struct RenderResult {
+  /// Of the crop window's size.
+  Image image;
+  RayCounts rays;
+  /// Device time of the traversal and shading dispatches alone (timestamps where the device has them, else waiting
+  /// time on the host).
+  double trace_ms = 0.0;
+};
+
+struct RendererOptions {
+  std::string builder = "sah";
+  /// Compile every feature in, whether the scene uses it or not: for measuring what specialisation brings.
+  bool force_all_features = false;
+  /// A single dispatch is not meant to take longer; work is cut into tiles by measured time.
+  double target_dispatch_ms = 25.0;
+  /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
+  uint32_t blocks_per_dispatch = 0;
+};
+
+/// A scene in device memory with the pipeline that its features ask for. Keeps no reference to the Scene.
+/// One Renderer serves one thread.
+class Renderer {
+ public:
+  /// Builds the BVH, uploads, compiles. Throws RunError where memory does not suffice or a device limit is passed.
+  Renderer(const gpu::Device& device, const Scene& scene, const RendererOptions& options = {});
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// Traces one picture. `progress` is called after each dispatch with the fraction done, 0...1.
+  RenderResult render(const View& view, const std::function<void(double)>& progress = {});
+
+  /// What the first constructor call cost and made.
+  struct SetupStats {
+    double bvh_ms = 0.0;
+    double upload_ms = 0.0;
+    /// Pipeline creation and the first, compiling, dispatch.
+    double pipeline_ms = 0.0;
+    BvhStats bvh;
+    uint64_t device_bytes = 0;
+    FeatureMask features = 0;
+  };
+  const SetupStats& setup_stats() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace promin

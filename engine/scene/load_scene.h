@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace promin {
+
+/// Reads a scene by its ending: .gltf, .glb or .obj. The scene comes back checked: indices in range, numbers finite
+/// and within kMinSize...kMaxCoordinate, no cycles. A scene without lights stays without: the caller adds a headlight.
+/// Throws InputError with every problem found, each with place and cure; warnings lie in Scene::warnings.
+Scene load_scene(const std::filesystem::path& file);
+
+/// Coordinates and sizes beyond this, and sizes under kMinSize, are refused (numerics.md: fp32 would overflow).
+inline constexpr double kMaxCoordinate = 1e15;
+inline constexpr double kMinSize = 1e-22;
+
+}  // namespace promin
