@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "core/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace promin {
+namespace fs = std::filesystem;
+
+std::vector<std::byte> read_file(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
+  if (fs::is_directory(status)) throw InputError({"is a folder, not a file", file.string(), "name a file in it"});
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  if (!stream) throw InputError({"cannot open the file", file.string(), "check its permissions"});
+  const std::streamoff size = stream.tellg();
+  if (size < 0) throw InputError({"cannot read the file", file.string(), "name a regular file"});
+  if (size == 0) throw InputError({"the file is empty", file.string(), "export it again"});
+  std::vector<std::byte> bytes(static_cast<size_t>(size));
+  stream.seekg(0);
+  if (!stream.read(reinterpret_cast<char*>(bytes.data()), size)) {
+    throw InputError({"cannot read the file to its end", file.string(), "check the disk"});
+  }
+  return bytes;
+}
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+  std::error_code error;
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) {
+    throw RunError({"the folder of the output file does not exist", target_.string(), "create " + folder.string()});
+  }
+  if (fs::is_directory(target_, error)) {
+    throw RunError({"the output file is a folder", target_.string(), "name a file"});
+  }
+  fs::path name = target_.stem();
+  name += ".tmp" + std::to_string(getpid());
+  name += target_.extension();
+  temporary_ = folder / name;
+}
+
+AtomicFile::~AtomicFile() {
+  if (committed_) return;
+  std::error_code error;
+  fs::remove(temporary_, error);
+}
+
+void AtomicFile::commit() {
+  // rename() alone may reach the disk before the data does; a crash would leave an empty file.
+  const int descriptor = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_flushed = descriptor >= 0 && fsync(descriptor) == 0;
+  if (descriptor >= 0) close(descriptor);
+  if (!is_flushed || rename(temporary_.c_str(), target_.c_str()) != 0) {
+    throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
+                    "check the disk and permissions"});
+  }
+  committed_ = true;
+}
+
+void write_text_file(const fs::path& file, std::string_view text) {
+  AtomicFile output(file);
+  std::ofstream stream(output.temporary(), std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) {
+    throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", file.string(),
+                    "check the disk and permissions"});
+  }
+  output.commit();
+}
+
+}  // namespace promin

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace promin {
+
+/// The whole of a regular file. Throws InputError, with the place and the cure, if it is missing, a folder, not
+/// readable or empty.
+std::vector<std::byte> read_file(const std::filesystem::path& file);
+
+/// A file that appears whole or not at all: write to temporary(), then commit() renames it to the target. Without a
+/// commit the destructor removes the temporary file and the target stays as it was.
+class AtomicFile {
+ public:
+  /// Throws RunError if the target's folder does not exist or the target is a folder.
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Beside the target, with the target's ending (writers that pick the format by it see the right one).
+  const std::filesystem::path& temporary() const { return temporary_; }
+
+  /// Flushes the temporary file to disk and renames it. Throws RunError.
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  bool committed_ = false;
+};
+
+/// Writes a text file atomically. Throws RunError.
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace promin

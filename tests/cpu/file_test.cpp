@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "core/file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/error.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class FileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string message_of_reading(const fs::path& file) {
+  try {
+    read_file(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(FileTest, WhatIsWrittenIsRead) {
+  write_text_file(folder_ / "a.txt", "one");
+  write_text_file(folder_ / "a.txt", "two");
+  EXPECT_EQ(text_of(folder_ / "a.txt"), "two");
+  EXPECT_EQ(read_file(folder_ / "a.txt").size(), 3U);
+}
+
+TEST_F(FileTest, WithoutCommitTheOldFileStays) {
+  write_text_file(folder_ / "a.txt", "old");
+  {
+    AtomicFile output(folder_ / "a.txt");
+    std::ofstream(output.temporary()) << "half";
+  }
+  EXPECT_EQ(text_of(folder_ / "a.txt"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "the temporary file was left behind";
+}
+
+TEST_F(FileTest, UnreadableFilesSayWhy) {
+  std::ofstream(folder_ / "empty.obj").close();
+  EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasSubstr("not found"));
+  EXPECT_THAT(message_of_reading(folder_), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of_reading(folder_ / "empty.obj"), HasSubstr("empty"));
+}
+
+TEST_F(FileTest, UnwritableTargetsAreRefused) {
+  EXPECT_THROW(write_text_file(folder_ / "none" / "a.txt", "x"), RunError);
+  EXPECT_THROW(write_text_file(folder_, "x"), RunError);
+}
+
+TEST(ErrorTest, SeveralProblemsAreCountedAndIndented) {
+  const InputError error({Problem{"a", "b", "c"}, Problem{"d", "", ""}});
+  EXPECT_STREQ(error.what(), "a, b; c (1 of 2 problems)\n  d");
+}
+
+}  // namespace
+}  // namespace promin
