@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The list of primitives: a new one is its file, an #include and a line in each of the two functions.
+// The list of primitives: a new one is its file, an #include, a line in surface_point and one in traversal.glsl's
+// intersect_leaf.
 
 // A hit rebuilt on its primitive.
 struct SurfacePoint {
@@ -22,14 +23,6 @@ const uint SOLID_FEATURES = FEATURE_TRIANGLES | FEATURE_SPHERES | FEATURE_CYLIND
 bool is_kind(uint kind, uint wanted, uint feature) {
   if ((FEATURES & SOLID_FEATURES) == feature) return true;
   return has(feature) && kind == wanted;
-}
-
-Crossing intersect_primitive(Ray ray, Primitive p) {
-  if (is_kind(p.c.z, KIND_TRIANGLE, FEATURE_TRIANGLES)) return intersect_triangle(ray, p);
-  if (is_kind(p.c.z, KIND_SPHERE, FEATURE_SPHERES)) return intersect_sphere(ray, p);
-  if (is_kind(p.c.z, KIND_CYLINDER, FEATURE_CYLINDERS)) return intersect_cylinder(ray, p);
-  if (is_kind(p.c.z, KIND_CONE, FEATURE_CONES)) return intersect_cone(ray, p);
-  return NO_CROSSING;
 }
 
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {

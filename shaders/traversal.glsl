@@ -24,13 +24,35 @@ vec2 child_interval(Ray ray, vec2 x, vec2 y, vec2 z, float t_limit) {
   return vec2(entry, min(exit, t_limit));
 }
 
-void intersect_leaf(Ray ray, uint child, inout Hit hit) {
-  uint first = child & CHILD_FIRST_MASK;
-  uint count = ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
-  for (uint i = first; i < first + count; ++i) {
-    Primitive p = primitives[i];
-    keep_nearest(ray, intersect_primitive(ray, p), i, p.c.y, hit);
+// The primitives of one kind at the head of [i, end): leaves hold them sorted by kind.
+#define INTERSECT_RUN(KIND, FEATURE, INTERSECT)                          \
+  while (i < end && is_kind(primitives[i].c.z, KIND, FEATURE)) {         \
+    Primitive p = primitives[i];                                         \
+    keep_nearest(ray, INTERSECT(ray, p), i, p.c.y, hit);                 \
+    ++i;                                                                 \
   }
+
+void intersect_leaf(Ray ray, uint child, inout Hit hit) {
+  uint i = child & CHILD_FIRST_MASK;
+  uint end = i + ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
+  INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle)
+  INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
+  INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
+  INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)
+}
+
+// What is left to visit: each inner node on the way down leaves at most one child here.
+uint stack[STACK_SIZE];
+float stack_entry[STACK_SIZE];
+uint stack_top;
+const uint DONE = 0xFFFFFFFFu;  // has CHILD_IS_LEAF
+
+uint pop_child(float t_limit) {
+  while (stack_top > 0u) {
+    --stack_top;
+    if (stack_entry[stack_top] <= t_limit) return stack[stack_top];
+  }
+  return DONE;
 }
 
 // The nearest hit, or with `any_hit` some hit, if there is one: then `primitive` is not NO_PRIMITIVE.
@@ -44,40 +66,32 @@ Hit trace(Ray ray, bool any_hit) {
   }
   if ((FEATURES & SOLID_FEATURES) == 0u) return hit;
 
-  const uint DONE = 0xFFFFFFFFu;
-  uint stack[STACK_SIZE];
-  float stack_entry[STACK_SIZE];
-  uint top = 0u;
+  stack_top = 0u;
   uint current = ray.tmin < ray.tmax && !(any_hit && hit.primitive != NO_PRIMITIVE) ? 0u : DONE;
+  // Loops rather than branches around the two halves: CPU drivers execute both sides of a branch under a mask, but
+  // leave a loop as soon as no lane is in it.
   while (current != DONE) {
-    if ((current & CHILD_IS_LEAF) == 0u) {
+    while ((current & CHILD_IS_LEAF) == 0u) {
       Node node = nodes[current];
       vec2 left = child_interval(ray, node.x.xy, node.y.xy, node.z.xy, hit.t);
       vec2 right = child_interval(ray, node.x.zw, node.y.zw, node.z.zw, hit.t);
       // <=, so that a box at the distance of the hit so far is still opened: its primitive may have a lower number.
       bool meets_left = left.x <= left.y;
       bool meets_right = right.x <= right.y;
-      bool is_right_nearer = right.x < left.x;
+      bool takes_right = meets_right && !(meets_left && left.x <= right.x);
+      current = takes_right ? node.children.y : node.children.x;
       if (meets_left && meets_right) {
-        current = is_right_nearer ? node.children.y : node.children.x;
-        stack[top] = is_right_nearer ? node.children.x : node.children.y;
-        stack_entry[top] = max(left.x, right.x);
-        ++top;
-        continue;
+        stack[stack_top] = takes_right ? node.children.x : node.children.y;
+        stack_entry[stack_top] = max(left.x, right.x);
+        ++stack_top;
+      } else if (!(meets_left || meets_right)) {
+        current = pop_child(hit.t);
       }
-      if (meets_left || meets_right) {
-        current = meets_left ? node.children.x : node.children.y;
-        continue;
-      }
-    } else {
-      intersect_leaf(ray, current, hit);
-      if (any_hit && hit.primitive != NO_PRIMITIVE) return hit;
     }
-    current = DONE;
-    while (top > 0u && current == DONE) {
-      --top;
-      if (stack_entry[top] <= hit.t) current = stack[top];
-    }
+    if (current == DONE) break;
+    intersect_leaf(ray, current, hit);
+    if (any_hit && hit.primitive != NO_PRIMITIVE) return hit;
+    current = pop_child(hit.t);
   }
   return hit;
 }

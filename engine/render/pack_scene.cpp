@@ -153,6 +153,17 @@ auto pack_all(const std::vector<Host>& hosts) {
   return records;
 }
 
+/// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
+std::vector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, const std::vector<Primitive>& solids) {
+  std::vector<uint32_t> references = bvh.references;
+  for (const BvhNode& node : bvh.nodes) {
+    const auto first = references.begin() + node.first;
+    std::stable_sort(first, first + node.count,
+                     [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; });
+  }
+  return references;
+}
+
 /// Center and max-norm radius of a box: no corner is farther from the center in any axis.
 vec4 center_and_radius(const Bounds& box) {
   if (box.is_empty()) return vec4(0.0F);
@@ -181,7 +192,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   std::vector<SurfaceRecord> surfaces;
   packed.primitives.reserve(bvh.references.size() + collected.planes.size());
   surfaces.reserve(packed.primitives.capacity());
-  for (const uint32_t reference : bvh.references) {
+  for (const uint32_t reference : sort_leaves_by_kind(bvh, collected.solids)) {
     packed.primitives.push_back(collected.solids[reference]);
     surfaces.push_back(collected.solid_surfaces[reference]);
   }
