@@ -34,12 +34,21 @@ std::vector<std::byte> read_file(const fs::path& file) {
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
+  // rename() would replace a symbolic link, not what it points to.
+  if (fs::is_symlink(target_, error)) {
+    const fs::path resolved = fs::weakly_canonical(target_, error);
+    if (!error) target_ = resolved;
+  }
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
     throw RunError({"the folder of the output file does not exist", target_.string(), "create " + folder.string()});
   }
   if (fs::is_directory(target_, error)) {
     throw RunError({"the output file is a folder", target_.string(), "name a file"});
+  }
+  // As root, rename() would replace a device by a file.
+  if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
+    throw RunError({"the output file is a device or a pipe", target_.string(), "name a file"});
   }
   fs::path name = target_.stem();
   name += ".tmp" + std::to_string(getpid());
@@ -65,16 +74,20 @@ void AtomicFile::commit() {
   committed_ = true;
 }
 
-void write_text_file(const fs::path& file, std::string_view text) {
+void write_file(const fs::path& file, std::span<const std::byte> bytes) {
   AtomicFile output(file);
   std::ofstream stream(output.temporary(), std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   stream.close();
   if (!stream) {
     throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", file.string(),
                     "check the disk and permissions"});
   }
   output.commit();
+}
+
+void write_text_file(const fs::path& file, std::string_view text) {
+  write_file(file, std::as_bytes(std::span(text)));
 }
 
 }  // namespace promin

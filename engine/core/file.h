@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +19,8 @@ std::vector<std::byte> read_file(const std::filesystem::path& file);
 /// commit the destructor removes the temporary file and the target stays as it was.
 class AtomicFile {
  public:
-  /// Throws RunError if the target's folder does not exist or the target is a folder.
+  /// Follows a symbolic link. Throws RunError if the target's folder does not exist or the target is anything but a
+  /// regular file.
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -36,7 +38,8 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes a text file atomically. Throws RunError.
+/// Writes a whole file atomically. Throws RunError.
+void write_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace promin

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,14 +25,27 @@ struct Image {
 /// Name and value pairs that an EXR carries in its header, e.g. {"promin:scene", "showcase.gltf"}.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
+/// Where a crop lies in the whole picture.
+struct CropPlacement {
+  uvec2 lo{0};
+  uvec2 full_size{0};
+};
+
 /// Whether write_image knows the file's ending: .exr or .png.
 bool is_writable_format(const std::filesystem::path& file);
 
-/// Writes .exr (R, G, B linear fp32, with `metadata`) or .png (sRGB, 8 bit, clamped). Atomic: the picture is written
-/// to a temporary file beside the target and renamed; on failure the target is as it was. Throws RunError.
-void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {});
+/// Writes .exr (R, G, B linear fp32, zip, with `metadata`; a crop is the data window of the whole picture's display
+/// window) or .png (sRGB, 8 bit, clamped; a crop is a picture of its own). Equal arguments give equal bytes. Atomic:
+/// the picture is written to a temporary file beside the target and renamed; on failure the target is as it was. Throws
+/// RunError.
+void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
+                 const std::optional<CropPlacement>& crop = std::nullopt);
 
-/// Reads R, G, B of any format OpenImageIO knows, as linear fp32 without conversion. Throws InputError.
+/// Larger pictures are refused before their pixels are read.
+inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
+
+/// Reads R, G, B of any format OpenImageIO knows, as fp32 without conversion; of an EXR the data window.
+/// Throws InputError.
 Image read_image(const std::filesystem::path& file);
 
 /// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.

@@ -68,6 +68,15 @@ TEST_F(FileTest, UnreadableFilesSayWhy) {
 TEST_F(FileTest, UnwritableTargetsAreRefused) {
   EXPECT_THROW(write_text_file(folder_ / "none" / "a.txt", "x"), RunError);
   EXPECT_THROW(write_text_file(folder_, "x"), RunError);
+  EXPECT_THROW(write_text_file("/dev/null", "x"), RunError);
+}
+
+TEST_F(FileTest, ASymbolicLinkIsFollowed) {
+  write_text_file(folder_ / "a.txt", "old");
+  fs::create_symlink("a.txt", folder_ / "link.txt");
+  write_text_file(folder_ / "link.txt", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+  EXPECT_EQ(text_of(folder_ / "a.txt"), "new");
 }
 
 TEST(ErrorTest, SeveralProblemsAreCountedAndIndented) {

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "arguments.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace promin::app {
+namespace {
+
+constexpr const char* kWhere = "on the command line";
+
+std::string cure_for(const std::string& command) {
+  return fmt::format("see {} --help", command);
+}
+
+/// "promin render" of the command "render".
+std::string path_of(const CLI::App& app) {
+  return app.get_parent() == nullptr ? app.get_name() : app.get_parent()->get_name() + " " + app.get_name();
+}
+
+/// The name to speak of an option by: the last of "-s,--spp".
+std::string display_name(const std::string& names) {
+  return names.substr(names.rfind(',') + 1);
+}
+
+/// Reads the whole of a word; false if anything is left over.
+template <typename Number>
+bool parse_number(const std::string& word, Number& number) {
+  const char* end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, number);
+  return error == std::errc() && rest == end;
+}
+
+const CLI::App& deepest_command(const CLI::App& program) {
+  const auto commands = program.get_subcommands();
+  return commands.empty() ? program : *commands.front();
+}
+
+/// CLI11 collects what it does not know: options, commands and words too many.
+void refuse_leftovers(const CLI::App& program) {
+  std::vector<std::string> leftovers = program.remaining(true);
+  leftovers.erase(std::remove(leftovers.begin(), leftovers.end(), "--"), leftovers.end());
+  if (leftovers.empty()) return;
+  const auto is_option = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
+  const auto option = std::find_if(leftovers.begin(), leftovers.end(), is_option);
+  const CLI::App& command = deepest_command(program);
+  const std::string cure = cure_for(path_of(command));
+  if (option != leftovers.end()) {
+    throw UsageError({"unknown option " + option->substr(0, option->find('=')), kWhere, cure});
+  }
+  const std::string what = &command == &program ? "unknown command " : "unexpected argument ";
+  throw UsageError({what + leftovers.front(), kWhere, cure});
+}
+
+}  // namespace
+
+void Words::refuse(const std::string& what) const {
+  throw UsageError({what, kWhere, cure_for(command_)});
+}
+
+uint32_t Words::whole(size_t i, uint32_t min, uint32_t max) const {
+  uint32_t number = 0;
+  if (!parse_number(words_[i], number) || number < min || number > max) {
+    refuse(fmt::format("{} takes a whole number from {} to {}, not \"{}\"", option_, min, max, words_[i]));
+  }
+  return number;
+}
+
+double Words::real(size_t i, double min, double max) const {
+  double number = 0.0;
+  // Written so that a NaN is refused.
+  if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
+    refuse(fmt::format("{} takes a number from {:g} to {:g}, not \"{}\"", option_, min, max, words_[i]));
+  }
+  return number;
+}
+
+dvec3 Words::vector(double max) const {
+  return {real(0, -max, max), real(1, -max, max), real(2, -max, max)};
+}
+
+const std::string& Words::choice(std::span<const std::string_view> choices) const {
+  if (std::find(choices.begin(), choices.end(), text()) == choices.end()) {
+    refuse(fmt::format("{} takes {}, not \"{}\"", option_, fmt::join(choices, " or "), text()));
+  }
+  return text();
+}
+
+OptionTable::OptionTable(CLI::App& command) : command_(command) {}
+
+void OptionTable::add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set) {
+  const auto count = static_cast<int>(std::count(placeholders.begin(), placeholders.end(), ' ')) + 1;
+  const auto receive = [path = path_of(command_), name = display_name(names),
+                        set = std::move(set)](const std::vector<std::string>& words) {
+    set(Words(path, name, words));
+    return true;
+  };
+  CLI::Option* option = command_.add_option(names, CLI::callback_t(receive), help);
+  option->type_name(placeholders)->type_size(count)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void OptionTable::add_required(const std::string& names, const std::string& placeholders, const std::string& help,
+                               Setter set) {
+  add(names, placeholders, help, std::move(set));
+  command_.get_option(display_name(names))->required();
+}
+
+void OptionTable::add_required_repeated(const std::string& names, const std::string& placeholder,
+                                        const std::string& help, Setter set) {
+  add_required(names, placeholder, help, std::move(set));
+  command_.get_option(display_name(names))->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void OptionTable::add_flag(const std::string& names, const std::string& help, bool& value) {
+  command_.add_flag(names, value, help);
+}
+
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help) {
+  CLI::App* command = program.add_subcommand(name, help);
+  add_common_options(*command);
+  return *command;
+}
+
+void add_common_options(CLI::App& app) {
+  app.allow_extras();
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.set_version_flag("--version", std::string("promin ") + PROMIN_VERSION, "Print the version and exit");
+}
+
+bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", program.help());
+    return false;
+  } catch (const CLI::CallForVersion& version) {
+    fmt::print("{}\n", version.what());
+    return false;
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string message = error.what();
+    const std::string option = message.substr(0, message.find(':'));
+    throw UsageError({"too few values for " + option, kWhere, cure_for(path_of(deepest_command(program)))});
+  } catch (const CLI::ParseError& error) {
+    // A misspelt option explains more than the missing one.
+    refuse_leftovers(program);
+    const std::string message = error.what();
+    throw UsageError({message.substr(0, message.find('\n')), kWhere, cure_for(path_of(deepest_command(program)))});
+  }
+  refuse_leftovers(program);
+  return true;
+}
+
+}  // namespace promin::app

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math.h"
+
+namespace CLI {
+class App;
+}
+
+namespace promin::app {
+
+/// The words that the user gave to one option. Every reading throws UsageError, which names the option, what it takes
+/// and what it got.
+class Words {
+ public:
+  Words(std::string command, std::string option, std::vector<std::string> words)
+      : command_(std::move(command)), option_(std::move(option)), words_(std::move(words)) {}
+
+  const std::vector<std::string>& all() const { return words_; }
+  const std::string& text() const { return words_.front(); }
+  /// A decimal number min...max.
+  uint32_t whole(size_t i, uint32_t min, uint32_t max) const;
+  /// A number min...max, both included.
+  double real(size_t i, double min, double max) const;
+  /// Three numbers -max...max.
+  dvec3 vector(double max) const;
+  /// One of `choices`.
+  const std::string& choice(std::span<const std::string_view> choices) const;
+
+  [[noreturn]] void refuse(const std::string& what) const;
+
+ private:
+  std::string command_;
+  std::string option_;
+  std::vector<std::string> words_;
+};
+
+/// The options of a command, one row each. The last of a repeated option holds.
+class OptionTable {
+ public:
+  explicit OptionTable(CLI::App& command);
+
+  using Setter = std::function<void(const Words&)>;
+  /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
+  /// takes: "N", "W H".
+  void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
+  /// What the command cannot do without.
+  void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
+  /// A required option of one word that may be given several times; the setter gets all.
+  void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
+                             Setter set);
+  void add_flag(const std::string& names, const std::string& help, bool& value);
+
+ private:
+  CLI::App& command_;
+};
+
+/// A command of the program: its options are rows in `app`, its work is `run`.
+struct Command {
+  CLI::App* app = nullptr;
+  std::function<void()> run;
+};
+
+/// Adds a command with --help and --version.
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help);
+
+/// Adds the options that every command has, the program itself too.
+void add_common_options(CLI::App& app);
+
+/// Reads the command line. False if it asked for help or the version, which are then printed. Throws UsageError.
+bool parse_arguments(CLI::App& program, int argc, const char* const* argv);
+
+}  // namespace promin::app

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace promin::app {
+
+enum class Verbosity { kQuiet, kNormal, kVerbose };
+
+/// What a command says beside its result: on the standard error stream, a line each, nothing when quiet.
+class Console {
+ public:
+  explicit Console(Verbosity verbosity) : verbosity_(verbosity) {}
+
+  /// What was assumed where the scene or the user did not say.
+  void note(const std::string& text) const { print("note: " + text, Verbosity::kNormal); }
+  void warn(const std::string& text) const { print("warning: " + text, Verbosity::kNormal); }
+  /// Only when verbose.
+  void detail(const std::string& text) const { print(text, Verbosity::kVerbose); }
+
+  bool is_quiet() const { return verbosity_ == Verbosity::kQuiet; }
+
+ private:
+  void print(const std::string& text, Verbosity least) const;
+
+  Verbosity verbosity_;
+};
+
+}  // namespace promin::app

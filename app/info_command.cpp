@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "info_command.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "scene/features.h"
+#include "scene/load_scene.h"
+#include "scene_counts.h"
+
+namespace promin::app {
+namespace {
+
+void print_row(const std::string& name, const std::string& value) {
+  fmt::print("{:<12}{}\n", name, value);
+}
+
+/// One row a line of `values`, the name before the first.
+void print_rows(const std::string& name, const std::vector<std::string>& values) {
+  for (size_t i = 0; i < values.size(); ++i) print_row(i == 0 ? name : "", values[i]);
+}
+
+std::string describe_objects(const SceneCounts& counts, size_t object_count) {
+  std::vector<std::string> kinds;
+  for (size_t i = 0; i < counts.objects.size(); ++i) {
+    std::string name(kShapeNames[i]);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (counts.objects[i] > 0) kinds.push_back(fmt::format("{}: {}", name, counts.objects[i]));
+  }
+  return kinds.empty() ? "0" : fmt::format("{} ({})", object_count, fmt::join(kinds, ", "));
+}
+
+std::string describe_lights(const std::vector<Light>& lights) {
+  if (lights.empty()) return "0; a headlight along the view and ambient light stand in";
+  size_t counts[3] = {};
+  for (const Light& light : lights) ++counts[static_cast<size_t>(light.kind)];
+  return fmt::format("{} (point: {}, directional: {}, spot: {})", lights.size(), counts[0], counts[1], counts[2]);
+}
+
+std::string describe_camera(size_t index, const Camera& camera) {
+  std::string text = fmt::format("{} {}", index, camera.name.empty() ? "(no name)" : camera.name);
+  if (camera.projection == Projection::kPerspective) {
+    text += fmt::format(", perspective, vertical field of view {:.4g} degrees", glm::degrees(camera.yfov));
+  } else {
+    text += fmt::format(", orthographic, {:.4g} units high", 2.0F * camera.ymag);
+  }
+  if (camera.aspect_ratio > 0.0F) text += fmt::format(", aspect ratio {:.4g}", camera.aspect_ratio);
+  text += fmt::format(", near {:.4g}, eye {:.4g} {:.4g} {:.4g}", camera.near, camera.eye.x, camera.eye.y, camera.eye.z);
+  return text;
+}
+
+std::vector<std::string> describe_cameras(const std::vector<Camera>& cameras) {
+  if (cameras.empty()) return {"0; one that frames the scene stands in"};
+  std::vector<std::string> rows;
+  for (size_t i = 0; i < cameras.size(); ++i) rows.push_back(describe_camera(i, cameras[i]));
+  return rows;
+}
+
+std::string describe_bounds(const Bounds& bounds) {
+  if (bounds.is_empty()) return "nothing finite";
+  return fmt::format("{:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}", bounds.lo.x, bounds.lo.y, bounds.lo.z, bounds.hi.x,
+                     bounds.hi.y, bounds.hi.z);
+}
+
+void print_info(const std::filesystem::path& file) {
+  const Scene scene = load_scene(file);
+  const SceneCounts counts = count_scene(scene);
+  print_row("scene", file.string());
+  print_row("objects", describe_objects(counts, scene.objects.size()));
+  print_row("primitives", std::to_string(counts.primitives));
+  print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, counts.degenerate_triangles));
+  print_row("materials", std::to_string(scene.materials.size()));
+  print_row("lights", describe_lights(scene.lights));
+  print_rows("cameras", describe_cameras(scene.cameras));
+  print_row("bounds", describe_bounds(bounds_of(scene)));
+  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(scene)), ", ")));
+  print_row("memory", fmt::format("{:.3f} MB of geometry", 1e-6 * static_cast<double>(counts.geometry_bytes)));
+  print_rows("warnings", scene.warnings.empty() ? std::vector<std::string>{"none"} : scene.warnings);
+}
+
+}  // namespace
+
+Command add_info_command(CLI::App& program) {
+  CLI::App& command = add_command(program, "info", "Print what a scene holds and what is modelled of it");
+  const auto file = std::make_shared<std::filesystem::path>();
+  OptionTable(command).add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+                                    [file](const Words& w) { *file = w.text(); });
+  return {&command, [file] { print_info(*file); }};
+}
+
+}  // namespace promin::app

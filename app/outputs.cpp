@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "outputs.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "deferred_signals.h"
+#include "image/image.h"
+
+namespace promin::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One spelling for each file, whether it exists or not.
+fs::path resolve(const fs::path& file) {
+  std::error_code error;
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(file, error), error);
+  return error ? file : resolved;
+}
+
+void check_writable(const fs::path& file) {
+  const AtomicFile probe(file);
+  const bool is_new = access(file.c_str(), F_OK) != 0;
+  if (!std::ofstream(probe.temporary()) || !(is_new || access(file.c_str(), W_OK) == 0)) {
+    throw RunError({"cannot write the output file", file.string(), "check the permissions or name another place"});
+  }
+}
+
+}  // namespace
+
+void check_outputs(const fs::path& scene, const std::vector<fs::path>& pictures, const std::optional<fs::path>& stats) {
+  for (const fs::path& picture : pictures) {
+    if (!is_writable_format(picture)) {
+      throw UsageError(
+          {"unknown output ending \"" + picture.extension().string() + "\"", picture.string(), "use .exr or .png"});
+    }
+  }
+  std::vector<fs::path> files = pictures;
+  if (stats) files.push_back(*stats);
+  std::vector<fs::path> taken = {resolve(scene)};
+  for (const fs::path& file : files) {
+    const fs::path resolved = resolve(file);
+    const auto same = std::find(taken.begin(), taken.end(), resolved);
+    if (same == taken.begin()) {
+      throw UsageError({"the output would overwrite the scene", file.string(), "name another file"});
+    }
+    if (same != taken.end()) {
+      throw UsageError({"the same output file is named twice", file.string(), "name different files"});
+    }
+    taken.push_back(resolved);
+  }
+  const DeferredSignals while_probing;
+  for (const fs::path& file : files) check_writable(file);
+}
+
+}  // namespace promin::app

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace promin::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kLongWork = 1s;
+constexpr auto kDrawInterval = 100ms;
+constexpr int kBarWidth = 40;
+
+std::string format_time(double seconds) {
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+}  // namespace
+
+Progress::Progress(bool is_quiet) : is_quiet_(is_quiet), is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (has_bar_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(double fraction) {
+  const Clock::time_point now = Clock::now();
+  if (is_quiet_ || fraction <= 0.0 || fraction >= 1.0 || now - start_ < kLongWork) return;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const std::string left = format_time(elapsed / fraction * (1.0 - fraction));
+  if (is_terminal_) {
+    if (has_bar_ && now - last_draw_ < kDrawInterval) return;
+    last_draw_ = now;
+    has_bar_ = true;
+    const auto filled = static_cast<int>(fraction * kBarWidth);
+    fmt::print(stderr, "\r[{:=<{}}{:{}}] {:3.0f} %, {} left\033[K", "", filled, "", kBarWidth - filled,
+               std::floor(100.0 * fraction), left);
+    std::fflush(stderr);
+    return;
+  }
+  const auto tenth = static_cast<int>(10.0 * fraction);
+  if (tenth == last_tenth_) return;
+  last_tenth_ = tenth;
+  fmt::print(stderr, "promin: {} %, {} left\n", 10 * tenth, left);
+}
+
+}  // namespace promin::app

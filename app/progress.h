@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace promin::app {
+
+/// Shows how far long work is, on the standard error stream: a bar with the time left on a terminal, a plain line
+/// every 10 % in a pipe. Work of less than a second shows nothing.
+class Progress {
+ public:
+  /// A quiet one shows nothing at all.
+  explicit Progress(bool is_quiet);
+  /// Removes the bar.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// The fraction of the whole work that is done, 0...1.
+  void update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool is_quiet_;
+  bool is_terminal_;
+  bool has_bar_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_draw_ = start_;
+  int last_tenth_ = 0;
+};
+
+}  // namespace promin::app

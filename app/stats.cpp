@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "stats.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace promin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of_scene(const RenderStats& stats) {
+  Json json = {{"file", stats.scene_file}, {"objects", stats.object_count}};
+  for (size_t i = 0; i < kShapeNames.size(); ++i) json[std::string(kShapeNames[i])] = stats.scene.objects[i];
+  json["primitives"] = stats.scene.primitives;
+  json["triangles"] = stats.scene.triangles;
+  json["degenerate_triangles"] = stats.scene.degenerate_triangles;
+  json["materials"] = stats.material_count;
+  json["lights"] = stats.light_count;
+  return json;
+}
+
+Json json_of_view(const View& view) {
+  Json json = {{"size", {view.size.x, view.size.y}},
+               {"samples_per_pixel", view.samples_per_pixel},
+               {"max_depth", view.max_depth}};
+  if (view.crop) json["crop"] = {view.crop->lo.x, view.crop->lo.y, view.crop->hi.x, view.crop->hi.y};
+  return json;
+}
+
+Json json_of_bvh(const BvhStats& bvh) {
+  return {{"builder", bvh.builder},  {"nodes", bvh.nodes}, {"leaves", bvh.leaves},
+          {"depth", bvh.depth},      {"bytes", bvh.bytes}, {"max_leaf_size", bvh.max_leaf_size},
+          {"sah_cost", bvh.sah_cost}};
+}
+
+}  // namespace
+
+double RenderStats::median_trace_ms() const {
+  if (trace_ms.empty()) return 0.0;
+  std::vector<double> sorted = trace_ms;
+  std::sort(sorted.begin(), sorted.end());
+  const size_t middle = sorted.size() / 2;
+  return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+}
+
+double RenderStats::mrays_per_s() const {
+  const double ms = median_trace_ms();
+  return ms > 0.0 ? static_cast<double>(rays.total()) / (1e3 * ms) : 0.0;
+}
+
+std::string to_json(const RenderStats& stats) {
+  const Json json = {
+      {"version", PROMIN_VERSION},
+      {"device", stats.device.name},
+      {"device_type", stats.device.type},
+      {"driver", stats.device.driver},
+      {"scene", json_of_scene(stats)},
+      {"view", json_of_view(stats.view)},
+      {"features", feature_names(stats.setup.features)},
+      {"bvh", json_of_bvh(stats.setup.bvh)},
+      {"device_bytes", stats.setup.device_bytes},
+      {"times_ms",
+       {{"load", stats.load_ms},
+        {"bvh", stats.setup.bvh_ms},
+        {"upload", stats.setup.upload_ms},
+        {"pipeline", stats.setup.pipeline_ms},
+        {"trace", stats.median_trace_ms()},
+        {"write", stats.write_ms},
+        {"total", stats.total_ms}}},
+      {"trace_runs_ms", stats.trace_ms},
+      {"rays", {{"primary", stats.rays.primary}, {"shadow", stats.rays.shadow}, {"reflection", stats.rays.reflection}}},
+      {"mrays_per_s", stats.mrays_per_s()},
+  };
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace promin::app

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gpu/device_info.h"
+#include "render/renderer.h"
+#include "scene_counts.h"
+
+namespace promin::app {
+
+/// What one `promin render` made and cost: the content of `--stats`. Times in milliseconds.
+struct RenderStats {
+  gpu::DeviceInfo device;
+  std::string scene_file;
+  SceneCounts scene;
+  size_t object_count = 0;
+  size_t material_count = 0;
+  size_t light_count = 0;
+  View view;
+  Renderer::SetupStats setup;
+  RayCounts rays;
+  /// Of each repetition.
+  std::vector<double> trace_ms;
+  double load_ms = 0.0;
+  double write_ms = 0.0;
+  double total_ms = 0.0;
+
+  /// The median.
+  double median_trace_ms() const;
+  /// All rays over the median trace time; 0 where that was too short to measure.
+  double mrays_per_s() const;
+};
+
+/// As a JSON object, indented.
+std::string to_json(const RenderStats& stats);
+
+}  // namespace promin::app

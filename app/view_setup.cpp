@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view_setup.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kDefaultHeight = 720;
+constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
+constexpr float kDefaultAmbient = 0.1F;
+
+/// Directions count as orthonormal, and are used as they are, within what rounding to fp32 and to 9 digits leaves.
+constexpr double kOrthonormalTolerance = 1e-6;
+/// Sine of the least angle between look and up that says which way is up.
+constexpr double kParallelTolerance = 1e-6;
+
+std::string list_cameras(const Scene& scene) {
+  std::string text;
+  for (size_t i = 0; i < scene.cameras.size(); ++i) {
+    text += fmt::format("{}{}", i == 0 ? "" : ", ", i);
+    if (!scene.cameras[i].name.empty()) text += fmt::format(" ({})", scene.cameras[i].name);
+  }
+  return text;
+}
+
+/// By name first: a camera may be called "2".
+const Camera& find_camera(const Scene& scene, const std::string& selection) {
+  if (scene.cameras.empty()) {
+    throw UsageError({"the scene has no cameras to choose from", scene.file.string(), "leave --camera out"});
+  }
+  for (const Camera& camera : scene.cameras) {
+    if (camera.name == selection) return camera;
+  }
+  size_t index = 0;
+  const char* end = selection.data() + selection.size();
+  const auto [rest, error] = std::from_chars(selection.data(), end, index);
+  if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
+    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "there are " + list_cameras(scene)});
+  }
+  return scene.cameras[index];
+}
+
+Camera choose_camera(const Scene& scene, const ViewOptions& options, const Console& console) {
+  if (options.camera) return find_camera(scene, *options.camera);
+  if (!scene.cameras.empty()) return scene.cameras.front();
+  if (!options.pose.eye || !options.pose.look) {
+    console.note("the scene has no camera; one that frames it is used");
+  }
+  return frame_scene(scene, options.size ? static_cast<float>(options.size->x) / static_cast<float>(options.size->y)
+                                         : kDefaultAspectRatio);
+}
+
+bool is_orthonormal(const dvec3& look, const dvec3& up) {
+  return std::abs(glm::length(look) - 1.0) <= kOrthonormalTolerance &&
+         std::abs(glm::length(up) - 1.0) <= kOrthonormalTolerance &&
+         std::abs(glm::dot(look, up)) <= kOrthonormalTolerance;
+}
+
+void orient(Camera& camera, dvec3 look, dvec3 up) {
+  if (!is_orthonormal(look, up)) {
+    const double look_length = glm::length(look);
+    const double up_length = glm::length(up);
+    const dvec3 right = glm::cross(look, up);
+    // Written so that a zero vector is refused.
+    if (!(glm::length(right) > kParallelTolerance * look_length * up_length)) {
+      throw UsageError({"the directions of view and up are parallel or zero", "on the command line",
+                        "give --look and --up that differ"});
+    }
+    look /= look_length;
+    up = glm::normalize(glm::cross(right, look));
+  }
+  camera.look = vec3(look);
+  camera.up = vec3(up);
+}
+
+void apply_pose(Camera& camera, const PoseOptions& pose) {
+  if (pose.eye) camera.eye = vec3(*pose.eye);
+  if (pose.look || pose.up) {
+    const dvec3 default_up = pose.look ? dvec3(0.0, 1.0, 0.0) : dvec3(camera.up);
+    orient(camera, pose.look.value_or(dvec3(camera.look)), pose.up.value_or(default_up));
+  }
+  if (pose.fov_deg) {
+    camera.projection = Projection::kPerspective;
+    camera.yfov = static_cast<float>(glm::radians(*pose.fov_deg));
+  }
+  if (pose.near) camera.near = static_cast<float>(*pose.near);
+}
+
+uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
+  if (options.size) return *options.size;
+  const float aspect_ratio = camera.aspect_ratio > 0.0F ? camera.aspect_ratio : kDefaultAspectRatio;
+  const double width = std::round(static_cast<double>(kDefaultHeight) * static_cast<double>(aspect_ratio));
+  if (!(width >= 1.0 && width <= kMaxSide)) {
+    throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", aspect_ratio),
+                      scene.file.string(), "give --size"});
+  }
+  return {static_cast<uint32_t>(width), kDefaultHeight};
+}
+
+}  // namespace
+
+View make_view(const Scene& scene, const ViewOptions& options, const Console& console) {
+  View view;
+  view.camera = choose_camera(scene, options, console);
+  view.size = choose_size(options, view.camera, scene);
+  apply_pose(view.camera, options.pose);
+  view.crop = options.crop;
+  if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
+    throw UsageError({fmt::format("--crop reaches beyond the picture of {}x{}", view.size.x, view.size.y),
+                      "on the command line", "stay within it or give a larger --size"});
+  }
+  view.samples_per_pixel = options.samples_per_pixel;
+  view.max_depth = options.max_depth;
+  return view;
+}
+
+void light_up(Scene& scene, const Camera& camera, const Console& console) {
+  if (!scene.lights.empty()) return;
+  scene.lights.push_back(make_headlight(camera));
+  if (scene.ambient != vec3(0.0F)) {
+    console.note("the scene has no lights; a headlight along the view is used");
+    return;
+  }
+  scene.ambient = vec3(kDefaultAmbient);
+  console.note(fmt::format("the scene has no lights; a headlight along the view and ambient light of {} are used",
+                           kDefaultAmbient));
+}
+
+}  // namespace promin::app

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "console.h"
+#include "render/renderer.h"
+#include "render_options.h"
+#include "scene/scene.h"
+
+namespace promin::app {
+
+/// The view that the options ask of this scene. A scene without a camera gets one that frames it, and a note says so.
+/// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
+View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
+
+/// Gives a scene without lights a headlight along the view, and ambient light where it has none, and a note says so.
+void light_up(Scene& scene, const Camera& camera, const Console& console);
+
+}  // namespace promin::app

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "image/compare.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "core/error.h"
+
+namespace promin {
+namespace {
+
+std::string name_size(const Image& image) {
+  return std::to_string(image.size.x) + "x" + std::to_string(image.size.y);
+}
+
+void require_same_size(const Image& a, const Image& b) {
+  if (a.size != b.size) {
+    throw InputError(
+        {"the pictures differ in size", name_size(a) + " against " + name_size(b), "render both at one size"});
+  }
+  if (a.pixels.empty()) throw InputError({"the pictures have no pixels", name_size(a), "render them again"});
+}
+
+bool is_worse(const PixelDifference& a, const PixelDifference& b) {
+  if (a.difference != b.difference) return a.difference > b.difference;
+  return a.pixel.y != b.pixel.y ? a.pixel.y < b.pixel.y : a.pixel.x < b.pixel.x;
+}
+
+}  // namespace
+
+double ImageDifference::failed_percent() const {
+  return pixel_count == 0 ? 0.0 : 100.0 * static_cast<double>(failed_count) / static_cast<double>(pixel_count);
+}
+
+std::string ImageDifference::summary() const {
+  char line[256];
+  std::snprintf(line, sizeof line, "%s: mean %.3g, largest %.3g, failed pixels %llu (%.4g %%), not finite %llu",
+                is_equal ? "equal" : "different", mean_absolute, static_cast<double>(largest),
+                static_cast<unsigned long long>(failed_count), failed_percent(),
+                static_cast<unsigned long long>(non_finite_count));
+  std::string text = line;
+  for (const PixelDifference& each : worst) {
+    std::snprintf(line, sizeof line, "\n  pixel (%u, %u) differs by %.6g", each.pixel.x, each.pixel.y,
+                  static_cast<double>(each.difference));
+    text += line;
+  }
+  return text;
+}
+
+ImageDifference compare_images(const Image& a, const Image& b, const CompareOptions& options) {
+  require_same_size(a, b);
+  ImageDifference result;
+  result.pixel_count = a.pixels.size();
+  std::vector<PixelDifference> differing;
+  double sum = 0.0;
+  for (uint32_t y = 0; y < a.size.y; ++y) {
+    for (uint32_t x = 0; x < a.size.x; ++x) {
+      float difference = std::numeric_limits<float>::infinity();
+      if (is_finite(a.at(x, y)) && is_finite(b.at(x, y))) {
+        const vec3 channels = glm::abs(a.at(x, y) - b.at(x, y));
+        difference = max_component(channels);
+        sum += static_cast<double>(channels.x) + static_cast<double>(channels.y) + static_cast<double>(channels.z);
+      } else {
+        ++result.non_finite_count;
+      }
+      if (difference > options.fail) ++result.failed_count;
+      result.largest = std::max(result.largest, difference);
+      if (difference > 0.0F) differing.push_back({uvec2(x, y), difference});
+    }
+  }
+  const uint64_t finite_count = result.pixel_count - result.non_finite_count;
+  if (finite_count > 0) result.mean_absolute = sum / (3.0 * static_cast<double>(finite_count));
+
+  const size_t listed = std::min(options.worst_count, differing.size());
+  std::partial_sort(differing.begin(), differing.begin() + static_cast<std::ptrdiff_t>(listed), differing.end(),
+                    is_worse);
+  differing.resize(listed);
+  result.worst = std::move(differing);
+  result.is_equal = result.non_finite_count == 0 && result.largest <= options.hard_fail &&
+                    result.failed_percent() <= options.fail_percent;
+  return result;
+}
+
+void write_difference_image(const std::filesystem::path& file, const Image& a, const Image& b, float gain) {
+  require_same_size(a, b);
+  Image difference;
+  difference.size = a.size;
+  difference.pixels.reserve(a.pixels.size());
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    const bool is_comparable = is_finite(a.pixels[i]) && is_finite(b.pixels[i]);
+    difference.pixels.push_back(is_comparable ? glm::abs(a.pixels[i] - b.pixels[i]) * gain : vec3(1.0F, 0.0F, 1.0F));
+  }
+  write_image(file, difference);
+}
+
+}  // namespace promin

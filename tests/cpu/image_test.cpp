@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "image/image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+#include <limits>
+
+#include "core/error.h"
+#include "core/file.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// Every channel of every pixel differs, beyond [0, 1] as well.
+Image make_ramp(uint32_t width, uint32_t height) {
+  Image image;
+  image.size = uvec2(width, height);
+  for (uint32_t i = 0; i < width * height; ++i) {
+    const auto x = static_cast<float>(i);
+    image.pixels.emplace_back(x / 7.0F, -x, x * 1e6F);
+  }
+  return image;
+}
+
+class ImageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::ptrdiff_t file_count() const { return std::distance(fs::directory_iterator(folder_), {}); }
+
+  fs::path folder_;
+};
+
+std::string message_of_reading(const fs::path& file) {
+  try {
+    read_image(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(EncodeSrgbTest, KnownValues) {
+  // IEC 61966-2-1, evaluated with 50 digits.
+  EXPECT_EQ(encode_srgb(0.0F), 0.0F);
+  EXPECT_EQ(encode_srgb(1.0F), 1.0F);
+  EXPECT_FLOAT_EQ(encode_srgb(0.001F), 0.01292F);
+  EXPECT_FLOAT_EQ(encode_srgb(0.003F), 0.038760000F);
+  EXPECT_FLOAT_EQ(encode_srgb(0.0032F), 0.041323358F);
+  EXPECT_FLOAT_EQ(encode_srgb(0.18F), 0.46135614F);
+  EXPECT_FLOAT_EQ(encode_srgb(0.5F), 0.73535698F);
+}
+
+TEST(EncodeSrgbTest, ClampsAndTakesNanAsBlack) {
+  EXPECT_EQ(encode_srgb(-1.0F), 0.0F);
+  EXPECT_EQ(encode_srgb(7.0F), 1.0F);
+  EXPECT_EQ(encode_srgb(std::numeric_limits<float>::infinity()), 1.0F);
+  EXPECT_EQ(encode_srgb(std::numeric_limits<float>::quiet_NaN()), 0.0F);
+}
+
+TEST(ImageFormatTest, EndingsAreKnownInAnyCase) {
+  EXPECT_TRUE(is_writable_format("a.exr"));
+  EXPECT_TRUE(is_writable_format("folder.d/A.PNG"));
+  EXPECT_FALSE(is_writable_format("a.jpg"));
+  EXPECT_FALSE(is_writable_format("exr"));
+  EXPECT_FALSE(is_writable_format(""));
+}
+
+TEST_F(ImageTest, ExrKeepsEveryBit) {
+  const Image image = make_ramp(17, 5);
+  write_image(folder_ / "a.exr", image);
+  const Image back = read_image(folder_ / "a.exr");
+  EXPECT_EQ(back.size, image.size);
+  EXPECT_EQ(back.pixels, image.pixels);
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(ImageTest, EqualPicturesGiveEqualBytes) {
+  const Metadata metadata = {{"promin:scene", "a.gltf"}};
+  write_image(folder_ / "a.exr", make_ramp(64, 64), metadata);
+  write_image(folder_ / "b.exr", make_ramp(64, 64), metadata);
+  EXPECT_EQ(read_file(folder_ / "a.exr"), read_file(folder_ / "b.exr"));
+}
+
+TEST_F(ImageTest, ExrCarriesMetadataAndTheCropsPlace) {
+  write_image(folder_ / "a.exr", make_ramp(8, 4), {{"promin:scene", "a.gltf"}}, CropPlacement{{3, 2}, {20, 10}});
+  const auto input = OIIO::ImageInput::open((folder_ / "a.exr").string());
+  ASSERT_TRUE(input);
+  const OIIO::ImageSpec& spec = input->spec();
+  EXPECT_EQ(spec.get_string_attribute("promin:scene"), "a.gltf");
+  EXPECT_EQ(spec.get_string_attribute("compression"), "zip");
+  EXPECT_EQ(spec.get_string_attribute("DateTime"), "") << "the time of day would make equal pictures differ";
+  EXPECT_EQ(spec.format, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(std::vector<int>({spec.x, spec.y, spec.width, spec.height}), std::vector<int>({3, 2, 8, 4}));
+  EXPECT_EQ(std::vector<int>({spec.full_x, spec.full_y, spec.full_width, spec.full_height}),
+            std::vector<int>({0, 0, 20, 10}));
+  EXPECT_EQ(read_image(folder_ / "a.exr").pixels, make_ramp(8, 4).pixels);
+}
+
+TEST_F(ImageTest, PngIsSrgbOf8Bits) {
+  Image image;
+  image.size = uvec2(2, 1);
+  image.pixels = {vec3(0.0F, 0.18F, 0.5F), vec3(1.0F, 9.0F, -1.0F)};
+  write_image(folder_ / "a.png", image);
+  const Image back = read_image(folder_ / "a.png");
+  ASSERT_EQ(back.size, image.size);
+  EXPECT_EQ(glm::round(back.pixels[0] * 255.0F), vec3(0.0F, 118.0F, 188.0F));
+  EXPECT_EQ(glm::round(back.pixels[1] * 255.0F), vec3(255.0F, 255.0F, 0.0F));
+}
+
+TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
+  for (const char* name : {"a.exr", "a.png"}) {
+    const fs::path file = folder_ / name;
+    write_image(file, make_ramp(4, 4));
+    const std::vector<std::byte> old = read_file(file);
+
+    // A file size limit stands for a full disk.
+    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit small{100, limit.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    EXPECT_THROW(write_image(file, make_ramp(200, 200)), RunError) << name;
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, old_handler);
+
+    EXPECT_EQ(read_file(file), old) << name;
+    fs::remove(file);
+    EXPECT_EQ(file_count(), 0) << "the temporary file of " << name << " was left behind";
+  }
+}
+
+TEST_F(ImageTest, UnwritableTargetsAreRefused) {
+  fs::create_directory(folder_ / "folder.exr");
+  EXPECT_THROW(write_image(folder_ / "folder.exr", make_ramp(2, 2)), RunError);
+  EXPECT_THROW(write_image(folder_ / "none" / "a.exr", make_ramp(2, 2)), RunError);
+  EXPECT_THROW(write_image(folder_ / "a.jpg", make_ramp(2, 2)), RunError);
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(ImageTest, UnreadablePicturesSayWhy) {
+  std::ofstream(folder_ / "text.exr") << "not a picture";
+  EXPECT_THAT(message_of_reading(folder_ / "none.exr"), HasSubstr("no such picture"));
+  EXPECT_THAT(message_of_reading(folder_), HasSubstr("no such picture"));
+  const std::string message = message_of_reading(folder_ / "text.exr");
+  EXPECT_THAT(message, HasSubstr("cannot read the picture"));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+
+  write_image(folder_ / "whole.exr", make_ramp(64, 64));
+  fs::resize_file(folder_ / "whole.exr", fs::file_size(folder_ / "whole.exr") / 2);
+  EXPECT_THAT(message_of_reading(folder_ / "whole.exr"), HasSubstr("damaged"));
+}
+
+TEST_F(ImageTest, PicturesWithoutRgbOrOfAbsurdSizeAreRefused) {
+  std::ofstream(folder_ / "grey.pgm") << "P2 1 1 255 7";
+  EXPECT_THAT(message_of_reading(folder_ / "grey.pgm"), HasSubstr("no channels R, G, B"));
+  std::ofstream(folder_ / "huge.ppm") << "P6 1000000 1000000 255\n";
+  EXPECT_THAT(message_of_reading(folder_ / "huge.ppm"), HasSubstr("too large"));
+}
+
+}  // namespace
+}  // namespace promin
