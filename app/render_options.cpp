@@ -8,12 +8,12 @@
 
 #include "arguments.h"
 #include "core/error.h"
+#include "render/sampling.h"
 #include "scene/load_scene.h"
 
 namespace promin::app {
 namespace {
 
-constexpr uint32_t kMaxSamples = 65536;
 constexpr uint32_t kMaxDepth = 1000;
 constexpr uint32_t kMaxRepeats = 10000;
 /// The limits 0 and 180 themselves show nothing.
@@ -46,8 +46,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add_required_repeated("-o,--output", "FILE",
                               "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
                               [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
-  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamples),
-            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamples); });
+  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
+            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
             [&](const Words& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--max-depth", "N",

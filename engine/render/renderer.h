@@ -30,7 +30,7 @@ struct View {
   uvec2 size{1280, 720};
   /// Pixels to trace; the whole picture where empty. A crop has the bits of the same pixels of the whole.
   std::optional<PixelWindow> crop;
-  /// Samples a pixel, at fixed well-distributed points; 1 is the centre. 1...65536.
+  /// Samples a pixel, at fixed well-distributed points; 1 is the centre. 1...kMaxSamplesPerPixel (render/sampling.h).
   uint32_t samples_per_pixel = 1;
   /// Mirror bounces; 0 traces no mirror rays. 0...1000.
   uint32_t max_depth = 5;

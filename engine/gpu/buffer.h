@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vulkan/vulkan_raii.hpp>
+
+namespace promin::gpu {
+
+class Device;
+
+/// A buffer with memory of its own. It lies in device-local memory; where the host can map that (integrated GPUs, CPU
+/// devices) it is written and read directly, elsewhere through a staging buffer.
+class Buffer {
+ public:
+  /// `size_bytes` > 0. Throws vk::SystemError, or RunError if a storage buffer would pass the device's
+  /// maxStorageBufferRange.
+  Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage);
+
+  const vk::raii::Buffer& handle() const { return buffer_; }
+  vk::DeviceSize size_bytes() const { return size_bytes_; }
+
+  /// Copies to the start of the buffer, and from it. The device is idle with respect to this buffer before and after.
+  void write(std::span<const std::byte> data);
+  void read(std::span<std::byte> data) const;
+
+ private:
+  Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,
+         std::span<const vk::MemoryPropertyFlags> preferences);
+
+  const Device* device_;
+  vk::DeviceSize size_bytes_;
+  vk::raii::Buffer buffer_{nullptr};
+  vk::raii::DeviceMemory memory_{nullptr};
+  /// Null where the host cannot map the memory.
+  std::byte* mapped_ = nullptr;
+};
+
+}  // namespace promin::gpu

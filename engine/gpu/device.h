@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "gpu/device_info.h"
+
+namespace promin::gpu {
+
+/// Runs `work` and turns Vulkan's exceptions into RunError sentences that name the call and the result.
+void translate_vulkan_errors(const std::function<void()>& work);
+
+/// A Vulkan instance and one logical device with one compute queue. Needs nothing beyond Vulkan 1.1's required
+/// minima. One thread uses a device at a time.
+class Device {
+ public:
+  /// See open_device (gpu/open_device.h). Throws DeviceError.
+  explicit Device(const std::optional<std::string>& selection);
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+  const std::string& choice() const { return choice_; }
+  uint64_t validation_message_count() const { return *validation_messages_; }
+
+  const vk::raii::Device& handle() const { return device_; }
+  const vk::PhysicalDeviceLimits& limits() const { return limits_; }
+  /// Nanoseconds a timestamp tick; 0 where the queue has no timestamps.
+  double timestamp_period_ns() const { return timestamp_period_ns_; }
+
+  /// Index of the first memory type in `allowed_types` that has all of `wanted`, or none.
+  std::optional<uint32_t> find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const;
+
+  /// Records one command buffer, submits it and waits until the device has finished.
+  void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
+
+ private:
+  // Declared in the order of their making: each needs those before it.
+  std::unique_ptr<std::atomic<uint64_t>> validation_messages_;
+  vk::raii::Context context_;
+  vk::raii::Instance instance_{nullptr};
+  vk::raii::DebugUtilsMessengerEXT messenger_{nullptr};
+  vk::raii::PhysicalDevice physical_{nullptr};
+  vk::PhysicalDeviceLimits limits_;
+  vk::PhysicalDeviceMemoryProperties memory_;
+  double timestamp_period_ns_ = 0.0;
+  vk::raii::Device device_{nullptr};
+  vk::raii::Queue queue_{nullptr};
+  vk::raii::CommandPool pool_{nullptr};
+  vk::raii::CommandBuffer commands_{nullptr};
+  vk::raii::Fence fence_{nullptr};
+  DeviceInfo info_;
+  std::string choice_;
+};
+
+}  // namespace promin::gpu

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/pipeline.h"
+
+#include <cassert>
+#include <map>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/device.h"
+
+namespace promin::gpu {
+
+bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
+  constexpr size_t kHeaderWords = 5;
+  constexpr uint32_t kOpDecorate = 71;
+  constexpr uint32_t kSpecId = 1;
+  for (size_t i = kHeaderWords; i < spirv.size();) {
+    const uint32_t opcode = spirv[i] & 0xFFFFU;
+    const uint32_t length = spirv[i] >> 16;
+    if (length == 0) return false;
+    if (opcode == kOpDecorate && length >= 4 && spirv[i + 2] == kSpecId && spirv[i + 3] == id) return true;
+    i += length;
+  }
+  return false;
+}
+
+ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
+                                 std::span<const SpecializationConstant> constants,
+                                 std::span<const BoundBuffer> buffers, uint32_t push_constant_bytes)
+    : device_(&device) {
+  const vk::raii::Device& handle = device.handle();
+
+  std::vector<vk::DescriptorSetLayoutBinding> bindings;
+  std::map<vk::DescriptorType, uint32_t> type_counts;
+  for (const BoundBuffer& buffer : buffers) {
+    bindings.emplace_back(buffer.binding, buffer.type, 1, vk::ShaderStageFlagBits::eCompute);
+    ++type_counts[buffer.type];
+  }
+  std::vector<vk::DescriptorPoolSize> pool_sizes;
+  for (const auto& [type, count] : type_counts) pool_sizes.emplace_back(type, count);
+  set_layout_ = vk::raii::DescriptorSetLayout(handle, vk::DescriptorSetLayoutCreateInfo({}, bindings));
+  pool_ = vk::raii::DescriptorPool(
+      handle,
+      vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_sizes));
+  set_ = std::move(
+      vk::raii::DescriptorSets(handle, vk::DescriptorSetAllocateInfo(*pool_, *set_layout_)).front());
+  for (const BoundBuffer& buffer : buffers) bind(buffer);
+
+  const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes);
+  layout_ = vk::raii::PipelineLayout(handle, vk::PipelineLayoutCreateInfo({}, *set_layout_, push_range));
+
+  std::vector<vk::SpecializationMapEntry> entries;
+  std::vector<uint32_t> values;
+  for (const SpecializationConstant& constant : constants) {
+    assert(has_specialization_constant(spirv, constant.id));
+    entries.emplace_back(constant.id, static_cast<uint32_t>(values.size() * sizeof(uint32_t)), sizeof(uint32_t));
+    values.push_back(constant.value);
+  }
+  const vk::SpecializationInfo specialization(static_cast<uint32_t>(entries.size()), entries.data(),
+                                              values.size() * sizeof(uint32_t), values.data());
+  const vk::raii::ShaderModule module(handle, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                &specialization);
+  pipeline_ = vk::raii::Pipeline(handle, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+}
+
+void ComputePipeline::bind(const BoundBuffer& buffer) {
+  const vk::DescriptorBufferInfo info(*buffer.buffer->handle(), 0, VK_WHOLE_SIZE);
+  device_->handle().updateDescriptorSets(
+      vk::WriteDescriptorSet(*set_, buffer.binding, 0, 1, buffer.type, nullptr, &info), {});
+}
+
+void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, std::span<const std::byte> push_constants,
+                               uint32_t group_count) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, {});
+  commands.pushConstants<std::byte>(*layout_, vk::ShaderStageFlagBits::eCompute, 0,
+                                    vk::ArrayProxy<const std::byte>(static_cast<uint32_t>(push_constants.size()),
+                                                                    push_constants.data()));
+  commands.dispatch(group_count, 1, 1);
+}
+
+}  // namespace promin::gpu

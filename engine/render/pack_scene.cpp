@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/pack_scene.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/error.h"
+
+namespace promin {
+namespace {
+
+using namespace layout;
+
+uint32_t bits_of(float value) { return std::bit_cast<uint32_t>(value); }
+
+// How each shape becomes a primitive: the comment at layout::Primitive.
+Primitive pack(const Sphere& s) { return {vec4(s.center, s.radius), vec4(0.0F), uvec4(0, 0, KIND_SPHERE, 0)}; }
+Primitive pack(const Cylinder& c) {
+  return {vec4(c.center, c.radius), vec4(c.axis, c.half_height), uvec4(0, 0, KIND_CYLINDER, 0)};
+}
+Primitive pack(const Cone& c) {
+  return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height),
+          uvec4(bits_of(c.radius_top), 0, KIND_CONE, 0)};
+}
+Primitive pack(const Plane& p) { return {vec4(p.point, 0.0F), vec4(p.normal, 0.0F), uvec4(0, 0, KIND_PLANE, 0)}; }
+Primitive pack_triangle(const Mesh& mesh, uint32_t index) {
+  const uvec3 t = mesh.triangles[index];
+  const vec3 a = mesh.positions[t.x];
+  const vec3 b = mesh.positions[t.y];
+  const vec3 c = mesh.positions[t.z];
+  return {vec4(a, b.x), vec4(b.y, b.z, c.x, c.y), uvec4(bits_of(c.z), 0, KIND_TRIANGLE, 0)};
+}
+
+/// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
+struct Collected {
+  std::vector<Primitive> solids;
+  std::vector<SurfaceRecord> solid_surfaces;
+  std::vector<Bounds> boxes;
+  std::vector<Primitive> planes;
+  std::vector<SurfaceRecord> plane_surfaces;
+  std::vector<vec4> normals;
+  std::vector<vec4> colors;
+  uint32_t order = 0;
+};
+
+class Collector {
+ public:
+  explicit Collector(const Scene& scene) {
+    size_t count = 0;
+    for (const Object& object : scene.objects) count += primitive_count(object.shape);
+    if (count > CHILD_FIRST_MASK) {
+      throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
+                      "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
+    }
+    result_.solids.reserve(count);
+    result_.solid_surfaces.reserve(count);
+    result_.boxes.reserve(count);
+    for (const Object& object : scene.objects) {
+      material_ = object.material;
+      std::visit([this](const auto& shape) { add(shape); }, object.shape);
+    }
+  }
+
+  Collected take() { return std::move(result_); }
+
+ private:
+  void add(const NotDrawn&) {}
+
+  void add(const Plane& plane) {
+    Primitive primitive = pack(plane);
+    primitive.c.y = result_.order++;
+    result_.planes.push_back(primitive);
+    result_.plane_surfaces.push_back({uvec4(0, 0, 0, material_)});
+  }
+
+  template <typename Solid>
+  void add(const Solid& solid) {
+    add_solid(pack(solid), bounds_of(solid), uvec4(0, 0, 0, material_));
+  }
+
+  void add(const Mesh& mesh) {
+    const auto first_vertex = static_cast<uint32_t>(std::max(result_.normals.size(), result_.colors.size()));
+    uint32_t flags = 0;
+    if (!mesh.normals.empty()) {
+      flags |= SURFACE_IS_SMOOTH;
+      result_.normals.resize(first_vertex);
+      for (const vec3& n : mesh.normals) result_.normals.emplace_back(n, 0.0F);
+    }
+    if (!mesh.colors.empty()) {
+      flags |= SURFACE_IS_COLORED;
+      result_.colors.resize(first_vertex);
+      result_.colors.insert(result_.colors.end(), mesh.colors.begin(), mesh.colors.end());
+    }
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (is_degenerate(mesh, i)) {
+        ++result_.order;
+        continue;
+      }
+      const uint32_t material = mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[i];
+      const uvec3 corners = flags == 0 ? uvec3(0) : mesh.triangles[i] + first_vertex;
+      add_solid(pack_triangle(mesh, i), bounds_of_triangle(mesh, i), uvec4(corners, material | flags));
+    }
+  }
+
+  void add_solid(Primitive primitive, const Bounds& box, const uvec4& surface) {
+    primitive.c.y = result_.order++;
+    result_.solids.push_back(primitive);
+    result_.solid_surfaces.push_back({surface});
+    result_.boxes.push_back(box);
+  }
+
+  Collected result_;
+  uint32_t material_ = 0;
+};
+
+MaterialRecord pack(const Material& m) {
+  return {vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F),
+          vec4(m.emissive, 0.0F)};
+}
+
+LightRecord pack(const Light& light) {
+  const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
+  const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
+  const auto kind = light.kind == LightKind::kPoint         ? LIGHT_POINT
+                    : light.kind == LightKind::kDirectional ? LIGHT_DIRECTIONAL
+                                                            : LIGHT_SPOT;
+  return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
+          vec4(light.diffuse, static_cast<float>(1.0 / std::max(0.001, cos_inner - cos_outer))),
+          vec4(light.specular, 0.0F), uvec4(kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
+}
+
+/// Appends records at the next multiple of their stride; returns their first index in that stride.
+template <typename Record>
+uint32_t append_records(std::vector<std::byte>& bytes, const std::vector<Record>& records) {
+  const size_t first = (bytes.size() + sizeof(Record) - 1) / sizeof(Record);
+  bytes.resize((first + records.size()) * sizeof(Record));
+  if (!records.empty()) {
+    std::memcpy(bytes.data() + first * sizeof(Record), records.data(), records.size() * sizeof(Record));
+  }
+  return static_cast<uint32_t>(first);
+}
+
+template <typename Host>
+auto pack_all(const std::vector<Host>& hosts) {
+  std::vector<decltype(pack(hosts.front()))> records;
+  records.reserve(hosts.size());
+  for (const Host& host : hosts) records.push_back(pack(host));
+  return records;
+}
+
+/// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
+std::vector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, const std::vector<Primitive>& solids) {
+  std::vector<uint32_t> references = bvh.references;
+  for (const BvhNode& node : bvh.nodes) {
+    const auto first = references.begin() + node.first;
+    std::stable_sort(first, first + node.count,
+                     [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; });
+  }
+  return references;
+}
+
+/// Center and max-norm radius of a box: no corner is farther from the center in any axis.
+vec4 center_and_radius(const Bounds& box) {
+  if (box.is_empty()) return vec4(0.0F);
+  const vec3 center = box.center();
+  const dvec3 reach = glm::max(dvec3(box.hi) - dvec3(center), dvec3(center) - dvec3(box.lo));
+  return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
+}
+
+}  // namespace
+
+PackedScene pack_scene(const Scene& scene, std::string_view builder) {
+  Collected collected = Collector(scene).take();
+
+  const auto start = std::chrono::steady_clock::now();
+  const Bvh bvh = build_bvh(builder, collected.boxes);
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+
+  PackedScene packed;
+  packed.bvh_ms = elapsed.count();
+  packed.bvh = measure_bvh(builder, bvh);
+  PackedTree tree = pack_tree(bvh);
+  packed.nodes = std::move(tree.nodes);
+  packed.stack_size = tree.stack_size;
+  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
+
+  std::vector<SurfaceRecord> surfaces;
+  packed.primitives.reserve(bvh.references.size() + collected.planes.size());
+  surfaces.reserve(packed.primitives.capacity());
+  for (const uint32_t reference : sort_leaves_by_kind(bvh, collected.solids)) {
+    packed.primitives.push_back(collected.solids[reference]);
+    surfaces.push_back(collected.solid_surfaces[reference]);
+  }
+  packed.frame.planes = uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), 0);
+  packed.primitives.insert(packed.primitives.end(), collected.planes.begin(), collected.planes.end());
+  surfaces.insert(surfaces.end(), collected.plane_surfaces.begin(), collected.plane_surfaces.end());
+  if (packed.primitives.empty()) packed.primitives.emplace_back();
+
+  append_records(packed.shading, surfaces);
+  packed.frame.first_index.x = append_records(packed.shading, pack_all(scene.materials));
+  packed.frame.first_index.y = append_records(packed.shading, pack_all(scene.lights));
+  packed.frame.first_index.z = append_records(packed.shading, collected.normals);
+  packed.frame.first_index.w = append_records(packed.shading, collected.colors);
+
+  packed.frame.ambient = vec4(scene.ambient, 0.0F);
+  packed.frame.background = vec4(scene.background, 0.0F);
+  Bounds tree_bounds;
+  for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
+  packed.frame.tree_bounds = center_and_radius(tree_bounds);
+  return packed;
+}
+
+}  // namespace promin

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "bvh/builder.h"
+#include "layout.h"
+#include "scene/scene.h"
+
+namespace promin {
+
+/// A scene in the layout of shaders/layout.h, ready to be copied to the device. Vulkan-free.
+struct PackedScene {
+  /// At least one.
+  std::vector<layout::Node> nodes;
+  /// Those of the tree in leaf order, then the planes; at least one.
+  std::vector<layout::Primitive> primitives;
+  /// Surfaces, materials, lights, vertex normals and vertex colours.
+  std::vector<std::byte> shading;
+  /// What a picture's constants take from the scene; the camera's part is left at zero.
+  layout::Frame frame{};
+  /// Entries that the traversal stack needs.
+  uint32_t stack_size = 1;
+  BvhStats bvh;
+  /// Time of the builder alone.
+  double bvh_ms = 0.0;
+
+  uint64_t size_bytes() const {
+    return std::as_bytes(std::span(nodes)).size() + std::as_bytes(std::span(primitives)).size() + shading.size();
+  }
+};
+
+/// Packs a checked scene. Throws UsageError for an unknown builder and RunError where counts pass what the layout can
+/// hold (2^27 primitives).
+PackedScene pack_scene(const Scene& scene, std::string_view builder);
+
+/// The device's form of a binary tree, with the depth of the stack that traversing it takes.
+struct PackedTree {
+  std::vector<layout::Node> nodes;
+  uint32_t stack_size = 1;
+};
+PackedTree pack_tree(const Bvh& bvh);
+
+}  // namespace promin

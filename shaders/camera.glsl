@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Pixels, sample points and primary rays.
+
+// Lanes of a block in Morton order: neighbours in a subgroup of any width are neighbours in the picture.
+uvec2 pixel_in_block(uint lane) {
+  uint x = (lane & 1u) | ((lane >> 1) & 2u) | ((lane >> 2) & 4u);
+  uint y = ((lane >> 1) & 1u) | ((lane >> 2) & 2u) | ((lane >> 3) & 4u);
+  return uvec2(x, y);
+}
+
+// The i-th of n sample points in the unit square: a lattice with one point in each of n columns and rows, symmetric
+// about the centre, (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n; n = 1 is the centre, n = 4 the rotated grid. The host
+// chooses g (render/sampling.h).
+vec2 sample_point(uint index) {
+  uint count = frame.sampling.x;
+  uint row = (frame.sampling.y * (index + 1u)) % (count + 1u) - 1u;
+  precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * frame.film_center.z;
+  return point;
+}
+
+// D = V - O with V on the viewport at distance 1 along `look`, so that t counts in viewport distances and t > near is
+// what lies beyond the near plane. It is not normalised.
+Ray camera_ray(uvec2 window_pixel, uint sample_index) {
+  vec2 corner = vec2(frame.window.xy + window_pixel);
+  precise vec2 from_center = (corner - frame.film_center.xy) + sample_point(sample_index);
+  precise vec3 on_film = from_center.x * frame.right.xyz - from_center.y * frame.up.xyz;
+  if (frame.look.w == 0.0) {
+    precise vec3 direction = frame.look.xyz + on_film;
+    return make_ray(frame.eye.xyz, direction, frame.eye.w, INFINITY);
+  }
+  precise vec3 origin = frame.eye.xyz + on_film;
+  return make_ray(origin, frame.look.xyz, frame.eye.w, INFINITY);
+}

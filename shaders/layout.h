@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What host and shaders share: one definition that both compilers read. Members are vec4 and uvec4 alone, so that
+// C++, std140 and std430 agree; tests/gpu/layout_test.cpp holds the offsets against the SPIR-V.
+#ifndef PROMIN_LAYOUT_H
+#define PROMIN_LAYOUT_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+namespace promin::layout {
+using glm::uvec4;
+using glm::vec4;
+using uint = uint32_t;
+#define LAYOUT_CONSTANT inline constexpr uint
+#else
+#define LAYOUT_CONSTANT const uint
+#endif
+
+// What a scene may use; a pipeline is specialised to the mask of what it does use. Names for people: features.cpp.
+LAYOUT_CONSTANT FEATURE_TRIANGLES = 1u << 0;
+LAYOUT_CONSTANT FEATURE_SPHERES = 1u << 1;
+LAYOUT_CONSTANT FEATURE_CYLINDERS = 1u << 2;
+LAYOUT_CONSTANT FEATURE_CONES = 1u << 3;
+LAYOUT_CONSTANT FEATURE_PLANES = 1u << 4;
+LAYOUT_CONSTANT FEATURE_POINT_LIGHTS = 1u << 5;
+LAYOUT_CONSTANT FEATURE_DIRECTIONAL_LIGHTS = 1u << 6;
+LAYOUT_CONSTANT FEATURE_SPOT_LIGHTS = 1u << 7;
+LAYOUT_CONSTANT FEATURE_FALLOFF = 1u << 8;
+LAYOUT_CONSTANT FEATURE_SHADOWS = 1u << 9;
+LAYOUT_CONSTANT FEATURE_SPECULAR = 1u << 10;
+LAYOUT_CONSTANT FEATURE_MIRRORS = 1u << 11;
+LAYOUT_CONSTANT FEATURE_SMOOTH_NORMALS = 1u << 12;
+LAYOUT_CONSTANT FEATURE_VERTEX_COLORS = 1u << 13;
+LAYOUT_CONSTANT FEATURE_COUNT = 14u;
+
+// Kinds of primitive that live in the tree, and of light.
+LAYOUT_CONSTANT KIND_TRIANGLE = 0u;
+LAYOUT_CONSTANT KIND_SPHERE = 1u;
+LAYOUT_CONSTANT KIND_CYLINDER = 2u;
+LAYOUT_CONSTANT KIND_CONE = 3u;
+LAYOUT_CONSTANT KIND_PLANE = 4u;
+LAYOUT_CONSTANT LIGHT_POINT = 0u;
+LAYOUT_CONSTANT LIGHT_DIRECTIONAL = 1u;
+LAYOUT_CONSTANT LIGHT_SPOT = 2u;
+
+// Descriptor bindings; Vulkan's required minimum is four storage buffers a stage.
+LAYOUT_CONSTANT BINDING_FRAME = 0u;
+LAYOUT_CONSTANT BINDING_NODES = 1u;
+LAYOUT_CONSTANT BINDING_PRIMITIVES = 2u;
+LAYOUT_CONSTANT BINDING_SHADING = 3u;
+LAYOUT_CONSTANT BINDING_FILM = 4u;
+
+// Specialisation constants.
+LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;
+LAYOUT_CONSTANT CONSTANT_STACK_SIZE = 1u;
+
+// A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
+LAYOUT_CONSTANT BLOCK_SIZE = 8u;
+
+// Two children with their boxes, an axis a row: (left lo, left hi, right lo, right hi).
+// An inner child is its node index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below, and its first
+// primitive in the rest. An absent child has an empty box.
+struct Node {
+  vec4 x;
+  vec4 y;
+  vec4 z;
+  uvec4 children;  // left, right, 0, 0
+};
+LAYOUT_CONSTANT CHILD_IS_LEAF = 0x80000000u;
+LAYOUT_CONSTANT CHILD_COUNT_SHIFT = 27u;
+LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
+
+// One primitive in leaf order; planes follow after those of the tree.
+//   triangle  a = corner 0, corner 1 x   b = corner 1 yz, corner 2 xy    c.x = bits of corner 2 z
+//   sphere    a = center, radius
+//   cylinder  a = center, radius         b = axis, half height
+//   cone      a = center, bottom radius  b = axis, half height           c.x = bits of the top radius
+//   plane     a = point                  b = normal
+// c.y is the scene-wide number in (object, primitive) order, which breaks ties; c.z the kind.
+struct Primitive {
+  vec4 a;
+  vec4 b;
+  uvec4 c;
+};
+
+// What shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with vertex
+// normals or colours), w = material index and SURFACE_* bits.
+struct SurfaceRecord {
+  uvec4 corners_material;
+};
+LAYOUT_CONSTANT SURFACE_IS_SMOOTH = 0x80000000u;
+LAYOUT_CONSTANT SURFACE_IS_COLORED = 0x40000000u;
+LAYOUT_CONSTANT SURFACE_MATERIAL_MASK = 0x3FFFFFFFu;
+
+struct MaterialRecord {
+  vec4 ambient;
+  vec4 diffuse;
+  vec4 specular;  // w = shininess
+  vec4 reflection;
+  vec4 emissive;
+};
+
+struct LightRecord {
+  vec4 position;   // w = 1 / range
+  vec4 direction;  // the light travels so; w = cosine of a spot's outer angle
+  vec4 diffuse;    // w = 1 / max(0.001, cos inner - cos outer)
+  vec4 specular;
+  uvec4 kind;  // x = LIGHT_*, y = 1 if it falls off with distance
+};
+
+// A picture's constants (uniform buffer).
+struct Frame {
+  vec4 eye;   // w = near: distance of the viewport plane
+  vec4 look;  // w = 1 for an orthographic camera
+  vec4 right;  // from one pixel to the next on the projection plane at distance 1 (orthographic: in the world)
+  vec4 up;
+  vec4 ambient;
+  vec4 background;
+  vec4 tree_bounds;   // center and max-norm radius of everything in the tree
+  vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
+  uvec4 window;       // x, y = first pixel; z, w = width and height in pixels
+  uvec4 sampling;     // x = samples a pixel, y = lattice generator, z = blocks a row, w = mirror bounces
+  uvec4 planes;       // x = index of the first plane's primitive, y = count; z = lights; w = 0
+  uvec4 first_index;  // of x = materials, y = lights, z = normals, w = colours in their views of the shading buffer
+};
+
+// A dispatch's constants (push constants): z samples from the y-th on, for blocks from the x-th on.
+struct Dispatch {
+  uvec4 range;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
+static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 192);
+static_assert(sizeof(Dispatch) <= 128, "Vulkan guarantees no more push constants");
+#undef LAYOUT_CONSTANT
+}  // namespace promin::layout
+#endif
+#endif

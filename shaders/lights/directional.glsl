@@ -1,0 +1,5 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A source at infinity.
+
+LightSample sample_directional(LightRecord light) { return LightSample(-light.direction.xyz, INFINITY, 1.0); }

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A cone or frustum closed by its disks.
+
+Frustum cone_of(Primitive p) {
+  float radius_bottom = p.a.w;
+  float radius_top = uintBitsToFloat(p.c.x);
+  precise float radius = 0.5 * (radius_bottom + radius_top);
+  precise float slope = (radius_top - radius_bottom) / (2.0 * p.b.w);
+  return Frustum(p.a.xyz, p.b.xyz, p.b.w, radius, slope);
+}
+
+Crossing intersect_cone(Ray ray, Primitive p) { return intersect_frustum(ray, cone_of(p)); }
+
+SurfacePoint cone_surface(Ray ray, Primitive p, Hit hit) { return frustum_surface(ray, cone_of(p), hit); }

@@ -1,0 +1,9 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A cylinder closed by two disks: a frustum of slope 0.
+
+Frustum cylinder_of(Primitive p) { return Frustum(p.a.xyz, p.b.xyz, p.b.w, p.a.w, 0.0); }
+
+Crossing intersect_cylinder(Ray ray, Primitive p) { return intersect_frustum(ray, cylinder_of(p)); }
+
+SurfacePoint cylinder_surface(Ray ray, Primitive p, Hit hit) { return frustum_surface(ray, cylinder_of(p), hit); }

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What cylinder and cone share: the solid |radial| <= radius + slope * z, |z| <= half height, around an axis through
+// its centre. It is convex, so a ray is inside it in one interval: that of the two cap planes cut with that of the
+// lateral surface. An end that both bound belongs to one of them, never to neither: rims do not leak.
+
+struct Frustum {
+  vec3 center;
+  vec3 axis;
+  float half_height;
+  float radius;  // at the centre
+  float slope;   // change of radius per height; 0 for a cylinder
+};
+
+Crossing intersect_frustum(Ray ray, Frustum f) {
+  Approach near = approach(ray, f.center);
+  float scale = power_of_two_inverse(max(f.half_height, f.radius));
+  precise vec3 offset = near.offset * scale;
+  precise float half_height = f.half_height * scale;
+  precise float radius = f.radius * scale;
+  precise float dz = dot3(ray.direction, f.axis);
+  precise vec3 radial_direction = ray.direction - dz * f.axis;
+  precise float radial2 = dot3(radial_direction, radial_direction);
+
+  // Cap slab. Across the axis, the planes are met at +-infinity, or nowhere.
+  float safe_dz = abs(dz) < TWO_POW_MINUS_80 ? (dz < 0.0 ? -TWO_POW_MINUS_80 : TWO_POW_MINUS_80) : dz;
+  precise float z = dot3(offset, f.axis);
+  precise float t_bottom = (-half_height - z) / safe_dz;
+  precise float t_top = (half_height - z) / safe_dz;
+  float slab_entry = min(t_bottom, t_top);
+  float slab_exit = max(t_bottom, t_top);
+  uint entry_cap = dz < 0.0 ? PART_TOP : PART_BOTTOM;
+  uint exit_cap = dz < 0.0 ? PART_BOTTOM : PART_TOP;
+
+  // Solve from the point inside the slab that is nearest to the axis: for a ray almost along the axis the closest
+  // approach alone may be far outside, and the radius would drown in that distance.
+  precise vec3 radial_offset = offset - z * f.axis;
+  precise float t_axis = radial2 > 0.0 ? -dot3(radial_offset, radial_direction) / radial2 : 0.0;
+  precise float t_base = min(max(t_axis, slab_entry), slab_exit);
+  precise vec3 base = offset + t_base * ray.direction;
+  precise float base_z = dot3(base, f.axis);
+  precise vec3 base_radial = base - base_z * f.axis;
+  precise float base_distance = length3(base_radial);
+  precise float base_radius = radius + f.slope * base_z;
+  precise float widening = f.slope * dz;  // of the solid, per t along the ray
+
+  // |radial(t)|^2 - radius(t)^2 = a t^2 + 2 b t + c, t from t_base.
+  precise float a = radial2 - widening * widening;
+  precise float b = dot3(base_radial, radial_direction) - base_radius * widening;
+  precise float c = (base_distance - base_radius) * (base_distance + base_radius);
+  precise float discriminant = b * b - a * c;
+  float side_entry = -INFINITY;
+  float side_exit = INFINITY;
+  if (radial2 > 0.0 || widening != 0.0) {
+    if (a > 0.0 && !(discriminant >= 0.0)) return NO_CROSSING;
+    precise float root = sqrt(max(discriminant, 0.0));
+    precise float q = b < 0.0 ? root - b : -(b + root);
+    precise float t0 = c / q;
+    precise float t1 = q / a;
+    if (q == 0.0) t0 = 0.0;
+    if (a > 0.0) {
+      side_entry = min(t0, q == 0.0 ? 0.0 : t1);
+      side_exit = max(t0, q == 0.0 ? 0.0 : t1);
+    } else {
+      // The ray is steeper than the cone: it is inside from the root on the true nappe towards where the cone widens.
+      // The other root lies on the mirror nappe, which the slab leaves out; a == 0 has no other root.
+      bool has_other = a < 0.0 && q != 0.0;
+      if (widening > 0.0) {
+        side_entry = has_other ? max(t0, t1) : t0;
+      } else {
+        side_exit = has_other ? min(t0, t1) : t0;
+      }
+    }
+  } else if (!(base_distance <= base_radius)) {
+    return NO_CROSSING;  // along a cylinder's axis, beside it
+  }
+
+  precise float cap_entry = slab_entry - t_base;
+  precise float cap_exit = slab_exit - t_base;
+  bool enters_side = side_entry > cap_entry;
+  bool exits_side = side_exit < cap_exit;
+  float entry = enters_side ? side_entry : cap_entry;
+  float exit = exits_side ? side_exit : cap_exit;
+  if (!(entry <= exit)) return NO_CROSSING;
+  float unscale = 1.0 / scale;
+  precise float t_entry = near.t_far + (near.t_near + (t_base + entry) * unscale);
+  precise float t_exit = near.t_far + (near.t_near + (t_base + exit) * unscale);
+  return nearest_crossing(ray, t_entry, enters_side ? PART_SIDE : entry_cap, t_exit,
+                          exits_side ? PART_SIDE : exit_cap);
+}
+
+SurfacePoint frustum_surface(Ray ray, Frustum f, Hit hit) {
+  precise vec3 from_center = (ray.origin - f.center) + hit.t * ray.direction;
+  precise float z = dot3(from_center, f.axis);
+  precise vec3 radial = from_center - z * f.axis;
+  precise vec3 position;
+  vec3 normal;
+  if (hit.part == PART_SIDE) {
+    // At an apex no radial direction is left; the axis is as good a normal as any there.
+    vec3 outward = normalize3(radial);
+    precise vec3 slanted = outward - f.slope * f.axis;
+    normal = normalize3(slanted);
+    position = f.center + (z * f.axis + (f.radius + f.slope * z) * outward);
+  } else {
+    normal = hit.part == PART_TOP ? f.axis : -f.axis;
+    precise float cap_z = hit.part == PART_TOP ? f.half_height : -f.half_height;
+    position = f.center + (cap_z * f.axis + radial);
+  }
+  float size = f.half_height + f.radius + abs(f.slope) * f.half_height;
+  precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * size);
+  return SurfacePoint(position, normal, lift);
+}

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// |P - center| = radius. Solved around the ray's closest approach to the centre, with the discriminant as
+// (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) measured (numerics.md).
+
+Crossing intersect_sphere(Ray ray, Primitive p) {
+  Approach near = approach(ray, p.a.xyz);
+  // In units of a power of two near the radius nothing overflows or underflows that matters.
+  float scale = power_of_two_inverse(p.a.w);
+  precise vec3 offset = near.offset * scale;
+  precise float radius = p.a.w * scale;
+  precise float distance = length3(offset);
+  precise float chord2 = (radius - distance) * (radius + distance) * ray.inverse_length2;
+  if (!(chord2 >= 0.0)) return NO_CROSSING;
+  precise float half_chord = sqrt(chord2) * (1.0 / scale);
+  precise float entry = near.t_far + (near.t_near - half_chord);
+  precise float exit = near.t_far + (near.t_near + half_chord);
+  return nearest_crossing(ray, entry, PART_SIDE, exit, PART_SIDE);
+}
+
+SurfacePoint sphere_surface(Ray ray, Primitive p, Hit hit) {
+  precise vec3 from_center = (ray.origin - p.a.xyz) + hit.t * ray.direction;
+  vec3 normal = normalize3(from_center);
+  precise vec3 position = p.a.xyz + p.a.w * normal;
+  precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * p.a.w);
+  return SurfacePoint(position, normal, lift);
+}

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Phong shading (system.md, "Light") of a point that a ray hit.
+
+// What the light loop and the mirror ray need of a hit.
+struct ShadingPoint {
+  vec3 position;
+  vec3 geometric_normal;  // unit; faces the incoming ray, as does
+  vec3 normal;            // the interpolated one, or the geometric
+  float lift;
+  vec3 shadow_position;  // where shadow rays start from, before the lift
+  vec3 color;            // vertex colour
+  MaterialRecord material;
+};
+
+vec3 vertex_vector(uint first, uint index) { return vertices[first + index].xyz; }
+
+// Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4: lifts the point onto the curved surface that the
+// vertex normals suggest, so that its own coarse polygon does not shadow what is shaded as lit.
+vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
+  precise float height = min(0.0, dot3(position - corner, normal));
+  precise vec3 projected = position - height * normal;
+  return projected;
+}
+
+void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, vec3 weights, bool is_flipped) {
+  vec3 n0 = vertex_vector(frame.first_index.z, corners.x);
+  vec3 n1 = vertex_vector(frame.first_index.z, corners.y);
+  vec3 n2 = vertex_vector(frame.first_index.z, corners.z);
+  // The interpolated normal faces the ray by the geometric normal's side, so its own sign stays as wound.
+  float side = is_flipped ? -1.0 : 1.0;
+  precise vec3 interpolated = (weights.x * n0 + weights.y * n1 + weights.z * n2) * side;
+  vec3 normal = normalize3(interpolated);
+  if (max_abs(normal) == 0.0) return;
+  point.normal = normal;
+  precise vec3 lifted = weights.x * lift_to_curve(point.position, corner0(p), n0 * side) +
+                        weights.y * lift_to_curve(point.position, corner1(p), n1 * side) +
+                        weights.z * lift_to_curve(point.position, corner2(p), n2 * side);
+  point.shadow_position = lifted;
+}
+
+ShadingPoint make_shading_point(Ray ray, Hit hit) {
+  Primitive p = primitives[hit.primitive];
+  SurfaceRecord record = surfaces[hit.primitive];
+  SurfacePoint surface = surface_point(ray, p, hit);
+  bool is_flipped = dot3(surface.normal, ray.direction) > 0.0;
+  ShadingPoint point;
+  point.position = surface.position;
+  point.geometric_normal = is_flipped ? -surface.normal : surface.normal;
+  point.normal = point.geometric_normal;
+  point.lift = surface.lift;
+  point.shadow_position = surface.position;
+  point.color = vec3(1.0);
+  point.material = materials[frame.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK)];
+  precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
+  if (has(FEATURE_SMOOTH_NORMALS) && (record.corners_material.w & SURFACE_IS_SMOOTH) != 0u) {
+    apply_vertex_normals(point, p, record.corners_material.xyz, weights, is_flipped);
+  }
+  if (has(FEATURE_VERTEX_COLORS) && (record.corners_material.w & SURFACE_IS_COLORED) != 0u) {
+    precise vec3 color = weights.x * vertex_vector(frame.first_index.w, record.corners_material.x) +
+                         weights.y * vertex_vector(frame.first_index.w, record.corners_material.y) +
+                         weights.z * vertex_vector(frame.first_index.w, record.corners_material.z);
+    point.color = color;
+  }
+  return point;
+}
+
+vec3 lifted_origin(vec3 position, ShadingPoint point) {
+  precise vec3 origin = position + point.lift * point.geometric_normal;
+  return origin;
+}
+
+// One source's share, its shadow ray included.
+vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint shadow_rays) {
+  LightSample sampled = sample_light(light, point.position);
+  vec3 to_light = normalize3(sampled.direction);
+  precise float cosine = dot3(point.normal, to_light);
+  if (!(cosine > 0.0 && sampled.strength > 0.0)) return vec3(0.0);
+
+  precise vec3 share = point.material.diffuse.xyz * point.color * light.diffuse.xyz * cosine;
+  if (has(FEATURE_SPECULAR) && point.material.specular.w > 0.0) {
+    precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
+    precise float highlight = dot3(mirrored, to_eye);
+    if (highlight > 0.0) {
+      // 1 is the most that unit vectors give; beyond it is rounding.
+      share += point.material.specular.xyz * light.specular.xyz *
+               power(min(highlight, 1.0), point.material.specular.w);
+    }
+  }
+  share *= sampled.strength;
+  if (!(max_abs(share) > 0.0)) return vec3(0.0);
+
+  if (has(FEATURE_SHADOWS)) {
+    ++shadow_rays;
+    vec3 origin = lifted_origin(point.shadow_position, point);
+    precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
+    Hit blocker = trace(make_ray(origin, to_source, 0.0, sampled.tmax), true);
+    if (blocker.primitive != NO_PRIMITIVE) return vec3(0.0);
+  }
+  return share;
+}
+
+vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
+  precise vec3 sum = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
+  if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS)) {
+    for (uint i = 0u; i < frame.planes.z; ++i) {
+      sum += shade_light(point, to_eye, lights[frame.first_index.y + i], shadow_rays);
+    }
+  }
+  return sum;
+}
+
+// The mirror direction about the shading normal. Where that would enter the surface, which an interpolated normal can
+// do, the surface itself reflects it once more; at grazing rays the two agree.
+vec3 reflect_direction(ShadingPoint point, vec3 direction) {
+  precise vec3 mirrored = direction - 2.0 * dot3(direction, point.normal) * point.normal;
+  precise float below = min(0.0, dot3(mirrored, point.geometric_normal));
+  precise vec3 outward = mirrored - 2.0 * below * point.geometric_normal;
+  return normalize3(outward);
+}
