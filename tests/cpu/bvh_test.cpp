@@ -17,12 +17,12 @@ namespace {
 using Boxes = std::vector<Bounds>;
 
 /// A generator of boxes that some builder might stumble over.
-struct Scene {
+struct BoxSet {
   const char* name;
   Boxes (*make)();
 };
 
-std::ostream& operator<<(std::ostream& out, const Scene& scene) {
+std::ostream& operator<<(std::ostream& out, const BoxSet& scene) {
   return out << scene.name;
 }
 
@@ -105,7 +105,7 @@ Boxes make_concentric() {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
 
-const Scene kScenes[] = {
+const BoxSet kBoxSets[] = {
     {"one", [] { return make_random(1, 1.0F); }},
     {"two", [] { return make_random(2, 1.0F); }},
     {"three", [] { return make_random(3, 1.0F); }},
@@ -139,7 +139,7 @@ bool contains(const Bounds& outer, const Bounds& inner) {
   return glm::all(glm::lessThanEqual(outer.lo, inner.lo)) && glm::all(glm::greaterThanEqual(outer.hi, inner.hi));
 }
 
-class BvhTest : public testing::TestWithParam<std::tuple<std::string_view, Scene>> {
+class BvhTest : public testing::TestWithParam<std::tuple<std::string_view, BoxSet>> {
  protected:
   std::string_view builder() const { return std::get<0>(GetParam()); }
   Boxes boxes() const { return std::get<1>(GetParam()).make(); }
@@ -273,7 +273,7 @@ std::string name_of(const testing::TestParamInfo<BvhTest::ParamType>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Builders, BvhTest,
                          testing::Combine(testing::ValuesIn(builder_names().begin(), builder_names().end()),
-                                          testing::ValuesIn(kScenes)),
+                                          testing::ValuesIn(kBoxSets)),
                          name_of);
 
 TEST(BvhBuilders, NoBoxesMakeNoNodes) {
