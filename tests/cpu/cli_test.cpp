@@ -1,0 +1,416 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// Runs the program promin itself: its exit codes, its lines and its files are an interface of their own.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "image/image.h"
+#include "process.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::StartsWith;
+using Words = std::vector<std::string>;
+
+/// No camera, no light.
+constexpr const char* kTriangleObj = R"(o triangle
+v -1 -1 0
+v 1 -1 0
+v 0 1 0
+f 1 2 3
+)";
+
+/// A unit square at z = 0, a point source and two cameras.
+constexpr const char* kSquareGltf =
+    R"({
+  "asset": {"version": "2.0"},
+  "extensionsUsed": ["KHR_lights_punctual"],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 30}]}},
+  "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)"
+    R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAABAAIAAAACAAMA"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+    {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+  "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7853981633974483, "znear": 0.01}}],
+  "nodes": [
+    {"mesh": 0},
+    {"name": "main", "camera": 0, "translation": [0, 0, 4]},
+    {"name": "side", "camera": 0, "translation": [1, 0.5, 3]},
+    {"translation": [0, 0, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+  "scenes": [{"nodes": [0, 1, 2, 3]}],
+  "scene": 0
+})";
+
+class CliTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '_');
+    options_.folder = fs::path(testing::TempDir()) / ("promin_cli_" + name);
+    fs::remove_all(folder());
+    fs::create_directories(folder());
+    write("triangle.obj", kTriangleObj);
+    write("square.gltf", kSquareGltf);
+  }
+  void TearDown() override { fs::remove_all(folder()); }
+
+  const fs::path& folder() const { return options_.folder; }
+
+  void write(const std::string& file, const std::string& text) const { std::ofstream(folder() / file) << text; }
+
+  std::string read(const std::string& file) const {
+    std::ifstream stream(folder() / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  /// Names in the folder beside the scenes.
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder())) names.insert(entry.path().filename());
+    names.erase("triangle.obj");
+    names.erase("square.gltf");
+    return names;
+  }
+
+  ProcessResult run(const Words& arguments) const { return Process(PROMIN_EXECUTABLE, arguments, options_).wait(); }
+
+  /// Renders in a small size; fails the test if the program does.
+  Image render(Words arguments, const std::string& output) const {
+    arguments.insert(arguments.begin(), "render");
+    arguments.insert(arguments.end(), {"-o", output, "--quiet"});
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? read_image(folder() / output) : Image{};
+  }
+
+  ProcessOptions options_;
+};
+
+/// One line of the form that every failure has.
+void expect_failure(const ProcessResult& result, int exit_code, const std::string& part) {
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_THAT(result.out, IsEmpty());
+  const size_t start = result.err.find("promin: error: ");
+  ASSERT_NE(start, std::string::npos) << result.err;
+  const std::string line = result.err.substr(start);
+  EXPECT_THAT(line, HasSubstr(part));
+  EXPECT_EQ(line.find('\n'), line.size() - 1) << line;
+}
+
+TEST_F(CliTest, HelpAndVersionEverywhere) {
+  for (const Words& command : {Words{}, Words{"render"}, Words{"info"}, Words{"devices"}}) {
+    Words with_help = command;
+    with_help.emplace_back("--help");
+    const ProcessResult help = run(with_help);
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr("Usage: promin"));
+    EXPECT_THAT(help.err, IsEmpty());
+
+    Words with_version = command;
+    with_version.emplace_back("--version");
+    const ProcessResult version = run(with_version);
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_THAT(version.out, MatchesRegex("promin [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    EXPECT_THAT(version.err, IsEmpty());
+  }
+}
+
+TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
+  const std::pair<Words, std::string> cases[] = {
+      {{}, "no command given, on the command line; see promin --help"},
+      {{"rendr"}, "unknown command rendr"},
+      {{"--spp", "3"}, "unknown option --spp"},
+      {{"render"}, "SCENE is required, on the command line; see promin render --help"},
+      {{"info"}, "SCENE is required, on the command line; see promin info --help"},
+      {{"devices", "all"}, "unexpected argument all"},
+      {{"render", "square.gltf"}, "--output is required"},
+      {{"render", "square.gltf", "-o", "a.exr", "--spq", "3"}, "unknown option --spq, on the command line; see promin"},
+      {{"render", "square.gltf", "--spq=3"}, "unknown option --spq,"},
+      {{"render", "square.gltf", "triangle.obj", "-o", "a.exr"}, "unexpected argument triangle.obj"},
+      {{"render", "square.gltf", "-o", "a.jpg"}, "unknown output ending \".jpg\", a.jpg; use .exr or .png"},
+      {{"render", "square.gltf", "-o", "a"}, "unknown output ending \"\", a;"},
+      {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
+      {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite the scene"},
+      {{"render", "square.gltf", "-o", "a.exr", "--stats", "a.exr"}, "the same output file is named twice"},
+      {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "too few values for --spp"},
+      {{"render", "square.gltf", "-o", "a.exr", "--spp", "0"}, "--spp takes a whole number from 1 to 65536, not \"0\""},
+      {{"render", "square.gltf", "-o", "a.exr", "-s", "65537"}, "--spp takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "-s", "4294967297"}, "--spp takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "-s", "-1"}, "--spp takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "-s", "2x"}, "--spp takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--size", "64"}, "too few values for --size"},
+      {{"render", "square.gltf", "-o", "a.exr", "--size", "64", "0"}, "--size takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--max-depth", "1001"}, "--max-depth takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}, "--crop is empty"},
+      {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop reaches beyond"},
+      {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "there are 0 (main), 1 (side)"},
+      {{"render", "square.gltf", "-o", "a.exr", "--camera", "2"}, "no camera \"2\", square.gltf"},
+      {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "no cameras to choose from"},
+      {{"render", "square.gltf", "-o", "a.exr", "--fov", "180"}, "--fov takes a number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--near", "-1"}, "--near takes a number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "nan", "0"}, "--eye takes a number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "inf", "0"}, "--eye takes a number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"}, "parallel"},
+      {{"render", "square.gltf", "-o", "a.exr", "--builder", "none"}, "--builder takes "},
+      {{"render", "square.gltf", "-o", "a.exr", "--features", "few"}, "--features takes scene or all, not \"few\""},
+      {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
+      {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
+  };
+  for (const auto& [arguments, part] : cases) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    expect_failure(run(arguments), 2, part);
+    EXPECT_THAT(files(), IsEmpty());
+  }
+}
+
+TEST_F(CliTest, BadScenesAreRefused) {
+  write("garbage.gltf", "{ not json");
+  write("empty.obj", "");
+  write("scene.blend", "BLENDER");
+  write("old.exr", "old");
+  const std::pair<std::string, std::string> cases[] = {{"none.gltf", "none.gltf"},
+                                                       {".", "."},
+                                                       {"garbage.gltf", "garbage.gltf"},
+                                                       {"empty.obj", "empty"},
+                                                       {"scene.blend", "scene.blend"}};
+  for (const auto& [scene, part] : cases) {
+    SCOPED_TRACE(scene);
+    expect_failure(run({"render", scene, "-o", "old.exr"}), 3, part);
+    expect_failure(run({"info", scene}), 3, part);
+  }
+  EXPECT_EQ(read("old.exr"), "old");
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("garbage.gltf", "empty.obj", "scene.blend", "old.exr"));
+}
+
+TEST_F(CliTest, UnwritableOutputsAreFoundBeforeTheWork) {
+  write("old.exr", "old");
+  fs::create_directory(folder() / "folder.exr");
+  // The scene does not exist: it is not read before the outputs are known to be writable.
+  expect_failure(run({"render", "none.obj", "-o", "none/a.exr"}), 1, "does not exist, none/a.exr; create none");
+  expect_failure(run({"render", "none.obj", "-o", "old.exr/a.exr"}), 1, "does not exist, old.exr/a.exr");
+  expect_failure(run({"render", "none.obj", "-o", "folder.exr"}), 1, "is a folder, folder.exr");
+  expect_failure(run({"render", "none.obj", "-o", "old.exr", "--stats", "none/s.json"}), 1, "none/s.json");
+  expect_failure(run({"render", "none.obj", "-o", "old.exr", "--stats", "/dev/null"}), 1, "/dev/null");
+  EXPECT_EQ(read("old.exr"), "old");
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "folder.exr"));
+}
+
+TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
+  write("old.exr", "old");
+  write("old.png", "old");
+  options_.max_file_bytes = 100;
+  for (const char* output : {"old.exr", "old.png"}) {
+    expect_failure(run({"render", "square.gltf", "--size", "64", "36", "-o", output, "--quiet"}), 1, output);
+    EXPECT_EQ(read(output), "old");
+  }
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
+}
+
+TEST_F(CliTest, AFullStandardOutputIsAFailure) {
+  options_.standard_output = "/dev/full";
+  expect_failure(run({"info", "square.gltf"}), 1, "the standard output");
+}
+
+TEST_F(CliTest, WithoutADeviceOnlyInfoWorks) {
+  options_.environment = {{"VK_ICD_FILENAMES", "/nonexistent.json"}, {"VK_DRIVER_FILES", "/nonexistent.json"}};
+  write("old.exr", "old");
+  expect_failure(run({"render", "square.gltf", "-o", "old.exr"}), 4, ";");
+  expect_failure(run({"devices"}), 4, ";");
+  EXPECT_EQ(read("old.exr"), "old");
+  EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
+
+  const ProcessResult info = run({"info", "square.gltf"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.err, IsEmpty());
+}
+
+TEST_F(CliTest, AnUnknownDeviceIsRefused) {
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "no such device"}), 4, "no such device");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "99"}), 4, "99");
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(CliTest, InfoSaysWhatASceneHolds) {
+  const ProcessResult info = run({"info", "square.gltf"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, ContainsRegex("triangles +2 \\(degenerate: 0\\)"));
+  EXPECT_THAT(info.out, ContainsRegex("objects +1 \\(meshes: 1\\)"));
+  EXPECT_THAT(info.out, ContainsRegex("lights +1 \\(point: 1"));
+  EXPECT_THAT(info.out, ContainsRegex("cameras +0 main, perspective, vertical field of view 45 degrees"));
+  EXPECT_THAT(info.out, HasSubstr("\n            1 side, "));
+  EXPECT_THAT(info.out, ContainsRegex("bounds +-1 -1 0 to 1 1 0"));
+}
+
+TEST_F(CliTest, DevicesNamesTheDefault) {
+  const ProcessResult devices = run({"devices"});
+  EXPECT_EQ(devices.exit_code, 0) << devices.err;
+  EXPECT_THAT(devices.out, StartsWith("index"));
+  EXPECT_THAT(devices.out, HasSubstr("picked by default"));
+}
+
+TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
+  const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-o", "a.png"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, StartsWith("64x36, 1 spp, "));
+  EXPECT_THAT(result.out, HasSubstr(": a.exr, a.png\n"));
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.exr", "a.png"));
+
+  const Image exr = read_image(folder() / "a.exr");
+  const Image png = read_image(folder() / "a.png");
+  ASSERT_EQ(exr.size, uvec2(64, 36));
+  ASSERT_EQ(png.size, uvec2(64, 36));
+  EXPECT_EQ(exr.at(0, 0), vec3(0.0F)) << "the background is black";
+  EXPECT_GT(exr.at(32, 18).x, 0.0F) << "the square is lit";
+  for (size_t i = 0; i < exr.pixels.size(); ++i) {
+    ASSERT_EQ(std::lround(255.0F * png.pixels[i].y), std::lround(255.0F * encode_srgb(exr.pixels[i].y)));
+  }
+}
+
+TEST_F(CliTest, QuietIsSilent) {
+  const ProcessResult result = run({"render", "triangle.obj", "--size", "64", "36", "-o", "a.exr", "--quiet"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(CliTest, WhatIsAssumedIsSaid) {
+  const ProcessResult bare = run({"render", "triangle.obj", "--size", "64", "36", "-o", "a.exr"});
+  EXPECT_THAT(bare.err, HasSubstr("promin: note: the scene has no camera; one that frames it is used\n"));
+  EXPECT_THAT(bare.err, HasSubstr("promin: note: the scene has no lights; a headlight along the view and ambient "
+                                  "light of 0.1 are used\n"));
+  EXPECT_GT(read_image(folder() / "a.exr").at(32, 18).x, 0.1F);
+
+  const ProcessResult whole = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr"});
+  EXPECT_THAT(whole.err, Not(HasSubstr("note")));
+}
+
+TEST_F(CliTest, VerboseTellsTheSteps) {
+  const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-v"});
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* part : {"loaded square.gltf", "BVH by ", "features: ", "upload "}) {
+    EXPECT_THAT(result.err, HasSubstr(part));
+  }
+}
+
+TEST_F(CliTest, StatsHoldWhatTheInterfacePromises) {
+  const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "-s", "4", "--repeat", "3", "-o",
+                                    "a.exr", "--stats", "s.json", "--builder", "median"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json stats = json::parse(read("s.json"));
+  EXPECT_THAT(stats.at("device").get<std::string>(), Not(IsEmpty()));
+  EXPECT_THAT(stats.at("driver").get<std::string>(), Not(IsEmpty()));
+  EXPECT_EQ(stats.at("scene").at("objects"), 1);
+  EXPECT_EQ(stats.at("scene").at("meshes"), 1);
+  EXPECT_EQ(stats.at("scene").at("triangles"), 2);
+  EXPECT_EQ(stats.at("scene").at("lights"), 1);
+  EXPECT_EQ(stats.at("bvh").at("builder"), "median");
+  EXPECT_GE(stats.at("bvh").at("nodes"), 1);
+  EXPECT_GT(stats.at("bvh").at("bytes"), 0);
+  EXPECT_GT(stats.at("bvh").at("sah_cost"), 0.0);
+  for (const char* name : {"load", "bvh", "upload", "pipeline", "trace", "write", "total"}) {
+    EXPECT_GE(stats.at("times_ms").at(name), 0.0) << name;
+  }
+  EXPECT_GT(stats.at("times_ms").at("trace"), 0.0);
+  EXPECT_EQ(stats.at("rays").at("primary"), 64 * 36 * 4);
+  EXPECT_GT(stats.at("rays").at("shadow"), 0);
+  EXPECT_EQ(stats.at("rays").at("reflection"), 0);
+  EXPECT_TRUE(stats.at("features").is_array());
+
+  std::vector<double> runs = stats.at("trace_runs_ms");
+  ASSERT_EQ(runs.size(), 3U);
+  std::sort(runs.begin(), runs.end());
+  EXPECT_EQ(stats.at("times_ms").at("trace"), runs[1]) << "the median";
+  const double rays = stats.at("rays").at("primary").get<double>() + stats.at("rays").at("shadow").get<double>();
+  EXPECT_NEAR(stats.at("mrays_per_s").get<double>(), rays / runs[1] / 1e3, 1e-6 * rays / runs[1]);
+}
+
+TEST_F(CliTest, ACropHasTheBitsOfTheWholePicture) {
+  const Image whole = render({"square.gltf", "--size", "67", "41", "-s", "2"}, "whole.exr");
+  const Image crop =
+      render({"square.gltf", "--size", "67", "41", "-s", "2", "--crop", "13", "5", "50", "38"}, "crop.exr");
+  ASSERT_EQ(crop.size, uvec2(37, 33));
+  for (uint32_t y = 0; y < crop.size.y; ++y) {
+    for (uint32_t x = 0; x < crop.size.x; ++x) {
+      ASSERT_EQ(crop.at(x, y), whole.at(x + 13, y + 5)) << "pixel " << x + 13 << ", " << y + 5;
+    }
+  }
+}
+
+TEST_F(CliTest, RunsAndFeaturesDoNotChangeTheBits) {
+  const Image once = render({"square.gltf", "--size", "64", "36"}, "a.exr");
+  EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36"}, "b.exr").pixels);
+  EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36", "--features", "all"}, "c.exr").pixels);
+  EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36", "--builder", "median"}, "d.exr").pixels);
+}
+
+TEST_F(CliTest, CamerasGoByNameAndByIndex) {
+  const Image main = render({"square.gltf", "--size", "64", "36"}, "main.exr");
+  const Image by_name = render({"square.gltf", "--size", "64", "36", "--camera", "side"}, "name.exr");
+  const Image by_index = render({"square.gltf", "--size", "64", "36", "--camera", "1"}, "index.exr");
+  EXPECT_EQ(by_name.pixels, by_index.pixels);
+  EXPECT_NE(by_name.pixels, main.pixels);
+}
+
+TEST_F(CliTest, AFreePoseShowsWhatTheSameCameraShows) {
+  const Image camera = render({"square.gltf", "--size", "64", "36", "--camera", "side"}, "camera.exr");
+  const Image pose = render({"square.gltf", "--size", "64",   "36", "--eye", "1", "0.5",   "3",  "--look", "0",
+                             "0",           "-1",     "--up", "0",  "1",     "0", "--fov", "45", "--near", "0.01"},
+                            "pose.exr");
+  EXPECT_EQ(pose.pixels, camera.pixels);
+}
+
+TEST_F(CliTest, TheDefaultSizeFollowsTheCamera) {
+  EXPECT_EQ(render({"triangle.obj"}, "a.exr").size, uvec2(1280, 720));
+}
+
+TEST_F(CliTest, LongWorkTellsItsProgressInPlainLines) {
+  Process program(PROMIN_EXECUTABLE,
+                  {"render", "square.gltf", "--size", "640", "360", "-s", "256", "--repeat", "40", "-o", "a.exr"},
+                  options_);
+  const ProcessResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, ContainsRegex("promin: [1-9]0 %, [0-9]+:[0-9][0-9] left\n"));
+  EXPECT_THAT(result.err + result.out, Not(HasSubstr("\r")));
+  EXPECT_LE(std::count(result.err.begin(), result.err.end(), '\n'), 9);
+}
+
+TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
+  write("old.exr", "old");
+  for (const int delay_ms : {30, 150, 600}) {
+    Process program(PROMIN_EXECUTABLE,
+                    {"render", "square.gltf", "--size", "2000", "2000", "-s", "4096", "-o", "old.exr", "-o", "a.png"},
+                    options_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    program.send(SIGINT);
+    const ProcessResult result = program.wait();
+    EXPECT_EQ(result.signal, SIGINT) << result.err;
+    EXPECT_EQ(read("old.exr"), "old");
+    EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
+  }
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace promin {
+
+struct ProcessOptions {
+  std::filesystem::path folder;
+  /// Set in the child only.
+  std::map<std::string, std::string> environment;
+  /// No file may grow beyond this; stands for a full disk.
+  std::optional<size_t> max_file_bytes;
+  /// The standard output; captured where not given.
+  std::optional<std::filesystem::path> standard_output;
+};
+
+struct ProcessResult {
+  /// -1 if a signal ended it.
+  int exit_code = -1;
+  int signal = 0;
+  std::string out;
+  std::string err;
+};
+
+/// A program that runs in the background.
+class Process {
+ public:
+  Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+          const ProcessOptions& options);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send(int signal) const;
+  /// Waits for its end.
+  ProcessResult wait();
+
+ private:
+  pid_t child_ = -1;
+  int out_ = -1;
+  int err_ = -1;
+};
+
+}  // namespace promin

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view_setup.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace promin::app {
+namespace {
+
+using testing::HasSubstr;
+
+const Console kSilent(Verbosity::kQuiet);
+
+Scene make_scene() {
+  Scene scene;
+  scene.file = "test.gltf";
+  Camera main;
+  main.name = "main";
+  main.eye = vec3(0.0F, 0.0F, 5.0F);
+  Camera side;
+  side.name = "side";
+  side.eye = vec3(5.0F, 0.0F, 0.0F);
+  side.look = vec3(-1.0F, 0.0F, 0.0F);
+  side.aspect_ratio = 2.0F;
+  side.near = 0.5F;
+  scene.cameras = {main, side};
+  return scene;
+}
+
+TEST(ViewSetupTest, TheFirstCameraIsTheDefaultAndOthersGoByNameOrNumber) {
+  const Scene scene = make_scene();
+  ViewOptions options;
+  EXPECT_EQ(make_view(scene, options, kSilent).camera.name, "main");
+  options.camera = "side";
+  EXPECT_EQ(make_view(scene, options, kSilent).camera.name, "side");
+  options.camera = "1";
+  EXPECT_EQ(make_view(scene, options, kSilent).camera.name, "side");
+}
+
+TEST(ViewSetupTest, AnUnknownCameraListsThoseThereAre) {
+  for (const char* selection : {"2", "-1", "1x", "Main", ""}) {
+    ViewOptions options;
+    options.camera = selection;
+    try {
+      make_view(make_scene(), options, kSilent);
+      ADD_FAILURE() << "accepted " << selection;
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("there are 0 (main), 1 (side)"));
+    }
+  }
+}
+
+TEST(ViewSetupTest, WidthFollowsTheCamerasAspectRatio) {
+  ViewOptions options;
+  EXPECT_EQ(make_view(make_scene(), options, kSilent).size, uvec2(1280, 720));
+  options.camera = "side";
+  EXPECT_EQ(make_view(make_scene(), options, kSilent).size, uvec2(1440, 720));
+  options.size = uvec2(100, 100);
+  const View view = make_view(make_scene(), options, kSilent);
+  EXPECT_EQ(view.size, uvec2(100, 100));
+  EXPECT_EQ(view.camera.yfov, make_scene().cameras[1].yfov) << "the vertical field of view holds";
+}
+
+TEST(ViewSetupTest, AnAspectRatioWithoutAWidthIsRefused) {
+  for (const float aspect_ratio : {1e-6F, 1e6F}) {
+    Scene scene = make_scene();
+    scene.cameras[0].aspect_ratio = aspect_ratio;
+    EXPECT_THROW(make_view(scene, {}, kSilent), UsageError);
+  }
+}
+
+TEST(ViewSetupTest, AnOrthonormalPoseIsUsedAsItIs) {
+  ViewOptions options;
+  options.pose.eye = dvec3(1.0, 2.0, 3.0);
+  options.pose.look = dvec3(0.0, 0.600000024, -0.800000012);
+  options.pose.up = dvec3(0.0, 0.800000012, 0.600000024);
+  options.pose.fov_deg = 90.0;
+  options.pose.near = 0.25;
+  const Camera camera = make_view(make_scene(), options, kSilent).camera;
+  EXPECT_EQ(camera.eye, vec3(1.0F, 2.0F, 3.0F));
+  EXPECT_EQ(camera.look, vec3(0.0F, 0.6F, -0.8F));
+  EXPECT_EQ(camera.up, vec3(0.0F, 0.8F, 0.6F));
+  EXPECT_FLOAT_EQ(camera.yfov, 1.57079633F);
+  EXPECT_EQ(camera.near, 0.25F);
+}
+
+TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
+  ViewOptions options;
+  options.pose.look = dvec3(3e14, 0.0, -4e14);
+  options.pose.up = dvec3(0.2, 1e-3, 0.1);
+  const Camera camera = make_view(make_scene(), options, kSilent).camera;
+  EXPECT_EQ(camera.look, vec3(0.6F, 0.0F, -0.8F));
+  EXPECT_NEAR(glm::length(camera.up), 1.0F, 2.0F * kUnitRoundoff);
+  EXPECT_NEAR(glm::dot(camera.look, camera.up), 0.0F, 2.0F * kUnitRoundoff);
+  EXPECT_GT(glm::dot(camera.up, vec3(0.2F, 1e-3F, 0.1F)), 0.0F);
+}
+
+TEST(ViewSetupTest, ADirectionAloneStandsUpright) {
+  ViewOptions options;
+  options.pose.look = dvec3(1.0, -1.0, 0.0);
+  const Camera camera = make_view(make_scene(), options, kSilent).camera;
+  EXPECT_NEAR(camera.up.x, std::sqrt(0.5F), 1e-6F);
+  EXPECT_NEAR(camera.up.y, std::sqrt(0.5F), 1e-6F);
+  EXPECT_EQ(camera.eye, make_scene().cameras[0].eye) << "what is not given stays the camera's";
+}
+
+TEST(ViewSetupTest, DirectionsThatDoNotSayWhichWayIsUpAreRefused) {
+  const std::pair<dvec3, dvec3> bad[] = {{dvec3(0.0, 1.0, 0.0), dvec3(0.0, 1.0, 0.0)},
+                                         {dvec3(0.0, 0.0, -1.0), dvec3(0.0, 0.0, 2.0)},
+                                         {dvec3(0.0), dvec3(0.0, 1.0, 0.0)},
+                                         {dvec3(1.0, 0.0, 0.0), dvec3(0.0)},
+                                         {dvec3(1.0, 0.0, 0.0), dvec3(1.0, 1e-9, 0.0)}};
+  for (const auto& [look, up] : bad) {
+    ViewOptions options;
+    options.pose.look = look;
+    options.pose.up = up;
+    EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+  }
+}
+
+TEST(ViewSetupTest, ACropLiesWithinThePicture) {
+  ViewOptions options;
+  options.size = uvec2(64, 32);
+  options.crop = PixelWindow{{0, 0}, {64, 32}};
+  EXPECT_NO_THROW(make_view(make_scene(), options, kSilent));
+  options.crop = PixelWindow{{0, 0}, {65, 32}};
+  EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+  options.crop = PixelWindow{{0, 0}, {64, 33}};
+  EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+}
+
+TEST(LightUpTest, OnlyASceneWithoutLightsIsLitUp) {
+  Scene scene = make_scene();
+  light_up(scene, scene.cameras[1], kSilent);
+  ASSERT_EQ(scene.lights.size(), 1U);
+  EXPECT_EQ(scene.lights[0].kind, LightKind::kDirectional);
+  EXPECT_EQ(scene.lights[0].direction, scene.cameras[1].look);
+  EXPECT_EQ(scene.ambient, vec3(0.1F));
+
+  light_up(scene, scene.cameras[0], kSilent);
+  EXPECT_EQ(scene.lights.size(), 1U);
+
+  Scene ambient = make_scene();
+  ambient.ambient = vec3(0.5F);
+  light_up(ambient, ambient.cameras[0], kSilent);
+  EXPECT_EQ(ambient.lights.size(), 1U);
+  EXPECT_EQ(ambient.ambient, vec3(0.5F)) << "the file's ambient light stays";
+}
+
+}  // namespace
+}  // namespace promin::app
