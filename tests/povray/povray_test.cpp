@@ -49,8 +49,8 @@ class PovrayTest : public testing::Test {
 
   void expect_same_picture(const fs::path& scene) const {
     ASSERT_NO_FATAL_FAILURE(run_tool("scene_to_pov.py", {scene, "-o", "scene.pov", "--max-depth", kMaxDepth}));
-    const Words settings = {"+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA",
-                            std::string("+W") + kSize, std::string("+H") + kSize};
+    const Words settings = {
+        "+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA", std::string("+W") + kSize, std::string("+H") + kSize};
     ASSERT_NO_FATAL_FAILURE(run(PROMIN_POVRAY, settings));
     ASSERT_NO_FATAL_FAILURE(run(PROMIN_EXECUTABLE, {"render", scene, "-o", "promin.exr", "--size", kSize, kSize,
                                                     "--max-depth", kMaxDepth, "--quiet"}));

@@ -278,12 +278,12 @@ def mirrors():
 def emissive():
     """Lanterns that show their own colour in the dark; emission lights nothing else."""
     g = _stage(floor=(0.4, 0.4, 0.42), background=(0.03, 0.035, 0.05), ambient=0.25, key=0.15)
+    pole = g.cylinder("pole", 0.6, 0.06, g.material("pole", STONE))
     for i, (name, color) in enumerate(PALETTE.items()):
         glow = tuple(min(1.0, 1.3 * c) for c in color)
         lantern = g.sphere(name, 0.3, g.material(name, (0.02, 0.02, 0.02), emissive=glow))
         angle = math.tau * i / len(PALETTE)
         g.node(name, mesh=lantern, translation=(1.7 * math.sin(angle), 0.85, 1.7 * math.cos(angle)))
-        pole = g.cylinder("pole", 0.6, 0.06, g.material("pole", STONE))
         g.node("pole", mesh=pole, translation=(1.7 * math.sin(angle), 0.3, 1.7 * math.cos(angle)))
     column = g.cylinder("mirror column", 1.6, 0.5, g.material("mirror column", (0.03, 0.03, 0.03), reflection=0.8))
     g.node("mirror column", mesh=column, translation=(0.0, 0.8, 0.0))
