@@ -38,7 +38,9 @@ class PovrayTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   void run(const fs::path& program, const Words& arguments) const {
-    const ProcessResult result = Process(program, arguments, {.folder = folder_}).wait();
+    ProcessOptions options;
+    options.folder = folder_;
+    const ProcessResult result = Process(program, arguments, options).wait();
     ASSERT_EQ(result.exit_code, 0) << program << "\n" << result.err;
   }
 
@@ -56,7 +58,7 @@ class PovrayTest : public testing::Test {
                                                     "--max-depth", kMaxDepth, "--quiet"}));
     const ImageDifference difference =
         compare_images(read_image(folder_ / "promin.exr"), read_image(folder_ / "povray.exr"), kTolerance);
-    std::cout << difference.summary();
+    std::cout << difference.summary() << '\n';
     EXPECT_TRUE(difference.is_equal);
     EXPECT_LE(difference.mean_absolute, kMeanTolerance);
   }

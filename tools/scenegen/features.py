@@ -216,9 +216,9 @@ def light_physical():
     g = _stage(floor=(0.6, 0.6, 0.6), background=(0.02, 0.025, 0.035), ambient=0.03, key=0.0)
     bulb = g.sphere("bulb", 0.06, g.material("bulb", (0.0, 0.0, 0.0), emissive=(1.0, 0.85, 0.6)))
     post = g.cylinder("post", 0.8, 0.12, _glossy(g, "post", AZURE))
-    for i, height in enumerate((0.5, 1.0, 2.0)):
+    for i, height in enumerate((0.6, 1.1, 2.0)):
         x = -2.6 + 2.6 * i
-        g.point_light(f"lamp {i}", (x, height, 0.0), color=(1.0, 0.85, 0.6), intensity=0.3, classic=False)
+        g.point_light(f"lamp {i}", (x, height, 0.0), color=(1.0, 0.85, 0.6), intensity=0.45, classic=False)
         g.node(f"bulb {i}", mesh=bulb, translation=(x, height + 0.07, 0.0))
         g.node(f"post {i}", mesh=post, translation=(x + 0.6, 0.4, -0.6))
     g.camera("camera", (0.0, 3.0, 6.2), (0.0, 0.5, 0.0))
@@ -233,6 +233,8 @@ def ambient_and_background():
         height = 0.6 + 0.5 * (i % 3)
         post = g.cylinder(name, height, 0.35, g.material(name, color))
         g.node(name, mesh=post, translation=(-2.25 + 0.9 * i, height / 2.0, 0.0))
+    # Switched off: a scene without any source would get a headlight.
+    g.directional_light("off", (0.0, -1.0, 0.0), intensity=0.0)
     g.camera("camera", (0.0, 1.6, 5.6), (0.0, 0.7, 0.0))
     return g
 
@@ -316,7 +318,7 @@ def cameras():
     """Five cameras on one scene: front, side, top (orthographic), wide at a corner, narrow from afar."""
     g = _stage()
     _cubes(g)
-    g.camera("front", (0.0, 1.8, 6.0), (0.0, 0.8, 0.0))
+    g.camera("front", (-1.2, 2.4, 6.0), (0.0, 0.8, 0.0))
     g.camera("side", (6.0, 2.2, 1.5), (0.0, 0.8, 0.0))
     g.orthographic_camera("top", (0.0, 8.0, 0.0), (0.0, 0.0, 0.0), 1.9)
     g.camera("wide", (2.4, 1.7, 2.4), (0.0, 0.7, 0.0), yfov_deg=85.0)
@@ -326,14 +328,14 @@ def cameras():
 
 def metallic_roughness():
     """Core glTF materials: metals behind, dielectrics in front, rougher to the right."""
-    g = _stage(floor=STONE)
+    g = _stage(floor=SLATE)
     for row, (metallic, color) in enumerate(((0.0, CORAL), (1.0, (0.95, 0.7, 0.3)))):
         for column in range(5):
             name = f"metallic {metallic:g} roughness {column / 4:g}"
             material = g.metallic_roughness(name, color, metallic, column / 4)
             ball = g.sphere(name, 0.45, material)
             g.node(name, mesh=ball, translation=(-2.2 + 1.1 * column, 0.45, 0.7 - 1.4 * row))
-    g.point_light("lamp", (-3.0, 5.0, 4.0), intensity=120.0, classic=False)
+    g.point_light("lamp", (-3.0, 5.0, 4.0), intensity=70.0, classic=False)
     g.camera("camera", (0.0, 2.6, 6.0), (0.0, 0.35, 0.0))
     return g
 
