@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include "core/math.h"
+
+// The inner loops of the SAH builder: boxes that fill whole registers, their bins, and the best plane between bins.
+namespace promin {
+
+/// Four floats in one register (GCC's and Clang's vector extension): x, y, z and a lane that is not looked at.
+using Lanes = float __attribute__((vector_size(16)));
+
+inline Lanes min(Lanes a, Lanes b) {
+  return a < b ? a : b;
+}
+inline Lanes max(Lanes a, Lanes b) {
+  return a > b ? a : b;
+}
+inline Lanes fill_lanes(float x) {
+  return Lanes{x, x, x, x};
+}
+inline Lanes clear_spare_lane(Lanes a) {
+  using Bits = int32_t __attribute__((vector_size(16)));
+  return std::bit_cast<Lanes>(std::bit_cast<Bits>(a) & Bits{-1, -1, -1, 0});
+}
+
+/// Bounds in registers. Empty by default.
+struct LaneBox {
+  Lanes lo = fill_lanes(std::numeric_limits<float>::infinity());
+  Lanes hi = fill_lanes(-std::numeric_limits<float>::infinity());
+
+  void extend(Lanes low, Lanes high) {
+    lo = min(low, lo);
+    hi = max(high, hi);
+  }
+  void extend(const LaneBox& box) { extend(box.lo, box.hi); }
+  /// In double: fp32 would overflow from coordinates of 1e19 on. Of a box that is not empty.
+  double half_area() const {
+    const double x = static_cast<double>(hi[0]) - static_cast<double>(lo[0]);
+    const double y = static_cast<double>(hi[1]) - static_cast<double>(lo[1]);
+    const double z = static_cast<double>(hi[2]) - static_cast<double>(lo[2]);
+    return x * y + (y + x) * z;
+  }
+  Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
+};
+
+/// A box to be sorted into the tree; its index in the builder's input travels in the spare lane. Without defaults,
+/// so that an array of millions is first touched by the threads that fill it.
+struct Record {
+  Lanes lo;
+  Lanes hi;
+
+  Record() = default;
+  Record(const Bounds& bounds, uint32_t index)
+      : lo{bounds.lo.x, bounds.lo.y, bounds.lo.z, std::bit_cast<float>(index)},
+        hi{bounds.hi.x, bounds.hi.y, bounds.hi.z, 0.0F} {}
+
+  uint32_t index() const { return std::bit_cast<uint32_t>(static_cast<float>(lo[3])); }
+  /// Halved before the sum, which could overflow. Read as floats most indices are subnormal, and arithmetic on those
+  /// is slow.
+  Lanes center() const { return fill_lanes(0.5F) * clear_spare_lane(lo) + fill_lanes(0.5F) * hi; }
+};
+
+/// What is known of a set of records: their common box and that of their centres.
+struct Extent {
+  LaneBox box;
+  LaneBox centers;
+
+  void extend(const Record& record) {
+    const Lanes center = record.center();
+    box.extend(record.lo, record.hi);
+    centers.extend(center, center);
+  }
+  void extend(const Extent& extent) {
+    box.extend(extent.box);
+    centers.extend(extent.centers);
+  }
+};
+
+/// Divides the box of the centres into slabs of equal thickness along each axis.
+class BinGrid {
+ public:
+  static constexpr uint32_t kMaxBins = 32;
+
+  /// For `count` records between these centres. Few records get few bins.
+  BinGrid(const LaneBox& centers, uint32_t count);
+
+  uint32_t bin_count() const { return bin_count_; }
+  /// False where the centres coincide (or are too near or far apart for a float): everything falls into bin 0.
+  bool is_divided(int axis) const { return scale_[axis] > 0.0F; }
+  uint32_t bin_of(Lanes center, int axis) const {
+    return static_cast<uint32_t>(static_cast<int32_t>((center[axis] - origin_[axis]) * scale_[axis]));
+  }
+
+ private:
+  Lanes origin_{};
+  Lanes scale_{};
+  uint32_t bin_count_;
+};
+
+/// The plane below bin `bin` of `axis`.
+struct Split {
+  int axis = -1;
+  uint32_t bin = 0;
+  /// Sum over both sides of half area times records; infinite where there is no plane with records on both sides.
+  double cost = std::numeric_limits<double>::infinity();
+
+  bool exists() const { return axis >= 0; }
+};
+
+/// Boxes and numbers of the records in every bin of a grid.
+struct Bins {
+  LaneBox boxes[3][BinGrid::kMaxBins];
+  uint32_t counts[3][BinGrid::kMaxBins];
+
+  explicit Bins(const BinGrid& grid);
+  void add(const BinGrid& grid, std::span<const Record> records);
+  void add(const Bins& bins, const BinGrid& grid);
+  uint32_t count_below(const Split& split) const {
+    return std::accumulate(counts[split.axis], counts[split.axis] + split.bin, 0U);
+  }
+};
+
+/// The cheapest plane; of equal ones the first by axis, then by bin.
+Split find_best_split(const BinGrid& grid, const Bins& bins);
+
+}  // namespace promin

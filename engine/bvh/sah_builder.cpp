@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "bvh/binning.h"
+#include "bvh/builders.h"
+#include "core/parallel.h"
+
+// In two phases. The top of the tree is split breadth first: the ranges of one level are cut into chunks, which all
+// threads bin and scatter. Ranges below kSubtreeSize are then subtrees, one task each, and are put behind the top in
+// their order at the end. Nothing depends on which thread does what: chunks and subtrees have fixed sizes, and their
+// results are merged in order.
+namespace promin {
+namespace {
+
+constexpr uint32_t kChunkSize = 8192;
+constexpr uint32_t kSubtreeSize = 16384;
+
+/// From here on ranges are halved by index: 2^32 references halved 32 times fit into leaves.
+constexpr uint32_t kMaxSahDepth = kMaxBvhDepth - 32;
+
+/// Records [begin, end), still to become node `node` in depth `depth` (the root's is 1).
+struct Range {
+  uint32_t begin = 0;
+  uint32_t end = 0;
+  uint32_t node = 0;
+  uint32_t depth = 1;
+  Extent extent;
+
+  uint32_t count() const { return end - begin; }
+};
+
+/// Makes one node of a range: a leaf, or an inner node whose children's ranges it returns, the lower one first.
+/// `middle` is where the upper child begins.
+std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const Extent& below, const Extent& above,
+                                      std::vector<BvhNode>& nodes) {
+  const auto child = static_cast<uint32_t>(nodes.size());
+  nodes[range.node] = {range.extent.box.bounds(), child, 0};
+  nodes.resize(nodes.size() + 2);
+  return {Range{range.begin, middle, child, range.depth + 1, below},
+          Range{middle, range.end, child + 1, range.depth + 1, above}};
+}
+
+/// Moves the records below the plane to the front and returns how many there are.
+uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, Extent& below,
+                           Extent& above) {
+  size_t left = 0;
+  size_t right = records.size();
+  while (left < right) {
+    if (grid.bin_of(records[left].center(), split.axis) < split.bin) {
+      below.extend(records[left++]);
+    } else {
+      above.extend(records[left]);
+      std::swap(records[left], records[--right]);
+    }
+  }
+  return static_cast<uint32_t>(left);
+}
+
+/// Builds the subtree of a range on one thread; its root is node 0.
+std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
+  std::vector<BvhNode> nodes(1);
+  nodes.reserve(root.count());
+  std::vector<Range> open = {root};
+  open.back().node = 0;
+  while (!open.empty()) {
+    const Range range = open.back();
+    open.pop_back();
+    const std::span<Record> members(records + range.begin, range.count());
+    const BinGrid grid(range.extent.centers, range.count());
+    Split split;
+    if (range.depth < kMaxSahDepth && range.count() > 1) {
+      Bins bins(grid);
+      bins.add(grid, members);
+      split = find_best_split(grid, bins);
+    }
+    const double area = range.extent.box.half_area();
+    const bool pays = kNodeCost * area + kTestCost * split.cost < kTestCost * area * range.count();
+    if (range.count() <= kMaxLeafSize && !pays) {
+      nodes[range.node] = {range.extent.box.bounds(), range.begin, range.count()};
+      continue;
+    }
+    Extent below;
+    Extent above;
+    uint32_t middle = range.begin + range.count() / 2;
+    if (split.exists()) {
+      middle = range.begin + partition_records(members, grid, split, below, above);
+    } else {
+      for (uint32_t i = range.begin; i < middle; ++i) below.extend(records[i]);
+      for (uint32_t i = middle; i < range.end; ++i) above.extend(records[i]);
+    }
+    auto [lower, upper] = make_children(range, middle, below, above, nodes);
+    open.push_back(upper);
+    open.push_back(lower);
+  }
+  return nodes;
+}
+
+/// A range that becomes a subtree, and the buffer that its records lie in.
+struct Subtree {
+  Range range;
+  Record* records = nullptr;
+};
+
+/// Part of a range that one thread bins, then scatters.
+struct Chunk {
+  uint32_t begin;
+  uint32_t end;
+  Bins bins;
+  /// Where its first record below and its first above the plane go.
+  uint32_t first_below = 0;
+  uint32_t first_above = 0;
+  /// What went there.
+  Extent below;
+  Extent above;
+
+  Chunk(uint32_t first, uint32_t last, const BinGrid& grid) : begin(first), end(last), bins(grid) {}
+};
+
+/// A range of the top of the tree while it is split.
+struct Halving {
+  Range range;
+  BinGrid grid;
+  std::vector<Chunk> chunks;
+  Split split;
+  uint32_t middle = 0;
+
+  explicit Halving(const Range& whole) : range(whole), grid(whole.extent.centers, whole.count()) {
+    for (uint32_t begin = range.begin; begin < range.end; begin += std::min(kChunkSize, range.end - begin)) {
+      chunks.emplace_back(begin, begin + std::min(kChunkSize, range.end - begin), grid);
+    }
+  }
+  void choose_split();
+  void scatter(Chunk& chunk, const Record* from, Record* to) const;
+};
+
+/// After all chunks are binned: picks the plane and gives each chunk its places on both sides, so that records keep
+/// their order.
+void Halving::choose_split() {
+  Bins all(grid);
+  for (const Chunk& chunk : chunks) all.add(chunk.bins, grid);
+  split = find_best_split(grid, all);
+  if (!split.exists()) return;
+  middle = range.begin + all.count_below(split);
+  uint32_t below = range.begin;
+  uint32_t above = middle;
+  for (Chunk& chunk : chunks) {
+    chunk.first_below = below;
+    chunk.first_above = above;
+    below += chunk.bins.count_below(split);
+    above += chunk.end - chunk.begin - chunk.bins.count_below(split);
+  }
+}
+
+void Halving::scatter(Chunk& chunk, const Record* from, Record* to) const {
+  uint32_t below = chunk.first_below;
+  uint32_t above = chunk.first_above;
+  for (uint32_t i = chunk.begin; i < chunk.end; ++i) {
+    if (grid.bin_of(from[i].center(), split.axis) < split.bin) {
+      to[below++] = from[i];
+      chunk.below.extend(from[i]);
+    } else {
+      to[above++] = from[i];
+      chunk.above.extend(from[i]);
+    }
+  }
+}
+
+class SahBuild {
+ public:
+  SahBuild(std::span<const Bounds> boxes, unsigned thread_count)
+      : boxes_(boxes),
+        thread_count_(thread_count),
+        records_(std::make_unique_for_overwrite<Record[]>(boxes.size())),
+        scattered_(std::make_unique_for_overwrite<Record[]>(boxes.size())) {}
+
+  Bvh run() {
+    bvh_.nodes.resize(1);
+    std::vector<Range> level;
+    add_range(make_root(), records_.get(), level);
+    while (!level.empty()) level = split_level(level);
+    build_subtrees();
+    return std::move(bvh_);
+  }
+
+ private:
+  Range make_root();
+  std::vector<Range> split_level(const std::vector<Range>& level);
+  void build_subtrees();
+
+  /// Large ranges are split with the next level, small or deep ones become subtrees.
+  void add_range(const Range& range, Record* records, std::vector<Range>& level) {
+    if (range.count() > kSubtreeSize && range.depth < kMaxSahDepth) {
+      level.push_back(range);
+    } else {
+      subtrees_.push_back({range, records});
+    }
+  }
+
+  std::span<const Bounds> boxes_;
+  unsigned thread_count_;
+  /// The records of the current level, and where its chunks scatter them to.
+  std::unique_ptr<Record[]> records_;
+  std::unique_ptr<Record[]> scattered_;
+  std::vector<Subtree> subtrees_;
+  Bvh bvh_;
+};
+
+Range SahBuild::make_root() {
+  const auto count = static_cast<uint32_t>(boxes_.size());
+  std::vector<Extent> extents((count + kChunkSize - 1) / kChunkSize);
+  for_each_index(extents.size(), thread_count_, [&](size_t chunk) {
+    const auto begin = static_cast<uint32_t>(chunk * kChunkSize);
+    Extent extent;
+    for (uint32_t i = begin; i < begin + std::min(kChunkSize, count - begin); ++i) {
+      records_[i] = Record(boxes_[i], i);
+      extent.extend(records_[i]);
+    }
+    extents[chunk] = extent;
+  });
+  Range root;
+  root.end = count;
+  for (const Extent& extent : extents) root.extent.extend(extent);
+  return root;
+}
+
+std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
+  std::vector<Halving> halvings(level.begin(), level.end());
+  std::vector<std::pair<Halving*, Chunk*>> work;
+  for (Halving& halving : halvings) {
+    for (Chunk& chunk : halving.chunks) work.emplace_back(&halving, &chunk);
+  }
+  for_each_index(work.size(), thread_count_, [&](size_t i) {
+    const auto [halving, chunk] = work[i];
+    chunk->bins.add(halving->grid, {records_.get() + chunk->begin, records_.get() + chunk->end});
+  });
+  for (Halving& halving : halvings) halving.choose_split();
+  for_each_index(work.size(), thread_count_, [&](size_t i) {
+    const auto [halving, chunk] = work[i];
+    if (halving->split.exists()) halving->scatter(*chunk, records_.get(), scattered_.get());
+  });
+  std::vector<Range> next_level;
+  for (const Halving& halving : halvings) {
+    if (!halving.split.exists()) {
+      subtrees_.push_back({halving.range, records_.get()});
+      continue;
+    }
+    Extent below;
+    Extent above;
+    for (const Chunk& chunk : halving.chunks) {
+      below.extend(chunk.below);
+      above.extend(chunk.above);
+    }
+    const auto [lower, upper] = make_children(halving.range, halving.middle, below, above, bvh_.nodes);
+    add_range(lower, scattered_.get(), next_level);
+    add_range(upper, scattered_.get(), next_level);
+  }
+  std::swap(records_, scattered_);
+  return next_level;
+}
+
+void SahBuild::build_subtrees() {
+  bvh_.references.resize(boxes_.size());
+  std::vector<std::vector<BvhNode>> built(subtrees_.size());
+  for_each_index(subtrees_.size(), thread_count_, [&](size_t i) {
+    const auto& [range, records] = subtrees_[i];
+    built[i] = build_subtree(range, records);
+    for (uint32_t k = range.begin; k < range.end; ++k) bvh_.references[k] = records[k].index();
+  });
+  size_t node_count = bvh_.nodes.size();
+  for (const std::vector<BvhNode>& nodes : built) node_count += nodes.size() - 1;
+  bvh_.nodes.reserve(node_count);
+  for (size_t i = 0; i < subtrees_.size(); ++i) {
+    // The subtree's root takes its place in the top; the others follow what there is.
+    const auto shift = static_cast<uint32_t>(bvh_.nodes.size()) - 1;
+    for (BvhNode& node : built[i]) {
+      if (node.count == 0) node.first += shift;
+    }
+    bvh_.nodes[subtrees_[i].range.node] = built[i].front();
+    bvh_.nodes.insert(bvh_.nodes.end(), built[i].begin() + 1, built[i].end());
+  }
+}
+
+}  // namespace
+
+Bvh build_sah(std::span<const Bounds> boxes, const BuildOptions& options) {
+  return SahBuild(boxes, options.thread_count).run();
+}
+
+}  // namespace promin

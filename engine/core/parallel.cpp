@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace promin {
+
+void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task) {
+  if (thread_count == 0) thread_count = std::max(1U, std::thread::hardware_concurrency());
+  std::atomic<size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto work = [&] {
+    try {
+      for (size_t i = next++; i < count; i = next++) task(i);
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    const size_t helper_count = std::min<size_t>(thread_count, count) - (count > 0 ? 1 : 0);
+    helpers.reserve(helper_count);
+    try {
+      while (helpers.size() < helper_count) helpers.emplace_back(work);
+    } catch (const std::system_error&) {
+      // The system gives no more threads: the ones there are do the work.
+    }
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace promin

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "scene/load_report.h"
+
+namespace promin {
+
+/// The parts of a .gltf or .glb file; views into its bytes.
+struct GltfContainer {
+  std::string_view json;
+  /// The binary chunk of a GLB file.
+  std::optional<std::span<const std::byte>> binary;
+};
+
+/// Takes a file apart, GLB by its magic number (glTF 2.0, section 4.4). Every length is checked against the bytes
+/// there are, and JSON that nests deeper than kMaxJsonDepth is refused before a recursive parser sees it.
+/// Throws InputError.
+GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report);
+
+inline constexpr int kMaxJsonDepth = 200;
+
+}  // namespace promin

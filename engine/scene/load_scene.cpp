@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/load_scene.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "core/error.h"
+#include "scene/load_gltf.h"
+#include "scene/load_obj.h"
+#include "scene/load_report.h"
+
+namespace promin {
+namespace {
+
+struct SceneFormat {
+  const char* ending;
+  Scene (*load)(const std::filesystem::path&);
+};
+
+bool has_anything_to_draw(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return primitive_count(object.shape) > 0; });
+}
+
+constexpr SceneFormat kFormats[] = {{".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}};
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  std::string known;
+  for (const SceneFormat& format : kFormats) {
+    if (ending == format.ending) {
+      Scene scene = format.load(file);
+      if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
+      return scene;
+    }
+    known += known.empty() ? format.ending : std::string(", ") + format.ending;
+  }
+  throw InputError({"unknown scene format " + quote(ending), file.string(), "use a file that ends in " + known});
+}
+
+}  // namespace promin

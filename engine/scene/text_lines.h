@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace promin {
+
+/// Walks the lines of a text, whether they end in \n or \r\n.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text) : rest_(text) {}
+
+  /// Goes to the next line; false at the end.
+  bool advance();
+
+  /// Without its end.
+  std::string_view line() const { return line_; }
+  /// "line 12".
+  std::string place() const { return "line " + std::to_string(number_); }
+
+ private:
+  std::string_view rest_;
+  std::string_view line_;
+  uint64_t number_ = 0;
+};
+
+/// Takes the next word off a line; empty at its end or at a comment.
+std::string_view take_word(std::string_view& line);
+
+/// The rest of a line without spaces around it.
+std::string_view trim(std::string_view line);
+
+/// A finite decimal number that is the whole word; nullopt for anything else ("nan", "inf", "0,5", "1e999").
+std::optional<double> parse_number(std::string_view word);
+
+/// An integer that is the whole word and fits.
+std::optional<int64_t> parse_integer(std::string_view word);
+
+}  // namespace promin

@@ -1,0 +1,474 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "gltf_builder.h"
+#include "scene_folder.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// A valid document, how to break it, and what the refusal must name.
+struct BadGltf {
+  const char* name;
+  std::function<void(GltfBuilder&)> spoil;
+  const char* what;
+  const char* where;
+};
+
+std::ostream& operator<<(std::ostream& stream, const BadGltf& bad) {
+  return stream << bad.name;
+}
+
+/// A document that uses everything the table below breaks.
+GltfBuilder rich_gltf() {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}};
+  gltf.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}}}}};
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", json::object()}}};
+  gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"] = {
+      {{"type", "sphere"}, {"sphere", {{"radius", 1}}}},
+      {{"type", "cylinder"}, {"cylinder", {{"height", 1}, {"radiusTop", 1}, {"radiusBottom", 1}}}}};
+  for (const int shape : {0, 1}) {
+    gltf.show({{"attributes", json::object()},
+               {"extensions", {{"PROMIN_mesh_primitive_implicit_shape", {{"shape", shape}}}}}});
+  }
+  gltf.add_node({{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  return gltf;
+}
+
+json& shape(GltfBuilder& gltf, size_t index) {
+  return gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"][index];
+}
+json& light(GltfBuilder& gltf) {
+  return gltf.json["extensions"]["KHR_lights_punctual"]["lights"][0];
+}
+json& primitive(GltfBuilder& gltf) {
+  return gltf.json["meshes"][0]["primitives"][0];
+}
+
+/// Replaces the positions of the triangle.
+void set_positions(GltfBuilder& gltf, const std::vector<float>& positions) {
+  primitive(gltf)["attributes"]["POSITION"] = gltf.add<float>(positions, "VEC3");
+}
+
+class BadGltfTest : public SceneFolder, public testing::WithParamInterface<BadGltf> {};
+
+TEST_P(BadGltfTest, IsRefusedWithPlaceAndCure) {
+  GltfBuilder gltf = rich_gltf();
+  ASSERT_EQ(refusal("good.gltf", gltf.text()), "");
+  GetParam().spoil(gltf);
+  const std::string message = refusal("bad.gltf", gltf.text());
+  EXPECT_THAT(message, HasSubstr(GetParam().what));
+  EXPECT_THAT(message, HasSubstr("bad.gltf: " + std::string(GetParam().where)));
+  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+}
+
+const BadGltf kBadGltf[] = {
+    // The document
+    {"NoAsset", [](auto& g) { g.json.erase("asset"); }, "\"asset\" is missing", "the top level"},
+    {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "\"1.0\" is not 2.x", "asset.version"},
+    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "needs glTF \"2.1\"", "asset.minVersion"},
+    {"RequiredExtension", [](auto& g) { g.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+     "KHR_draco_mesh_compression is not implemented", "extensionsRequired[0]"},
+    // Types
+    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 stands where an array belongs", "nodes"},
+    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string stands where an object", "nodes[1]"},
+    {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "where an integer belongs", "nodes[0].mesh"},
+    {"NoAttributes", [](auto& g) { primitive(g).erase("attributes"); }, "\"attributes\" is missing",
+     "meshes[0].primitives[0]"},
+    {"ShortMatrix",
+     [](auto& g) {
+       g.json["nodes"][0]["matrix"] = {1, 2, 3};
+     },
+     "an array of 16 numbers", "nodes[0].matrix"},
+    {"TextInVector",
+     [](auto& g) {
+       g.json["nodes"][0]["scale"] = {1, "1", 1};
+     },
+     "where a number belongs", "nodes[0].scale[1]"},
+    {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; }, "7 stands where a string belongs",
+     "extensions.KHR_implicit_shapes.shapes[0].name"},
+    // Indices
+    {"MeshIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }, "index 9 is out of range", "nodes[0].mesh"},
+    {"NegativeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = -1; }, "index -1 is out of range", "nodes[0].mesh"},
+    {"HugeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 1e30; }, "index 1e+30 is out of range", "nodes[0].mesh"},
+    {"AttributeIndex", [](auto& g) { primitive(g)["attributes"]["POSITION"] = 9; }, "index 9 is out of range",
+     "meshes[0].primitives[0].attributes.POSITION"},
+    {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; }, "index 1 is out of range",
+     "meshes[0].primitives[0].material"},
+    {"ChildIndex", [](auto& g) { g.json["nodes"][0]["children"] = {7}; }, "index 7", "nodes[0].children[0]"},
+    {"ShapeIndex",
+     [](auto& g) {
+       g.json["meshes"][1]["primitives"][0]["extensions"]["PROMIN_mesh_primitive_implicit_shape"]["shape"] = 2;
+     },
+     "index 2", "meshes[1].primitives[0].extensions.PROMIN_mesh_primitive_implicit_shape.shape"},
+    {"LightIndex", [](auto& g) { g.json["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 1; }, "index 1",
+     "nodes[3].extensions.KHR_lights_punctual.light"},
+    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "index 0", "scene"},
+    {"VertexIndex",
+     [](auto& g) {
+       primitive(g)["indices"] = g.template add<uint8_t>({0, 1, 3}, "SCALAR");
+     },
+     "index 3 is out of range, there are 3 vertices", "meshes[0].primitives[0].indices, element 2"},
+    {"RestartIndex",
+     [](auto& g) {
+       primitive(g)["indices"] = g.template add<uint16_t>({0, 1, 65535}, "SCALAR");
+     },
+     "index 65535", "meshes[0].primitives[0].indices"},
+    // Enumerations and ranges
+    {"Mode", [](auto& g) { primitive(g)["mode"] = 7; }, "7 is out of range", "meshes[0].primitives[0].mode"},
+    {"ComponentType", [](auto& g) { g.json["accessors"][0]["componentType"] = 5124; }, "is none of 5120|",
+     "accessors[0].componentType"},
+    {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "\"VEC5\" is none of",
+     "accessors[0].type"},
+    {"ZeroCount", [](auto& g) { g.json["accessors"][0]["count"] = 0; }, "0 is out of range", "accessors[0].count"},
+    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 stands where an integer",
+     "accessors[0].count"},
+    {"Metallic", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 2; },
+     "2 is out of range", "materials[0].pbrMetallicRoughness.metallicFactor"},
+    {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; }, "-1 is out of range",
+     "extensions.KHR_lights_punctual.lights[0].intensity"},
+    {"LightType", [](auto& g) { light(g)["type"] = "area"; }, "\"area\" is none of point|directional|spot",
+     "extensions.KHR_lights_punctual.lights[0].type"},
+    {"ConeAngles",
+     [](auto& g) {
+       light(g)["spot"] = {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}};
+     },
+     "inner cone angle", "extensions.KHR_lights_punctual.lights[0].spot"},
+    {"FieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"]["yfov"] = 3.2; }, "3.2 is out of range",
+     "cameras[0].perspective.yfov"},
+    {"CameraWithoutParameters", [](auto& g) { g.json["cameras"][0].erase("perspective"); },
+     "\"perspective\" is missing", "cameras[0]"},
+    // Shapes
+    {"ZeroRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 0; }, "0 is out of range",
+     "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
+    {"NegativeRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = -1; }, "-1 is out of range",
+     "extensions.KHR_implicit_shapes.shapes[1].cylinder.radiusTop"},
+    {"TinyRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 1e-23; }, "1e-23 is out of range",
+     "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
+    {"HugeRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 1e18; }, "1e+18 is out of range",
+     "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
+    {"TinyApexRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = 1e-30; }, "radius of shape shapes[1]",
+     "nodes[2]"},
+    {"ZeroHeight", [](auto& g) { shape(g, 1)["cylinder"]["height"] = 0; }, "0 is out of range",
+     "extensions.KHR_implicit_shapes.shapes[1].cylinder.height"},
+    {"NoRadiusAtAll",
+     [](auto& g) {
+       shape(g, 1)["cylinder"].update({{"radiusTop", 0}, {"radiusBottom", 0}});
+     },
+     "both radii of shape shapes[1] are 0", "extensions.KHR_implicit_shapes.shapes[1].cylinder"},
+    {"ScaledAway",
+     [](auto& g) {
+       g.json["nodes"][1]["scale"] = {0, 0, 0};
+     },
+     "radius of shape shapes[0] is 0", "nodes[1]"},
+    {"ScaledTooFar",
+     [](auto& g) {
+       g.json["nodes"][1]["scale"] = {1e16, 1e16, 1e16};
+     },
+     "is 1e+16 in the world", "nodes[1]"},
+    {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "\"torus\" is none of",
+     "extensions.KHR_implicit_shapes.shapes[0].type"},
+    // Vertices
+    {"NanVertex",
+     [](auto& g) {
+       set_positions(g, {0, 0, 0, 1, kNan, 0, 0, 1, 0});
+     },
+     "not finite", "meshes[0].primitives[0].attributes.POSITION, element 1"},
+    {"InfiniteVertex",
+     [](auto& g) {
+       set_positions(g, {0, 0, 0, 1, 0, 0, 0, INFINITY, 0});
+     },
+     "not finite", "meshes[0].primitives[0].attributes.POSITION, element 2"},
+    {"FarVertex",
+     [](auto& g) {
+       set_positions(g, {2e15F, 0, 0, 1, 0, 0, 0, 1, 0});
+     },
+     "beyond 1e15", "meshes[0].primitives[0].attributes.POSITION, element 0"},
+    {"FarNode",
+     [](auto& g) {
+       g.json["nodes"][0]["scale"] = {1e16, 1, 1};
+     },
+     "beyond 1e15", "nodes[0]"},
+    {"NegativeColor",
+     [](auto& g) {
+       primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, 0, 0, 0, -1, 0, 0, 0, 0}, "VEC3");
+     },
+     "vertex colour is negative", "meshes[0].primitives[0].attributes.COLOR_0, element 1"},
+    {"PositionFormat",
+     [](auto& g) {
+       primitive(g)["attributes"]["POSITION"] = g.template add<float>({0, 0, 0, 0, 0, 0}, "VEC2");
+     },
+     "VEC2 of 5126) is not allowed", "meshes[0].primitives[0].attributes.POSITION"},
+    {"IndexFormat",
+     [](auto& g) {
+       primitive(g)["indices"] = g.template add<float>({0, 1, 2}, "SCALAR");
+     },
+     "SCALAR of 5126) is not allowed", "meshes[0].primitives[0].indices"},
+    {"AttributeCounts",
+     [](auto& g) {
+       primitive(g)["attributes"]["NORMAL"] = g.template add<float>({0, 0, 1}, "VEC3");
+     },
+     "elements, others have", "meshes[0].primitives[0].attributes."},
+    // Bytes
+    {"ViewPastTheBuffer", [](auto& g) { g.json["bufferViews"][1]["byteLength"] = 999; }, "ends at byte",
+     "bufferViews[1]"},
+    {"ViewOffset", [](auto& g) { g.json["bufferViews"][1]["byteOffset"] = 9007199254740992; }, "ends at byte",
+     "bufferViews[1]"},
+    {"AccessorPastTheView", [](auto& g) { g.json["accessors"][0]["count"] = 4; },
+     "end at byte 48 of a buffer view of 36", "accessors[0]"},
+    {"AccessorOffset", [](auto& g) { g.json["accessors"][0]["byteOffset"] = 4; }, "end at byte 40", "accessors[0]"},
+    {"WrappingCount",
+     [](auto& g) {
+       g.json["bufferViews"][0]["byteStride"] = 252;
+       g.json["accessors"][0]["count"] = 2147483647;
+     },
+     "end at byte 541165878804", "accessors[0]"},
+    {"CountPastAnyFile", [](auto& g) { g.json["accessors"][0]["count"] = 18446744073709551615ULL; }, "is out of range",
+     "accessors[0].count"},
+    {"HugeZeros",
+     [](auto& g) {
+       g.json["accessors"][0].erase("bufferView");
+       g.json["accessors"][0]["count"] = 2000000000;
+     },
+     "2000000000 zeros is too large", "accessors[0].count"},
+    {"SmallStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 8; }, "less than an element of 12",
+     "accessors[0]"},
+    {"OddStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 14; }, "no multiple of 4",
+     "bufferViews[0].byteStride"},
+    {"SparsePastTheView",
+     [](auto& g) {
+       const size_t view = g.template add_view<uint8_t>({0, 0, 0, 0});
+       g.json["accessors"][0]["sparse"] = {
+           {"count", 5}, {"indices", {{"bufferView", view}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
+     },
+     "end at byte 5", "accessors[0].sparse.indices"},
+    {"SparseIndex",
+     [](auto& g) {
+       const size_t view = g.template add_view<uint8_t>({3});
+       g.json["accessors"][0]["sparse"] = {
+           {"count", 1}, {"indices", {{"bufferView", view}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
+     },
+     "sparse index 3 is out of range", "accessors[0].sparse.indices, element 0"},
+    {"IndicesWithoutView", [](auto& g) { g.json["accessors"][1].erase("bufferView"); }, "no buffer view",
+     "meshes[0].primitives[0].indices"},
+    // Nodes
+    {"OwnChild", [](auto& g) { g.json["nodes"][0]["children"] = {0}; }, "its own ancestor", "nodes[0]"},
+    {"Cycle",
+     [](auto& g) {
+       g.json["nodes"][0]["children"] = {1};
+       g.json["nodes"][1]["children"] = {0};
+     },
+     "its own ancestor", "nodes[0]"},
+    {"TwoParents",
+     [](auto& g) {
+       g.json["nodes"][0]["children"] = {2};
+       g.json["nodes"][1]["children"] = {2};
+     },
+     "nodes[2] has two parents, nodes[0] and nodes[1]", "nodes[1].children[0]"},
+    {"ChildAsRoot",
+     [](auto& g) {
+       g.json["nodes"][0]["children"] = {1};
+       g.json["scenes"] = {{{"nodes", {0, 1}}}};
+     },
+     "nodes[1] is a child of nodes[0]", "scenes[0].nodes[1]"},
+    {"RootTwice",
+     [](auto& g) {
+       g.json["scenes"] = {{{"nodes", {0, 0}}}};
+     },
+     "listed twice", "scenes[0].nodes[1]"},
+    {"MatrixAndScale",
+     [](auto& g) {
+       g.json["nodes"][0].update({{"scale", {1, 1, 1}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
+     },
+     "both a matrix and a scale", "nodes[0]"},
+    {"PerspectiveMatrix",
+     [](auto& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }, "not affine",
+     "nodes[0].matrix"},
+    {"ZeroRotation",
+     [](auto& g) {
+       g.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
+     },
+     "rotation has length 0", "nodes[0].rotation"},
+    {"FlatCamera",
+     [](auto& g) {
+       g.json["nodes"][3]["scale"] = {1, 1, 0};
+     },
+     "no orientation", "nodes[3]"},
+    {"FlatLight",
+     [](auto& g) {
+       g.json["nodes"][3]["scale"] = {1, 1, 0};
+     },
+     "no direction", "nodes[3]"},
+    {"OverflowingTree",
+     [](auto& g) {
+       for (size_t i = 4; i < 20; ++i) {
+         g.add_node({{"scale", {1e25, 1e25, 1e25}}, {"children", {i == 4 ? 0 : i - 1}}});
+       }
+     },
+     "overflows", "nodes["},
+};
+
+INSTANTIATE_TEST_SUITE_P(Table, BadGltfTest, testing::ValuesIn(kBadGltf),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+/// Buffers: the document's own URI is replaced, so these do not go through text().
+struct BadUri {
+  const char* name;
+  const char* uri;
+  const char* what;
+};
+
+std::ostream& operator<<(std::ostream& stream, const BadUri& bad) {
+  return stream << bad.name;
+}
+
+class BadUriTest : public SceneFolder, public testing::WithParamInterface<BadUri> {};
+
+TEST_P(BadUriTest, IsRefusedWithPlaceAndCure) {
+  GltfBuilder gltf = triangle_gltf();
+  fs::create_directories(folder_ / "scene/sub");
+  write("secret.bin", gltf.bytes);
+  write("scene/short.bin", "1234");
+  write("scene/empty.bin", "");
+  fs::create_symlink("../secret.bin", folder_ / "scene/link.bin");
+  fs::create_directory_symlink("..", folder_ / "scene/up");
+  gltf.json["buffers"] = {{{"byteLength", gltf.bytes.size()}, {"uri", GetParam().uri}}};
+  const std::string message = refusal("scene/bad.gltf", gltf.json.dump());
+  EXPECT_THAT(message, HasSubstr(GetParam().what));
+  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+}
+
+const BadUri kBadUris[] = {
+    {"Missing", "none.bin", "bad.gltf: buffers[0].uri"},
+    {"Empty", "", "name is empty"},
+    {"EmptyFile", "empty.bin", "the file is empty"},
+    {"Folder", "sub", "is a folder"},
+    {"Short", "short.bin", "has 4 bytes, less than its byteLength of 42"},
+    {"Parent", "../secret.bin", "leaves the scene's folder"},
+    {"ParentInside", "sub/../../secret.bin", "leaves the scene's folder"},
+    {"EscapedParent", "%2e%2e/secret.bin", "leaves the scene's folder"},
+    {"EscapedSlash", "..%2Fsecret.bin", "leaves the scene's folder"},
+    {"Backslash", "..\\secret.bin", "leaves the scene's folder"},
+    {"Absolute", "/etc/passwd", "absolute path"},
+    {"EscapedAbsolute", "%2Fetc/passwd", "absolute path"},
+    {"FileScheme", "file:///etc/passwd", "no relative path"},
+    {"WebScheme", "http://localhost/a.bin", "no relative path"},
+    {"Link", "link.bin", "through a link"},
+    {"LinkedFolder", "up/secret.bin", "through a link"},
+    {"ZeroByte", "a%00b", "zero byte"},
+    {"BrokenEscape", "a%2", "broken percent escape"},
+    {"DataNotBase64", "data:application/octet-stream,abc", "not base64"},
+    {"DataBroken", "data:application/octet-stream;base64,ab*d", "broken base64"},
+    {"DataEmpty", "data:application/octet-stream;base64,", "has 0 bytes"},
+    {"DataShort", "data:application/octet-stream;base64,AAAA", "has 3 bytes"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Table, BadUriTest, testing::ValuesIn(kBadUris),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+// Files
+
+class BadFileTest : public SceneFolder {};
+
+TEST_F(BadFileTest, MissingFoldersAndEmptyFilesSayWhy) {
+  EXPECT_THAT(refusal(folder_ / "none.gltf"), HasSubstr("not found"));
+  fs::create_directories(folder_ / "a.glb");
+  EXPECT_THAT(refusal(folder_ / "a.glb"), HasSubstr("is a folder"));
+  EXPECT_THAT(refusal("b.gltf", ""), HasSubstr("empty"));
+}
+
+TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
+  EXPECT_THAT(refusal("scene.fbx", "x"), HasSubstr("\".fbx\""));
+  EXPECT_THAT(refusal("scene.fbx", "x"), HasSubstr(".gltf, .glb, .obj"));
+}
+
+TEST_F(BadFileTest, BrokenJsonNamesTheLine) {
+  EXPECT_THAT(refusal("a.gltf", "{\n\"asset\": ]}"), HasSubstr("line 2"));
+  EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasSubstr("cannot be read"));
+  EXPECT_THAT(refusal("a.gltf", "{\"a\": 1e999}"), HasSubstr("cannot be read"));
+  EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("no JSON object"));
+}
+
+TEST_F(BadFileTest, DeepNestingIsRefusedBeforeItIsParsed) {
+  EXPECT_THAT(refusal("a.gltf", std::string(20'000, '[')), HasSubstr("nests 20000 deep"));
+  const std::string objects = [] {
+    std::string text;
+    for (int i = 0; i < 20'000; ++i) text += "{\"a\":";
+    return text;
+  }();
+  EXPECT_THAT(refusal("a.gltf", objects), HasSubstr("nests 20000 deep"));
+  EXPECT_THAT(refusal("a.gltf", "{\"asset\": {\"version\": \"" + std::string(500, '[') + "\"}}"),
+              HasSubstr("is not 2.x"))
+      << "brackets in strings do not count";
+}
+
+TEST_F(BadFileTest, GlbLengthsAreChecked) {
+  const std::string good = triangle_gltf().glb();
+  ASSERT_EQ(refusal("a.glb", good), "");
+  const auto spoiled = [&](size_t offset, size_t value) {
+    std::string bytes = good;
+    bytes.replace(offset, 4, GltfBuilder::u32(value));
+    return refusal("a.glb", bytes);
+  };
+  const size_t json_length = static_cast<unsigned char>(good[12]) + 256 * static_cast<unsigned char>(good[13]);
+  const size_t binary = 20 + json_length;
+  EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasSubstr("GLB header is cut off"));
+  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 1)), HasSubstr("GLB header promises"));
+  EXPECT_THAT(refusal("a.glb", good + "x"), HasSubstr("GLB header promises"));
+  EXPECT_THAT(spoiled(4, 1), HasSubstr("version 1"));
+  EXPECT_THAT(spoiled(8, 0xFFFFFFFF), HasSubstr("promises 4294967295 bytes"));
+  EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk promises"));
+  EXPECT_THAT(spoiled(12, json_length + 8), testing::Not(""));
+  EXPECT_THAT(spoiled(16, 7), HasSubstr("must be JSON"));
+  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk promises 52 bytes, 44 are left"));
+  EXPECT_THAT(spoiled(binary, 40), HasSubstr("chunk header is cut off"));
+  EXPECT_THAT(spoiled(binary + 4, 7), HasSubstr("has no bytes")) << "a chunk of unknown type is skipped";
+}
+
+TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsBuffer) {
+  GltfBuilder gltf = triangle_gltf();
+  const std::string good = gltf.glb();
+  std::string bytes = good;
+  const std::string length = "\"byteLength\":42";
+  bytes.replace(bytes.rfind(length), length.size(), "\"byteLength\":45");
+  EXPECT_THAT(refusal("a.glb", bytes), HasSubstr("has 44 bytes, less than its byteLength of 45"));
+}
+
+TEST_F(BadFileTest, AllProblemsOfAFileComeTogether) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["nodes"][0]["mesh"] = 5;
+  gltf.json["accessors"][0]["type"] = "VEC9";
+  gltf.json["meshes"][0]["primitives"][0]["mode"] = 9;
+  const std::string message = refusal("a.gltf", gltf.text());
+  EXPECT_THAT(message, HasSubstr("(1 of 3 problems)"));
+  EXPECT_THAT(message, HasSubstr("nodes[0].mesh"));
+  EXPECT_THAT(message, HasSubstr("accessors[0].type"));
+  EXPECT_THAT(message, HasSubstr("meshes[0].primitives[0].mode"));
+}
+
+TEST_F(BadFileTest, ManyProblemsAreCutShort) {
+  GltfBuilder gltf = triangle_gltf();
+  for (int i = 0; i < 1000; ++i) gltf.add_node({{"mesh", 100 + i}});
+  const std::string message = refusal("a.gltf", gltf.text());
+  EXPECT_THAT(message, HasSubstr("and 950 more"));
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 50);
+}
+
+TEST_F(BadFileTest, MessagesStayOnTheirLines) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["A\nB"] = 99;
+  EXPECT_THAT(refusal("a.gltf", gltf.text()), HasSubstr("attributes.A?B"));
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,562 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "gltf_builder.h"
+#include "scene_folder.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class GltfTest : public SceneFolder {
+ protected:
+  Scene load(GltfBuilder& gltf) const { return SceneFolder::load("scene.gltf", gltf.text()); }
+  Scene load(GltfBuilder&& gltf) const { return load(gltf); }
+};
+
+const Mesh& mesh_of(const Scene& scene, size_t object = 0) {
+  return std::get<Mesh>(scene.objects.at(object).shape);
+}
+
+/// Corners of a mesh, triangle after triangle.
+std::vector<vec3> corners_of(const Mesh& mesh) {
+  std::vector<vec3> corners;
+  for (const uvec3& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) corners.push_back(mesh.positions.at(triangle[i]));
+  }
+  return corners;
+}
+
+void expect_near(const vec3& got, const vec3& wanted, float tolerance = 1e-6F) {
+  EXPECT_LE(max_abs_component(got - wanted), tolerance)
+      << got.x << " " << got.y << " " << got.z << " is not " << wanted.x << " " << wanted.y << " " << wanted.z;
+}
+
+const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+
+// Meshes
+
+TEST_F(GltfTest, TrianglesComeOutInTheWorld) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["nodes"][0].update({{"translation", {10, 0, 0}},
+                                {"rotation", {0, 0, 0.70710678118654752, 0.70710678118654752}},
+                                {"scale", {2, 3, 4}}});
+  const Scene scene = load(gltf);
+  const std::vector<vec3> corners = corners_of(mesh_of(scene));
+  ASSERT_THAT(corners, SizeIs(3));
+  expect_near(corners[0], {10, 0, 0});
+  expect_near(corners[1], {10, 2, 0});
+  expect_near(corners[2], {7, 0, 0});
+  EXPECT_THAT(mesh_of(scene).normals, IsEmpty());
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(GltfTest, MatricesMultiplyDownTheTree) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.add_node({{"children", {0}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
+  gltf.json["nodes"][0]["scale"] = {2, 2, 2};
+  expect_near(corners_of(mesh_of(load(gltf)))[1], {7, 6, 7});
+}
+
+template <class Index>
+class GltfIndexTest : public SceneFolder {};
+using IndexTypes = testing::Types<uint8_t, uint16_t, uint32_t>;
+TYPED_TEST_SUITE(GltfIndexTest, IndexTypes);
+
+TYPED_TEST(GltfIndexTest, EveryIndexTypeIsRead) {
+  GltfBuilder gltf;
+  const size_t positions = gltf.add<float>(kSquare, "VEC3");
+  const size_t indices = gltf.add<TypeParam>({2, 1, 3}, "SCALAR");
+  gltf.show({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+  const Scene scene = this->load("scene.gltf", gltf.text());
+  EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0, 1, 0), vec3(1, 0, 0), vec3(1, 1, 0)));
+  EXPECT_THAT(mesh_of(scene).positions, SizeIs(3)) << "vertices that no triangle uses are left out";
+}
+
+TEST_F(GltfTest, QuantizedPositionsAreScaledWhenNormalized) {
+  const auto first_corner = [&](auto numbers, bool normalized) {
+    GltfBuilder gltf;
+    gltf.show({{"attributes", {{"POSITION", gltf.add(numbers, "VEC3", normalized)}}}});
+    return corners_of(mesh_of(load(gltf)))[0];
+  };
+  EXPECT_EQ(first_corner(std::vector<int8_t>{-128, 127, 5, 0, 0, 0, 1, 2, 3}, true), vec3(-1, 1, 5.0F / 127));
+  EXPECT_EQ(first_corner(std::vector<int8_t>{-128, 127, 5, 0, 0, 0, 1, 2, 3}, false), vec3(-128, 127, 5));
+  EXPECT_EQ(first_corner(std::vector<uint8_t>{255, 0, 51, 0, 0, 0, 1, 2, 3}, true), vec3(1, 0, 0.2F));
+  EXPECT_EQ(first_corner(std::vector<int16_t>{-32768, 32767, 0, 0, 0, 0, 1, 2, 3}, true), vec3(-1, 1, 0));
+  EXPECT_EQ(first_corner(std::vector<uint16_t>{65535, 1, 2, 0, 0, 0, 1, 2, 3}, false), vec3(65535, 1, 2));
+}
+
+TEST_F(GltfTest, StripsAlternateAndFansTurn) {
+  for (const auto& [mode, wanted] : std::vector<std::pair<int, std::vector<uvec3>>>{
+           {4, {{0, 1, 2}}}, {5, {{0, 1, 2}, {1, 3, 2}}}, {6, {{1, 2, 0}, {2, 3, 0}}}}) {
+    GltfBuilder gltf;
+    gltf.show({{"attributes", {{"POSITION", gltf.add<float>(kSquare, "VEC3")}}}, {"mode", mode}});
+    const Scene scene = load(gltf);
+    EXPECT_EQ(mesh_of(scene).triangles, wanted) << "mode " << mode;
+    EXPECT_EQ(scene.warnings.size(), mode == 4 ? 1U : 0U) << "the fourth corner is no triangle";
+  }
+}
+
+TEST_F(GltfTest, PointsAndLinesTakeANumberButAreNotDrawn) {
+  GltfBuilder gltf;
+  const size_t positions = gltf.add<float>(kSquare, "VEC3");
+  for (const int mode : {0, 1, 2, 3, 5}) gltf.show({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
+  const Scene scene = load(gltf);
+  ASSERT_THAT(scene.objects, SizeIs(5));
+  for (size_t i = 0; i < 4; ++i) EXPECT_TRUE(std::holds_alternative<NotDrawn>(scene.objects[i].shape));
+  EXPECT_TRUE(std::holds_alternative<Mesh>(scene.objects[4].shape));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("meshes[0].primitives[0] holds points or lines")));
+}
+
+TEST_F(GltfTest, SparseAccessorsReplaceElements) {
+  GltfBuilder gltf = triangle_gltf();
+  const size_t indices = gltf.add_view<uint8_t>({2});
+  const size_t values = gltf.add_view<float>({7, 8, 9});
+  gltf.json["accessors"][0]["sparse"] = {{"count", 1},
+                                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                                         {"values", {{"bufferView", values}}}};
+  EXPECT_THAT(corners_of(mesh_of(load(gltf))), ElementsAre(vec3(0), vec3(1, 0, 0), vec3(7, 8, 9)));
+  gltf.json["accessors"][0].erase("bufferView");
+  EXPECT_THAT(corners_of(mesh_of(load(gltf))), ElementsAre(vec3(0), vec3(0), vec3(7, 8, 9)));
+}
+
+TEST_F(GltfTest, InterleavedAttributesAreTakenApart) {
+  GltfBuilder gltf;
+  const size_t view = gltf.add_view<float>({0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1});
+  gltf.json["bufferViews"][view]["byteStride"] = 24;
+  for (const int offset : {0, 12}) {
+    gltf.json["accessors"].push_back(
+        {{"bufferView", view}, {"byteOffset", offset}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+  }
+  gltf.show({{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}});
+  const Scene scene = load(gltf);
+  EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)));
+  EXPECT_THAT(mesh_of(scene).normals, ElementsAre(vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)));
+}
+
+TEST_F(GltfTest, MirroringKeepsCounterClockwiseOutside) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      gltf.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  gltf.json["nodes"][0]["scale"] = {-1, 1, 1};
+  const Scene scene = load(gltf);
+  EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0), vec3(0, 1, 0), vec3(-1, 0, 0)));
+  EXPECT_EQ(mesh_of(scene).normals[0], vec3(0, 0, 1));
+}
+
+TEST_F(GltfTest, NormalsGoWithTheInverseTranspose) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      gltf.add<float>({1, 1, 0, 1, 1, 0, 1, 1, 0}, "VEC3");
+  gltf.json["nodes"][0]["scale"] = {2, 1, 1};
+  expect_near(mesh_of(load(gltf)).normals[0], glm::normalize(vec3(0.5F, 1, 0)));
+}
+
+TEST_F(GltfTest, NormalsWithoutLengthMakeTheMeshSharp) {
+  for (const float bad : {0.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    GltfBuilder gltf = triangle_gltf();
+    gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        gltf.add<float>({0, 0, 1, bad, bad, bad, 0, 0, 1}, "VEC3");
+    const Scene scene = load(gltf);
+    EXPECT_THAT(mesh_of(scene).normals, IsEmpty());
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("sharp")));
+  }
+}
+
+TEST_F(GltfTest, VertexColorsComeInEveryFormat) {
+  const auto second_color = [&](auto numbers, const char* type, bool normalized) {
+    GltfBuilder gltf = triangle_gltf();
+    gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = gltf.add(numbers, type, normalized);
+    return mesh_of(load(gltf)).colors.at(1);
+  };
+  EXPECT_EQ(second_color(std::vector<float>{0, 0, 0, .25F, .5F, 2, 0, 0, 0}, "VEC3", false), vec4(.25F, .5F, 2, 1));
+  EXPECT_EQ(second_color(std::vector<uint8_t>{0, 0, 0, 0, 255, 0, 51, 102, 0, 0, 0, 0}, "VEC4", true),
+            vec4(1, 0, 0.2F, 0.4F));
+  EXPECT_EQ(second_color(std::vector<uint16_t>{0, 0, 0, 65535, 0, 0, 0, 0, 0}, "VEC3", true), vec4(1, 0, 0, 1));
+}
+
+// Nodes
+
+TEST_F(GltfTest, ObjectsAreNumberedDepthFirst) {
+  GltfBuilder gltf = triangle_gltf();  // node 0
+  for (const char* name : {"a", "b", "c", "d"}) gltf.add_node({{"mesh", 0}, {"name", name}});
+  gltf.json["nodes"][3]["children"] = {1, 2};
+  gltf.json["scenes"] = {{{"nodes", {4, 3}}}};
+  const Scene scene = load(gltf);
+  std::vector<std::string> names;
+  for (const Object& object : scene.objects) names.push_back(object.name);
+  EXPECT_THAT(names, ElementsAre("d", "c", "a", "b"));
+}
+
+TEST_F(GltfTest, TheDefaultSceneIsShown) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.add_node({{"mesh", 0}});
+  gltf.json["scenes"] = {{{"nodes", json::array()}}, {{"nodes", {0, 1}}}};
+  EXPECT_THAT(load(gltf).warnings, Contains("the scene holds nothing to draw"));
+  gltf.json["scene"] = 1;
+  EXPECT_THAT(load(gltf).objects, SizeIs(2));
+}
+
+TEST_F(GltfTest, InvisibleNodesKeepTheirNumbers) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.add_node({{"mesh", 0}, {"children", {0}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
+  const Scene scene = load(gltf);
+  ASSERT_THAT(scene.objects, SizeIs(2));
+  for (const Object& object : scene.objects) EXPECT_TRUE(std::holds_alternative<NotDrawn>(object.shape));
+}
+
+TEST_F(GltfTest, DeepHierarchiesDoNotOverflowTheStack) {
+  GltfBuilder gltf = triangle_gltf();
+  constexpr size_t kDepth = 50'000;
+  for (size_t i = 0; i < kDepth; ++i) gltf.add_node({{"children", {i}}, {"translation", {1, 0, 0}}});
+  EXPECT_EQ(corners_of(mesh_of(load(gltf)))[0], vec3(kDepth, 0, 0));
+}
+
+// Shapes
+
+/// A document of one implicit shape, with a triangle as its fallback.
+GltfBuilder shape_gltf(const json& shape, const json& node = json::object()) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"] = {shape};
+  gltf.json["meshes"][0]["primitives"][0]["extensions"]["PROMIN_mesh_primitive_implicit_shape"]["shape"] = 0;
+  gltf.json["nodes"][0].update(node);
+  return gltf;
+}
+
+TEST_F(GltfTest, SpheresScaleAndMove) {
+  const Scene scene = load(shape_gltf({{"type", "sphere"}, {"sphere", {{"radius", 2}}}},
+                                      {{"translation", {1, 2, 3}}, {"scale", {-3, 3, 3}}}));
+  const auto& sphere = std::get<Sphere>(scene.objects.at(0).shape);
+  EXPECT_EQ(sphere.center, vec3(1, 2, 3));
+  EXPECT_EQ(sphere.radius, 6.0F);
+}
+
+TEST_F(GltfTest, ShapesHaveTheReleaseCandidatesDefaults) {
+  EXPECT_EQ(std::get<Sphere>(load(shape_gltf({{"type", "sphere"}})).objects[0].shape).radius, 0.5F);
+  const Scene scene = load(shape_gltf({{"type", "cylinder"}}));
+  const auto& cylinder = std::get<Cylinder>(scene.objects[0].shape);
+  EXPECT_EQ(cylinder.half_height, 0.25F);
+  EXPECT_EQ(cylinder.radius, 0.25F);
+  EXPECT_EQ(cylinder.axis, vec3(0, 1, 0));
+}
+
+TEST_F(GltfTest, CylindersStretchAlongTheirAxis) {
+  const json shape = {{"type", "cylinder"}, {"cylinder", {{"height", 4}, {"radiusTop", 1}, {"radiusBottom", 1}}}};
+  const Scene scene =
+      load(shape_gltf(shape, {{"rotation", {0, 0, -0.70710678118654752, 0.70710678118654752}}, {"scale", {2, 5, 2}}}));
+  const auto& cylinder = std::get<Cylinder>(scene.objects[0].shape);
+  expect_near(cylinder.axis, {1, 0, 0});
+  EXPECT_FLOAT_EQ(cylinder.half_height, 10);
+  EXPECT_FLOAT_EQ(cylinder.radius, 2);
+}
+
+TEST_F(GltfTest, TwoRadiiMakeAConeOrAFrustum) {
+  for (const double top : {0.0, 0.5}) {
+    const json shape = {{"type", "cylinder"}, {"cylinder", {{"height", 2}, {"radiusTop", top}, {"radiusBottom", 1}}}};
+    const Scene scene = load(shape_gltf(shape, {{"scale", {2, -1, 2}}}));
+    const auto& cone = std::get<Cone>(scene.objects[0].shape);
+    EXPECT_EQ(cone.axis, vec3(0, -1, 0)) << "the top stays at the axis' end";
+    EXPECT_EQ(cone.radius_top, static_cast<float>(2 * top));
+    EXPECT_EQ(cone.radius_bottom, 2.0F);
+    EXPECT_EQ(cone.half_height, 1.0F);
+  }
+}
+
+TEST_F(GltfTest, PlanesTurnTheirNormal) {
+  const Scene scene = load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
+  const auto& plane = std::get<Plane>(scene.objects[0].shape);
+  EXPECT_EQ(plane.point, vec3(0, 3, 0));
+  expect_near(plane.normal, {0, -1, 0});
+  const Scene mirrored = load(shape_gltf({{"type", "plane"}}, {{"scale", {1, -1, 1}}}));
+  EXPECT_EQ(std::get<Plane>(mirrored.objects[0].shape).normal, vec3(0, -1, 0));
+}
+
+TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
+  const std::vector<std::pair<json, json>> cases = {
+      {{{"type", "box"}, {"box", {{"size", {1, 1, 1}}}}}, {}},
+      {{{"type", "capsule"}}, {}},
+      {{{"type", "plane"}, {"plane", {{"sizeX", 1}, {"sizeZ", 1}}}}, {}},
+      {{{"type", "sphere"}}, {{"scale", {1, 2, 1}}}},
+      {{{"type", "cylinder"}}, {{"scale", {1, 1, 2}}}},
+      {{{"type", "cylinder"}}, {{"matrix", {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}},
+  };
+  for (const auto& [shape, node] : cases) {
+    const json changes = node.is_null() ? json::object() : node;
+    const Scene scene = load(shape_gltf(shape, changes));
+    EXPECT_TRUE(std::holds_alternative<Mesh>(scene.objects.at(0).shape)) << shape << node;
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("shapes[0]")));
+
+    GltfBuilder bare = shape_gltf(shape, changes);
+    bare.json["meshes"][0]["primitives"][0]["attributes"] = json::object();
+    bare.json["meshes"][0]["primitives"][0].erase("indices");
+    const Scene nothing = load(bare);
+    EXPECT_TRUE(std::holds_alternative<NotDrawn>(nothing.objects.at(0).shape));
+    EXPECT_THAT(nothing.warnings, Contains(HasSubstr("no POSITION")));
+  }
+}
+
+TEST_F(GltfTest, CollidersAreNotDrawn) {
+  GltfBuilder gltf = shape_gltf({{"type", "sphere"}});
+  gltf.json["extensionsUsed"] = {"KHR_physics_rigid_bodies"};
+  gltf.add_node({{"extensions", {{"KHR_physics_rigid_bodies", {{"collider", {{"geometry", {{"shape", 0}}}}}}}}}});
+  const Scene scene = load(gltf);
+  EXPECT_THAT(scene.objects, SizeIs(1));
+  EXPECT_THAT(scene.warnings, ElementsAre("the extension KHR_physics_rigid_bodies is ignored"));
+}
+
+// Materials
+
+/// The triangle's material as it is loaded.
+GltfBuilder material_gltf(const json& material) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["materials"] = {material};
+  gltf.json["meshes"][0]["primitives"][0]["material"] = 0;
+  return gltf;
+}
+
+TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
+  const Scene scene = load(material_gltf({{"name", "m"},
+                                          {"emissiveFactor", {1, 0, 0}},
+                                          {"extensions",
+                                           {{"PROMIN_materials_phong",
+                                             {{"ambientFactor", {0.1, 0.2, 0.3}},
+                                              {"diffuseFactor", {0.4, 0.5, 0.6}},
+                                              {"specularFactor", {2, 2, 2}},
+                                              {"shininess", 64},
+                                              {"reflectionFactor", {0.7, 0.8, 0.9}}}},
+                                            {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}));
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.ambient, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.diffuse, vec3(0.4F, 0.5F, 0.6F));
+  EXPECT_EQ(material.specular, vec3(2));
+  EXPECT_EQ(material.shininess, 64);
+  EXPECT_EQ(material.reflection, vec3(0.7F, 0.8F, 0.9F));
+  EXPECT_EQ(material.emissive, vec3(3, 0, 0));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
+  const Scene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
+                                          {"extensions", {{"PROMIN_materials_phong", json::object()}}}}));
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.diffuse, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(material.ambient, material.diffuse);
+  EXPECT_EQ(material.specular, vec3(0));
+  EXPECT_EQ(material.shininess, 0);
+  EXPECT_EQ(material.reflection, vec3(0));
+}
+
+TEST_F(GltfTest, MetallicRoughnessBecomesPhong) {
+  const Scene scene = load(
+      material_gltf({{"pbrMetallicRoughness",
+                      {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.15}}}}));
+  const Material& material = scene.materials.at(0);
+  const vec3 ks = 0.5F * (vec3(0.04F) + vec3(0.8F, 0.4F, 0.2F));
+  expect_near(material.ambient, {0.4F, 0.2F, 0.1F});
+  expect_near(material.diffuse, vec3(0.4F, 0.2F, 0.1F) * std::numbers::inv_pi_v<float>);
+  expect_near(material.specular, ks);
+  EXPECT_NEAR(material.shininess, (2.0 / 0.00050625 - 2.0) / 4.0, 1e-3);
+  expect_near(material.reflection, 0.5F * ks);
+}
+
+TEST_F(GltfTest, ExponentsAreKeptInRange) {
+  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}})).materials[0].shininess, 1e4F);
+  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 1}}}})).materials[0].shininess, 1.0F);
+}
+
+TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
+  const Scene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
+                                          {"extensions", {{"KHR_materials_unlit", json::object()}}}}));
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.emissive, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(material.diffuse, vec3(0));
+  EXPECT_EQ(material.ambient, vec3(0));
+  EXPECT_EQ(material.specular, vec3(0));
+}
+
+TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
+  GltfBuilder gltf = material_gltf({{"name", "other"}});
+  gltf.show(gltf.json["meshes"][0]["primitives"][0]);
+  gltf.json["meshes"][1]["primitives"][0].erase("material");
+  const Scene scene = load(gltf);
+  EXPECT_EQ(scene.objects[0].material, 0U);
+  EXPECT_EQ(scene.objects[1].material, 1U);
+  EXPECT_EQ(scene.materials.at(1).specular, vec3(1)) << "the default is a white metal";
+}
+
+TEST_F(GltfTest, WhatAMaterialLosesIsSaidByItsName) {
+  GltfBuilder gltf = material_gltf({{"name", "glass"},
+                                    {"alphaMode", "BLEND"},
+                                    {"normalTexture", {{"index", 0}}},
+                                    {"extensions", {{"KHR_materials_transmission", json::object()}}}});
+  gltf.json["extensionsUsed"] = {"KHR_materials_transmission", "KHR_texture_transform"};
+  gltf.add_node({{"mesh", 0}});
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"glass\": its textures are ignored, its factors are used",
+                                               "material \"glass\": alphaMode BLEND is drawn opaque",
+                                               "material \"glass\": KHR_materials_transmission is ignored"));
+}
+
+// Lights and sky
+
+GltfBuilder light_gltf(const json& light, const json& node = json::object()) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+  json holder = node;
+  holder["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  gltf.add_node(holder);
+  return gltf;
+}
+
+TEST_F(GltfTest, PointLightsFallOff) {
+  const Scene scene =
+      load(light_gltf({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 60}, {"range", 9}, {"name", "key"}},
+                      {{"translation", {1, 2, 3}}, {"scale", {7, 7, 7}}}));
+  const Light& light = scene.lights.at(0);
+  EXPECT_EQ(light.name, "key");
+  EXPECT_EQ(light.kind, LightKind::kPoint);
+  EXPECT_EQ(light.position, vec3(1, 2, 3));
+  EXPECT_EQ(light.diffuse, vec3(60, 30, 0));
+  EXPECT_EQ(light.specular, vec3(60, 30, 0));
+  EXPECT_EQ(light.attenuation, Attenuation::kInverseSquare);
+  EXPECT_EQ(light.range, 9);
+}
+
+TEST_F(GltfTest, DirectionalLightsTravelAlongMinusZ) {
+  const Scene scene =
+      load(light_gltf({{"type", "directional"}, {"intensity", 2}},
+                      {{"rotation", {-0.70710678118654752, 0, 0, 0.70710678118654752}}, {"scale", {5, 6, 7}}}));
+  const Light& light = scene.lights.at(0);
+  EXPECT_EQ(light.kind, LightKind::kDirectional);
+  EXPECT_EQ(light.attenuation, Attenuation::kNone);
+  EXPECT_EQ(light.diffuse, vec3(2));
+  expect_near(light.direction, {0, -1, 0});
+}
+
+TEST_F(GltfTest, SpotsHaveCones) {
+  const json cone = {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.4}};
+  const Scene scene = load(light_gltf({{"type", "spot"}, {"spot", cone}}));
+  EXPECT_EQ(scene.lights.at(0).inner_cone_angle, 0.2F);
+  EXPECT_EQ(scene.lights.at(0).outer_cone_angle, 0.4F);
+  const Scene plain = load(light_gltf({{"type", "spot"}, {"spot", json::object()}}));
+  EXPECT_EQ(plain.lights.at(0).inner_cone_angle, 0.0F);
+  EXPECT_FLOAT_EQ(plain.lights.at(0).outer_cone_angle, std::numbers::pi_v<float> / 4);
+}
+
+TEST_F(GltfTest, ClassicLightsDoNotFallOffUnlessToldTo) {
+  const auto classic = [&](const json& extension) {
+    return load(light_gltf({{"type", "point"},
+                            {"intensity", 2},
+                            {"color", {1, 1, 0}},
+                            {"extensions", {{"PROMIN_lights_phong", extension}}}}))
+        .lights.at(0);
+  };
+  EXPECT_EQ(classic(json::object()).attenuation, Attenuation::kNone);
+  EXPECT_EQ(classic(json::object()).diffuse, vec3(2, 2, 0));
+  EXPECT_EQ(classic(json::object()).specular, vec3(2, 2, 0));
+  const Light light =
+      classic({{"attenuation", "inverse_square"}, {"diffuseColor", {1, 2, 3}}, {"specularColor", {4, 5, 6}}});
+  EXPECT_EQ(light.attenuation, Attenuation::kInverseSquare);
+  EXPECT_EQ(light.diffuse, vec3(1, 2, 3));
+  EXPECT_EQ(light.specular, vec3(4, 5, 6));
+}
+
+TEST_F(GltfTest, ThePlainSkyIsBackgroundAndAmbientLight) {
+  GltfBuilder gltf = triangle_gltf();
+  const json plain = {{"color", {0.5, 0.5, 1}}};
+  gltf.json["extensions"]["OMI_environment_sky"]["skies"] = {
+      {{"type", "plain"}, {"plain", plain}},
+      {{"type", "plain"}, {"plain", plain}, {"ambientLightColor", {0, 1, 0}}, {"ambientSkyContribution", 0.5}},
+      {{"type", "physical"}, {"ambientLightColor", {0.25, 0.25, 0.25}}, {"ambientSkyContribution", 0}}};
+  EXPECT_EQ(load(gltf).background, vec3(0.5F, 0.5F, 1)) << "sky 0 where the scene names none";
+  EXPECT_EQ(load(gltf).ambient, vec3(0.5F, 0.5F, 1));
+  gltf.json["scenes"] = {{{"nodes", {0}}, {"extensions", {{"OMI_environment_sky", {{"sky", 1}}}}}}};
+  EXPECT_EQ(load(gltf).ambient, vec3(0.25F, 0.75F, 0.5F));
+  gltf.json["scenes"][0]["extensions"]["OMI_environment_sky"]["sky"] = 2;
+  const Scene scene = load(gltf);
+  EXPECT_EQ(scene.background, vec3(0));
+  EXPECT_EQ(scene.ambient, vec3(0.25F));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"physical\"")));
+}
+
+// Cameras
+
+TEST_F(GltfTest, CamerasComeInNodeOrderWithoutScale) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"aspectRatio", 1.5}, {"znear", 0.25}}}},
+      {{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0.5}, {"zfar", 9}}}},
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}}}}};
+  gltf.add_node({{"camera", 1}, {"name", "side"}, {"rotation", {0, 0.70710678118654752, 0, 0.70710678118654752}}});
+  gltf.add_node({{"camera", 0}, {"children", {1}}, {"translation", {1, 2, 3}}, {"scale", {2, 3, 4}}});
+  gltf.add_node({{"camera", 2}});
+  const Scene scene = load(gltf);
+  ASSERT_THAT(scene.cameras, SizeIs(3));
+  const Camera& first = scene.cameras[0];
+  EXPECT_EQ(first.projection, Projection::kPerspective);
+  EXPECT_EQ(first.eye, vec3(1, 2, 3));
+  EXPECT_EQ(first.look, vec3(0, 0, -1));
+  EXPECT_EQ(first.up, vec3(0, 1, 0));
+  EXPECT_EQ(first.yfov, 0.7F);
+  EXPECT_EQ(first.aspect_ratio, 1.5F);
+  EXPECT_EQ(first.near, 0.25F);
+  const Camera& side = scene.cameras[1];
+  EXPECT_EQ(side.name, "side");
+  EXPECT_EQ(side.projection, Projection::kOrthographic);
+  EXPECT_EQ(side.ymag, 2);
+  EXPECT_EQ(side.aspect_ratio, 2);
+  EXPECT_EQ(side.near, 0.5F);
+  expect_near(side.look, {-1, 0, 0});
+  expect_near(side.up, {0, 1, 0});
+  EXPECT_EQ(scene.cameras[2].near, 0);
+  EXPECT_EQ(scene.cameras[2].aspect_ratio, 0);
+}
+
+// Files
+
+TEST_F(GltfTest, GlbAndTextAreToldApartByTheirBytes) {
+  GltfBuilder gltf = triangle_gltf();
+  EXPECT_THAT(SceneFolder::load("a.glb", gltf.glb()).objects, SizeIs(1));
+  EXPECT_THAT(SceneFolder::load("A.GLTF", gltf.glb()).objects, SizeIs(1));
+  EXPECT_THAT(SceneFolder::load("b.glb", gltf.text()).objects, SizeIs(1));
+}
+
+TEST_F(GltfTest, BuffersLieBesideTheScene) {
+  GltfBuilder gltf = triangle_gltf();
+  std::filesystem::create_directories(folder_ / "sub");
+  write("sub/my data.bin", gltf.bytes);
+  gltf.json["buffers"] = {{{"byteLength", gltf.bytes.size()}, {"uri", "sub/my%20data.bin"}}};
+  EXPECT_THAT(SceneFolder::load("a.gltf", gltf.json.dump()).objects, SizeIs(1));
+}
+
+TEST_F(GltfTest, ImagesAreNotTouched) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["images"] = {{{"uri", "missing.png"}}};
+  EXPECT_THAT(load(gltf).warnings, IsEmpty());
+}
+
+TEST_F(GltfTest, MotionIsLeftOut) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["animations"] = {json::object()};
+  gltf.json["skins"] = {json::object(), json::object()};
+  gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
+  EXPECT_THAT(load(gltf).warnings,
+              ElementsAre(HasSubstr("animations"), HasSubstr("skins"), HasSubstr("morph targets")));
+}
+
+TEST_F(GltfTest, IntegersMayBeWrittenAsFloats) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["accessors"][0]["count"] = 3.0;
+  EXPECT_THAT(load(gltf).objects, SizeIs(1));
+}
+
+}  // namespace
+}  // namespace promin

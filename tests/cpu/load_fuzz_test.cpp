@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <random>
+
+#include "gltf_builder.h"
+#include "scene_folder.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+/// A small document with a bit of everything.
+GltfBuilder small_gltf() {
+  GltfBuilder gltf = triangle_gltf();
+  auto& primitive = gltf.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = gltf.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  primitive["attributes"]["COLOR_0"] = gltf.add<uint8_t>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, "VEC4", true);
+  primitive["material"] = 0;
+  const size_t indices = gltf.add_view<uint8_t>({1});
+  const size_t values = gltf.add_view<float>({2, 0, 0});
+  gltf.json["accessors"][0]["sparse"] = {{"count", 1},
+                                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                                         {"values", {{"bufferView", values}}}};
+  gltf.json["materials"] = {{{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}}};
+  gltf.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  gltf.json["extensions"] = {
+      {"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}}}}}},
+      {"KHR_implicit_shapes", {{"shapes", {{{"type", "cylinder"}, {"cylinder", {{"radiusTop", 0}}}}}}}},
+      {"OMI_environment_sky", {{"skies", {{{"type", "plain"}, {"plain", {{"color", {1, 1, 1}}}}}}}}}};
+  gltf.show(
+      {{"attributes", json::object()}, {"extensions", {{"PROMIN_mesh_primitive_implicit_shape", {{"shape", 0}}}}}});
+  gltf.add_node({{"camera", 0},
+                 {"children", {0, 1}},
+                 {"scale", {2, 2, 2}},
+                 {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  gltf.json["scenes"] = {{{"nodes", {2}}}};
+  return gltf;
+}
+
+const std::string kSmallObj =
+    "mtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nvn 0 0 1\no one\nusemtl red\n"
+    "f 1 2 3 4\nf 1//1 2//1 3//-1\ng two\nf -5 -4 -3 -2 -1\nl 1 2\nf 1/1/1 2/2/1 3/3/1\n";
+const std::string kSmallMtl =
+    "newmtl red\nKa 0 0 0\nKd 1 0 0\nKs 1 1 1\nNs 10\nillum 3\nd 0.5\nmap_Kd -s 1 1 1 a.png\n";
+
+/// Bytes that mean something to one of the parsers, or nothing to any.
+std::string mutate(std::string bytes, std::mt19937& random) {
+  static const std::string kTelling = "{}[]\",:-+.eE0123456789/\\# \n\r\tnullvfog\0\xff";
+  const size_t changes = 1 + random() % 4;
+  for (size_t i = 0; i < changes && !bytes.empty(); ++i) {
+    const size_t at = random() % bytes.size();
+    switch (random() % 6) {
+      case 0:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random() % 8)));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(random());
+        break;
+      case 2:
+        bytes[at] = kTelling[random() % kTelling.size()];
+        break;
+      case 3:
+        bytes.erase(at, 1 + random() % 8);
+        break;
+      case 4:
+        bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 16));
+        break;
+      default:
+        if (random() % 8 == 0) bytes.resize(at);
+    }
+  }
+  return bytes;
+}
+
+class LoadFuzzTest : public SceneFolder {
+ protected:
+  /// Loads `scene` with `count` mutants of the file `name`.
+  void run(const std::string& name, const std::string& bytes, const std::string& scene, int count) {
+    std::mt19937 random(20240607);
+    int refused = 0;
+    for (int i = 0; i < count; ++i) {
+      const std::string mutant = mutate(bytes, random);
+      write(name, mutant);
+      try {
+        load_scene(folder_ / scene);
+      } catch (const InputError& error) {
+        ++refused;
+        ASSERT_NE(std::string(error.what()), "");
+      } catch (const std::exception& error) {
+        FAIL() << "mutant " << i << " throws another error: " << error.what();
+      }
+    }
+    EXPECT_GT(refused, count / 10) << "the mutations do nothing";
+    EXPECT_LT(refused, count) << "nothing loads any more";
+  }
+};
+
+TEST_F(LoadFuzzTest, GltfLoadsOrIsRefused) {
+  run("a.gltf", small_gltf().text(), "a.gltf", 3000);
+}
+
+TEST_F(LoadFuzzTest, GlbLoadsOrIsRefused) {
+  run("a.glb", small_gltf().glb(), "a.glb", 3000);
+}
+
+TEST_F(LoadFuzzTest, ObjLoadsOrIsRefused) {
+  write("a.mtl", kSmallMtl);
+  run("a.obj", kSmallObj, "a.obj", 3000);
+}
+
+TEST_F(LoadFuzzTest, MtlLoadsOrIsRefused) {
+  write("a.obj", kSmallObj);
+  run("a.mtl", kSmallMtl, "a.obj", 3000);
+}
+
+/// A step further than bytes: any value of the document becomes any other kind of value.
+TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
+  GltfBuilder gltf = small_gltf();
+  gltf.text();
+  const json good = gltf.json.flatten();
+  const std::vector<json> values = {
+      nullptr, true, -1, 0, 1, 7, 1.5, 1e300, 18446744073709551615ULL, "x", "", json::array(), json::object()};
+  int refused = 0;
+  int total = 0;
+  for (const auto& [pointer, old] : good.items()) {
+    for (const json& value : values) {
+      json document = good.unflatten();
+      document[json::json_pointer(pointer)] = value;
+      // Also the container around it.
+      json parent = good.unflatten();
+      parent[json::json_pointer(pointer).parent_pointer()] = value;
+      for (const json& mutant : {document, parent}) {
+        ++total;
+        write("a.gltf", mutant.dump());
+        try {
+          load_scene(folder_ / "a.gltf");
+        } catch (const InputError&) {
+          ++refused;
+        }
+      }
+    }
+  }
+  EXPECT_GT(refused, total / 3);
+  EXPECT_LT(refused, total);
+}
+
+}  // namespace
+}  // namespace promin

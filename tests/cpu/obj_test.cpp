@@ -1,0 +1,327 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "scene/triangulate.h"
+#include "scene_folder.h"
+
+namespace promin {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+class ObjTest : public SceneFolder {
+ protected:
+  Scene load(std::string_view text) const { return SceneFolder::load("scene.obj", text); }
+  std::string refusal(std::string_view text) const { return SceneFolder::refusal("scene.obj", text); }
+
+  /// The material "m" of an MTL with these lines.
+  Material material(const std::string& lines, std::vector<std::string>* warnings = nullptr) const {
+    write("m.mtl", "newmtl m\n" + lines);
+    const Scene scene = load(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n");
+    if (warnings != nullptr) *warnings = scene.warnings;
+    return scene.materials.at(scene.objects.at(0).material);
+  }
+};
+
+const Mesh& mesh_of(const Scene& scene, size_t object = 0) {
+  return std::get<Mesh>(scene.objects.at(object).shape);
+}
+
+std::vector<vec3> corners_of(const Mesh& mesh) {
+  std::vector<vec3> corners;
+  for (const uvec3& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) corners.push_back(mesh.positions.at(triangle[i]));
+  }
+  return corners;
+}
+
+// Faces
+
+TEST_F(ObjTest, FacesCountFromTheFrontOrTheBack) {
+  const std::vector<vec3> wanted = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f 1 2 3"))), wanted);
+  EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f -4 -3 -2\n"))), wanted);
+  EXPECT_EQ(corners_of(mesh_of(load("f 1 2 3\n" + kSquare))), wanted) << "vertices may follow";
+  EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f 1/7 2/8 3/9 # vt is not read\n"))), wanted);
+}
+
+TEST_F(ObjTest, LineEndsOfEveryKindWork) {
+  EXPECT_THAT(mesh_of(load("v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n")).triangles, SizeIs(1));
+  EXPECT_THAT(mesh_of(load("\tv  0\t0 0 \nv +1 0 0\nv 0 1e0 0#c\n\n  f 1 2 3")).triangles, SizeIs(1));
+}
+
+TEST_F(ObjTest, PolygonsAreCutIntoTriangles) {
+  EXPECT_THAT(mesh_of(load(kSquare + "f 1 2 3 4\n")).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
+}
+
+TEST_F(ObjTest, ObjectsAndGroupsWithFacesAreNumbered) {
+  const Scene scene =
+      load(kSquare + "f 1 2 3\no empty\no first\ng second\nf 1 2 3\nf 1 3 4\ng\no  third one \nf 2 3 4\n");
+  std::vector<std::string> names;
+  std::vector<uint32_t> counts;
+  for (const Object& object : scene.objects) {
+    names.push_back(object.name);
+    counts.push_back(primitive_count(object.shape));
+  }
+  EXPECT_THAT(names, ElementsAre("", "second", "third one"));
+  EXPECT_THAT(counts, ElementsAre(1, 2, 1));
+  EXPECT_THAT(mesh_of(scene, 2).positions, SizeIs(3)) << "each object keeps its own vertices";
+}
+
+TEST_F(ObjTest, DegenerateTrianglesKeepTheirNumber) {
+  const Scene scene = load(kSquare + "f 1 1 2\nf 1 2 3\n");
+  EXPECT_THAT(mesh_of(scene).triangles, SizeIs(2));
+  EXPECT_TRUE(is_degenerate(mesh_of(scene), 0));
+  EXPECT_FALSE(is_degenerate(mesh_of(scene), 1));
+}
+
+TEST_F(ObjTest, NormalsHaveIndicesOfTheirOwn) {
+  const Scene scene = load(kSquare + "vn 0 0 2\nvn 0 3 0\nf 1//1 2//1 3//1\nf 1/9/1 3//2 4//-2\n");
+  const Mesh& mesh = mesh_of(scene);
+  EXPECT_THAT(mesh.positions, SizeIs(5)) << "vertex 3 has two normals, vertex 1 one";
+  EXPECT_EQ(mesh.normals.at(mesh.triangles[0].z), vec3(0, 0, 1));
+  EXPECT_EQ(mesh.normals.at(mesh.triangles[1].y), vec3(0, 1, 0));
+  EXPECT_EQ(mesh.triangles[0].x, mesh.triangles[1].x);
+}
+
+TEST_F(ObjTest, FacesWithoutNormalsAreSharp) {
+  EXPECT_THAT(mesh_of(load(kSquare + "s 1\nf 1 2 3\n")).normals, IsEmpty());
+  const Scene mixed = load(kSquare + "vn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 3 4\nf 1//1 3//2 4//1\n");
+  const Mesh& mesh = mesh_of(mixed);
+  EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+  EXPECT_EQ(mesh.normals.at(mesh.triangles[0].x), vec3(1, 0, 0));
+  for (const size_t sharp : {1, 2}) {
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(mesh.normals.at(mesh.triangles[sharp][i]), vec3(0, 0, 1));
+  }
+  EXPECT_THAT(mixed.warnings, ElementsAre(HasSubstr("no length")));
+}
+
+TEST_F(ObjTest, VertexColorsFollowThePosition) {
+  const Scene scene = load("v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 0 1 0 1.0\nf 1 2 3\n");
+  EXPECT_THAT(mesh_of(scene).colors, ElementsAre(vec4(1), vec4(0.5F, 0.25F, 1, 1), vec4(1)));
+  EXPECT_THAT(mesh_of(load(kSquare + "f 1 2 3\n")).colors, IsEmpty());
+}
+
+TEST_F(ObjTest, WhatIsNotDrawnIsSaidOnce) {
+  EXPECT_THAT(load(kSquare + "f 1 2 3\nl 1 2\np 1\nl 2 3\n").warnings, ElementsAre("lines and points are not drawn"));
+  EXPECT_THAT(load(kSquare + "f 1 2 3\nvp 1 2\ncurv 0 1 1 2\n").warnings,
+              ElementsAre("2 statements of OBJ are ignored, the first is \"vp\" in line 6"));
+}
+
+TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
+  EXPECT_THAT(refusal(kSquare), HasSubstr("4 vertices but no faces"));
+  const Scene scene = load("# nothing\n");
+  EXPECT_THAT(scene.objects, IsEmpty());
+  EXPECT_THAT(scene.warnings, Contains("the scene holds nothing to draw"));
+  EXPECT_THAT(scene.materials, SizeIs(1));
+}
+
+// Materials
+
+TEST_F(ObjTest, FactorsAreTakenAsTheyStand) {
+  const Material m = material("Ka 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 2 1 0\nNs 96\nKe 3 0 0\nillum 2\n");
+  EXPECT_EQ(m.name, "m");
+  EXPECT_EQ(m.ambient, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(m.diffuse, vec3(0.4F, 0.5F, 0.6F));
+  EXPECT_EQ(m.specular, vec3(2, 1, 0));
+  EXPECT_EQ(m.shininess, 96);
+  EXPECT_EQ(m.emissive, vec3(3, 0, 0));
+  EXPECT_EQ(m.reflection, vec3(0));
+}
+
+TEST_F(ObjTest, WhatAMaterialLeavesOutIsNotBlack) {
+  const Material m = material("");
+  EXPECT_EQ(m.diffuse, vec3(0.8F));
+  EXPECT_EQ(m.ambient, vec3(0.8F));
+  EXPECT_EQ(m.specular, vec3(0));
+  EXPECT_EQ(m.shininess, 0);
+  EXPECT_EQ(material("Kd 0 0 1\n").ambient, vec3(0, 0, 1));
+  EXPECT_EQ(material("Ka 0 0 0\nKd 0 0 1\n").ambient, vec3(0));
+}
+
+TEST_F(ObjTest, IlluminationModels) {
+  const std::string factors = "Ka 0.1 0.1 0.1\nKd 0.5 0.5 0.5\nKs 0.25 0.25 0.25\nNs 10\nillum ";
+  const Material color = material(factors + "0\n");
+  EXPECT_EQ(color.emissive, vec3(0.5F));
+  EXPECT_EQ(color.diffuse, vec3(0));
+  EXPECT_EQ(color.ambient, vec3(0));
+  EXPECT_EQ(material(factors + "1\n").specular, vec3(0));
+  EXPECT_EQ(material(factors + "2\n").specular, vec3(0.25F));
+  EXPECT_EQ(material(factors + "2\n").reflection, vec3(0));
+  EXPECT_EQ(material(factors + "3\n").specular, vec3(0.25F));
+  EXPECT_EQ(material(factors + "3\n").reflection, vec3(0.25F));
+}
+
+TEST_F(ObjTest, TransparencyAndMapsAreSaid) {
+  std::vector<std::string> warnings;
+  material("illum 7\n", &warnings);
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is transparent, it is drawn opaque"));
+  material("d 0.5\n", &warnings);
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is transparent, it is drawn opaque"));
+  material("map_Kd wood.png\n", &warnings);
+  EXPECT_THAT(warnings,
+              ElementsAre("material \"m\": its texture maps are ignored, the first is map_Kd in m.mtl line 2"));
+}
+
+TEST_F(ObjTest, AMissingMtlIsGrey) {
+  const Scene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
+  EXPECT_EQ(scene.materials.at(scene.objects[0].material).diffuse, vec3(0.8F));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"none.mtl\" does not exist"), HasSubstr("\"red\" is in no MTL")));
+}
+
+TEST_F(ObjTest, FacesKeepTheirMaterials) {
+  write("two.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  const Scene scene = load(kSquare +
+                           "mtllib two.mtl\nf 1 2 3\nusemtl blue\nf 1 2 3 4\nusemtl red\nf 1 2 3\n"
+                           "o one\nusemtl blue\nf 1 2 3\n");
+  const Mesh& mesh = mesh_of(scene);
+  ASSERT_THAT(mesh.triangle_materials, SizeIs(4));
+  std::vector<vec3> colors;
+  for (const uint32_t material : mesh.triangle_materials) colors.push_back(scene.materials.at(material).diffuse);
+  EXPECT_THAT(colors, ElementsAre(vec3(0.8F), vec3(0, 0, 1), vec3(0, 0, 1), vec3(1, 0, 0)));
+  EXPECT_THAT(mesh_of(scene, 1).triangle_materials, IsEmpty());
+  EXPECT_EQ(scene.materials.at(scene.objects[1].material).name, "blue");
+}
+
+TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
+  write("my colors.mtl", "newmtl deep red\r\nKd 1 0 0\r\n");
+  const Scene scene = load(kSquare + "mtllib my colors.mtl\nusemtl deep red\nf 1 2 3\n");
+  EXPECT_EQ(scene.materials.at(0).diffuse, vec3(1, 0, 0));
+  write("a.mtl", "newmtl a\nKd 1 0 0\n");
+  write("b.mtl", "newmtl b\nKd 0 1 0\n");
+  EXPECT_EQ(load(kSquare + "mtllib a.mtl b.mtl\nusemtl b\nf 1 2 3\n").materials.at(0).diffuse, vec3(0, 1, 0));
+}
+
+// Refusals
+
+struct BadObj {
+  const char* name;
+  const char* lines;  // after the square
+  const char* what;
+  const char* where;
+};
+
+std::ostream& operator<<(std::ostream& stream, const BadObj& bad) {
+  return stream << bad.name;
+}
+
+class BadObjTest : public SceneFolder, public testing::WithParamInterface<BadObj> {};
+
+TEST_P(BadObjTest, IsRefusedWithPlaceAndCure) {
+  write("bad.mtl", "newmtl a\nKd nan 0 0\n");
+  const std::string message = refusal("bad.obj", kSquare + GetParam().lines + "\nf 1 2 3\n");
+  EXPECT_THAT(message, HasSubstr(GetParam().what));
+  EXPECT_THAT(message, HasSubstr("bad.obj: " + std::string(GetParam().where)));
+  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+}
+
+const BadObj kBadObj[] = {
+    {"IndexZero", "f 0 1 2", "\"0\" is no corner", "line 5"},
+    {"IndexPastTheEnd", "f 1 2 5", "index 5 is out of range, there are 4 vertices", "line 5"},
+    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is no corner", "line 5"},
+    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is no corner", "line 5"},
+    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is no corner", "line 5"},
+    {"NormalPastTheEnd", "f 1//1 2//1 3//1", "index 1 is out of range, there are 0 normals", "line 5"},
+    {"IndexIsText", "f a b c", "\"a\" is no corner", "line 5"},
+    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is no corner", "line 5"},
+    {"NoPosition", "f /1 2 3", "is no corner", "line 5"},
+    {"TwoCorners", "f 1 2", "a face has 2 corners", "line 5"},
+    {"Continuation", "f 1 2 \\\n 3", "is no corner", "line 5"},
+    {"Nan", "v 0 nan 0", "\"nan\" is no number", "line 5"},
+    {"Infinity", "v 0 0 -inf", "\"-inf\" is no number", "line 5"},
+    {"CommaAsPoint", "v 0,5 1 2", "\"0,5\" is no number", "line 5"},
+    {"TooLarge", "v 1e16 0 0", "\"1e16\" is no number up to 1e15", "line 5"},
+    {"TooLargeForDouble", "v 1e999 0 0", "\"1e999\" is no number", "line 5"},
+    {"TwoCoordinates", "v 1 2", "a vertex has 2 numbers", "line 5"},
+    {"FiveCoordinates", "v 1 2 3 4 5", "a vertex has 5 numbers", "line 5"},
+    {"NegativeColor", "v 1 2 3 0 -1 0", "colour is negative", "line 5"},
+    {"NanNormal", "vn 0 NaN 1", "\"NaN\" is no number", "line 5"},
+    {"ShortNormal", "vn 0 1", "a normal has 2 numbers", "line 5"},
+    {"MtlLeavesTheFolder", "mtllib ../a.mtl", "leaves the scene's folder", "mtllib ../a.mtl"},
+    {"MtlAbsolute", "mtllib /etc/passwd", "absolute path", "mtllib /etc/passwd"},
+    {"MtlNumber", "mtllib bad.mtl", "\"nan\" is no factor of light", "mtllib bad.mtl line 2"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST_F(ObjTest, BrokenFilesSayWhy) {
+  EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasSubstr("not found"));
+  EXPECT_THAT(SceneFolder::refusal(folder_), HasSubstr("unknown scene format"));
+  EXPECT_THAT(refusal(""), HasSubstr("empty"));
+  EXPECT_THAT(refusal(std::string_view("v 0 0 0\0", 8)), HasSubstr("not text"));
+  EXPECT_THAT(refusal("f 1 2 3\nv x 0 0\nv 0 y 0\n"), HasSubstr("(1 of 3 problems)"));
+}
+
+// Polygons
+
+double area_of(const std::vector<vec3>& corners, const std::vector<uvec3>& triangles) {
+  double area = 0.0;
+  for (const uvec3& t : triangles) {
+    const dvec3 a(corners[t.x]);
+    area += 0.5 * glm::cross(dvec3(corners[t.y]) - a, dvec3(corners[t.z]) - a).z;
+  }
+  return area;
+}
+
+TEST(TriangulateTest, ConcavePolygonsAreCoveredOnce) {
+  // A thin arrow head: its shorter diagonal lies outside.
+  const std::vector<vec3> arrow = {{0, 10, 0}, {-0.5F, 0, 0}, {0, 8, 0}, {0.5F, 0, 0}};
+  // A comb with two teeth, and a C.
+  const std::vector<vec3> comb = {{0, 0, 0}, {5, 0, 0}, {5, 4, 0}, {4, 4, 0},
+                                  {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
+  for (const auto& [corners, area] : {std::pair{arrow, 1.0}, std::pair{comb, 11.0}}) {
+    for (size_t start = 0; start < corners.size(); ++start) {
+      std::vector<vec3> rotated = corners;
+      std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(start), rotated.end());
+      const std::vector<uvec3> triangles = triangulate_polygon(rotated);
+      ASSERT_EQ(triangles.size(), corners.size() - 2);
+      EXPECT_NEAR(area_of(rotated, triangles), area, 1e-6);
+      for (const uvec3& t : triangles) EXPECT_GE(area_of(rotated, {t}), 0.0) << "a triangle lies outside";
+    }
+  }
+}
+
+TEST(TriangulateTest, EveryPlaneAndWindingWorks) {
+  for (const int axis : {0, 1, 2}) {
+    std::vector<vec3> corners;
+    for (const auto& [u, v] : {std::pair{0, 10}, {-1, 0}, {0, 8}, {1, 0}}) {
+      vec3 corner(3.0F);
+      corner[(axis + 1) % 3] = static_cast<float>(u);
+      corner[(axis + 2) % 3] = static_cast<float>(v);
+      corners.push_back(corner);
+    }
+    for (int winding = 0; winding < 2; ++winding) {
+      dvec3 area(0.0);
+      double size = 0.0;
+      for (const uvec3& t : triangulate_polygon(corners)) {
+        const dvec3 a(corners[t.x]);
+        const dvec3 cross = 0.5 * glm::cross(dvec3(corners[t.y]) - a, dvec3(corners[t.z]) - a);
+        area += cross;
+        size += glm::length(cross);
+      }
+      EXPECT_NEAR(area[axis], winding == 0 ? 2.0 : -2.0, 1e-9);
+      EXPECT_NEAR(size, 2.0, 1e-9);
+      std::reverse(corners.begin(), corners.end());
+    }
+  }
+}
+
+TEST(TriangulateTest, EveryPolygonGivesTwoTrianglesLessThanCorners) {
+  const std::vector<vec3> collinear = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {1.5F, 1.5F, 1.5F}};
+  const std::vector<vec3> same(6, vec3(1));
+  const std::vector<vec3> crossing = {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 1, 0}};
+  for (const auto& corners : {collinear, same, crossing}) {
+    EXPECT_EQ(triangulate_polygon(corners).size(), corners.size() - 2);
+  }
+}
+
+}  // namespace
+}  // namespace promin

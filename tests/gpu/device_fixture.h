@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "gpu/open_device.h"
+
+namespace promin::test {
+
+/// Opens the default device once for a suite; a test fails if the validation layers spoke during it.
+class DeviceTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { device_ = gpu::open_device(); }
+  static void TearDownTestSuite() { device_.reset(); }
+
+  void SetUp() override { messages_before_ = gpu::validation_message_count(*device_); }
+  void TearDown() override {
+    EXPECT_EQ(gpu::validation_message_count(*device_), messages_before_) << "the validation layers spoke";
+  }
+
+  static const gpu::Device& device() { return *device_; }
+
+ private:
+  static inline gpu::DeviceHandle device_;
+  uint64_t messages_before_ = 0;
+};
+
+}  // namespace promin::test

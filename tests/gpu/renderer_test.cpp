@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "layout.h"
+
+namespace promin {
+namespace {
+
+using test::has_same_bits;
+using test::make_scene_of_everything;
+
+const uvec2 kSize(150, 100);  // neither is a multiple of the block
+
+class RendererTest : public test::DeviceTest {
+ protected:
+  static RenderResult render(const Scene& scene, const View& view, const RendererOptions& options = {}) {
+    return Renderer(device(), scene, options).render(view);
+  }
+};
+
+TEST_F(RendererTest, TwoRunsGiveTheSameBits) {
+  const Scene scene = make_scene_of_everything();
+  Renderer renderer(device(), scene);
+  const View view = test::make_view(kSize);
+  EXPECT_TRUE(has_same_bits(renderer.render(view).image, renderer.render(view).image));
+}
+
+TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
+  const Scene scene = make_scene_of_everything();
+  View view = test::make_view(kSize);
+  view.samples_per_pixel = 3;
+  RendererOptions single_blocks;
+  single_blocks.blocks_per_dispatch = 1;
+  RendererOptions odd_blocks;
+  odd_blocks.blocks_per_dispatch = 37;
+  odd_blocks.target_dispatch_ms = 1e-3;  // a sample a dispatch as well
+  const RenderResult expected = render(scene, view);
+  const RenderResult by_one = render(scene, view, single_blocks);
+  const RenderResult by_many = render(scene, view, odd_blocks);
+  EXPECT_TRUE(has_same_bits(by_one.image, expected.image));
+  EXPECT_TRUE(has_same_bits(by_many.image, expected.image));
+  EXPECT_EQ(by_one.rays.total(), expected.rays.total());
+  EXPECT_EQ(by_many.rays.total(), expected.rays.total());
+}
+
+TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {
+  const Scene scene = make_scene_of_everything();
+  View view = test::make_view(kSize);
+  Renderer renderer(device(), scene);
+  const Image whole = renderer.render(view).image;
+  view.crop = PixelWindow{uvec2(13, 29), uvec2(90, 71)};
+  const Image crop = renderer.render(view).image;
+  ASSERT_EQ(crop.size, uvec2(77, 42));
+  for (uint32_t y = 0; y < crop.size.y; ++y) {
+    for (uint32_t x = 0; x < crop.size.x; ++x) {
+      ASSERT_EQ(crop.at(x, y), whole.at(x + 13, y + 29)) << "pixel " << x << ", " << y << " of the crop";
+    }
+  }
+}
+
+TEST_F(RendererTest, BitsDoNotDependOnTheBuilder) {
+  const Scene scene = make_scene_of_everything(2000);
+  const View view = test::make_view(kSize);
+  const Image expected = render(scene, view).image;
+  for (const std::string_view builder : builder_names()) {
+    RendererOptions options;
+    options.builder = builder;
+    EXPECT_TRUE(has_same_bits(render(scene, view, options).image, expected)) << builder;
+  }
+}
+
+// The mask costs nothing but time: what a scene does not use changes no bit.
+TEST_F(RendererTest, SpecialisationChangesNoBit) {
+  Scene spheres = make_scene_of_everything();
+  std::erase_if(spheres.objects, [](const Object& o) { return !std::holds_alternative<Sphere>(o.shape); });
+  for (Light& light : spheres.lights) light.kind = LightKind::kPoint;
+  const Scene everything = make_scene_of_everything();
+  RendererOptions forced;
+  forced.force_all_features = true;
+  for (const Scene* scene : {&spheres, &everything}) {
+    const View view = test::make_view(uvec2(300, 200));
+    Renderer specialised(device(), *scene);
+    Renderer general(device(), *scene, forced);
+    EXPECT_NE(specialised.setup_stats().features, general.setup_stats().features);
+    RenderResult of_scene = specialised.render(view);
+    RenderResult of_all = general.render(view);
+    EXPECT_TRUE(has_same_bits(of_scene.image, of_all.image));
+    for (int i = 0; i < 2; ++i) {
+      of_scene.trace_ms = std::min(of_scene.trace_ms, specialised.render(view).trace_ms);
+      of_all.trace_ms = std::min(of_all.trace_ms, general.render(view).trace_ms);
+    }
+    std::printf("%zu objects: %.1f ms with the scene's features, %.1f ms with all of them\n", scene->objects.size(),
+                of_scene.trace_ms, of_all.trace_ms);
+  }
+}
+
+TEST_F(RendererTest, CountsRays) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.objects = {{"", Sphere{vec3(0, 0, -3), 1.0F}, 0}, {"", Sphere{vec3(0, 0, 100), 1.0F}, 0}};
+  scene.lights = {make_headlight(Camera())};
+  View view;
+  view.size = uvec2(64, 64);
+  view.samples_per_pixel = 4;
+  const RenderResult dull = render(scene, view);
+  EXPECT_EQ(dull.rays.primary, 64U * 64U * 4U);
+  EXPECT_EQ(dull.rays.reflection, 0U);
+  // Every hit faces the headlight, so each sends one shadow ray: the disk's share of the picture.
+  const double radius = std::tan(std::asin(1.0 / 3.0)) / std::tan(0.35) * 32.0;
+  EXPECT_NEAR(static_cast<double>(dull.rays.shadow), 3.14159 * radius * radius * 4.0, 150.0);
+
+  scene.materials[0].reflection = vec3(0.5F);
+  const RenderResult mirror = render(scene, view);
+  EXPECT_GE(mirror.rays.reflection, dull.rays.shadow);
+  view.max_depth = 0;
+  EXPECT_EQ(render(scene, view).rays.reflection, 0U);
+}
+
+TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.background = vec3(0.25F, 0.5F, 0.75F);
+  View view;
+  view.size = uvec2(9, 5);
+  for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, scene.background);
+  RendererOptions forced;
+  forced.force_all_features = true;
+  for (const vec3& pixel : render(scene, view, forced).image.pixels) EXPECT_EQ(pixel, scene.background);
+}
+
+// Facing mirrors: each bounce multiplies by kr and the last brings nothing.
+TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].ambient = vec3(1.0F);
+  scene.materials[0].diffuse = vec3(0.0F);
+  scene.materials[0].reflection = vec3(0.5F);
+  scene.ambient = vec3(1.0F);
+  scene.objects = {{"", Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
+  View view;
+  view.size = uvec2(1, 1);
+  for (const uint32_t depth : {0U, 1U, 2U, 10U}) {
+    view.max_depth = depth;
+    const float expected = 2.0F - std::ldexp(1.0F, -static_cast<int>(depth));
+    EXPECT_EQ(render(scene, view).image.pixels[0], vec3(expected)) << "depth " << depth;
+  }
+}
+
+TEST_F(RendererTest, NothingNearerThanTheNearPlaneIsDrawn) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].emissive = vec3(1.0F);
+  scene.objects = {{"", Plane{vec3(0, 0, -2), vec3(0, 0, 1)}, 0}};
+  View view;
+  view.size = uvec2(3, 3);
+  view.camera.yfov = 2.0F;
+  view.camera.near = 1.999F;  // a distance along the view, not along the ray
+  for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(1.0F));
+  view.camera.near = 2.001F;
+  for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(0.0F));
+}
+
+TEST_F(RendererTest, PicturesLargerThanAFilmComeInBands) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].emissive = vec3(1.0F, 0.5F, 0.25F);
+  scene.objects = {{"", Sphere{vec3(0, 0, -3), 1.0F}, 0}};
+  View view;
+  view.size = uvec2(2048, 2304);  // 4.7 million pixels; a film holds 4.2 million
+  view.max_depth = 0;
+  const Image large = render(scene, view).image;
+  for (uint32_t y = 0; y < view.size.y; y += 64) {
+    EXPECT_EQ(large.at(1024, y), large.at(1024, view.size.y - 1 - y)) << "row " << y;
+  }
+  EXPECT_EQ(large.at(1024, 1152), vec3(1.0F, 0.5F, 0.25F));
+  EXPECT_EQ(large.at(0, 2303), vec3(0.0F));
+}
+
+TEST_F(RendererTest, UnknownBuildersAreRefused) {
+  RendererOptions options;
+  options.builder = "shah";
+  EXPECT_THROW(Renderer(device(), make_scene_of_everything(), options), UsageError);
+}
+
+}  // namespace
+}  // namespace promin

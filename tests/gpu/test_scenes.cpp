@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/test_scenes.h"
+
+#include <cstring>
+#include <random>
+
+namespace promin::test {
+namespace {
+
+Material make_material(const vec3& color, float specular, float shininess, float reflection) {
+  Material material;
+  material.ambient = material.diffuse = color;
+  material.specular = vec3(specular);
+  material.shininess = shininess;
+  material.reflection = vec3(reflection);
+  return material;
+}
+
+/// A coarse octahedron whose vertex normals make it look round, with a colour a vertex.
+Mesh make_smooth_mesh(const vec3& center, float radius) {
+  Mesh mesh;
+  for (const vec3& n : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)}) {
+    mesh.positions.push_back(center + radius * n);
+    mesh.normals.push_back(n);
+    mesh.colors.emplace_back(0.5F * n + 0.5F, 1.0F);
+  }
+  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  return mesh;
+}
+
+}  // namespace
+
+Scene make_scene_of_everything(uint32_t sphere_count) {
+  Scene scene;
+  scene.file = "everything";
+  scene.ambient = vec3(0.1F);
+  scene.background = vec3(0.3F, 0.5F, 0.8F);
+  scene.materials = {make_material(vec3(0.7F), 0.0F, 0.0F, 0.1F), make_material(vec3(0.2F, 0.4F, 0.6F), 0.5F, 60, 0.6F),
+                     make_material(vec3(0.8F, 0.3F, 0.2F), 0.3F, 20, 0.0F),
+                     make_material(vec3(0.3F, 0.7F, 0.2F), 0.8F, 200, 0.2F)};
+  scene.materials[3].emissive = vec3(0.05F, 0.0F, 0.0F);
+  scene.objects = {{"floor", Plane{}, 0},
+                   {"ball", Sphere{vec3(0, 1, 0), 1}, 1},
+                   {"can", Cylinder{vec3(2.2F, 0.8F, 0), glm::normalize(vec3(0.3F, 1, 0.2F)), 0.7F, 0.5F}, 2},
+                   {"cone", Cone{vec3(-2.2F, 0.8F, 0), vec3(0, 1, 0), 0.8F, 0.7F, 0.0F}, 3},
+                   {"frustum", Cone{vec3(-0.8F, 0.4F, 2), vec3(0, 1, 0), 0.4F, 0.6F, 0.3F}, 2},
+                   {"gem", make_smooth_mesh(vec3(1.2F, 0.6F, 1.8F), 0.6F), 3}};
+  std::mt19937 generator(1);
+  // std::uniform_real_distribution may differ between libraries; the generator's own numbers do not.
+  const auto uniform = [&] { return static_cast<float>(generator() >> 8) * 0x1p-23F - 1.0F; };
+  for (uint32_t i = 0; i < sphere_count; ++i) {
+    const float x = 5.0F * uniform();
+    const float y = 3.0F + 0.8F * uniform();
+    scene.objects.push_back({"", Sphere{vec3(x, y, 3.0F * uniform()), 0.08F}, i % 4});
+  }
+  Light point;
+  point.position = vec3(3, 6, 5);
+  point.diffuse = point.specular = vec3(0.6F);
+  Light sun;
+  sun.kind = LightKind::kDirectional;
+  sun.direction = glm::normalize(vec3(1, -1.5F, -0.7F));
+  sun.diffuse = sun.specular = vec3(0.3F, 0.3F, 0.25F);
+  Light spot;
+  spot.kind = LightKind::kSpot;
+  spot.position = vec3(-3, 5, 3);
+  spot.direction = glm::normalize(vec3(0.5F, -1, -0.4F));
+  spot.inner_cone_angle = 0.2F;
+  spot.outer_cone_angle = 0.4F;
+  spot.attenuation = Attenuation::kInverseSquare;
+  spot.range = 20.0F;
+  spot.diffuse = spot.specular = vec3(15.0F, 10.0F, 5.0F);
+  scene.lights = {point, sun, spot};
+  return scene;
+}
+
+View make_view(uvec2 size) {
+  View view;
+  view.size = size;
+  view.camera.eye = vec3(0, 2.5F, 8);
+  view.camera.look = glm::normalize(vec3(0, -0.2F, -1));
+  view.camera.up = glm::normalize(vec3(0, 1, -0.2F));
+  view.camera.yfov = 0.7F;
+  return view;
+}
+
+bool has_same_bits(const Image& a, const Image& b) {
+  return a.size == b.size &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(a.pixels[0])) == 0;
+}
+
+}  // namespace promin::test

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "render/renderer.h"
+#include "scene/scene.h"
+
+namespace promin::test {
+
+/// Every kind of primitive, of light and of material, mirrors and a smooth coloured mesh, with a scatter of
+/// `sphere_count` small spheres so that the tree has some depth. The same scene for the same count.
+Scene make_scene_of_everything(uint32_t sphere_count = 200);
+
+/// A view of that scene.
+View make_view(uvec2 size);
+
+/// Sum of absolute differences over bits: 0 only if the pictures are bit for bit the same.
+bool has_same_bits(const Image& a, const Image& b);
+
+}  // namespace promin::test

@@ -1,0 +1,56 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash
+# What setup, render and test share; sourced, never run. Progress goes to stderr, details to build/*.log.
+
+set -euo pipefail
+
+repository="$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)"
+build_dir="$repository/build/release"
+
+say() { printf '%s\n' "$*" >&2; }
+
+die() {
+  say "$(basename -- "$0"): error: $*"
+  exit 1
+}
+
+# run_logged LOG COMMAND...: the command's output goes to build/LOG, and here only if it fails.
+run_logged() {
+  local log="$repository/build/$1"
+  shift
+  mkdir -p -- "$repository/build"
+  if ! "$@" >"$log" 2>&1; then
+    tail -n 40 -- "$log" >&2
+    die "$1 failed; the whole output is in $log"
+  fi
+}
+
+# Passes a line on for each quarter of the steps that ninja counts as [done/all].
+show_quarters() {
+  local line shown=0 quarter
+  while IFS= read -r line; do
+    if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+      quarter=$((4 * BASH_REMATCH[1] / BASH_REMATCH[2]))
+      if ((quarter > shown)); then
+        say "  ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps"
+        shown=$quarter
+      fi
+    fi
+  done
+}
+
+# Installs what is missing and brings build/release up to date; nothing to do takes no time.
+prepare() {
+  "$repository/tools/setup"
+  cd -- "$repository"
+  if [[ ! $build_dir/build.ninja -nt $repository/CMakePresets.json ]]; then
+    say "Configuring build/release"
+    run_logged configure.log cmake --preset release
+  fi
+  if ! cmake --build --preset release 2>&1 | tee "$repository/build/build.log" | show_quarters; then
+    grep -A 20 -m 3 -E '^FAILED|error:' "$repository/build/build.log" >&2 || tail -n 40 "$repository/build/build.log" >&2
+    die "the build failed; the whole output is in $repository/build/build.log"
+  fi
+  cd -- "$OLDPWD"
+}

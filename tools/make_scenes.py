@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the scenes in scenes/; run again, it writes the same bytes. With --sphereflake one sphereflake of any size."""
+
+import argparse
+import pathlib
+
+from scenegen.features import SCENES
+from scenegen.showcase import showcase
+from scenegen.sphereflake import sphereflake
+from scenegen.wavefront import write_obj_scene
+
+
+def write_all(folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for scene in SCENES:
+        scene().write(folder / f"{scene.__name__}.gltf")
+    sphereflake(2).write(folder / "sphereflake.gltf")
+    showcase().write(folder / "showcase.gltf", separate_buffer=True)
+    write_obj_scene(folder)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--sphereflake", type=int, metavar="LEVEL", help="1 + 9 + ... + 9^LEVEL spheres (4: 7381)")
+    parser.add_argument("-o", "--output", type=pathlib.Path,
+                        help="with --sphereflake the .gltf file, otherwise the folder (default: scenes/ of this repository)")
+    arguments = parser.parse_args()
+    if arguments.sphereflake is None:
+        write_all(arguments.output or pathlib.Path(__file__).resolve().parent.parent / "scenes")
+    elif arguments.output is None or not 0 <= arguments.sphereflake <= 7:
+        parser.error("--sphereflake takes a level of 0 to 7 and needs -o FILE.gltf")
+    else:
+        sphereflake(arguments.sphereflake).write(arguments.output)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,219 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Builds a glTF 2.0 file with the extensions that promin reads."""
+
+import base64
+import json
+import math
+import struct
+
+from . import meshes
+from .vectors import look_rotation, sub
+
+_BYTE_BUFFER, _ELEMENT_BUFFER = 34962, 34963
+_UNSIGNED_BYTE, _UNSIGNED_SHORT, _UNSIGNED_INT, _FLOAT = 5121, 5123, 5125, 5126
+_INDEX_FORMATS = {_UNSIGNED_BYTE: "B", _UNSIGNED_SHORT: "H", _UNSIGNED_INT: "I"}
+TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN = 4, 5, 6
+
+
+def to_float32(x):
+    return struct.unpack("<f", struct.pack("<f", x))[0]
+
+
+def shortest(x):
+    """The number with the fewest digits that is the same fp32 number; whole numbers become int."""
+    wanted = to_float32(x)
+    if wanted == int(wanted) and abs(wanted) < 1e6:
+        return int(wanted)
+    return next(n for n in (float(f"{wanted:.{digits}g}") for digits in range(1, 10)) if to_float32(n) == wanted)
+
+
+def _numbers(values):
+    return [shortest(v) for v in values]
+
+
+class Gltf:
+    """One scene. Every method that adds something returns its index in the file."""
+
+    def __init__(self):
+        self._root = {"asset": {"version": "2.0", "generator": "promin tools/make_scenes.py"}}
+        self._root["scene"] = 0
+        self._root["scenes"] = [{"nodes": []}]
+        self._bytes = bytearray()
+        self._extensions = set()
+
+    def _append(self, key, value):
+        items = self._root.setdefault(key, [])
+        items.append(value)
+        return len(items) - 1
+
+    def _append_to_extension(self, extension, key, value):
+        self._extensions.add(extension)
+        items = self._root.setdefault("extensions", {}).setdefault(extension, {}).setdefault(key, [])
+        items.append(value)
+        return len(items) - 1
+
+    def _accessor(self, data, target, component_type, kind, count, **bounds):
+        view = {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": len(data), "target": target}
+        self._bytes += data + bytes(-len(data) % 4)
+        accessor = {"bufferView": self._append("bufferViews", view), "componentType": component_type}
+        return self._append("accessors", {**accessor, "count": count, "type": kind, **bounds})
+
+    def _vectors(self, vectors, with_bounds=False):
+        vectors = [tuple(to_float32(x) for x in v) for v in vectors]
+        size = len(vectors[0])
+        bounds = {}
+        if with_bounds:
+            bounds = {"min": _numbers(map(min, zip(*vectors))), "max": _numbers(map(max, zip(*vectors)))}
+        data = b"".join(struct.pack(f"<{size}f", *v) for v in vectors)
+        return self._accessor(data, _BYTE_BUFFER, _FLOAT, f"VEC{size}", len(vectors), **bounds)
+
+    def _indices(self, indices):
+        largest = max(indices)
+        kind = _UNSIGNED_BYTE if largest < 255 else _UNSIGNED_SHORT if largest < 65535 else _UNSIGNED_INT
+        data = struct.pack(f"<{len(indices)}{_INDEX_FORMATS[kind]}", *indices)
+        return self._accessor(data, _ELEMENT_BUFFER, kind, "SCALAR", len(indices))
+
+    def _primitive(self, mesh, material, mode=TRIANGLES):
+        attributes = {"POSITION": self._vectors(mesh.positions, with_bounds=True)}
+        if mesh.normals:
+            attributes["NORMAL"] = self._vectors(mesh.normals)
+        if mesh.colors:
+            attributes["COLOR_0"] = self._vectors(mesh.colors)
+        primitive = {"attributes": attributes, "indices": self._indices(mesh.indices), "material": material}
+        if mode != TRIANGLES:
+            primitive["mode"] = mode
+        return primitive
+
+    def material(self, name, diffuse, specular=0.0, shininess=0.0, reflection=0.0, ambient=None, emissive=None):
+        """A classic Phong material. Factors are linear RGB; one number means grey."""
+        self._extensions.add("PROMIN_materials_phong")
+        phong = {}
+        for key, factor in (("ambientFactor", ambient), ("specularFactor", specular), ("reflectionFactor", reflection)):
+            rgb = (factor,) * 3 if isinstance(factor, (int, float)) else factor
+            if rgb and any(rgb) or key == "ambientFactor" and rgb:
+                phong[key] = _numbers(rgb)
+        if shininess:
+            phong["shininess"] = shortest(shininess)
+        # The base colour is Phong's diffuse factor and what a viewer that does not know Phong shows.
+        pbr = {"baseColorFactor": _numbers((*diffuse, 1.0)), "metallicFactor": 0}
+        material = {"name": name, "pbrMetallicRoughness": pbr, "extensions": {"PROMIN_materials_phong": phong}}
+        if emissive:
+            material["emissiveFactor"] = _numbers(emissive)
+        return self._append("materials", material)
+
+    def metallic_roughness(self, name, base_color, metallic, roughness):
+        factors = {"metallicFactor": shortest(metallic), "roughnessFactor": shortest(roughness)}
+        pbr = {"baseColorFactor": _numbers((*base_color, 1.0)), **factors}
+        return self._append("materials", {"name": name, "pbrMetallicRoughness": pbr})
+
+    def mesh(self, name, mesh, material, mode=TRIANGLES):
+        return self._append("meshes", {"name": name, "primitives": [self._primitive(mesh, material, mode)]})
+
+    def _shape(self, name, kind, parameters, fallback, material):
+        shape = {"type": kind, kind: {key: shortest(value) for key, value in parameters.items()}}
+        index = self._append_to_extension("KHR_implicit_shapes", "shapes", shape)
+        self._extensions.add("PROMIN_mesh_primitive_implicit_shape")
+        primitive = self._primitive(fallback, material)
+        primitive["extensions"] = {"PROMIN_mesh_primitive_implicit_shape": {"shape": index}}
+        return self._append("meshes", {"name": name, "primitives": [primitive]})
+
+    def sphere(self, name, radius, material):
+        return self._shape(name, "sphere", {"radius": radius}, meshes.icosphere(radius, 1), material)
+
+    def cylinder(self, name, height, radius, material):
+        return self.frustum(name, height, radius, radius, material)
+
+    def cone(self, name, height, radius, material):
+        return self.frustum(name, height, radius, 0.0, material)
+
+    def frustum(self, name, height, radius_bottom, radius_top, material):
+        parameters = {"height": height, "radiusBottom": radius_bottom, "radiusTop": radius_top}
+        fallback = meshes.frustum(height, radius_bottom, radius_top, 16)
+        return self._shape(name, "cylinder", parameters, fallback, material)
+
+    def plane(self, name, material, fallback_size=40.0):
+        """The infinite plane y = 0."""
+        return self._shape(name, "plane", {}, meshes.rectangle(fallback_size, fallback_size), material)
+
+    def node(self, name, parent=None, translation=None, rotation=None, scale=None, **links):
+        """links: mesh=, camera=, light= with an index. A uniform scale may be one number."""
+        node = {"name": name}
+        if "light" in links:
+            self._extensions.add("KHR_lights_punctual")
+            node["extensions"] = {"KHR_lights_punctual": {"light": links.pop("light")}}
+        node.update(links)
+        if isinstance(scale, (int, float)):
+            scale = (scale,) * 3
+        for key, value in (("translation", translation), ("rotation", rotation), ("scale", scale)):
+            if value is not None:
+                node[key] = _numbers(value)
+        index = self._append("nodes", node)
+        siblings = self._root["scenes"][0]["nodes"]
+        if parent is not None:
+            siblings = self._root["nodes"][parent].setdefault("children", [])
+        siblings.append(index)
+        return index
+
+    def camera(self, name, eye, target, yfov_deg=35.0, aspect_ratio=16.0 / 9.0, up=(0.0, 1.0, 0.0)):
+        lens = {"yfov": shortest(math.radians(yfov_deg)), "aspectRatio": shortest(aspect_ratio), "znear": 0.01}
+        return self._place_camera(name, {"type": "perspective", "perspective": lens}, eye, target, up)
+
+    def orthographic_camera(self, name, eye, target, ymag, aspect_ratio=16.0 / 9.0, zfar=100.0):
+        lens = {"xmag": shortest(ymag * aspect_ratio), "ymag": shortest(ymag), "znear": 0, "zfar": shortest(zfar)}
+        return self._place_camera(name, {"type": "orthographic", "orthographic": lens}, eye, target, (0.0, 1.0, 0.0))
+
+    def _place_camera(self, name, camera, eye, target, up):
+        index = self._append("cameras", {"name": name, **camera})
+        return self.node(name, translation=eye, rotation=look_rotation(sub(target, eye), up), camera=index)
+
+    def _light(self, name, kind, color, intensity, classic, placement, **details):
+        light = {"name": name, "type": kind, "color": _numbers(color), "intensity": shortest(intensity), **details}
+        if classic:
+            self._extensions.add("PROMIN_lights_phong")
+            light["extensions"] = {"PROMIN_lights_phong": {}}
+        index = self._append_to_extension("KHR_lights_punctual", "lights", light)
+        return self.node(name, light=index, **placement)
+
+    def point_light(self, name, position, color=(1.0, 1.0, 1.0), intensity=1.0, classic=True):
+        return self._light(name, "point", color, intensity, classic, {"translation": position})
+
+    def directional_light(self, name, direction, color=(1.0, 1.0, 1.0), intensity=1.0):
+        return self._light(name, "directional", color, intensity, True, {"rotation": look_rotation(direction)})
+
+    def spot_light(self, name, position, target, inner_deg, outer_deg, color=(1.0, 1.0, 1.0), intensity=1.0):
+        angles = {"innerConeAngle": inner_deg, "outerConeAngle": outer_deg}
+        spot = {key: shortest(math.radians(value)) for key, value in angles.items()}
+        placement = {"translation": position, "rotation": look_rotation(sub(target, position))}
+        return self._light(name, "spot", color, intensity, True, placement, spot=spot)
+
+    def sky(self, background, ambient):
+        """The background's colour and the ambient brightness i_a, linear RGB."""
+        sky = {"type": "plain", "plain": {"color": _numbers(background)}, "ambientLightColor": _numbers(ambient)}
+        index = self._append_to_extension("OMI_environment_sky", "skies", {**sky, "ambientSkyContribution": 0})
+        self._root["scenes"][0]["extensions"] = {"OMI_environment_sky": {"sky": index}}
+
+    def write(self, path, separate_buffer=False):
+        """Writes PATH and, with separate_buffer, its .bin beside it; otherwise the buffer is a data URI."""
+        root = dict(self._root)
+        root["extensionsUsed"] = sorted(self._extensions)
+        buffer = {"byteLength": len(self._bytes)}
+        if separate_buffer:
+            path.with_suffix(".bin").write_bytes(self._bytes)
+            buffer["uri"] = path.with_suffix(".bin").name
+        else:
+            buffer["uri"] = "data:application/octet-stream;base64," + base64.b64encode(self._bytes).decode()
+        root["buffers"] = [buffer]
+        path.write_text(_format(root), encoding="utf-8")
+
+
+def _format(root):
+    """One line for each entry of a top-level list: a scene that people read and compare line by line."""
+    lines = []
+    for key, value in root.items():
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            text = "[\n    " + ",\n    ".join(json.dumps(entry) for entry in value) + "\n  ]"
+        else:
+            text = json.dumps(value)
+        lines.append(f"  {json.dumps(key)}: {text}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"

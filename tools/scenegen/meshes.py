@@ -1,0 +1,176 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Triangle meshes. Corners run anticlockwise seen from outside."""
+
+import itertools
+import math
+from dataclasses import dataclass, field
+
+from .vectors import add, cross, dot, normalize, scale, sub
+
+_GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
+
+
+@dataclass
+class Mesh:
+    """Empty normals mean sharp triangles."""
+
+    positions: list
+    indices: list
+    normals: list = field(default_factory=list)
+    colors: list = field(default_factory=list)
+
+
+def rectangle(width, depth):
+    """In the plane y = 0, facing +Y."""
+    x, z = width / 2.0, depth / 2.0
+    return Mesh([(-x, 0.0, z), (x, 0.0, z), (x, 0.0, -z), (-x, 0.0, -z)], [0, 1, 2, 0, 2, 3])
+
+
+def box(width, height, depth):
+    x, y, z = width / 2.0, height / 2.0, depth / 2.0
+    positions = list(itertools.product((-x, x), (-y, y), (-z, z)))
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return Mesh(positions, [i for a, b, c, d in quads for i in (a, b, c, a, c, d)])
+
+
+def frustum(height, radius_bottom, radius_top, sides):
+    """Stands along Y, centred, closed; a radius of 0 gives a cone."""
+    positions, rings = [], []
+    for y, radius in ((-height / 2.0, radius_bottom), (height / 2.0, radius_top)):
+        corners = sides if radius > 0.0 else 1
+        rings.append([len(positions) + i % corners for i in range(sides)])
+        for i in range(corners):
+            angle = math.tau * i / sides
+            positions.append((radius * math.sin(angle), y, radius * math.cos(angle)))
+    bottom, top = rings
+    indices = []
+    for i in range(sides):
+        j = (i + 1) % sides
+        indices += [bottom[i], bottom[j], top[j]] if radius_bottom > 0.0 else []
+        indices += [bottom[i], top[j], top[i]] if radius_top > 0.0 else []
+    for i in range(1, sides - 1):
+        indices += [bottom[0], bottom[i + 1], bottom[i]] if radius_bottom > 0.0 else []
+        indices += [top[0], top[i], top[i + 1]] if radius_top > 0.0 else []
+    return Mesh(positions, indices)
+
+
+def _convex_hull(points):
+    """The triangles of a small convex polyhedron; brute force over all triples of corners."""
+    indices = []
+    for a, b, c in itertools.permutations(range(len(points)), 3):
+        if a < b and a < c:
+            normal = cross(sub(points[b], points[a]), sub(points[c], points[a]))
+            if all(dot(normal, sub(p, points[a])) < 1e-9 for p in points):
+                indices += [a, b, c]
+    return indices
+
+
+def octahedron(radius):
+    points = [scale(p, radius) for p in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))]
+    return Mesh(points, _convex_hull(points))
+
+
+def icosahedron(radius):
+    points = []
+    for a, b in itertools.product((-1.0, 1.0), (-_GOLDEN, _GOLDEN)):
+        points += [(0.0, a, b), (a, b, 0.0), (b, 0.0, a)]
+    points = [scale(normalize(p), radius) for p in points]
+    return Mesh(points, _convex_hull(points))
+
+
+def stellated(mesh, height):
+    """Puts a pyramid of this height, measured from the triangle's plane, on every triangle."""
+    positions, indices = list(mesh.positions), []
+    for i in range(0, len(mesh.indices), 3):
+        corners = mesh.indices[i : i + 3]
+        a, b, c = (mesh.positions[k] for k in corners)
+        normal = normalize(cross(sub(b, a), sub(c, a)))
+        apex = len(positions)
+        positions.append(add(scale(add(add(a, b), c), 1.0 / 3.0), scale(normal, height)))
+        for k in range(3):
+            indices += [corners[k], corners[(k + 1) % 3], apex]
+    return Mesh(positions, indices)
+
+
+def icosphere(radius, subdivisions):
+    """A subdivided icosahedron without normals."""
+    mesh = icosahedron(1.0)
+    positions, indices = mesh.positions, mesh.indices
+    for _ in range(subdivisions):
+        middles, finer = {}, []
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                middles[key] = len(positions)
+                positions.append(normalize(add(positions[a], positions[b])))
+            return middles[key]
+
+        for i in range(0, len(indices), 3):
+            a, b, c = indices[i : i + 3]
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            finer += [a, ab, ca, b, bc, ab, c, ca, bc, ab, bc, ca]
+        indices = finer
+    return Mesh([scale(p, radius) for p in positions], indices)
+
+
+def smooth(mesh):
+    """The same mesh with vertex normals: the mean of the triangles' normals, weighted by area."""
+    sums = [(0.0, 0.0, 0.0)] * len(mesh.positions)
+    for i in range(0, len(mesh.indices), 3):
+        corners = mesh.indices[i : i + 3]
+        a, b, c = (mesh.positions[k] for k in corners)
+        normal = cross(sub(b, a), sub(c, a))
+        for k in corners:
+            sums[k] = add(sums[k], normal)
+    return Mesh(mesh.positions, mesh.indices, [normalize(n) for n in sums], mesh.colors)
+
+
+def torus_grid(rows, columns, surface):
+    """A closed grid surface(u, v), u and v in [0, 1), periodic in both, with smooth normals.
+
+    du x dv must point outward.
+    """
+    positions = [surface(i / rows, j / columns) for i in range(rows) for j in range(columns)]
+    indices = []
+    for i, j in itertools.product(range(rows), range(columns)):
+        a, b = i * columns + j, (i + 1) % rows * columns + j
+        c, d = (i + 1) % rows * columns + (j + 1) % columns, i * columns + (j + 1) % columns
+        indices += [a, b, c, a, c, d]
+    return smooth(Mesh(positions, indices))
+
+
+def torus(major, minor, rows, columns):
+    def surface(u, v):
+        ring = major + minor * math.cos(math.tau * v)
+        return (ring * math.sin(math.tau * u), minor * math.sin(math.tau * v), ring * math.cos(math.tau * u))
+
+    return torus_grid(rows, columns, surface)
+
+
+def torus_knot(p, q, major, minor, tube, flutes, twists, depth, rows, columns):
+    """A (p, q) torus knot about the Y axis: a tube of fluted, twisting section.
+
+    p turns about the axis, q through the hole. `flutes` grooves of relative `depth` make `twists` turns on the way.
+    """
+
+    def curve(u):
+        around, through = math.tau * p * u, math.tau * q * u
+        ring = major + minor * math.cos(through)
+        return (ring * math.cos(around), minor * math.sin(through), ring * math.sin(around))
+
+    def surface(u, v):
+        step = 1e-4
+        before, here, after = curve(u - step), curve(u), curve(u + step)
+        tangent = normalize(sub(after, before))
+        # The frame follows the torus: one side points away from the middle of its tube, so it closes by itself.
+        around = math.tau * p * u
+        outward = sub(here, (major * math.cos(around), 0.0, major * math.sin(around)))
+        side = normalize(sub(outward, scale(tangent, dot(outward, tangent))))
+        other = cross(tangent, side)
+        angle = math.tau * v
+        radius = tube * (1.0 + depth * math.cos(flutes * angle + math.tau * twists * u))
+        return add(here, add(scale(side, radius * math.cos(angle)), scale(other, -radius * math.sin(angle))))
+
+    return torus_grid(rows, columns, surface)
