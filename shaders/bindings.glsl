@@ -19,10 +19,11 @@ layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { M
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
 
-// Sums over samples, a pixel each; and rays traced: x = primary, y = shadow, z = reflection.
+// Sums over samples, a pixel each; and rays traced, x = primary, y = shadow, z = reflection, a counter a lane of a
+// block: one for all would have every lane queue for it, and a sum over the block would need barriers, for which
+// lavapipe 22.3 runs a coroutine a subgroup and leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
-  uvec4 ray_counts;
+  Dispatch dispatch;
+  uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   vec4 pixels[];
 };
-
-layout(push_constant) uniform DispatchBlock { Dispatch dispatch; };

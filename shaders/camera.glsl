@@ -13,8 +13,8 @@ uvec2 pixel_in_block(uint lane) {
 // about the centre, (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n; n = 1 is the centre, n = 4 the rotated grid. The host
 // chooses g (render/sampling.h).
 vec2 sample_point(uint index) {
-  uint count = frame.sampling.x;
-  uint row = (frame.sampling.y * (index + 1u)) % (count + 1u) - 1u;
+  uint count = dispatch.sampling.x;
+  uint row = (dispatch.sampling.y * (index + 1u)) % (count + 1u) - 1u;
   precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * frame.film_center.z;
   return point;
 }
@@ -22,10 +22,10 @@ vec2 sample_point(uint index) {
 // D = V - O with V on the viewport at distance 1 along `look`, so that t counts in viewport distances and t > near is
 // what lies beyond the near plane. It is not normalised.
 Ray camera_ray(uvec2 window_pixel, uint sample_index) {
-  vec2 corner = vec2(frame.window.xy + window_pixel);
+  vec2 corner = vec2(dispatch.window.xy + window_pixel);
   precise vec2 from_center = (corner - frame.film_center.xy) + sample_point(sample_index);
   precise vec3 on_film = from_center.x * frame.right.xyz - from_center.y * frame.up.xyz;
-  if (frame.look.w == 0.0) {
+  if (dispatch.sampling.w == 0u) {
     precise vec3 direction = frame.look.xyz + on_film;
     return make_ray(frame.eye.xyz, direction, frame.eye.w, INFINITY);
   }

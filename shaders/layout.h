@@ -109,31 +109,32 @@ struct LightRecord {
   uvec4 kind;  // x = LIGHT_*, y = 1 if it falls off with distance
 };
 
-// A picture's constants (uniform buffer).
+// A picture's constants (uniform buffer). None of them decides a branch or a loop: see Dispatch.
 struct Frame {
   vec4 eye;   // w = near: distance of the viewport plane
-  vec4 look;  // w = 1 for an orthographic camera
+  vec4 look;
   vec4 right;  // from one pixel to the next on the projection plane at distance 1 (orthographic: in the world)
   vec4 up;
   vec4 ambient;
   vec4 background;
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
-  uvec4 window;       // x, y = first pixel; z, w = width and height in pixels
-  uvec4 sampling;     // x = samples a pixel, y = lattice generator, z = blocks a row, w = mirror bounces
-  uvec4 planes;       // x = index of the first plane's primitive, y = count; z = lights; w = 0
   uvec4 first_index;  // of x = materials, y = lights, z = normals, w = colours in their views of the shading buffer
 };
 
-// A dispatch's constants (push constants): z samples from the y-th on, for blocks from the x-th on.
+// What decides branches and loops, at the head of the film: not in push constants or a uniform buffer, because
+// lavapipe compiles the shader anew for each value of those that control flow depends on.
 struct Dispatch {
-  uvec4 range;
+  uvec4 range;     // x = first block, y = first sample, z = samples to take; w = mirror bounces
+  uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
+  uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
+  uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = 0
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 192);
-static_assert(sizeof(Dispatch) <= 128, "Vulkan guarantees no more push constants");
+static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 144);
+static_assert(sizeof(Dispatch) == 64);
 #undef LAYOUT_CONSTANT
 }  // namespace promin::layout
 #endif

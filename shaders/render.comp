@@ -31,7 +31,7 @@ vec3 radiance(Ray ray, inout uvec3 ray_count) {
     vec3 direction = normalize3(ray.direction);
     precise vec3 next_sum = sum + weight * shade(point, -direction, ray_count.y);
     sum = next_sum;
-    if (!has(FEATURE_MIRRORS) || bounce >= frame.sampling.w) return sum;
+    if (!has(FEATURE_MIRRORS) || bounce >= dispatch.range.w) return sum;
     precise vec3 next_weight = weight * point.material.reflection.xyz;
     weight = next_weight;
     if (!(max_abs(weight) > 0.0)) return sum;
@@ -40,33 +40,21 @@ vec3 radiance(Ray ray, inout uvec3 ray_count) {
   }
 }
 
-shared uvec3 group_ray_count;
-
 void main() {
-  if (gl_LocalInvocationIndex == 0u) group_ray_count = uvec3(0u);
-  barrier();
-
   uint block = dispatch.range.x + gl_WorkGroupID.x;
-  uvec2 pixel = BLOCK_SIZE * uvec2(block % frame.sampling.z, block / frame.sampling.z) +
+  uvec2 pixel = BLOCK_SIZE * uvec2(block % dispatch.sampling.z, block / dispatch.sampling.z) +
                 pixel_in_block(gl_LocalInvocationIndex);
-  if (all(lessThan(pixel, frame.window.zw))) {
-    uint index = pixel.y * frame.window.z + pixel.x;
-    vec3 sum = dispatch.range.y == 0u ? vec3(0.0) : pixels[index].xyz;
-    uvec3 ray_count = uvec3(0u);
-    for (uint s = dispatch.range.y; s < dispatch.range.y + dispatch.range.z; ++s) {
-      precise vec3 next_sum = sum + radiance(camera_ray(pixel, s), ray_count);
-      sum = next_sum;
-    }
-    pixels[index] = vec4(sum, 0.0);
-    atomicAdd(group_ray_count.x, ray_count.x);
-    atomicAdd(group_ray_count.y, ray_count.y);
-    atomicAdd(group_ray_count.z, ray_count.z);
-  }
+  if (any(greaterThanEqual(pixel, dispatch.window.zw))) return;
 
-  barrier();
-  if (gl_LocalInvocationIndex == 0u) {
-    atomicAdd(ray_counts.x, group_ray_count.x);
-    atomicAdd(ray_counts.y, group_ray_count.y);
-    atomicAdd(ray_counts.z, group_ray_count.z);
+  uint index = pixel.y * dispatch.window.z + pixel.x;
+  vec3 sum = dispatch.range.y == 0u ? vec3(0.0) : pixels[index].xyz;
+  uvec3 ray_count = uvec3(0u);
+  for (uint s = dispatch.range.y; s < dispatch.range.y + dispatch.range.z; ++s) {
+    precise vec3 next_sum = sum + radiance(camera_ray(pixel, s), ray_count);
+    sum = next_sum;
   }
+  pixels[index] = vec4(sum, 0.0);
+  atomicAdd(ray_counts[gl_LocalInvocationIndex].x, ray_count.x);
+  if (ray_count.y > 0u) atomicAdd(ray_counts[gl_LocalInvocationIndex].y, ray_count.y);
+  if (ray_count.z > 0u) atomicAdd(ray_counts[gl_LocalInvocationIndex].z, ray_count.z);
 }

@@ -103,7 +103,7 @@ vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint 
 vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
   precise vec3 sum = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
   if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS)) {
-    for (uint i = 0u; i < frame.planes.z; ++i) {
+    for (uint i = 0u; i < dispatch.counts.z; ++i) {
       sum += shade_light(point, to_eye, lights[frame.first_index.y + i], shadow_rays);
     }
   }

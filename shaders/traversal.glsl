@@ -59,7 +59,7 @@ uint pop_child(float t_limit) {
 Hit trace(Ray ray, bool any_hit) {
   Hit hit = Hit(ray.tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   if (has(FEATURE_PLANES)) {
-    for (uint i = frame.planes.x; i < frame.planes.x + frame.planes.y; ++i) {
+    for (uint i = dispatch.counts.x; i < dispatch.counts.x + dispatch.counts.y; ++i) {
       Primitive p = primitives[i];
       keep_nearest(ray, intersect_plane(ray, p), i, p.c.y, hit);
     }

@@ -27,7 +27,7 @@ bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
 
 ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
                                  std::span<const SpecializationConstant> constants,
-                                 std::span<const BoundBuffer> buffers, uint32_t push_constant_bytes)
+                                 std::span<const BoundBuffer> buffers)
     : device_(&device) {
   const vk::raii::Device& handle = device.handle();
 
@@ -47,8 +47,7 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
       vk::raii::DescriptorSets(handle, vk::DescriptorSetAllocateInfo(*pool_, *set_layout_)).front());
   for (const BoundBuffer& buffer : buffers) bind(buffer);
 
-  const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes);
-  layout_ = vk::raii::PipelineLayout(handle, vk::PipelineLayoutCreateInfo({}, *set_layout_, push_range));
+  layout_ = vk::raii::PipelineLayout(handle, vk::PipelineLayoutCreateInfo({}, *set_layout_));
 
   std::vector<vk::SpecializationMapEntry> entries;
   std::vector<uint32_t> values;
@@ -71,13 +70,9 @@ void ComputePipeline::bind(const BoundBuffer& buffer) {
       vk::WriteDescriptorSet(*set_, buffer.binding, 0, 1, buffer.type, nullptr, &info), {});
 }
 
-void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, std::span<const std::byte> push_constants,
-                               uint32_t group_count) const {
+void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, uint32_t group_count) const {
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, {});
-  commands.pushConstants<std::byte>(*layout_, vk::ShaderStageFlagBits::eCompute, 0,
-                                    vk::ArrayProxy<const std::byte>(static_cast<uint32_t>(push_constants.size()),
-                                                                    push_constants.data()));
   commands.dispatch(group_count, 1, 1);
 }
 

@@ -27,21 +27,19 @@ struct BoundBuffer {
 /// Whether a SPIR-V module declares a specialisation constant with this SpecId.
 bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 
-/// A compute pipeline with entry point "main", one descriptor set and one block of push constants.
+/// A compute pipeline with entry point "main" and one descriptor set.
 class ComputePipeline {
  public:
   /// Asserts that the module has every constant: a driver would ignore an unknown one in silence.
   /// Throws vk::SystemError.
   ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
-                  std::span<const SpecializationConstant> constants, std::span<const BoundBuffer> buffers,
-                  uint32_t push_constant_bytes);
+                  std::span<const SpecializationConstant> constants, std::span<const BoundBuffer> buffers);
 
   /// Changes what a binding of the constructor refers to; the device must be idle.
   void bind(const BoundBuffer& buffer);
 
-  /// Records binding everything, the push constants and `group_count` workgroups.
-  void dispatch(const vk::raii::CommandBuffer& commands, std::span<const std::byte> push_constants,
-                uint32_t group_count) const;
+  /// Records binding everything and `group_count` workgroups.
+  void dispatch(const vk::raii::CommandBuffer& commands, uint32_t group_count) const;
 
  private:
   const Device* device_;

@@ -196,7 +196,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
     packed.primitives.push_back(collected.solids[reference]);
     surfaces.push_back(collected.solid_surfaces[reference]);
   }
-  packed.frame.planes = uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), 0);
+  packed.dispatch.counts = uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), 0);
   packed.primitives.insert(packed.primitives.end(), collected.planes.begin(), collected.planes.end());
   surfaces.insert(surfaces.end(), collected.plane_surfaces.begin(), collected.plane_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.emplace_back();

@@ -21,8 +21,9 @@ struct PackedScene {
   std::vector<layout::Primitive> primitives;
   /// Surfaces, materials, lights, vertex normals and vertex colours.
   std::vector<std::byte> shading;
-  /// What a picture's constants take from the scene; the camera's part is left at zero.
+  /// What a picture's constants take from the scene; the camera's and the picture's parts are left at zero.
   layout::Frame frame{};
+  layout::Dispatch dispatch{};
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
   BvhStats bvh;

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 
 #include "gpu/buffer.h"
 #include "gpu/device.h"
@@ -27,17 +28,21 @@ double milliseconds_since(Clock::time_point start) {
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 
-/// Head of the film buffer: the ray counters.
-constexpr vk::DeviceSize kFilmHeadBytes = sizeof(uvec4);
+/// Head of the film buffer (shaders/bindings.glsl).
+struct FilmHead {
+  layout::Dispatch dispatch{};
+  /// One for each lane of a block.
+  std::array<uvec4, kLanes> ray_counts{};
+};
 
 /// Most pixels that a film holds; larger pictures are traced in bands of rows. 64 MiB is half of what Vulkan
 /// guarantees for a storage buffer.
-constexpr uint32_t kMaxFilmPixels = (64U << 20) / sizeof(vec4) - 1;
+constexpr uint32_t kMaxFilmPixels = (64U << 20) / sizeof(vec4) - sizeof(FilmHead) / sizeof(vec4);
 
 uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
 /// The camera's part of a frame, computed in double.
-void set_camera(layout::Frame& frame, const Camera& camera, const uvec2& size) {
+void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& camera, const uvec2& size) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   const double half_height =
       is_orthographic ? static_cast<double>(camera.ymag) : std::tan(0.5 * static_cast<double>(camera.yfov));
@@ -45,7 +50,8 @@ void set_camera(layout::Frame& frame, const Camera& camera, const uvec2& size) {
   const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
   const dvec3 up = dvec3(camera.up) * pixel;
   frame.eye = vec4(camera.eye, camera.near);
-  frame.look = vec4(camera.look, is_orthographic ? 1.0F : 0.0F);
+  frame.look = vec4(camera.look, 0.0F);
+  dispatch.sampling.w = is_orthographic ? 1 : 0;
   frame.right = vec4(vec3(right), 0.0F);
   frame.up = vec4(vec3(up), 0.0F);
   frame.film_center.x = 0.5F * static_cast<float>(size.x);
@@ -59,6 +65,7 @@ struct Renderer::Impl {
       : device(the_device), options(the_options) {
     const PackedScene packed = pack_scene(scene, options.builder);
     frame = packed.frame;
+    dispatch = packed.dispatch;
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = packed.size_bytes();
@@ -87,7 +94,7 @@ struct Renderer::Impl {
 
   void make_film(uint32_t pixel_count) {
     if (film && film_pixels >= pixel_count) return;
-    film.emplace(device, kFilmHeadBytes + pixel_count * sizeof(vec4), vk::BufferUsageFlagBits::eStorageBuffer);
+    film.emplace(device, sizeof(FilmHead) + pixel_count * sizeof(vec4), vk::BufferUsageFlagBits::eStorageBuffer);
     film_pixels = pixel_count;
     if (pipeline) pipeline->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*film});
   }
@@ -102,7 +109,7 @@ struct Renderer::Impl {
         gpu::BoundBuffer{layout::BINDING_PRIMITIVES, DescriptorType::eStorageBuffer, &*primitives},
         gpu::BoundBuffer{layout::BINDING_SHADING, DescriptorType::eStorageBuffer, &*shading},
         gpu::BoundBuffer{layout::BINDING_FILM, DescriptorType::eStorageBuffer, &*film}};
-    pipeline.emplace(device, k_render_spirv, constants, buffers, static_cast<uint32_t>(sizeof(layout::Dispatch)));
+    pipeline.emplace(device, k_render_spirv, constants, buffers);
     if (device.timestamp_period_ns() > 0.0) {
       queries = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
     }
@@ -110,21 +117,26 @@ struct Renderer::Impl {
 
   /// Drivers compile late: the first dispatch of a pipeline must not count as tracing.
   void compile_by_dispatch() {
-    layout::Frame first = frame;
-    set_camera(first, Camera(), uvec2(1));
-    first.film_center.z = 0.5F;
-    first.window = uvec4(0, 0, 1, 1);
-    first.sampling = uvec4(1, 1, 1, 0);
-    frame_buffer->write(std::as_bytes(std::span(&first, 1)));
-    dispatch({uvec4(0, 0, 1, 0)}, 1);
+    layout::Frame one_pixel = frame;
+    layout::Dispatch one_block = dispatch;
+    one_block.range = uvec4(0, 0, 1, 0);
+    one_block.window = uvec4(0, 0, 1, 1);
+    one_block.sampling = uvec4(1, 1, 1, 0);
+    set_camera(one_pixel, one_block, Camera(), uvec2(1));
+    one_pixel.film_center.z = 0.5F;
+    frame_buffer->write(std::as_bytes(std::span(&one_pixel, 1)));
+    run(one_block, 1);
   }
 
   /// Returns device milliseconds.
-  double dispatch(const layout::Dispatch& range, uint32_t block_count) {
+  double run(const layout::Dispatch& constants, uint32_t block_count) {
     const auto start = Clock::now();
     device.run([&](const vk::raii::CommandBuffer& commands) {
       using Access = vk::AccessFlagBits;
       using Stage = vk::PipelineStageFlagBits;
+      const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite, Access::eTransferWrite);
+      commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, after_last, {}, {});
+      commands.updateBuffer<layout::Dispatch>(*film->handle(), offsetof(FilmHead, dispatch), constants);
       const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite,
                                      Access::eShaderRead | Access::eShaderWrite | Access::eUniformRead);
       commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader, {}, before, {}, {});
@@ -132,7 +144,7 @@ struct Renderer::Impl {
         commands.resetQueryPool(*queries, 0, 2);
         commands.writeTimestamp(Stage::eTopOfPipe, *queries, 0);
       }
-      pipeline->dispatch(commands, std::as_bytes(std::span(&range, 1)), block_count);
+      pipeline->dispatch(commands, block_count);
       if (*queries) commands.writeTimestamp(Stage::eBottomOfPipe, *queries, 1);
       const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead);
       commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost, {}, after, {}, {});
@@ -145,17 +157,19 @@ struct Renderer::Impl {
 
   /// Adds the device's counters to `rays` and sets them to zero.
   void collect_counts(RayCounts& rays) {
-    uvec4 counts(0);
-    film->read(std::as_writable_bytes(std::span(&counts, 1)));
-    rays.primary += counts.x;
-    rays.shadow += counts.y;
-    rays.reflection += counts.z;
+    FilmHead head;
+    film->read(std::as_writable_bytes(std::span(&head, 1)));
+    for (const uvec4& counter : head.ray_counts) {
+      rays.primary += counter.x;
+      rays.shadow += counter.y;
+      rays.reflection += counter.z;
+    }
     clear_counts();
   }
 
   void clear_counts() {
-    const uvec4 zero(0);
-    film->write(std::as_bytes(std::span(&zero, 1)));
+    const FilmHead zeros;
+    film->write(std::as_bytes(std::span(&zeros, 1)));
   }
 
   /// Traces one band: `window` of the picture, on a film of its size.
@@ -163,26 +177,28 @@ struct Renderer::Impl {
                   const std::function<void(double)>& on_progress) {
     const uvec2 size = window.hi - window.lo;
     layout::Frame constants = frame;
-    set_camera(constants, view.camera, view.size);
+    layout::Dispatch range = dispatch;
+    set_camera(constants, range, view.camera, view.size);
     const uint32_t samples = view.samples_per_pixel;
     const uint32_t block_columns = divide_up(size.x, layout::BLOCK_SIZE);
     const uint32_t block_total = block_columns * divide_up(size.y, layout::BLOCK_SIZE);
     constants.film_center.z = static_cast<float>(0.5 / samples);
-    constants.window = uvec4(window.lo, size);
-    constants.sampling = uvec4(samples, generator, block_columns, view.max_depth);
+    range.window = uvec4(window.lo, size);
+    range.sampling = uvec4(samples, generator, block_columns, range.sampling.w);
     make_film(size.x * size.y);
     frame_buffer->write(std::as_bytes(std::span(&constants, 1)));
     clear_counts();
 
-    // The counters have 32 bits: collect them before the most that the dispatches since may have counted is more.
-    const double most_rays_a_sample = (1.0 + view.max_depth) * (1.0 + constants.planes.z);
+    // The counters have 32 bits: collect them before a lane's may have passed that.
+    const double most_rays_a_sample = (1.0 + view.max_depth) * (1.0 + range.counts.z);
     double uncollected = 0.0;
     for (uint32_t first = 0; first < block_total;) {
       const uint32_t blocks = pick_block_count(samples, block_total - first);
       for (uint32_t sample = 0; sample < samples;) {
         const uint32_t count = pick_sample_count(blocks, samples - sample);
-        uncollected += most_rays_a_sample * blocks * kLanes * count;
-        const double time_ms = dispatch({uvec4(first, sample, count, 0)}, blocks);
+        uncollected += most_rays_a_sample * blocks * count;
+        range.range = uvec4(first, sample, count, view.max_depth);
+        const double time_ms = run(range, blocks);
         result.trace_ms += time_ms;
         learn_rate(static_cast<double>(blocks) * count, time_ms);
         if (uncollected > 2e9) {
@@ -223,6 +239,7 @@ struct Renderer::Impl {
   const gpu::Device& device;
   RendererOptions options;
   layout::Frame frame{};
+  layout::Dispatch dispatch{};
   SetupStats stats;
   std::optional<gpu::Buffer> nodes;
   std::optional<gpu::Buffer> primitives;
@@ -268,10 +285,10 @@ RenderResult Renderer::render(const View& view, const std::function<void(double)
       impl_->trace_band(band, view, result, [&](double fraction) {
         if (progress) progress(done + share * fraction);
       });
-      film.resize(kFilmHeadBytes + static_cast<size_t>(width) * rows * sizeof(vec4));
+      film.resize(sizeof(FilmHead) + static_cast<size_t>(width) * rows * sizeof(vec4));
       impl_->film->read(film);
     });
-    const auto* sums = reinterpret_cast<const vec4*>(film.data() + kFilmHeadBytes);
+    const auto* sums = reinterpret_cast<const vec4*>(film.data() + sizeof(FilmHead));
     const auto samples = static_cast<float>(view.samples_per_pixel);
     vec3* target = &result.image.at(0, y - window.lo.y);
     for (size_t i = 0; i < static_cast<size_t>(width) * rows; ++i) target[i] = vec3(sums[i]) / samples;
