@@ -9,7 +9,8 @@
 namespace promin::app {
 
 void Console::print(const std::string& text, Verbosity least) const {
-  if (verbosity_ >= least) fmt::print(stderr, "promin: {}\n", text);
+  // fmt::print would throw where the stream is closed, and that is no reason to fail.
+  if (verbosity_ >= least) std::fputs(fmt::format("promin: {}\n", text).c_str(), stderr);
 }
 
 }  // namespace promin::app

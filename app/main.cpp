@@ -37,7 +37,7 @@ void run(int argc, const char* const* argv) {
 
 int report(ExitCode code, const std::string& message) {
   std::fflush(stdout);
-  fmt::print(stderr, "promin: error: {}\n", message);
+  std::fputs(fmt::format("promin: error: {}\n", message).c_str(), stderr);
   return code;
 }
 

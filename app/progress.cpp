@@ -41,15 +41,16 @@ void Progress::update(double fraction) {
     last_draw_ = now;
     has_bar_ = true;
     const auto filled = static_cast<int>(fraction * kBarWidth);
-    fmt::print(stderr, "\r[{:=<{}}{:{}}] {:3.0f} %, {} left\033[K", "", filled, "", kBarWidth - filled,
-               std::floor(100.0 * fraction), left);
+    const std::string bar = fmt::format("\r[{:=<{}}{:{}}] {:3.0f} %, {} left\033[K", "", filled, "", kBarWidth - filled,
+                                        std::floor(100.0 * fraction), left);
+    std::fputs(bar.c_str(), stderr);
     std::fflush(stderr);
     return;
   }
   const auto tenth = static_cast<int>(10.0 * fraction);
   if (tenth == last_tenth_) return;
   last_tenth_ = tenth;
-  fmt::print(stderr, "promin: {} %, {} left\n", 10 * tenth, left);
+  std::fputs(fmt::format("promin: {:.0f} %, {} left\n", std::floor(100.0 * fraction), left).c_str(), stderr);
 }
 
 }  // namespace promin::app

@@ -8,7 +8,7 @@
 namespace promin::app {
 
 /// Shows how far long work is, on the standard error stream: a bar with the time left on a terminal, a plain line
-/// every 10 % in a pipe. Work of less than a second shows nothing.
+/// after a second and every 10 % in a pipe. Work of less than a second shows nothing.
 class Progress {
  public:
   /// A quiet one shows nothing at all.
@@ -29,7 +29,7 @@ class Progress {
   bool has_bar_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_draw_ = start_;
-  int last_tenth_ = 0;
+  int last_tenth_ = -1;
 };
 
 }  // namespace promin::app

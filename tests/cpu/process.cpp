@@ -69,6 +69,10 @@ void Process::send(int signal) const {
   kill(child_, signal);
 }
 
+std::string Process::err() const {
+  return read_capture(err_);
+}
+
 ProcessResult Process::wait() {
   int status = 0;
   waitpid(child_, &status, 0);

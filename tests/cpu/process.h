@@ -40,6 +40,8 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const;
+  /// What it wrote to its standard error stream so far.
+  std::string err() const;
   /// Waits for its end.
   ProcessResult wait();
 
