@@ -40,7 +40,8 @@ show_quarters() {
   done
 }
 
-# Installs what is missing and brings build/release up to date; nothing to do takes no time.
+# prepare TARGET: installs what is missing and brings that target of build/release up to date; nothing to do takes no
+# time.
 prepare() {
   local log="$repository/build/build.log"
   "$repository/tools/setup"
@@ -49,7 +50,7 @@ prepare() {
     say "Configuring build/release"
     run_logged configure.log cmake --preset release
   fi
-  if ! cmake --build --preset release 2>&1 | tee "$log" | show_quarters; then
+  if ! cmake --build --preset release --target "$1" 2>&1 | tee "$log" | show_quarters; then
     grep -A 20 -m 1 '^FAILED' "$log" >&2 || tail -n 20 "$log" >&2
     die "the build failed; the whole output is in $log"
   fi

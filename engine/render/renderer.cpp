@@ -70,6 +70,7 @@ struct Renderer::Impl {
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = packed.size_bytes();
     stats.features = options.force_all_features ? all_features() : features_of(scene);
+    stats.features &= ~options.left_out_features;
 
     auto start = Clock::now();
     nodes = upload(std::as_bytes(std::span(packed.nodes)));

@@ -56,6 +56,8 @@ struct RendererOptions {
   std::string builder = "sah";
   /// Compile every feature in, whether the scene uses it or not: for measuring what specialisation brings.
   bool force_all_features = false;
+  /// Features to leave out although the scene uses them, e.g. FEATURE_SHADOWS: then nothing throws a shadow.
+  FeatureMask left_out_features = 0;
   /// A single dispatch is not meant to take longer; work is cut into tiles by measured time.
   double target_dispatch_ms = 25.0;
   /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
