@@ -4,6 +4,7 @@
 # What setup, render and test share; sourced, never run. Progress goes to stderr, details to build/*.log.
 
 set -euo pipefail
+unset CDPATH
 
 repository="$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)"
 build_dir="$repository/build/release"
@@ -22,7 +23,7 @@ run_logged() {
   mkdir -p -- "$repository/build"
   if ! "$@" >"$log" 2>&1; then
     tail -n 40 -- "$log" >&2
-    die "$1 failed; the whole output is in $log"
+    die "'$*' failed; the whole output is in $log"
   fi
 }
 
@@ -33,7 +34,7 @@ show_quarters() {
     if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
       quarter=$((4 * BASH_REMATCH[1] / BASH_REMATCH[2]))
       if ((quarter > shown)); then
-        say "  ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps"
+        say "Building build/release: ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps"
         shown=$quarter
       fi
     fi

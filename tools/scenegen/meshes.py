@@ -155,17 +155,18 @@ def torus_knot(p, q, major, minor, tube, flutes, twists, depth, rows, columns):
     p turns about the axis, q through the hole. `flutes` grooves of relative `depth` make `twists` turns on the way.
     """
 
-    def curve(u):
-        around, through = math.tau * p * u, math.tau * q * u
-        ring = major + minor * math.cos(through)
-        return (ring * math.cos(around), minor * math.sin(through), ring * math.sin(around))
-
     def surface(u, v):
-        step = 1e-4
-        before, here, after = curve(u - step), curve(u), curve(u + step)
-        tangent = normalize(sub(after, before))
+        around, through = math.tau * p * u, math.tau * q * u
+        ring, ring_slope = major + minor * math.cos(through), -q * minor * math.sin(through)
+        here = (ring * math.cos(around), minor * math.sin(through), ring * math.sin(around))
+        tangent = normalize(
+            (
+                ring_slope * math.cos(around) - ring * p * math.sin(around),
+                q * minor * math.cos(through),
+                ring_slope * math.sin(around) + ring * p * math.cos(around),
+            )
+        )
         # The frame follows the torus: one side points away from the middle of its tube, so it closes by itself.
-        around = math.tau * p * u
         outward = sub(here, (major * math.cos(around), 0.0, major * math.sin(around)))
         side = normalize(sub(outward, scale(tangent, dot(outward, tangent))))
         other = cross(tangent, side)

@@ -18,7 +18,11 @@ def scale(a, s):
 
 
 def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
+    # Not sum(): Python 3.12 changed how that rounds, and the scenes must not depend on the version.
+    total = 0.0
+    for x, y in zip(a, b):
+        total += x * y
+    return total
 
 
 def cross(a, b):

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// The scenes in scenes/: what the generator writes is what is checked in, and all of it loads.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <variant>
+
+#include "process.h"
+#include "scene/load_scene.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Name and bytes of each file.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    contents[entry.path().filename()] = std::string(std::istreambuf_iterator<char>(file), {});
+  }
+  return contents;
+}
+
+void run_make_scenes(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {std::string(PROMIN_TOOLS_DIR) + "/make_scenes.py"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const ProcessResult result = Process(PROMIN_PYTHON, words, {}).wait();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+}
+
+class ScenesTest : public testing::Test {
+ protected:
+  void TearDown() override { fs::remove_all(folder_); }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("promin_scenes_" + std::to_string(getpid()));
+};
+
+TEST_F(ScenesTest, GeneratorWritesWhatIsCheckedIn) {
+  ASSERT_NO_FATAL_FAILURE(run_make_scenes({"-o", folder_}));
+  const auto expected = contents_of(PROMIN_SCENES_DIR);
+  const auto written = contents_of(folder_);
+  for (const auto& [name, bytes] : expected) {
+    ASSERT_TRUE(written.contains(name)) << name << " is in scenes/ but make_scenes.py does not write it";
+    EXPECT_TRUE(written.at(name) == bytes) << name << " differs: run tools/make_scenes.py";
+  }
+  EXPECT_EQ(written.size(), expected.size());
+}
+
+TEST_F(ScenesTest, EverySceneLoadsWithoutWarning) {
+  size_t count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(PROMIN_SCENES_DIR)) {
+    const fs::path ending = entry.path().extension();
+    if (ending != ".gltf" && ending != ".obj") continue;
+    SCOPED_TRACE(entry.path());
+    const Scene scene = load_scene(entry.path());
+    EXPECT_THAT(scene.warnings, testing::IsEmpty());
+    if (ending == ".gltf") {
+      EXPECT_THAT(scene.cameras, testing::Not(testing::IsEmpty()));
+      EXPECT_THAT(scene.lights, testing::Not(testing::IsEmpty()));
+    }
+    ++count;
+  }
+  EXPECT_GE(count, 22U);
+}
+
+TEST_F(ScenesTest, SphereflakeHasNineSpheresOnEachSphere) {
+  fs::create_directories(folder_);
+  const fs::path file = folder_ / "flake.gltf";
+  ASSERT_NO_FATAL_FAILURE(run_make_scenes({"--sphereflake", "3", "-o", file}));
+  std::vector<Sphere> spheres;
+  for (const Object& object : load_scene(file).objects) {
+    if (const auto* sphere = std::get_if<Sphere>(&object.shape)) spheres.push_back(*sphere);
+  }
+  ASSERT_EQ(spheres.size(), 1U + 9U + 81U + 729U);
+  for (const Sphere& child : spheres) {
+    if (child.radius == spheres.front().radius) continue;
+    int parent_count = 0;
+    for (const Sphere& parent : spheres) {
+      const bool is_thrice = std::abs(parent.radius - 3.0F * child.radius) < 1e-5F;
+      const float gap = glm::length(parent.center - child.center) - parent.radius - child.radius;
+      if (is_thrice && std::abs(gap) < 1e-5F) ++parent_count;
+    }
+    EXPECT_GE(parent_count, 1) << "a sphere of radius " << child.radius << " touches no larger one";
+  }
+}
+
+}  // namespace
+}  // namespace promin
