@@ -11,34 +11,23 @@
 namespace promin {
 namespace {
 
-/// Squared distance, on the torus and in units of 1 / count, between the two nearest of the points.
-uint64_t smallest_distance2(uint32_t count, uint32_t generator, uint64_t give_up_below) {
-  const auto wrap = [count](int64_t d) {
-    const auto size = static_cast<int64_t>(count);
-    d = ((d % size) + size) % size;
-    return std::min(d, size - d);
-  };
-  const auto row = [&](uint32_t i) {
-    return static_cast<int64_t>((static_cast<uint64_t>(generator) * (i + 1)) % (count + 1)) - 1;
-  };
-  uint64_t smallest = std::numeric_limits<uint64_t>::max();
-  for (uint32_t i = 0; i < count; ++i) {
-    for (uint32_t j = i + 1; j < count; ++j) {
-      const int64_t dx = wrap(static_cast<int64_t>(j) - i);
-      if (static_cast<uint64_t>(dx * dx) >= smallest) continue;
-      const int64_t dy = wrap(row(j) - row(i));
-      smallest = std::min(smallest, static_cast<uint64_t>(dx * dx + dy * dy));
-      if (smallest <= give_up_below) return smallest;
-    }
+/// Squared length of the shortest vector between points of the lattice (i, g i) mod `modulus`.
+uint64_t shortest_vector2(uint32_t generator, uint32_t modulus) {
+  const auto wrap = [modulus](uint64_t d) { return std::min(d % modulus, modulus - d % modulus); };
+  uint64_t shortest2 = std::numeric_limits<uint64_t>::max();
+  for (uint64_t i = 1; i < modulus; ++i) {
+    const uint64_t dx = wrap(i);
+    const uint64_t dy = wrap(i * generator);
+    shortest2 = std::min(shortest2, dx * dx + dy * dy);
   }
-  return smallest;
+  return shortest2;
 }
 
 }  // namespace
 
 uint32_t lattice_generator(uint32_t count) {
-  // The search is cubic; beyond, the golden ratio's nearest coprime is good enough (Niederreiter 1992, ch. 5).
-  constexpr uint32_t kLargestSearched = 128;
+  // The search is quadratic; beyond, the golden ratio's nearest coprime is good enough (Niederreiter 1992, ch. 5).
+  constexpr uint32_t kLargestSearched = 1024;
   const uint32_t modulus = count + 1;
   if (count > kLargestSearched) {
     const auto golden = static_cast<uint32_t>(std::lround(modulus / std::numbers::phi));
@@ -48,13 +37,13 @@ uint32_t lattice_generator(uint32_t count) {
     }
   }
   uint32_t best = 1;
-  uint64_t best_distance2 = 0;
+  uint64_t best_vector2 = 0;
   for (uint32_t generator = 1; generator < modulus; ++generator) {
     if (std::gcd(generator, modulus) != 1) continue;
-    const uint64_t distance2 = smallest_distance2(count, generator, best_distance2);
-    if (distance2 > best_distance2) {
+    const uint64_t vector2 = shortest_vector2(generator, modulus);
+    if (vector2 > best_vector2) {
       best = generator;
-      best_distance2 = distance2;
+      best_vector2 = vector2;
     }
   }
   return best;
