@@ -44,7 +44,7 @@ constexpr const char* kSquareGltf =
     R"({
   "asset": {"version": "2.0"},
   "extensionsUsed": ["KHR_lights_punctual"],
-  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 30}]}},
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}},
   "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)"
     R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAABAAIAAAACAAMA"}],
   "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
