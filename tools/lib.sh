@@ -42,15 +42,16 @@ show_quarters() {
 
 # Installs what is missing and brings build/release up to date; nothing to do takes no time.
 prepare() {
+  local log="$repository/build/build.log"
   "$repository/tools/setup"
   cd -- "$repository"
   if [[ ! $build_dir/build.ninja -nt $repository/CMakePresets.json ]]; then
     say "Configuring build/release"
     run_logged configure.log cmake --preset release
   fi
-  if ! cmake --build --preset release 2>&1 | tee "$repository/build/build.log" | show_quarters; then
-    grep -A 20 -m 3 -E '^FAILED|error:' "$repository/build/build.log" >&2 || tail -n 40 "$repository/build/build.log" >&2
-    die "the build failed; the whole output is in $repository/build/build.log"
+  if ! cmake --build --preset release 2>&1 | tee "$log" | show_quarters; then
+    grep -A 20 -m 1 '^FAILED' "$log" >&2 || tail -n 20 "$log" >&2
+    die "the build failed; the whole output is in $log"
   fi
   cd -- "$OLDPWD"
 }

@@ -24,8 +24,12 @@ def write_all(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sphereflake", type=int, metavar="LEVEL", help="1 + 9 + ... + 9^LEVEL spheres (4: 7381)")
-    parser.add_argument("-o", "--output", type=pathlib.Path,
-                        help="with --sphereflake the .gltf file, otherwise the folder (default: scenes/ of this repository)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=pathlib.Path,
+        help="with --sphereflake the .gltf file, otherwise the folder (default: scenes/ of this repository)",
+    )
     arguments = parser.parse_args()
     if arguments.sphereflake is None:
         write_all(arguments.output or pathlib.Path(__file__).resolve().parent.parent / "scenes")

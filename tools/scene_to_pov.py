@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a promin glTF scene as a POV-Ray 3.7 scene that POV-Ray shades by the same formulas.
 
-What POV-Ray cannot say in the same way (textures, vertex colours, metallic-roughness materials, falloff, spots, coloured
-specular factors, a light whose specular power differs from its diffuse power) is refused, so that a difference between
-the pictures is a difference between the renderers. Render with:
+What POV-Ray cannot say in the same way (vertex colours, metallic-roughness materials, falloff, spots, coloured specular
+factors, a source with two powers) is refused, so that a difference between the pictures is a difference between the
+renderers. Render with:
     povray +Iout.pov +Oout.exr +FE +W1024 +H1024 -A -D
 """
 

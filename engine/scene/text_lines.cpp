@@ -35,8 +35,7 @@ bool TextLines::advance() {
 std::string_view take_word(std::string_view& line) {
   const size_t begin = std::min(line.find_first_not_of(kSpace), line.size());
   line.remove_prefix(begin);
-  if (line.starts_with('#')) line = {};
-  const size_t end = std::min(line.find_first_of(kSpace), line.size());
+  const size_t end = std::min(line.find_first_of(" \t\r\f\v#"), line.size());
   const std::string_view word = line.substr(0, end);
   line.remove_prefix(end);
   return word;

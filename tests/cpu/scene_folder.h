@@ -29,6 +29,8 @@ class SceneFolder : public testing::Test {
   ~SceneFolder() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
+    // A new file each time: truncating an old one makes some file systems flush.
+    std::filesystem::remove(folder_ / name);
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
   }

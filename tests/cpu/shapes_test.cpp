@@ -75,7 +75,7 @@ TEST_P(RandomShapes, BoundsOfSpheresAreConservativeAndTight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Offsets, RandomShapes, testing::Values(0.0, 1.0, 1e3, 1e7),
-                         [](const auto& info) { return "Offset" + std::to_string(info.index); });
+                         [](const auto& offset) { return "Offset" + std::to_string(offset.index); });
 
 TEST(ShapesTest, AxisAlignedDisksDoNotBulge) {
   const Bounds bounds = bounds_of(Cylinder{vec3(0), vec3(0, 1, 0), 2.0F, 1.0F});

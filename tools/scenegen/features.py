@@ -39,8 +39,11 @@ def _glossy(g, name, color):
 def sphere():
     """Spheres of three radii on the floor."""
     g = _stage()
-    for name, color, radius, x, z in (("large", CORAL, 1.0, -0.9, -0.4), ("middle", TEAL, 0.6, 0.85, 0.1),
-                                      ("small", AMBER, 0.3, 0.1, 0.9)):
+    for name, color, radius, x, z in (
+        ("large", CORAL, 1.0, -0.9, -0.4),
+        ("middle", TEAL, 0.6, 0.85, 0.1),
+        ("small", AMBER, 0.3, 0.1, 0.9),
+    ):
         g.node(name, mesh=g.sphere(name, radius, _glossy(g, name, color)), translation=(x, radius, z))
     g.camera("camera", (0.0, 2.0, 5.6), (0.0, 0.75, 0.0))
     return g
@@ -95,9 +98,11 @@ def cone():
 def triangles_sharp():
     """Meshes without normals: every face is flat."""
     g = _stage()
-    solids = (("octahedron", meshes.octahedron(0.8), CORAL, (-1.9, 0.8, -0.2)),
-              ("icosahedron", meshes.icosahedron(0.85), TEAL, (0.0, 0.72, 0.2)),
-              ("star", meshes.stellated(meshes.icosahedron(0.5), 0.6), AMBER, (1.95, 0.75, -0.3)))
+    solids = (
+        ("octahedron", meshes.octahedron(0.8), CORAL, (-1.9, 0.8, -0.2)),
+        ("icosahedron", meshes.icosahedron(0.85), TEAL, (0.0, 0.72, 0.2)),
+        ("star", meshes.stellated(meshes.icosahedron(0.5), 0.6), AMBER, (1.95, 0.75, -0.3)),
+    )
     for name, mesh, color, place in solids:
         rotation = quaternion_about((0.2, 1.0, 0.1), 25.0)
         g.node(name, mesh=g.mesh(name, mesh, _glossy(g, name, color)), translation=place, rotation=rotation)
@@ -113,7 +118,10 @@ def triangles_smooth():
         smooth_mesh = meshes.smooth(smooth_mesh)
         flat_mesh = meshes.Mesh(smooth_mesh.positions, smooth_mesh.indices)
         rotation = quaternion_about((1.0, 0.25, 0.0), 65.0)
-        for kind, mesh, color, z, y in (("flat", flat_mesh, STONE, -1.7, height + 0.5), ("smooth", smooth_mesh, CORAL, 0.4, height)):
+        for kind, mesh, color, z, y in (
+            ("flat", flat_mesh, STONE, -1.7, height + 0.5),
+            ("smooth", smooth_mesh, CORAL, 0.4, height),
+        ):
             node = g.mesh(f"{kind} {name}", mesh, _glossy(g, f"{kind} {name}", color))
             g.node(f"{kind} {name}", mesh=node, translation=(x, y, z), rotation=rotation)
     pedestal = g.cylinder("pedestal", 0.5, 0.8, g.material("pedestal", SLATE))
@@ -192,8 +200,11 @@ def light_directional():
 def light_spot():
     """Three coloured spots, from a hard to a soft edge; where they overlap their colours add up."""
     g = _stage(floor=(0.7, 0.7, 0.7), background=(0.05, 0.06, 0.09), ambient=0.08, key=0.0)
-    for name, color, x, z, inner in (("red", (0.9, 0.12, 0.08), -2.0, 1.0, 17.9), ("green", (0.12, 0.8, 0.15), 0.0, -1.8, 12.0),
-                                     ("blue", (0.12, 0.25, 1.0), 2.0, 1.0, 0.0)):
+    for name, color, x, z, inner in (
+        ("red", (0.9, 0.12, 0.08), -2.0, 1.0, 17.9),
+        ("green", (0.12, 0.8, 0.15), 0.0, -1.8, 12.0),
+        ("blue", (0.12, 0.25, 1.0), 2.0, 1.0, 0.0),
+    ):
         g.spot_light(name, (x, 4.0, z), (0.5 * x, 0.0, 0.5 * z), inner, 18.0, color=color)
     g.node("ball", mesh=g.sphere("ball", 0.45, _glossy(g, "ball", (0.8, 0.8, 0.8))), translation=(0.0, 0.45, 0.0))
     g.camera("camera", (0.0, 3.8, 5.6), (0.0, 0.1, 0.0))
@@ -205,9 +216,9 @@ def light_physical():
     g = _stage(floor=(0.6, 0.6, 0.6), background=(0.02, 0.025, 0.035), ambient=0.03, key=0.0)
     bulb = g.sphere("bulb", 0.06, g.material("bulb", (0.0, 0.0, 0.0), emissive=(1.0, 0.85, 0.6)))
     post = g.cylinder("post", 0.8, 0.12, _glossy(g, "post", AZURE))
-    for i, height in enumerate((0.5, 1.0, 2.0)):
+    for i, height in enumerate((0.6, 1.1, 2.0)):
         x = -2.6 + 2.6 * i
-        g.point_light(f"lamp {i}", (x, height, 0.0), color=(1.0, 0.85, 0.6), intensity=0.3, classic=False)
+        g.point_light(f"lamp {i}", (x, height, 0.0), color=(1.0, 0.85, 0.6), intensity=0.45, classic=False)
         g.node(f"bulb {i}", mesh=bulb, translation=(x, height + 0.07, 0.0))
         g.node(f"post {i}", mesh=post, translation=(x + 0.6, 0.4, -0.6))
     g.camera("camera", (0.0, 3.0, 6.2), (0.0, 0.5, 0.0))
@@ -222,6 +233,8 @@ def ambient_and_background():
         height = 0.6 + 0.5 * (i % 3)
         post = g.cylinder(name, height, 0.35, g.material(name, color))
         g.node(name, mesh=post, translation=(-2.25 + 0.9 * i, height / 2.0, 0.0))
+    # Switched off: a scene without any source would get a headlight.
+    g.directional_light("off", (0.0, -1.0, 0.0), intensity=0.0)
     g.camera("camera", (0.0, 1.6, 5.6), (0.0, 0.7, 0.0))
     return g
 
@@ -247,7 +260,9 @@ def mirrors():
     g = _stage(floor=(0.62, 0.5, 0.36), background=(0.5, 0.64, 0.78))
     mirror = g.material("mirror", (0.02, 0.03, 0.03), reflection=(0.88, 0.92, 0.9))
     frame = g.material("frame", (0.3, 0.12, 0.05), specular=0.3, shininess=20.0)
-    glass, back = g.mesh("mirror", meshes.rectangle(3.6, 2.2), mirror), g.mesh("frame", meshes.box(3.8, 0.08, 2.4), frame)
+    glass, back = g.mesh("mirror", meshes.rectangle(3.6, 2.2), mirror), g.mesh(
+        "frame", meshes.box(3.8, 0.08, 2.4), frame
+    )
     for name, z, turn, yaw in (("far", -1.6, 90.0, 0.0), ("near", 1.9, -90.0, 0.0)):
         rotation = quaternion_about((1.0, 0.0, 0.0), turn)
         inward = 0.05 if z < 0 else -0.05
@@ -265,12 +280,12 @@ def mirrors():
 def emissive():
     """Lanterns that show their own colour in the dark; emission lights nothing else."""
     g = _stage(floor=(0.4, 0.4, 0.42), background=(0.03, 0.035, 0.05), ambient=0.25, key=0.15)
+    pole = g.cylinder("pole", 0.6, 0.06, g.material("pole", STONE))
     for i, (name, color) in enumerate(PALETTE.items()):
         glow = tuple(min(1.0, 1.3 * c) for c in color)
         lantern = g.sphere(name, 0.3, g.material(name, (0.02, 0.02, 0.02), emissive=glow))
         angle = math.tau * i / len(PALETTE)
         g.node(name, mesh=lantern, translation=(1.7 * math.sin(angle), 0.85, 1.7 * math.cos(angle)))
-        pole = g.cylinder("pole", 0.6, 0.06, g.material("pole", STONE))
         g.node("pole", mesh=pole, translation=(1.7 * math.sin(angle), 0.3, 1.7 * math.cos(angle)))
     column = g.cylinder("mirror column", 1.6, 0.5, g.material("mirror column", (0.03, 0.03, 0.03), reflection=0.8))
     g.node("mirror column", mesh=column, translation=(0.0, 0.8, 0.0))
@@ -284,7 +299,11 @@ def _cubes(g):
     for x in range(3):
         for z in range(3):
             for y in range(3 - max(x, z)):
-                g.node(f"cube {x} {y} {z}", mesh=boxes[(x + 2 * z + 3 * y) % 6], translation=(x - 1.0, y + 0.4 - 0.2 * y, z - 1.0))
+                g.node(
+                    f"cube {x} {y} {z}",
+                    mesh=boxes[(x + 2 * z + 3 * y) % 6],
+                    translation=(x - 1.0, y + 0.4 - 0.2 * y, z - 1.0),
+                )
 
 
 def orthographic():
@@ -296,10 +315,10 @@ def orthographic():
 
 
 def cameras():
-    """Five cameras on one scene: front, side, top (orthographic), a wide angle among the cubes, a narrow one from afar."""
+    """Five cameras on one scene: front, side, top (orthographic), wide at a corner, narrow from afar."""
     g = _stage()
     _cubes(g)
-    g.camera("front", (0.0, 1.8, 6.0), (0.0, 0.8, 0.0))
+    g.camera("front", (-1.2, 2.4, 6.0), (0.0, 0.8, 0.0))
     g.camera("side", (6.0, 2.2, 1.5), (0.0, 0.8, 0.0))
     g.orthographic_camera("top", (0.0, 8.0, 0.0), (0.0, 0.0, 0.0), 1.9)
     g.camera("wide", (2.4, 1.7, 2.4), (0.0, 0.7, 0.0), yfov_deg=85.0)
@@ -309,27 +328,31 @@ def cameras():
 
 def metallic_roughness():
     """Core glTF materials: metals behind, dielectrics in front, rougher to the right."""
-    g = _stage(floor=STONE)
+    g = _stage(floor=SLATE)
     for row, (metallic, color) in enumerate(((0.0, CORAL), (1.0, (0.95, 0.7, 0.3)))):
         for column in range(5):
             name = f"metallic {metallic:g} roughness {column / 4:g}"
             material = g.metallic_roughness(name, color, metallic, column / 4)
             ball = g.sphere(name, 0.45, material)
             g.node(name, mesh=ball, translation=(-2.2 + 1.1 * column, 0.45, 0.7 - 1.4 * row))
-    g.point_light("lamp", (-3.0, 5.0, 4.0), intensity=120.0, classic=False)
+    g.point_light("lamp", (-3.0, 5.0, 4.0), intensity=70.0, classic=False)
     g.camera("camera", (0.0, 2.6, 6.0), (0.0, 0.35, 0.0))
     return g
 
 
 def all_primitives():
-    """Every primitive and every term of the shading formula at once, in numbers that POV-Ray can say in the same way."""
+    """Every primitive and every term of the shading formula at once, as far as POV-Ray has the same."""
     g = Gltf()
     g.sky((0.2, 0.3, 0.45), (0.2, 0.22, 0.25))
     floor = g.material("floor", (0.42, 0.4, 0.36), specular=0.1, shininess=20.0, reflection=0.15)
     g.node("floor", mesh=g.plane("floor", floor))
-    mirror = g.material("mirror", (0.1, 0.1, 0.1), specular=0.5, shininess=200.0, reflection=(0.7, 0.65, 0.6), ambient=0.05)
+    mirror = g.material(
+        "mirror", (0.1, 0.1, 0.1), specular=0.5, shininess=200.0, reflection=(0.7, 0.65, 0.6), ambient=0.05
+    )
     g.node("sphere", mesh=g.sphere("sphere", 0.8, mirror), translation=(-1.7, 0.8, -0.6))
-    g.node("sunk sphere", mesh=g.sphere("sunk sphere", 0.4, _glossy(g, "sunk sphere", PLUM)), translation=(-0.4, 0.2, 1.3))
+    g.node(
+        "sunk sphere", mesh=g.sphere("sunk sphere", 0.4, _glossy(g, "sunk sphere", PLUM)), translation=(-0.4, 0.2, 1.3)
+    )
     cylinder = g.cylinder("cylinder", 1.4, 0.35, _glossy(g, "cylinder", TEAL))
     g.node("cylinder", mesh=cylinder, translation=(0.1, 0.85, -0.9), rotation=axis_rotation((0.3, 1.0, 0.15)))
     cone = g.cone("cone", 1.3, 0.5, g.material("cone", AMBER, specular=0.3, shininess=8.0, reflection=0.1))
@@ -338,7 +361,13 @@ def all_primitives():
     g.node("frustum", mesh=frustum, translation=(2.4, 0.35, -0.8))
     glow = g.material("star", AZURE, specular=0.2, shininess=15.0, emissive=(0.05, 0.02, 0.0))
     star = g.mesh("star", meshes.stellated(meshes.icosahedron(0.32), 0.35), glow)
-    g.node("star", mesh=star, translation=(0.5, 0.55, 1.5), rotation=quaternion_about((0.3, 1.0, 0.2), 40.0), scale=(1.0, 1.1, 0.9))
+    g.node(
+        "star",
+        mesh=star,
+        translation=(0.5, 0.55, 1.5),
+        rotation=quaternion_about((0.3, 1.0, 0.2), 40.0),
+        scale=(1.0, 1.1, 0.9),
+    )
     wall = g.mesh("mirror wall", meshes.box(5.0, 2.2, 0.1), mirror)
     g.node("mirror wall", mesh=wall, translation=(0.3, 1.1, -2.6), rotation=quaternion_about((0.0, 1.0, 0.0), -12.0))
     g.point_light("warm", (-3.0, 5.0, 4.0), color=(0.5, 0.42, 0.3))
@@ -348,6 +377,25 @@ def all_primitives():
     return g
 
 
-SCENES = (sphere, plane, cylinder, cone, triangles_sharp, triangles_smooth, strip_and_fan, vertex_colors, light_point,
-          light_directional, light_spot, light_physical, ambient_and_background, shadows, mirrors, emissive, orthographic,
-          cameras, metallic_roughness, all_primitives)
+SCENES = (
+    sphere,
+    plane,
+    cylinder,
+    cone,
+    triangles_sharp,
+    triangles_smooth,
+    strip_and_fan,
+    vertex_colors,
+    light_point,
+    light_directional,
+    light_spot,
+    light_physical,
+    ambient_and_background,
+    shadows,
+    mirrors,
+    emissive,
+    orthographic,
+    cameras,
+    metallic_roughness,
+    all_primitives,
+)

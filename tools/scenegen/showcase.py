@@ -53,8 +53,12 @@ def _knot_on_pedestal(g):
     g.node("pedestal", mesh=g.frustum("pedestal", 0.7, 0.75, 0.5, stone), translation=(0.0, 0.51, 0.0))
     coral = _polished(g, "coral", (0.82, 0.2, 0.1), specular=0.5, shininess=70.0, reflection=0.1)
     knot = meshes.torus_knot(2, 3, 0.72, 0.33, 0.19, 5, 12, 0.16, 448, 60)
-    g.node("knot", mesh=g.mesh("knot", knot, coral), translation=(0.0, 1.98, 0.0),
-           rotation=quaternion_about((1.0, 0.0, 0.0), 72.0))
+    g.node(
+        "knot",
+        mesh=g.mesh("knot", knot, coral),
+        translation=(0.0, 1.98, 0.0),
+        rotation=quaternion_about((1.0, 0.0, 0.0), 72.0),
+    )
 
 
 def _mirror_sphere(g):
@@ -65,7 +69,9 @@ def _mirror_sphere(g):
 def _folding_mirror(g):
     mirror = g.material("mirror", (0.02, 0.02, 0.03), reflection=(0.8, 0.84, 0.86))
     frame = _polished(g, "frame", (0.5, 0.33, 0.12), specular=0.5, shininess=40.0, reflection=0.1)
-    pane, panel = g.mesh("mirror pane", meshes.box(1.44, 2.64, 0.02), mirror), g.mesh("frame", meshes.box(1.6, 2.8, 0.1), frame)
+    pane, panel = g.mesh("mirror pane", meshes.box(1.44, 2.64, 0.02), mirror), g.mesh(
+        "frame", meshes.box(1.6, 2.8, 0.1), frame
+    )
     hinge = (2.45, -2.15)
     for name, side, yaw in (("left", -1.0, -16.0), ("right", 1.0, -42.0)):
         sine, cosine = math.sin(math.radians(yaw)), math.cos(math.radians(yaw))
@@ -91,8 +97,15 @@ def _solids(g):
 
 def _pearls(g):
     """A row of small spheres curves around the pedestal."""
-    colors = ((0.8, 0.2, 0.1), (0.85, 0.48, 0.08), (0.72, 0.66, 0.54), (0.2, 0.5, 0.18), (0.04, 0.42, 0.42),
-              (0.1, 0.26, 0.62), (0.32, 0.1, 0.42))
+    colors = (
+        (0.8, 0.2, 0.1),
+        (0.85, 0.48, 0.08),
+        (0.72, 0.66, 0.54),
+        (0.2, 0.5, 0.18),
+        (0.04, 0.42, 0.42),
+        (0.1, 0.26, 0.62),
+        (0.32, 0.1, 0.42),
+    )
     for i, color in enumerate(colors):
         angle = math.radians(-39.0 + 13.0 * i)
         pearl = g.sphere(f"pearl {i}", 0.17, _polished(g, f"pearl {i}", color, shininess=90.0))

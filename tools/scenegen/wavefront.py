@@ -57,12 +57,12 @@ def _regular(corners, radius, x, z, inner_radius=None):
 def write_obj_scene(folder):
     """Writes obj_materials.obj and .mtl."""
     obj = _Obj()
-    obj.quad("ground", [(-3, 0, 2.4), (3, 0, 2.4), (3, 0, -2.4), (-3, 0, -2.4)], "ground")
+    obj.quad("ground", [(-2.8, 0, 1.8), (2.4, 0, 1.8), (2.4, 0, -1.6), (-2.8, 0, -1.6)], "ground")
     obj.prism("star", _regular(5, 0.95, -1.55, 0.4, inner_radius=0.42), 0.0, 0.7, "gold", "brick")
     corner = [(0.1, 1.5), (1.0, 1.5), (1.0, 0.5), (1.9, 0.5), (1.9, -0.4), (0.1, -0.4)]
     obj.prism("corner", corner, 0.0, 0.55, "brick", "gold")
     obj.prism("hexagon", _regular(6, 0.5, 0.85, 0.2), 0.55, 1.3, "lagoon", "lagoon")
-    obj.quad("mirror", [(-2.8, 0.0, -1.7), (2.6, 0.0, -1.7), (2.6, 1.9, -1.9), (-2.8, 1.9, -1.9)], "mirror")
+    obj.quad("mirror", [(-2.7, 0.0, -1.5), (2.3, 0.0, -1.5), (2.3, 1.5, -1.3), (-2.7, 1.5, -1.3)], "mirror")
     (folder / "obj_materials.obj").write_text("\n".join(obj.lines) + "\n", encoding="utf-8")
     materials = (f"newmtl {name}\n{text}" for name, text in _MATERIALS.items())
     (folder / "obj_materials.mtl").write_text("\n".join(materials), encoding="utf-8")

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/math.h"
+#include "scene/scene.h"
+
+namespace promin {
+
+// The three rotations, angles in radians, right-handed: each turns anticlockwise for an eye on the positive axis.
+
+/// Mx(gamma): Y towards Z. A camera at the start pose looks up for gamma > 0.
+dmat3 make_rotation_x(double gamma);
+/// My(beta): Z towards X. A camera at the start pose turns left for beta > 0.
+dmat3 make_rotation_y(double beta);
+/// Mz(alpha): X towards Y. A camera at the start pose rolls anticlockwise for alpha > 0, seen from behind it: its up
+/// tips to the left, and the picture turns clockwise.
+dmat3 make_rotation_z(double alpha);
+
+/// The thesis' free camera (system.md, "Rays and camera"): a position O and a rotation matrix Q.
+///   M(alpha, beta, gamma) = Mz(alpha) My(beta) Mx(gamma),  Q <- Q M
+///   look = Q (0, 0, -1),  up = Q (0, 1, 0),  right = look x up
+/// The vectors come from the start vectors every time, never from vectors already turned (erratum 8), and M stands on
+/// the right: angles are about the camera's own axes. Q stays orthonormal however long the camera is in use.
+class FreeCamera {
+ public:
+  /// At the origin, looking along -Z with +Y up; the projection is Camera's default.
+  FreeCamera() : FreeCamera(Camera{}) {}
+
+  /// Takes over pose and projection. Look and up are orthonormal to fp32 rounding, as Camera promises.
+  explicit FreeCamera(const Camera& camera);
+
+  /// From directions of any length. They are used as given, to the bit, where they are orthonormal to rounding;
+  /// otherwise up is made perpendicular to look. Throws UsageError if they are zero, not finite or parallel.
+  static FreeCamera from_pose(const vec3& eye, const vec3& look, const vec3& up);
+
+  /// O <- O + ahead * look + up * up + right * right, in world units.
+  void move(double ahead, double up, double right);
+
+  /// Q <- Q M(alpha, beta, gamma), radians: rolls anticlockwise, turns left, looks up.
+  void rotate(double alpha, double beta, double gamma);
+
+  const dvec3& position() const { return position_; }
+  const dmat3& rotation() const { return rotation_; }
+  dvec3 look() const;
+  dvec3 up() const;
+  dvec3 right() const;
+
+  /// Pose and projection for the renderer. What was neither moved nor rotated has the bits it came with.
+  const Camera& camera() const { return camera_; }
+
+ private:
+  dvec3 position_;
+  dmat3 rotation_;
+  Camera camera_;
+};
+
+}  // namespace promin

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/oracle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+
+namespace promin::oracle {
+namespace {
+
+bool is_finite(const Vector& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool can_hit(const Ray& ray) {
+  return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Vector(0) && ray.tmin < ray.tmax;
+}
+
+/// The solutions of a t^2 + 2 b t + c = 0; NaN or infinite where there are fewer. Adding what has the same sign
+/// (Press et al., "Numerical Recipes", 5.6) keeps both accurate, and holds for a = 0.
+std::array<Real, 2> solve_quadratic(Real a, Real b, Real c) {
+  const Real q = -(b + std::copysign(std::sqrt(b * b - a * c), b));
+  return {q / a, c / q};
+}
+
+/// Collects what one ray meets and keeps the nearest.
+class Search {
+ public:
+  explicit Search(const Ray& ray) : ray_(ray) { ray_.tmin = std::max(Real(0), ray.tmin); }
+
+  void visit(int32_t object, const Shape& shape) {
+    object_ = object;
+    std::visit([this](const auto& solid) { intersect(solid); }, shape);
+  }
+  const Hit& nearest() const { return nearest_; }
+
+ private:
+  void offer(Real t, int32_t primitive, Real u, Real v, const Vector& normal) {
+    if (!(t > ray_.tmin && t < ray_.tmax && t < nearest_.t)) return;
+    nearest_ = {t, object_, primitive, u, v, glm::normalize(normal)};
+  }
+  void offer(Real t, const Vector& normal) { offer(t, 0, 0, 0, normal); }
+
+  void intersect(const NotDrawn&) {}
+
+  /// |P - C|^2 = r^2
+  void intersect(const Sphere& sphere) {
+    const Vector& d = ray_.direction;
+    const Vector oc = ray_.origin - Vector(sphere.center);
+    const Real r = sphere.radius;
+    for (const Real t : solve_quadratic(glm::dot(d, d), glm::dot(d, oc), glm::dot(oc, oc) - r * r)) {
+      offer(t, oc + t * d);
+    }
+  }
+
+  /// (P - C) . N = 0
+  void intersect(const Plane& plane) {
+    const Vector n(plane.normal);
+    offer(glm::dot(Vector(plane.point) - ray_.origin, n) / glm::dot(ray_.direction, n), n);
+  }
+
+  void intersect(const Cylinder& cylinder) {
+    intersect_frustum(cylinder.center, cylinder.axis, cylinder.half_height, cylinder.radius, cylinder.radius);
+  }
+
+  void intersect(const Cone& cone) {
+    intersect_frustum(cone.center, cone.axis, cone.half_height, cone.radius_bottom, cone.radius_top);
+  }
+
+  /// |P - C - m V| = r + s m, m = (P - C) . V in [0, h], between two disks: s = tan of the half angle. With s = 0 this
+  /// is the thesis' cylinder, with r = 0 its cone (C the apex), k = 1 + s^2.
+  void intersect_frustum(const Vector& center, const Vector& axis, Real half_height, Real bottom, Real top) {
+    const Vector w = glm::normalize(axis);
+    // From the narrow end, so that a cone is solved from its apex.
+    const Vector v = bottom <= top ? w : -w;
+    const Vector c0 = center - half_height * v;
+    const Real h = 2 * half_height;
+    const Real r = std::min(bottom, top);
+    const Real s = (std::max(bottom, top) - r) / h;
+    const Real k = 1 + s * s;
+
+    const Vector& d = ray_.direction;
+    const Vector oc = ray_.origin - c0;
+    const Real dv = glm::dot(d, v);
+    const Real ov = glm::dot(oc, v);
+    const Real a = glm::dot(d, d) - k * dv * dv;
+    const Real b = glm::dot(d, oc) - k * dv * ov - s * r * dv;
+    const Real c = glm::dot(oc, oc) - k * ov * ov - 2 * s * r * ov - r * r;
+    for (const Real t : solve_quadratic(a, b, c)) {
+      const Real m = ov + t * dv;
+      if (m >= 0 && m <= h) offer(t, oc + t * d - (k * m + s * r) * v);
+    }
+    intersect_disk(c0, -v, r);
+    intersect_disk(c0 + h * v, v, r + s * h);
+  }
+
+  void intersect_disk(const Vector& center, const Vector& normal, Real radius) {
+    const Vector oc = ray_.origin - center;
+    const Real t = -glm::dot(oc, normal) / glm::dot(ray_.direction, normal);
+    const Vector p = oc + t * ray_.direction;
+    if (radius > 0 && glm::dot(p, p) <= radius * radius) offer(t, normal);
+  }
+
+  void intersect(const Mesh& mesh) {
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const glm::uvec3& corners = mesh.triangles[i];
+      intersect_triangle(static_cast<int32_t>(i), mesh.positions[corners.x], mesh.positions[corners.y],
+                         mesh.positions[corners.z]);
+    }
+  }
+
+  /// Möller-Trumbore; edges belong to the triangle.
+  void intersect_triangle(int32_t primitive, const Vector& corner_a, const Vector& corner_b, const Vector& corner_c) {
+    const Vector t0 = ray_.origin - corner_a;
+    const Vector e1 = corner_b - corner_a;
+    const Vector e2 = corner_c - corner_a;
+    const Vector normal = glm::cross(e1, e2);
+    const Vector p = glm::cross(ray_.direction, e2);
+    const Vector q = glm::cross(t0, e1);
+    const Real det = glm::dot(p, e1);
+    if (normal == Vector(0) || det == 0) return;
+    const Real u = glm::dot(p, t0) / det;
+    const Real v = glm::dot(q, ray_.direction) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1) offer(glm::dot(q, e2) / det, primitive, u, v, normal);
+  }
+
+  Ray ray_;
+  int32_t object_ = 0;
+  Hit nearest_;
+};
+
+}  // namespace
+
+Hit find_nearest_hit(const Scene& scene, const Ray& ray) {
+  if (!can_hit(ray)) return {};
+  Search search(ray);
+  for (size_t i = 0; i < scene.objects.size(); ++i) search.visit(static_cast<int32_t>(i), scene.objects[i].shape);
+  return search.nearest();
+}
+
+bool is_occluded(const Scene& scene, const Ray& ray) {
+  return find_nearest_hit(scene, ray).exists();
+}
+
+}  // namespace promin::oracle

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "scene/scene.h"
+
+/// What the renderer is checked against: the formulas of the thesis in long double (64 bits of mantissa on x86), by
+/// brute force over every primitive. It shares no formula with the shaders, and normalises axes itself.
+namespace promin::oracle {
+
+using Real = long double;
+using Vector = glm::vec<3, Real>;
+
+inline constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+
+/// P(t) = origin + t * direction. The direction has any length; a hit has tmin < t < tmax, and a negative tmin counts
+/// as 0. Nothing is met by a ray with NaN anywhere, with infinity in origin or direction, or without a direction.
+struct Ray {
+  Vector origin{0};
+  Vector direction{0};
+  Real tmin = 0;
+  Real tmax = kInfinity;
+};
+
+struct Hit {
+  /// In units of the direction; infinite on a miss.
+  Real t = kInfinity;
+  /// Index into Scene::objects; -1 on a miss.
+  int32_t object = -1;
+  /// Triangle of the object, 0 on analytic shapes; -1 on a miss.
+  int32_t primitive = -1;
+  /// Weights of a triangle's second and third corner; 0 on analytic shapes.
+  Real u = 0;
+  Real v = 0;
+  /// Unit geometric normal: as wound, or outward, a plane's own; never flipped to the ray. 0 on a miss.
+  Vector normal{0};
+
+  bool exists() const { return object >= 0; }
+};
+
+/// The nearest hit; of hits at the same t the one with the lower (object, primitive).
+Hit find_nearest_hit(const Scene& scene, const Ray& ray);
+
+/// Whether anything is met at all.
+bool is_occluded(const Scene& scene, const Ray& ray);
+
+}  // namespace promin::oracle
