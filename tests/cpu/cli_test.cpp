@@ -261,6 +261,7 @@ TEST_F(CliTest, InfoSaysWhatASceneHolds) {
   EXPECT_THAT(info.out, ContainsRegex("cameras +0 main, perspective, vertical field of view 45 degrees"));
   EXPECT_THAT(info.out, HasSubstr("\n            1 side, "));
   EXPECT_THAT(info.out, ContainsRegex("bounds +-1 -1 0 to 1 1 0"));
+  EXPECT_THAT(info.out, ContainsRegex("memory +[0-9.]+ MB of geometry on the host, [0-9.]+ MB on the device"));
 }
 
 TEST_F(CliTest, DevicesNamesTheDefault) {
