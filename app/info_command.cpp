@@ -9,9 +9,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "console.h"
+#include "render/pack_scene.h"
 #include "scene/features.h"
 #include "scene/load_scene.h"
 #include "scene_counts.h"
+#include "view_setup.h"
 
 namespace promin::app {
 namespace {
@@ -68,7 +71,7 @@ std::string describe_bounds(const Bounds& bounds) {
 }
 
 void print_info(const std::filesystem::path& file) {
-  const Scene scene = load_scene(file);
+  Scene scene = load_scene(file);
   const SceneCounts counts = count_scene(scene);
   print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene.objects.size()));
@@ -78,8 +81,15 @@ void print_info(const std::filesystem::path& file) {
   print_row("lights", describe_lights(scene.lights));
   print_rows("cameras", describe_cameras(scene.cameras));
   print_row("bounds", describe_bounds(bounds_of(scene)));
+  // What follows is of the scene as it would be rendered, with the lights that stand in.
+  light_up(scene, Camera(), Console(Verbosity::kQuiet));
   print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(scene)), ", ")));
-  print_row("memory", fmt::format("{:.3f} MB of geometry", 1e-6 * static_cast<double>(counts.geometry_bytes)));
+  const PackedScene packed = pack_scene(scene, builder_names().front());
+  print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
+                               packed.bvh.depth, packed.bvh.sah_cost));
+  print_row("memory", fmt::format("{:.3f} MB of geometry on the host, {:.3f} MB on the device",
+                                  1e-6 * static_cast<double>(counts.geometry_bytes),
+                                  1e-6 * static_cast<double>(packed.size_bytes())));
   print_rows("warnings", scene.warnings.empty() ? std::vector<std::string>{"none"} : scene.warnings);
 }
 

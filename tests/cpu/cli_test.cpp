@@ -44,7 +44,7 @@ constexpr const char* kSquareGltf =
     R"({
   "asset": {"version": "2.0"},
   "extensionsUsed": ["KHR_lights_punctual"],
-  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 30}]}},
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}},
   "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)"
     R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAABAAIAAAACAAMA"}],
   "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
@@ -261,6 +261,7 @@ TEST_F(CliTest, InfoSaysWhatASceneHolds) {
   EXPECT_THAT(info.out, ContainsRegex("cameras +0 main, perspective, vertical field of view 45 degrees"));
   EXPECT_THAT(info.out, HasSubstr("\n            1 side, "));
   EXPECT_THAT(info.out, ContainsRegex("bounds +-1 -1 0 to 1 1 0"));
+  EXPECT_THAT(info.out, ContainsRegex("memory +[0-9.]+ MB of geometry on the host, [0-9.]+ MB on the device"));
 }
 
 TEST_F(CliTest, DevicesNamesTheDefault) {
