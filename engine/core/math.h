@@ -28,12 +28,20 @@ inline float round_down(double x) {
   const float rounded = static_cast<float>(x);
   return static_cast<double>(rounded) > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
 }
-inline float round_up(double x) { return -round_down(-x); }
+inline float round_up(double x) {
+  return -round_down(-x);
+}
 
-inline bool is_finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(const vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
-inline float max_component(const vec3& v) { return std::fmax(v.x, std::fmax(v.y, v.z)); }
-inline float max_abs_component(const vec3& v) { return max_component(glm::abs(v)); }
+inline float max_component(const vec3& v) {
+  return std::fmax(v.x, std::fmax(v.y, v.z));
+}
+inline float max_abs_component(const vec3& v) {
+  return max_component(glm::abs(v));
+}
 
 /// An axis-aligned box in fp32. Empty by default: extending it by anything gives that thing.
 struct Bounds {

@@ -25,8 +25,7 @@ const std::array kStagingPreferences{kMappable | Memory::eHostCached, kMappable}
 }  // namespace
 
 Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage)
-    : Buffer(device, size_bytes,
-             usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst,
+    : Buffer(device, size_bytes, usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst,
              kDevicePreferences) {}
 
 Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,
@@ -83,8 +82,7 @@ void Buffer::read(std::span<std::byte> data) const {
                              before, {}, {});
     commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(0, 0, data.size()));
     const vk::MemoryBarrier after(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
-    commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, after, {},
-                             {});
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, after, {}, {});
   });
   std::memcpy(data.data(), staging.mapped_, data.size());
 }

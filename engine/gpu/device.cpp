@@ -16,11 +16,16 @@ namespace {
 
 std::string name_of(vk::PhysicalDeviceType type) {
   switch (type) {
-    case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete GPU";
-    case vk::PhysicalDeviceType::eIntegratedGpu: return "integrated GPU";
-    case vk::PhysicalDeviceType::eVirtualGpu: return "virtual GPU";
-    case vk::PhysicalDeviceType::eCpu: return "CPU";
-    default: return "other";
+    case vk::PhysicalDeviceType::eDiscreteGpu:
+      return "discrete GPU";
+    case vk::PhysicalDeviceType::eIntegratedGpu:
+      return "integrated GPU";
+    case vk::PhysicalDeviceType::eVirtualGpu:
+      return "virtual GPU";
+    case vk::PhysicalDeviceType::eCpu:
+      return "CPU";
+    default:
+      return "other";
   }
 }
 
@@ -52,8 +57,7 @@ bool has_device_extension(const vk::raii::PhysicalDevice& device, std::string_vi
 std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
   if (properties.apiVersion >= VK_API_VERSION_1_2 ||
       has_device_extension(device, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
-    const auto chain =
-        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
     const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
     return std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
   }
@@ -133,8 +137,8 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   const auto parsed = std::from_chars(selection->data(), end, number);
   const bool is_number = !selection->empty() && parsed.ec == std::errc() && parsed.ptr == end;
   for (size_t i = 0; i < infos.size(); ++i) {
-    const bool matches = is_number ? i == number
-                                   : lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
+    const bool matches =
+        is_number ? i == number : lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
       throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],
@@ -173,9 +177,9 @@ Device::Device(const std::optional<std::string>& selection)
   physical_ = std::move(devices[index]);
   info_ = infos[index];
   choice_ = "using " + info_.name + " (" + info_.type + ", " + info_.driver + "), " +
-            (selection             ? "asked for by --device"
-             : infos.size() == 1   ? "the only Vulkan device"
-                                   : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
+            (selection           ? "asked for by --device"
+             : infos.size() == 1 ? "the only Vulkan device"
+                                 : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
   translate_vulkan_errors([&] {
     limits_ = physical_.getProperties().limits;
     memory_ = physical_.getMemoryProperties();
@@ -230,12 +234,22 @@ std::vector<DeviceInfo> list_devices() {
   return describe_all(enumerate(instance));
 }
 
-void DeviceDeleter::operator()(Device* device) const { delete device; }
+void DeviceDeleter::operator()(Device* device) const {
+  delete device;
+}
 
-DeviceHandle open_device(const std::optional<std::string>& selection) { return DeviceHandle(new Device(selection)); }
+DeviceHandle open_device(const std::optional<std::string>& selection) {
+  return DeviceHandle(new Device(selection));
+}
 
-const DeviceInfo& info_of(const Device& device) { return device.info(); }
-const std::string& choice_of(const Device& device) { return device.choice(); }
-uint64_t validation_message_count(const Device& device) { return device.validation_message_count(); }
+const DeviceInfo& info_of(const Device& device) {
+  return device.info();
+}
+const std::string& choice_of(const Device& device) {
+  return device.choice();
+}
+uint64_t validation_message_count(const Device& device) {
+  return device.validation_message_count();
+}
 
 }  // namespace promin::gpu

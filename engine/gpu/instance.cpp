@@ -46,7 +46,8 @@ vk::raii::Context load_vulkan() {
   try {
     return {};
   } catch (const std::exception&) {
-    throw DeviceError({"there is no Vulkan loader", "on this machine", "install libvulkan1 and a driver such as "
+    throw DeviceError({"there is no Vulkan loader", "on this machine",
+                       "install libvulkan1 and a driver such as "
                        "mesa-vulkan-drivers"});
   }
 }
@@ -91,8 +92,7 @@ vk::raii::DebugUtilsMessengerEXT make_messenger(const vk::raii::Instance& instan
   using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
   VkDebugUtilsMessengerCreateInfoEXT info{};
   info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-  info.messageSeverity =
-      static_cast<VkDebugUtilsMessageSeverityFlagsEXT>(Severity::eWarning | Severity::eError);
+  info.messageSeverity = static_cast<VkDebugUtilsMessageSeverityFlagsEXT>(Severity::eWarning | Severity::eError);
   info.messageType = static_cast<VkDebugUtilsMessageTypeFlagsEXT>(Type::eValidation | Type::ePerformance);
   info.pfnUserCallback = count_message;
   info.pUserData = counter;

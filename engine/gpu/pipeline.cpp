@@ -41,10 +41,8 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
   for (const auto& [type, count] : type_counts) pool_sizes.emplace_back(type, count);
   set_layout_ = vk::raii::DescriptorSetLayout(handle, vk::DescriptorSetLayoutCreateInfo({}, bindings));
   pool_ = vk::raii::DescriptorPool(
-      handle,
-      vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_sizes));
-  set_ = std::move(
-      vk::raii::DescriptorSets(handle, vk::DescriptorSetAllocateInfo(*pool_, *set_layout_)).front());
+      handle, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_sizes));
+  set_ = std::move(vk::raii::DescriptorSets(handle, vk::DescriptorSetAllocateInfo(*pool_, *set_layout_)).front());
   for (const BoundBuffer& buffer : buffers) bind(buffer);
 
   layout_ = vk::raii::PipelineLayout(handle, vk::PipelineLayoutCreateInfo({}, *set_layout_));

@@ -16,18 +16,23 @@ namespace {
 
 using namespace layout;
 
-uint32_t bits_of(float value) { return std::bit_cast<uint32_t>(value); }
+uint32_t bits_of(float value) {
+  return std::bit_cast<uint32_t>(value);
+}
 
 // How each shape becomes a primitive: the comment at layout::Primitive.
-Primitive pack(const Sphere& s) { return {vec4(s.center, s.radius), vec4(0.0F), uvec4(0, 0, KIND_SPHERE, 0)}; }
+Primitive pack(const Sphere& s) {
+  return {vec4(s.center, s.radius), vec4(0.0F), uvec4(0, 0, KIND_SPHERE, 0)};
+}
 Primitive pack(const Cylinder& c) {
   return {vec4(c.center, c.radius), vec4(c.axis, c.half_height), uvec4(0, 0, KIND_CYLINDER, 0)};
 }
 Primitive pack(const Cone& c) {
-  return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height),
-          uvec4(bits_of(c.radius_top), 0, KIND_CONE, 0)};
+  return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height), uvec4(bits_of(c.radius_top), 0, KIND_CONE, 0)};
 }
-Primitive pack(const Plane& p) { return {vec4(p.point, 0.0F), vec4(p.normal, 0.0F), uvec4(0, 0, KIND_PLANE, 0)}; }
+Primitive pack(const Plane& p) {
+  return {vec4(p.point, 0.0F), vec4(p.normal, 0.0F), uvec4(0, 0, KIND_PLANE, 0)};
+}
 Primitive pack_triangle(const Mesh& mesh, uint32_t index) {
   const uvec3 t = mesh.triangles[index];
   const vec3 a = mesh.positions[t.x];
@@ -158,8 +163,7 @@ std::vector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, const std::vector<Prim
   std::vector<uint32_t> references = bvh.references;
   for (const BvhNode& node : bvh.nodes) {
     const auto first = references.begin() + node.first;
-    std::stable_sort(first, first + node.count,
-                     [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; });
+    std::stable_sort(first, first + node.count, [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; });
   }
   return references;
 }

@@ -39,7 +39,9 @@ struct FilmHead {
 /// guarantees for a storage buffer.
 constexpr uint32_t kMaxFilmPixels = (64U << 20) / sizeof(vec4) - sizeof(FilmHead) / sizeof(vec4);
 
-uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
+uint32_t divide_up(uint32_t a, uint32_t b) {
+  return (a + b - 1) / b;
+}
 
 /// The camera's part of a frame, computed in double.
 void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& camera, const uvec2& size) {
@@ -104,12 +106,11 @@ struct Renderer::Impl {
     using vk::DescriptorType;
     const std::array constants{gpu::SpecializationConstant{layout::CONSTANT_FEATURES, stats.features},
                                gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, stack_size}};
-    const std::array buffers{
-        gpu::BoundBuffer{layout::BINDING_FRAME, DescriptorType::eUniformBuffer, &*frame_buffer},
-        gpu::BoundBuffer{layout::BINDING_NODES, DescriptorType::eStorageBuffer, &*nodes},
-        gpu::BoundBuffer{layout::BINDING_PRIMITIVES, DescriptorType::eStorageBuffer, &*primitives},
-        gpu::BoundBuffer{layout::BINDING_SHADING, DescriptorType::eStorageBuffer, &*shading},
-        gpu::BoundBuffer{layout::BINDING_FILM, DescriptorType::eStorageBuffer, &*film}};
+    const std::array buffers{gpu::BoundBuffer{layout::BINDING_FRAME, DescriptorType::eUniformBuffer, &*frame_buffer},
+                             gpu::BoundBuffer{layout::BINDING_NODES, DescriptorType::eStorageBuffer, &*nodes},
+                             gpu::BoundBuffer{layout::BINDING_PRIMITIVES, DescriptorType::eStorageBuffer, &*primitives},
+                             gpu::BoundBuffer{layout::BINDING_SHADING, DescriptorType::eStorageBuffer, &*shading},
+                             gpu::BoundBuffer{layout::BINDING_FILM, DescriptorType::eStorageBuffer, &*film}};
     pipeline.emplace(device, k_render_spirv, constants, buffers);
     if (device.timestamp_period_ns() > 0.0) {
       queries = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
@@ -261,7 +262,9 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-const Renderer::SetupStats& Renderer::setup_stats() const { return impl_->stats; }
+const Renderer::SetupStats& Renderer::setup_stats() const {
+  return impl_->stats;
+}
 
 RenderResult Renderer::render(const View& view, const std::function<void(double)>& progress) {
   const PixelWindow window = view.crop.value_or(PixelWindow{uvec2(0), view.size});

@@ -56,9 +56,12 @@ FeatureMask features_of(const Material& material) {
 FeatureMask features_of(const Light& light) {
   const FeatureMask falloff = light.attenuation == Attenuation::kInverseSquare ? FEATURE_FALLOFF : 0;
   switch (light.kind) {
-    case LightKind::kDirectional: return FEATURE_DIRECTIONAL_LIGHTS;
-    case LightKind::kSpot: return FEATURE_SPOT_LIGHTS | falloff;
-    case LightKind::kPoint: return FEATURE_POINT_LIGHTS | falloff;
+    case LightKind::kDirectional:
+      return FEATURE_DIRECTIONAL_LIGHTS;
+    case LightKind::kSpot:
+      return FEATURE_SPOT_LIGHTS | falloff;
+    case LightKind::kPoint:
+      return FEATURE_POINT_LIGHTS | falloff;
   }
   return 0;
 }
@@ -91,7 +94,9 @@ FeatureMask features_of(const Scene& scene) {
   return features;
 }
 
-FeatureMask all_features() { return (1U << FEATURE_COUNT) - 1U; }
+FeatureMask all_features() {
+  return (1U << FEATURE_COUNT) - 1U;
+}
 
 std::vector<std::string> feature_names(FeatureMask features) {
   std::vector<std::string> names;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "cpu/temp_folder.h"
 
 namespace promin {
 namespace {
@@ -15,17 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class FileTest : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
-};
+class FileTest : public TempFolder {};
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
@@ -33,12 +24,7 @@ std::string text_of(const fs::path& file) {
 }
 
 std::string message_of_reading(const fs::path& file) {
-  try {
-    read_file(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of([&] { read_file(file); });
 }
 
 TEST_F(FileTest, WhatIsWrittenIsRead) {

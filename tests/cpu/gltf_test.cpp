@@ -23,19 +23,6 @@ class GltfTest : public SceneFolder {
   Scene load(GltfBuilder&& gltf) const { return load(gltf); }
 };
 
-const Mesh& mesh_of(const Scene& scene, size_t object = 0) {
-  return std::get<Mesh>(scene.objects.at(object).shape);
-}
-
-/// Corners of a mesh, triangle after triangle.
-std::vector<vec3> corners_of(const Mesh& mesh) {
-  std::vector<vec3> corners;
-  for (const uvec3& triangle : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) corners.push_back(mesh.positions.at(triangle[i]));
-  }
-  return corners;
-}
-
 void expect_near(const vec3& got, const vec3& wanted, float tolerance = 1e-6F) {
   EXPECT_LE(max_abs_component(got - wanted), tolerance)
       << got.x << " " << got.y << " " << got.z << " is not " << wanted.x << " " << wanted.y << " " << wanted.z;

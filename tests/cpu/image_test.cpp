@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "cpu/temp_folder.h"
 
 namespace promin {
 namespace {
@@ -31,27 +32,13 @@ Image make_ramp(uint32_t width, uint32_t height) {
   return image;
 }
 
-class ImageTest : public testing::Test {
+class ImageTest : public TempFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::ptrdiff_t file_count() const { return std::distance(fs::directory_iterator(folder_), {}); }
-
-  fs::path folder_;
 };
 
 std::string message_of_reading(const fs::path& file) {
-  try {
-    read_image(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of([&] { read_image(file); });
 }
 
 TEST(EncodeSrgbTest, KnownValues) {

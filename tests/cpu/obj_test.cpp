@@ -30,18 +30,6 @@ class ObjTest : public SceneFolder {
   }
 };
 
-const Mesh& mesh_of(const Scene& scene, size_t object = 0) {
-  return std::get<Mesh>(scene.objects.at(object).shape);
-}
-
-std::vector<vec3> corners_of(const Mesh& mesh) {
-  std::vector<vec3> corners;
-  for (const uvec3& triangle : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) corners.push_back(mesh.positions.at(triangle[i]));
-  }
-  return corners;
-}
-
 // Faces
 
 TEST_F(ObjTest, FacesCountFromTheFrontOrTheBack) {

@@ -35,7 +35,9 @@ constexpr double kFailShare = 0.0002;
 constexpr double kEdgeShare = 0.005;
 
 /// False where there is a NaN.
-bool is_at_most(const vec3& v, float bound) { return v.x <= bound && v.y <= bound && v.z <= bound; }
+bool is_at_most(const vec3& v, float bound) {
+  return v.x <= bound && v.y <= bound && v.z <= bound;
+}
 
 bool is_between_neighbours(const Image& golden, uint32_t x, uint32_t y, const vec3& pixel) {
   vec3 lo = golden.at(x, y);
@@ -103,9 +105,7 @@ Subject load_subject(const std::string& name) {
 
 class GoldenTest : public test::DeviceTest {
  protected:
-  static Image render(const Subject& subject) {
-    return Renderer(device(), subject.scene).render(subject.view).image;
-  }
+  static Image render(const Subject& subject) { return Renderer(device(), subject.scene).render(subject.view).image; }
 };
 
 class SceneGoldenTest : public GoldenTest, public testing::WithParamInterface<std::string> {};
@@ -133,7 +133,8 @@ TEST_P(SceneGoldenTest, LooksAsStored) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneGoldenTest, testing::ValuesIn(scene_names()), [](const auto& info) {
   std::string name = info.param;
-  std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
   return name;
 });
 

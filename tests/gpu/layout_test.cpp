@@ -37,9 +37,9 @@ const Layout kLayouts[] = {
       OFFSET(LightRecord, specular), OFFSET(LightRecord, kind)}},
     {"Frame",
      {OFFSET(Frame, eye), OFFSET(Frame, look), OFFSET(Frame, right), OFFSET(Frame, up), OFFSET(Frame, ambient),
-      OFFSET(Frame, background), OFFSET(Frame, tree_bounds), OFFSET(Frame, film_center),
-      OFFSET(Frame, first_index)}},
-    {"Dispatch", {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts)}},
+      OFFSET(Frame, background), OFFSET(Frame, tree_bounds), OFFSET(Frame, film_center), OFFSET(Frame, first_index)}},
+    {"Dispatch",
+     {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts)}},
 };
 
 class LayoutTest : public testing::TestWithParam<Layout> {};

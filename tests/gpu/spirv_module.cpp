@@ -28,7 +28,9 @@ constexpr uint32_t kOffset = 35;
 constexpr uint32_t kNoContraction = 42;
 constexpr uint32_t kStorageBufferClass = 12;
 
-std::string literal_string(const uint32_t* words) { return reinterpret_cast<const char*>(words); }
+std::string literal_string(const uint32_t* words) {
+  return reinterpret_cast<const char*>(words);
+}
 
 bool is_float_operation(uint32_t opcode) {
   switch (opcode) {
@@ -39,8 +41,10 @@ bool is_float_operation(uint32_t opcode) {
     case kFRem:
     case kFMod:
     case kVectorTimesScalar:
-    case kDot: return true;
-    default: return false;
+    case kDot:
+      return true;
+    default:
+      return false;
   }
 }
 

@@ -85,8 +85,7 @@ View make_view(uvec2 size) {
 }
 
 bool has_same_bits(const Image& a, const Image& b) {
-  return a.size == b.size &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(a.pixels[0])) == 0;
+  return a.size == b.size && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(a.pixels[0])) == 0;
 }
 
 }  // namespace promin::test
