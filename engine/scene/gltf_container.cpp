@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf_container.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 

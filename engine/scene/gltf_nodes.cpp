@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf_nodes.h"
 
+#include <algorithm>
+
 #include <glm/gtc/quaternion.hpp>
 
 #include "scene/gltf_json.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf_shapes.h"
 
+#include <algorithm>
 #include <string>
 
 #include "scene/gltf_json.h"
