@@ -348,6 +348,16 @@ TEST_F(CliTest, StatsHoldWhatTheInterfacePromises) {
   EXPECT_NEAR(stats.at("mrays_per_s").get<double>(), rays / runs[1] / 1e3, 1e-6 * rays / runs[1]);
 }
 
+TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {
+  const Words arguments = {"square.gltf", "--size", "150", "100", "-s", "2"};
+  options_.environment["LP_NUM_THREADS"] = "1";
+  const Image by_one = render(arguments, "one.exr");
+  options_.environment["LP_NUM_THREADS"] = "3";
+  const Image by_three = render(arguments, "three.exr");
+  ASSERT_EQ(by_one.size, by_three.size);
+  for (size_t i = 0; i < by_one.pixels.size(); ++i) ASSERT_EQ(by_one.pixels[i], by_three.pixels[i]) << "pixel " << i;
+}
+
 TEST_F(CliTest, ACropHasTheBitsOfTheWholePicture) {
   const Image whole = render({"square.gltf", "--size", "67", "41", "-s", "2"}, "whole.exr");
   const Image crop =
