@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <sstream>
+#include <string>
 
 #include "core/file.h"
 #include "scene/load_scene.h"
@@ -42,21 +43,29 @@ std::vector<std::filesystem::path> find_library(const std::string& line, LoadRep
   return files;
 }
 
-/// The text of an MTL file with defaults stated and numbers checked, which tinyobjloader would read as 0.
-std::string prepare(std::string_view text, const std::string& file, LoadReport& report) {
-  std::string prepared;
+/// An MTL file as tinyobjloader is to see it: defaults stated, numbers checked, which it would read as 0, and its
+/// materials numbered, because its versions differ in what they take of a name with spaces.
+struct PreparedMtl {
+  std::string text;
+  std::vector<std::string> names;
+};
+
+PreparedMtl prepare(std::string_view text, const std::string& file, LoadReport& report) {
+  PreparedMtl prepared;
   std::string_view material;
   bool has_maps = false;
   TextLines lines(text);
   while (lines.advance()) {
-    prepared.append(lines.line()) += '\n';
     std::string_view rest = lines.line();
     const std::string_view keyword = take_word(rest);
     if (keyword == "newmtl") {
       material = trim(rest);
       has_maps = false;
-      prepared += kDefaults;
+      prepared.text += "newmtl " + std::to_string(prepared.names.size()) + '\n' + kDefaults;
+      prepared.names.emplace_back(material);
+      continue;
     }
+    prepared.text.append(lines.line()) += '\n';
     if (is_map(keyword) && !has_maps) {
       has_maps = true;
       report.warn("material " + quote(material) + ": its texture maps are ignored, the first is " +
@@ -112,13 +121,17 @@ std::map<std::string, Material> read_obj_materials(const std::vector<std::string
     for (const std::filesystem::path& file : find_library(library, report)) {
       const std::vector<std::byte> bytes = read_file(file);
       const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      std::istringstream stream(prepare(text, file.filename().string(), report));
+      const PreparedMtl prepared = prepare(text, file.filename().string(), report);
+      std::istringstream stream(prepared.text);
       std::map<std::string, int> indices;
       std::vector<tinyobj::material_t> sources;
       std::string warnings;
       std::string errors;
       tinyobj::LoadMtl(&indices, &sources, &stream, &warnings, &errors);
-      for (const tinyobj::material_t& source : sources) {
+      // Without any newmtl there is still tinyobjloader's nameless default.
+      if (prepared.names.empty()) sources.clear();
+      for (tinyobj::material_t& source : sources) {
+        source.name = prepared.names.at(std::stoul(source.name));
         warn_about_what_is_ignored(source, report);
         materials.emplace(source.name, make_material(source));
       }
