@@ -7,7 +7,6 @@ struct Ray {
   vec3 direction;  // scaled by a power of two: its largest component is in [1, 2)
   float tmin;      // a hit has tmin < t < tmax, in units of the scaled direction
   float tmax;
-  float scale;             // t in units of the direction as given = t * scale
   float inverse_length2;   // 1 / |direction|^2
   vec3 inverse_direction;  // finite: components under 2^-80 count as 2^-80 with their sign
   vec3 near_origin;        // origin, moved so that the slab test's near and far planes lie `padding` further out
@@ -54,11 +53,11 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   float size = max_abs(direction);
   bool is_valid = size >= 1e-37 && size < 1e38 && max_abs(origin) < 1e38 && tmin < tmax && tmin < INFINITY;
   is_valid = is_valid && !any(isnan(direction)) && !any(isnan(origin));
-  ray.scale = is_valid ? power_of_two_inverse(size) : 1.0;
+  float scale = is_valid ? power_of_two_inverse(size) : 1.0;
   ray.origin = is_valid ? origin : vec3(0.0);
-  ray.direction = is_valid ? direction * ray.scale : vec3(1.0, 0.0, 0.0);
+  ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);
   // t * direction is kept, so t grows by what the direction loses.
-  float unscale = power_of_two_inverse(ray.scale);
+  float unscale = power_of_two_inverse(scale);
   precise float scaled_tmin = max(tmin, 0.0) * unscale;
   precise float scaled_tmax = tmax * unscale;
   ray.tmin = is_valid ? scaled_tmin : 1.0;

@@ -184,8 +184,9 @@ Device::Device(const std::optional<std::string>& selection)
     limits_ = physical_.getProperties().limits;
     memory_ = physical_.getMemoryProperties();
     const uint32_t family = *find_compute_family(physical_);
-    if (physical_.getQueueFamilyProperties()[family].timestampValidBits > 0) {
+    if (const uint32_t bits = physical_.getQueueFamilyProperties()[family].timestampValidBits; bits > 0) {
       timestamp_period_ns_ = limits_.timestampPeriod;
+      timestamp_mask_ = ~uint64_t{0} >> (64 - bits);
     }
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, family, 1, &priority);

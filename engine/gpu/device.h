@@ -33,6 +33,8 @@ class Device {
   const vk::PhysicalDeviceLimits& limits() const { return limits_; }
   /// Nanoseconds a timestamp tick; 0 where the queue has no timestamps.
   double timestamp_period_ns() const { return timestamp_period_ns_; }
+  /// Ticks between two timestamps, of which the device may have fewer than 64 bits.
+  uint64_t ticks_between(uint64_t first, uint64_t second) const { return (second - first) & timestamp_mask_; }
 
   /// Index of the first memory type in `allowed_types` that has all of `wanted`, or none.
   std::optional<uint32_t> find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const;
@@ -50,6 +52,7 @@ class Device {
   vk::PhysicalDeviceLimits limits_;
   vk::PhysicalDeviceMemoryProperties memory_;
   double timestamp_period_ns_ = 0.0;
+  uint64_t timestamp_mask_ = 0;
   vk::raii::Device device_{nullptr};
   vk::raii::Queue queue_{nullptr};
   vk::raii::CommandPool pool_{nullptr};

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/pipeline.h"
 
-#include <cassert>
 #include <map>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "gpu/buffer.h"
@@ -50,7 +51,9 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
   std::vector<vk::SpecializationMapEntry> entries;
   std::vector<uint32_t> values;
   for (const SpecializationConstant& constant : constants) {
-    assert(has_specialization_constant(spirv, constant.id));
+    if (!has_specialization_constant(spirv, constant.id)) {
+      throw std::logic_error("the shader has no specialisation constant " + std::to_string(constant.id));
+    }
     entries.emplace_back(constant.id, static_cast<uint32_t>(values.size() * sizeof(uint32_t)), sizeof(uint32_t));
     values.push_back(constant.value);
   }

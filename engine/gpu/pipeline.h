@@ -30,8 +30,7 @@ bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 /// A compute pipeline with entry point "main" and one descriptor set.
 class ComputePipeline {
  public:
-  /// Asserts that the module has every constant: a driver would ignore an unknown one in silence.
-  /// Throws vk::SystemError.
+  /// Throws vk::SystemError, and std::logic_error if the module lacks a constant: a driver would ignore it in silence.
   ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
                   std::span<const SpecializationConstant> constants, std::span<const BoundBuffer> buffers);
 

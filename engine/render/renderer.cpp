@@ -154,7 +154,7 @@ struct Renderer::Impl {
     if (!*queries) return milliseconds_since(start);
     const auto [result, ticks] = queries.getResults<uint64_t>(
         0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-    return static_cast<double>(ticks[1] - ticks[0]) * device.timestamp_period_ns() * 1e-6;
+    return static_cast<double>(device.ticks_between(ticks[0], ticks[1])) * device.timestamp_period_ns() * 1e-6;
   }
 
   /// Adds the device's counters to `rays` and sets them to zero.

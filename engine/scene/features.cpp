@@ -89,8 +89,9 @@ FeatureMask features_of(const Scene& scene) {
   }
   for (const Light& light : scene.lights) features |= features_of(light);
   if (scene.lights.empty()) features &= ~FEATURE_SPECULAR;
-  // Every primitive is convex: one alone shadows nothing that faces the light.
-  if (primitives > 1 && !scene.lights.empty()) features |= FEATURE_SHADOWS;
+  // A flat primitive alone shadows nothing; a solid shadows its own inside.
+  const bool is_flat = (features & (FEATURE_SPHERES | FEATURE_CYLINDERS | FEATURE_CONES)) == 0;
+  if (!(primitives <= 1 && is_flat) && !scene.lights.empty()) features |= FEATURE_SHADOWS;
   return features;
 }
 

@@ -65,7 +65,14 @@ PreparedMtl prepare(std::string_view text, const std::string& file, LoadReport& 
       prepared.names.emplace_back(material);
       continue;
     }
-    prepared.text.append(lines.line()) += '\n';
+    prepared.text.append(lines.line());
+    // Of a colour with one number, that is all three: tinyobjloader would take the others for 0.
+    std::string_view numbers = rest;
+    const std::string_view first = take_word(numbers);
+    const bool is_color = keyword.size() == 2 && keyword[0] == 'K';
+    if (is_color && !first.empty() && trim(numbers).empty())
+      prepared.text.append(" ").append(first).append(" ").append(first);
+    prepared.text += '\n';
     if (is_map(keyword) && !has_maps) {
       has_maps = true;
       report.warn("material " + quote(material) + ": its texture maps are ignored, the first is " +

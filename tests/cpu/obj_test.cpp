@@ -180,6 +180,10 @@ TEST_F(ObjTest, FacesKeepTheirMaterials) {
   EXPECT_EQ(scene.materials.at(scene.objects[1].material).name, "blue");
 }
 
+TEST_F(ObjTest, AColourOfOneNumberIsGrey) {
+  EXPECT_EQ(material("Kd 0.5\n").diffuse, vec3(0.5F));
+}
+
 TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
   write("my colors.mtl", "newmtl deep red\r\nKd 1 0 0\r\n");
   const Scene scene = load(kSquare + "mtllib my colors.mtl\nusemtl deep red\nf 1 2 3\n");

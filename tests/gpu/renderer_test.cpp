@@ -106,6 +106,17 @@ TEST_F(RendererTest, SpecialisationChangesNoBit) {
   }
 }
 
+// A solid's own wall lies between its inside and a light outside.
+TEST_F(RendererTest, TheInsideOfASphereIsDark) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.objects = {{"", Sphere{vec3(0.0F), 1.0F}, 0}};
+  scene.lights = {make_headlight(Camera())};
+  View view;
+  view.size = uvec2(16, 16);
+  for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(0.0F));
+}
+
 TEST_F(RendererTest, CountsRays) {
   Scene scene;
   scene.materials.resize(1);
