@@ -5,12 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
-#include <chrono>
 #include <memory>
 
 #include "console.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "gpu/open_device.h"
 #include "image/image.h"
@@ -23,16 +23,6 @@
 
 namespace promin::app {
 namespace {
-
-class Stopwatch {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Sets the renderer up, traces as often as asked for and leaves what it took in `stats`.
 Image trace(const gpu::Device& device, const Scene& scene, const RenderOptions& options, RenderStats& stats,

@@ -20,7 +20,7 @@ struct RenderStats {
   size_t material_count = 0;
   size_t light_count = 0;
   View view;
-  Renderer::SetupStats setup;
+  SetupStats setup;
   RayCounts rays;
   /// Of each repetition.
   std::vector<double> trace_ms;

@@ -33,6 +33,9 @@ LAYOUT_CONSTANT FEATURE_MIRRORS = 1u << 11;
 LAYOUT_CONSTANT FEATURE_SMOOTH_NORMALS = 1u << 12;
 LAYOUT_CONSTANT FEATURE_VERTEX_COLORS = 1u << 13;
 LAYOUT_CONSTANT FEATURE_COUNT = 14u;
+// What a caller may ask of a pipeline whatever the scene.
+LAYOUT_CONSTANT FEATURE_AOVS = 1u << 30;         // depth, normal and id of each pixel
+LAYOUT_CONSTANT FEATURE_STEP_COUNTS = 1u << 31;  // node steps and primitive tests of each ray
 
 // Kinds of primitive that live in the tree, and of light.
 LAYOUT_CONSTANT KIND_TRIANGLE = 0u;
@@ -50,10 +53,13 @@ LAYOUT_CONSTANT BINDING_NODES = 1u;
 LAYOUT_CONSTANT BINDING_PRIMITIVES = 2u;
 LAYOUT_CONSTANT BINDING_SHADING = 3u;
 LAYOUT_CONSTANT BINDING_FILM = 4u;
+LAYOUT_CONSTANT BINDING_RAYS = 5u;
+LAYOUT_CONSTANT BINDING_HITS = 6u;
 
 // Specialisation constants.
 LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;
 LAYOUT_CONSTANT CONSTANT_STACK_SIZE = 1u;
+LAYOUT_CONSTANT CONSTANT_ANY_HIT = 2u;
 
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
@@ -122,16 +128,31 @@ struct Frame {
   uvec4 first_index;  // of x = materials, y = lights, z = normals, w = colours in their views of the shading buffer
 };
 
-// What decides branches and loops, at the head of the film: not in push constants or a uniform buffer, because
+// What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform buffer, because
 // lavapipe compiles the shader anew for each value of those that control flow depends on.
 struct Dispatch {
   uvec4 range;     // x = first block, y = first sample, z = samples to take; w = mirror bounces
+                   // casting: x = first ray, y = one past the last
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = 0
 };
 
+// A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.
+struct RayRecord {
+  vec4 origin_tmin;
+  vec4 direction_tmax;
+};
+
+// What it meets. FEATURE_STEP_COUNTS brings the counts, each clamped to its 16 bits.
+struct HitRecord {
+  uvec4 a;  // bits of t (infinite on a miss), the primitive's number in order (NO_ORDER on a miss), bits of u and v
+  uvec4 b;  // bits of the geometric normal; w = node steps + primitive tests * 2^16
+};
+LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
+
 #ifdef __cplusplus
+static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
 static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 144);
 static_assert(sizeof(Dispatch) == 64);

@@ -46,13 +46,21 @@ vec3 permute_axes(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ?
 // 8 u S of its primitive (numerics.md, BK), so a box grown by 16 u S never hides one, whatever the tree.
 const float BOX_PADDING = 16.0 * UNIT_ROUNDOFF;
 
-// `direction` may have any length; `tmin` and `tmax` are in its units. A ray that holds NaN, an infinity (tmax may be
-// infinite) or a zero direction is valid and misses everything.
+// Whether all components are finite; by their bits, as a compiler may assume that there are no NaNs.
+bool is_finite(vec3 v) {
+  uvec3 exponents = floatBitsToUint(v) & 0x7F800000u;
+  return all(notEqual(exponents, uvec3(0x7F800000u)));
+}
+
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7FFFFFFFu) > 0x7F800000u; }
+
+// `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Any other
+// direction, NaN anywhere, an infinite tmin and an origin beyond 10^38 give a ray that misses everything.
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
   float size = max_abs(direction);
-  bool is_valid = size >= 1e-37 && size < 1e38 && max_abs(origin) < 1e38 && tmin < tmax && tmin < INFINITY;
-  is_valid = is_valid && !any(isnan(direction)) && !any(isnan(origin));
+  bool is_valid = is_finite(direction) && size >= 1.17549435e-38 && size < 1.7014118e+38 && is_finite(origin) &&
+                  max_abs(origin) < 1e38 && !is_nan(tmin) && !is_nan(tmax) && tmin < tmax && tmin < INFINITY;
   float scale = is_valid ? power_of_two_inverse(size) : 1.0;
   ray.origin = is_valid ? origin : vec3(0.0);
   ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);

@@ -2,6 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Phong shading (system.md, "Light") of a point that a ray hit.
 
+// Views of one buffer: four storage buffers a stage are all that Vulkan guarantees. Each view starts at a multiple of
+// its own stride (frame.first_index).
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
+
 // What the light loop and the mirror ray need of a hit.
 struct ShadingPoint {
   vec3 position;

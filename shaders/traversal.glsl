@@ -24,6 +24,13 @@ vec2 child_interval(Ray ray, vec2 x, vec2 y, vec2 z, float t_limit) {
   return vec2(entry, min(exit, t_limit));
 }
 
+// What this invocation's rays took: x = node steps, y = primitive tests.
+uvec2 step_counts;
+
+void count_steps(uint nodes, uint tests) {
+  if (has(FEATURE_STEP_COUNTS)) step_counts += uvec2(nodes, tests);
+}
+
 // The primitives of one kind at the head of [i, end): leaves hold them sorted by kind.
 #define INTERSECT_RUN(KIND, FEATURE, INTERSECT)                          \
   while (i < end && is_kind(primitives[i].c.z, KIND, FEATURE)) {         \
@@ -35,6 +42,7 @@ vec2 child_interval(Ray ray, vec2 x, vec2 y, vec2 z, float t_limit) {
 void intersect_leaf(Ray ray, uint child, inout Hit hit) {
   uint i = child & CHILD_FIRST_MASK;
   uint end = i + ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
+  count_steps(0u, end - i);
   INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle)
   INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
   INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
@@ -72,6 +80,7 @@ Hit trace(Ray ray, bool any_hit) {
   // leave a loop as soon as no lane is in it.
   while (current != DONE) {
     while ((current & CHILD_IS_LEAF) == 0u) {
+      count_steps(1u, 0u);
       Node node = nodes[current];
       vec2 left = child_interval(ray, node.x.xy, node.y.xy, node.z.xy, hit.t);
       vec2 right = child_interval(ray, node.x.zw, node.y.zw, node.z.zw, hit.t);

@@ -68,11 +68,11 @@ void Buffer::write(std::span<const std::byte> data) {
   });
 }
 
-void Buffer::read(std::span<std::byte> data) const {
-  assert(data.size() <= size_bytes_);
+void Buffer::read(std::span<std::byte> data, vk::DeviceSize offset_bytes) const {
+  assert(offset_bytes + data.size() <= size_bytes_);
   if (data.empty()) return;
   if (mapped_ != nullptr) {
-    std::memcpy(data.data(), mapped_, data.size());
+    std::memcpy(data.data(), mapped_ + offset_bytes, data.size());
     return;
   }
   const Buffer staging(*device_, data.size(), vk::BufferUsageFlagBits::eTransferDst, kStagingPreferences);
@@ -80,7 +80,7 @@ void Buffer::read(std::span<std::byte> data) const {
     const vk::MemoryBarrier before(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eTransferRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eTransfer, {},
                              before, {}, {});
-    commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(0, 0, data.size()));
+    commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(offset_bytes, 0, data.size()));
     const vk::MemoryBarrier after(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, after, {}, {});
   });

@@ -21,9 +21,10 @@ class Buffer {
   const vk::raii::Buffer& handle() const { return buffer_; }
   vk::DeviceSize size_bytes() const { return size_bytes_; }
 
-  /// Copies to the start of the buffer, and from it. The device is idle with respect to this buffer before and after.
+  /// Copies to the start of the buffer, and from `offset_bytes` of it. The device is idle with respect to this buffer
+  /// before and after.
   void write(std::span<const std::byte> data);
-  void read(std::span<std::byte> data) const;
+  void read(std::span<std::byte> data, vk::DeviceSize offset_bytes = 0) const;
 
  private:
   Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -50,6 +51,7 @@ struct Collected {
   std::vector<SurfaceRecord> plane_surfaces;
   std::vector<vec4> normals;
   std::vector<vec4> colors;
+  std::vector<uint32_t> first_order;
   uint32_t order = 0;
 };
 
@@ -67,8 +69,10 @@ class Collector {
     result_.boxes.reserve(count);
     for (const Object& object : scene.objects) {
       material_ = object.material;
+      result_.first_order.push_back(result_.order);
       std::visit([this](const auto& shape) { add(shape); }, object.shape);
     }
+    result_.first_order.push_back(result_.order);
   }
 
   Collected take() { return std::move(result_); }
@@ -186,6 +190,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
 
   PackedScene packed;
+  packed.first_order = std::move(collected.first_order);
   packed.bvh_ms = elapsed.count();
   packed.bvh = measure_bvh(builder, bvh);
   PackedTree tree = pack_tree(bvh);
@@ -217,6 +222,14 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
   packed.frame.tree_bounds = center_and_radius(tree_bounds);
   return packed;
+}
+
+PrimitiveId primitive_of_order(std::span<const uint32_t> first_order, uint32_t order) {
+  // The last object that begins at or before it: objects without primitives begin where the next one does.
+  const auto next = std::upper_bound(first_order.begin(), first_order.end(), order);
+  assert(next != first_order.begin() && next != first_order.end());
+  const auto object = static_cast<uint32_t>(next - first_order.begin()) - 1;
+  return {object, order - first_order[object]};
 }
 
 }  // namespace promin

@@ -24,6 +24,9 @@ struct PackedScene {
   /// What a picture's constants take from the scene; the camera's and the picture's parts are left at zero.
   layout::Frame frame{};
   layout::Dispatch dispatch{};
+  /// Of each object the number of its first primitive in (object, primitive) order, which Primitive::c.y counts in;
+  /// then the number of all.
+  std::vector<uint32_t> first_order;
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
   BvhStats bvh;
@@ -38,6 +41,13 @@ struct PackedScene {
 /// Packs a checked scene. Throws UsageError for an unknown builder and RunError where counts pass what the layout can
 /// hold (2^27 primitives).
 PackedScene pack_scene(const Scene& scene, std::string_view builder);
+
+/// What a primitive's number in (object, primitive) order stands for, by PackedScene::first_order.
+struct PrimitiveId {
+  uint32_t object = 0;
+  uint32_t primitive = 0;
+};
+PrimitiveId primitive_of_order(std::span<const uint32_t> first_order, uint32_t order);
 
 /// The device's form of a binary tree, with the depth of the stack that traversing it takes.
 struct PackedTree {

@@ -4,40 +4,41 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
-#include "gpu/buffer.h"
+#include "core/stopwatch.h"
 #include "gpu/device.h"
-#include "gpu/pipeline.h"
 #include "layout.h"
 #include "render.spv.h"
+#include "render/device_scene.h"
 #include "render/pack_scene.h"
 #include "render/sampling.h"
+#include "render/tracing_kernel.h"
 
 namespace promin {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 
-/// Head of the film buffer (shaders/bindings.glsl).
+/// Head of the film buffer (shaders/render.comp).
 struct FilmHead {
   layout::Dispatch dispatch{};
   /// One for each lane of a block.
   std::array<uvec4, kLanes> ray_counts{};
 };
 
-/// Most pixels that a film holds; larger pictures are traced in bands of rows. 64 MiB is half of what Vulkan
-/// guarantees for a storage buffer.
-constexpr uint32_t kMaxFilmPixels = (64U << 20) / sizeof(vec4) - sizeof(FilmHead) / sizeof(vec4);
+/// Most records of a pixel that a film holds; larger pictures are traced in bands of rows. 64 MiB is half of what
+/// Vulkan guarantees for a storage buffer.
+constexpr uint32_t kMaxFilmRecords = (64U << 20) / sizeof(uvec4) - sizeof(FilmHead) / sizeof(uvec4);
+
+// A dispatch covers blocks * samples units of work; their number follows the time that the last ones took. At least
+// this many blocks keep the device's cores busy.
+constexpr uint32_t kMinBlocks = 64;
+constexpr uint32_t kMaxBlocks = 65535;  // Vulkan's guaranteed workgroup count
 
 uint32_t divide_up(uint32_t a, uint32_t b) {
   return (a + b - 1) / b;
@@ -51,7 +52,9 @@ void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& 
   const double pixel = 2.0 * half_height / size.y;
   const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
   const dvec3 up = dvec3(camera.up) * pixel;
-  frame.eye = vec4(camera.eye, camera.near);
+  // A ray's interval is open, but what lies on the viewport itself is drawn.
+  const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
+  frame.eye = vec4(camera.eye, before_near);
   frame.look = vec4(camera.look, 0.0F);
   dispatch.sampling.w = is_orthographic ? 1 : 0;
   frame.right = vec4(vec3(right), 0.0F);
@@ -63,98 +66,60 @@ void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& 
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(const gpu::Device& the_device, const Scene& scene, const RendererOptions& the_options)
-      : device(the_device), options(the_options) {
-    const PackedScene packed = pack_scene(scene, options.builder);
-    frame = packed.frame;
-    dispatch = packed.dispatch;
+  Impl(const gpu::Device& the_device, const Scene& the_scene, const RendererOptions& the_options)
+      : device(the_device), options(the_options), pacer(options.target_dispatch_ms, kMinBlocks) {
+    PackedScene packed = pack_scene(the_scene, options.builder);
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = packed.size_bytes();
-    stats.features = options.force_all_features ? all_features() : features_of(scene);
+    stats.features = options.force_all_features ? all_features() : features_of(the_scene);
     stats.features &= ~options.left_out_features;
+    first_order = std::move(packed.first_order);
 
-    auto start = Clock::now();
-    nodes = upload(std::as_bytes(std::span(packed.nodes)));
-    primitives = upload(std::as_bytes(std::span(packed.primitives)));
-    shading = upload(packed.shading);
+    const Stopwatch uploading;
+    scene.emplace(device, packed);
     frame_buffer.emplace(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer);
     make_film(kLanes);
-    stats.upload_ms = milliseconds_since(start);
+    stats.upload_ms = uploading.ms();
 
-    start = Clock::now();
-    make_pipeline(packed.stack_size);
+    const Stopwatch compiling;
+    make_kernel();
     compile_by_dispatch();
-    stats.pipeline_ms = milliseconds_since(start);
+    stats.pipeline_ms = compiling.ms();
   }
 
-  std::optional<gpu::Buffer> upload(std::span<const std::byte> bytes) {
-    std::optional<gpu::Buffer> buffer;
-    buffer.emplace(device, bytes.size(), vk::BufferUsageFlagBits::eStorageBuffer);
-    buffer->write(bytes);
-    return buffer;
-  }
+  uint32_t records_per_pixel() const { return options.with_aovs ? 2 : 1; }
 
   void make_film(uint32_t pixel_count) {
     if (film && film_pixels >= pixel_count) return;
-    film.emplace(device, sizeof(FilmHead) + pixel_count * sizeof(vec4), vk::BufferUsageFlagBits::eStorageBuffer);
+    film.emplace(device, sizeof(FilmHead) + pixel_count * records_per_pixel() * sizeof(uvec4),
+                 vk::BufferUsageFlagBits::eStorageBuffer);
     film_pixels = pixel_count;
-    if (pipeline) pipeline->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*film});
+    if (kernel) kernel->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*film});
   }
 
-  void make_pipeline(uint32_t stack_size) {
-    using vk::DescriptorType;
-    const std::array constants{gpu::SpecializationConstant{layout::CONSTANT_FEATURES, stats.features},
-                               gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, stack_size}};
-    const std::array buffers{gpu::BoundBuffer{layout::BINDING_FRAME, DescriptorType::eUniformBuffer, &*frame_buffer},
-                             gpu::BoundBuffer{layout::BINDING_NODES, DescriptorType::eStorageBuffer, &*nodes},
-                             gpu::BoundBuffer{layout::BINDING_PRIMITIVES, DescriptorType::eStorageBuffer, &*primitives},
-                             gpu::BoundBuffer{layout::BINDING_SHADING, DescriptorType::eStorageBuffer, &*shading},
-                             gpu::BoundBuffer{layout::BINDING_FILM, DescriptorType::eStorageBuffer, &*film}};
-    pipeline.emplace(device, k_render_spirv, constants, buffers);
-    if (device.timestamp_period_ns() > 0.0) {
-      queries = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
-    }
+  void make_kernel() {
+    const FeatureMask features = stats.features | (options.with_aovs ? layout::FEATURE_AOVS : 0);
+    const std::array constants{gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
+                               gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()}};
+    std::vector<gpu::BoundBuffer> buffers = scene->geometry();
+    buffers.push_back(scene->shading());
+    buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame_buffer});
+    buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*film});
+    kernel.emplace(device, k_render_spirv, constants, buffers);
   }
 
   /// Drivers compile late: the first dispatch of a pipeline must not count as tracing.
   void compile_by_dispatch() {
-    layout::Frame one_pixel = frame;
-    layout::Dispatch one_block = dispatch;
+    layout::Frame one_pixel = scene->frame();
+    layout::Dispatch one_block = scene->dispatch();
     one_block.range = uvec4(0, 0, 1, 0);
     one_block.window = uvec4(0, 0, 1, 1);
     one_block.sampling = uvec4(1, 1, 1, 0);
     set_camera(one_pixel, one_block, Camera(), uvec2(1));
     one_pixel.film_center.z = 0.5F;
     frame_buffer->write(std::as_bytes(std::span(&one_pixel, 1)));
-    run(one_block, 1);
-  }
-
-  /// Returns device milliseconds.
-  double run(const layout::Dispatch& constants, uint32_t block_count) {
-    const auto start = Clock::now();
-    device.run([&](const vk::raii::CommandBuffer& commands) {
-      using Access = vk::AccessFlagBits;
-      using Stage = vk::PipelineStageFlagBits;
-      const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite, Access::eTransferWrite);
-      commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, after_last, {}, {});
-      commands.updateBuffer<layout::Dispatch>(*film->handle(), offsetof(FilmHead, dispatch), constants);
-      const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite,
-                                     Access::eShaderRead | Access::eShaderWrite | Access::eUniformRead);
-      commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader, {}, before, {}, {});
-      if (*queries) {
-        commands.resetQueryPool(*queries, 0, 2);
-        commands.writeTimestamp(Stage::eTopOfPipe, *queries, 0);
-      }
-      pipeline->dispatch(commands, block_count);
-      if (*queries) commands.writeTimestamp(Stage::eBottomOfPipe, *queries, 1);
-      const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead);
-      commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost, {}, after, {}, {});
-    });
-    if (!*queries) return milliseconds_since(start);
-    const auto [result, ticks] = queries.getResults<uint64_t>(
-        0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-    return static_cast<double>(device.ticks_between(ticks[0], ticks[1])) * device.timestamp_period_ns() * 1e-6;
+    kernel->run(one_block, *film, 1);
   }
 
   /// Adds the device's counters to `rays` and sets them to zero.
@@ -178,8 +143,8 @@ struct Renderer::Impl {
   void trace_band(const PixelWindow& window, const View& view, RenderResult& result,
                   const std::function<void(double)>& on_progress) {
     const uvec2 size = window.hi - window.lo;
-    layout::Frame constants = frame;
-    layout::Dispatch range = dispatch;
+    layout::Frame constants = scene->frame();
+    layout::Dispatch range = scene->dispatch();
     set_camera(constants, range, view.camera, view.size);
     const uint32_t samples = view.samples_per_pixel;
     const uint32_t block_columns = divide_up(size.x, layout::BLOCK_SIZE);
@@ -200,9 +165,9 @@ struct Renderer::Impl {
         const uint32_t count = pick_sample_count(blocks, samples - sample);
         uncollected += most_rays_a_sample * blocks * count;
         range.range = uvec4(first, sample, count, view.max_depth);
-        const double time_ms = run(range, blocks);
+        const double time_ms = kernel->run(range, *film, blocks);
         result.trace_ms += time_ms;
-        learn_rate(static_cast<double>(blocks) * count, time_ms);
+        pacer.learn(static_cast<double>(blocks) * count, time_ms);
         if (uncollected > 2e9) {
           collect_counts(result.rays);
           uncollected = 0.0;
@@ -215,43 +180,54 @@ struct Renderer::Impl {
     collect_counts(result.rays);
   }
 
-  // A dispatch covers blocks * samples units of work; their number follows the time that the last ones took. At least
-  // this many blocks keep the device's cores busy.
-  static constexpr uint32_t kMinBlocks = 64;
-  static constexpr uint32_t kMaxBlocks = 65535;  // Vulkan's guaranteed workgroup count
-
   uint32_t pick_block_count(uint32_t samples, uint32_t remaining) const {
     if (options.blocks_per_dispatch > 0) return std::min({options.blocks_per_dispatch, remaining, kMaxBlocks});
-    const double wanted = units_per_dispatch / samples;
+    const double wanted = pacer.units() / samples;
     const auto blocks = static_cast<uint32_t>(std::clamp(wanted, double{kMinBlocks}, double{kMaxBlocks}));
     return std::min(blocks, remaining);
   }
 
   uint32_t pick_sample_count(uint32_t blocks, uint32_t remaining) const {
-    const double wanted = std::max(1.0, units_per_dispatch / blocks);
+    const double wanted = std::max(1.0, pacer.units() / blocks);
     return static_cast<uint32_t>(std::min<double>(wanted, remaining));
   }
 
-  void learn_rate(double units, double time_ms) {
-    // No faster than fourfold a step: the next tile may be dearer than the last.
-    const double ideal = units * options.target_dispatch_ms / std::max(time_ms, 1e-3);
-    units_per_dispatch = std::clamp(ideal, 1.0, 4.0 * std::max(units_per_dispatch, units));
+  /// Adds what the film holds of a band to the result, from its pixel `first` on.
+  void read_film(size_t first, size_t count, uint32_t samples, RenderResult& result) {
+    film_records.resize(count * records_per_pixel());
+    film->read(std::as_writable_bytes(std::span(film_records)), sizeof(FilmHead));
+    for (size_t i = 0; i < count; ++i) {
+      result.image.pixels[first + i] = vec3_of(film_records[i]) / static_cast<float>(samples);
+    }
+    if (!options.with_aovs) return;
+    Aovs& aovs = result.aovs;
+    for (size_t i = 0; i < count; ++i) {
+      const uvec4& normal_and_depth = film_records[count + i];
+      aovs.normal[first + i] = vec3_of(normal_and_depth);
+      aovs.depth[first + i] = std::bit_cast<float>(normal_and_depth.w);
+      const uint32_t order = film_records[i].w;
+      if (order == layout::NO_ORDER) continue;
+      const PrimitiveId id = primitive_of_order(first_order, order);
+      aovs.object[first + i] = id.object;
+      aovs.primitive[first + i] = id.primitive;
+    }
+  }
+
+  static vec3 vec3_of(const uvec4& bits) {
+    return {std::bit_cast<float>(bits.x), std::bit_cast<float>(bits.y), std::bit_cast<float>(bits.z)};
   }
 
   const gpu::Device& device;
   RendererOptions options;
-  layout::Frame frame{};
-  layout::Dispatch dispatch{};
+  Pacer pacer;
   SetupStats stats;
-  std::optional<gpu::Buffer> nodes;
-  std::optional<gpu::Buffer> primitives;
-  std::optional<gpu::Buffer> shading;
+  std::vector<uint32_t> first_order;
+  std::optional<DeviceScene> scene;
   std::optional<gpu::Buffer> frame_buffer;
   std::optional<gpu::Buffer> film;
   uint32_t film_pixels = 0;
-  std::optional<gpu::ComputePipeline> pipeline;
-  vk::raii::QueryPool queries{nullptr};
-  double units_per_dispatch = kMinBlocks;
+  std::vector<uvec4> film_records;
+  std::optional<TracingKernel> kernel;
   uint32_t generator = 1;
 };
 
@@ -262,7 +238,7 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-const Renderer::SetupStats& Renderer::setup_stats() const {
+const SetupStats& Renderer::setup_stats() const {
   return impl_->stats;
 }
 
@@ -274,12 +250,16 @@ RenderResult Renderer::render(const View& view, const std::function<void(double)
 
   RenderResult result;
   result.image.size = window.hi - window.lo;
-  result.image.pixels.resize(static_cast<size_t>(result.image.size.x) * result.image.size.y);
-  impl_->generator = lattice_generator(view.samples_per_pixel);
   const uint32_t width = result.image.size.x;
-  const uint32_t band_rows =
-      std::max(layout::BLOCK_SIZE, kMaxFilmPixels / width / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
-  std::vector<std::byte> film;
+  const size_t pixel_count = static_cast<size_t>(width) * result.image.size.y;
+  result.image.pixels.resize(pixel_count);
+  if (impl_->options.with_aovs) {
+    result.aovs = {std::vector<float>(pixel_count), std::vector<vec3>(pixel_count),
+                   std::vector<uint32_t>(pixel_count, Aovs::kNoId), std::vector<uint32_t>(pixel_count, Aovs::kNoId)};
+  }
+  impl_->generator = lattice_generator(view.samples_per_pixel);
+  const uint32_t film_rows = kMaxFilmRecords / impl_->records_per_pixel() / width;
+  const uint32_t band_rows = std::max(layout::BLOCK_SIZE, film_rows / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
   for (uint32_t y = window.lo.y; y < window.hi.y; y += band_rows) {
     const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
     const uint32_t rows = band.hi.y - band.lo.y;
@@ -289,13 +269,9 @@ RenderResult Renderer::render(const View& view, const std::function<void(double)
       impl_->trace_band(band, view, result, [&](double fraction) {
         if (progress) progress(done + share * fraction);
       });
-      film.resize(sizeof(FilmHead) + static_cast<size_t>(width) * rows * sizeof(vec4));
-      impl_->film->read(film);
+      impl_->read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width,
+                       view.samples_per_pixel, result);
     });
-    const auto* sums = reinterpret_cast<const vec4*>(film.data() + sizeof(FilmHead));
-    const auto samples = static_cast<float>(view.samples_per_pixel);
-    vec3* target = &result.image.at(0, y - window.lo.y);
-    for (size_t i = 0; i < static_cast<size_t>(width) * rows; ++i) target[i] = vec3(sums[i]) / samples;
   }
   return result;
 }

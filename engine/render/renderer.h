@@ -6,10 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "bvh/builder.h"
 #include "image/image.h"
-#include "scene/features.h"
+#include "render/setup_stats.h"
 #include "scene/scene.h"
 
 namespace promin {
@@ -43,9 +43,25 @@ struct RayCounts {
   uint64_t total() const { return primary + shadow + reflection; }
 };
 
+/// What each pixel's middle sample shows, that of index samples / 2: with an odd number of samples the pixel's centre.
+/// Row by row, as the image.
+struct Aovs {
+  /// Distance from the eye (orthographic: from the plane through it); infinite on a miss.
+  std::vector<float> depth;
+  /// Geometric normal as Hit::normal: never flipped to the ray; 0 on a miss.
+  std::vector<vec3> normal;
+  /// As Hit::object and Hit::primitive; kNoId on a miss.
+  std::vector<uint32_t> object;
+  std::vector<uint32_t> primitive;
+
+  static constexpr uint32_t kNoId = 0xFFFFFFFF;
+};
+
 struct RenderResult {
   /// Of the crop window's size.
   Image image;
+  /// Empty unless RendererOptions::with_aovs.
+  Aovs aovs;
   RayCounts rays;
   /// Device time of the traversal and shading dispatches alone (timestamps where the device has them, else waiting
   /// time on the host).
@@ -58,6 +74,8 @@ struct RendererOptions {
   bool force_all_features = false;
   /// Features to leave out although the scene uses them, e.g. FEATURE_SHADOWS: then nothing throws a shadow.
   FeatureMask left_out_features = 0;
+  /// Bring RenderResult::aovs as well. The image's bits stay the same.
+  bool with_aovs = false;
   /// A single dispatch is not meant to take longer; work is cut into tiles by measured time.
   double target_dispatch_ms = 25.0;
   /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
@@ -77,16 +95,6 @@ class Renderer {
   /// Traces one picture. `progress` is called after each dispatch with the fraction done, 0...1.
   RenderResult render(const View& view, const std::function<void(double)>& progress = {});
 
-  /// What the first constructor call cost and made.
-  struct SetupStats {
-    double bvh_ms = 0.0;
-    double upload_ms = 0.0;
-    /// Pipeline creation and the first, compiling, dispatch.
-    double pipeline_ms = 0.0;
-    BvhStats bvh;
-    uint64_t device_bytes = 0;
-    FeatureMask features = 0;
-  };
   const SetupStats& setup_stats() const;
 
  private:

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/caster.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/stopwatch.h"
+#include "render/pack_scene.h"
+#include "render/ray_kernel.h"
+
+namespace promin {
+namespace {
+
+using layout::HitRecord;
+using layout::RayRecord;
+
+/// Features that decide what a ray meets; the others only colour it.
+constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATURE_SPHERES | layout::FEATURE_CYLINDERS |
+                                       layout::FEATURE_CONES | layout::FEATURE_PLANES;
+
+/// A power of two that brings the direction to where the shader takes it (shaders/ray.glsl); mostly 1.
+float scale_of(const vec3& direction) {
+  const float size = max_abs_component(direction);
+  if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;
+  if (size >= 0x1p127F && std::isfinite(size)) return 0x1p-64F;
+  return 1.0F;
+}
+
+RayRecord record_of(const Ray& ray) {
+  const float scale = scale_of(ray.direction);
+  // tmin * direction is kept. It may round to 0 here; hit_of has the last word.
+  return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
+}
+
+Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, std::span<const uint32_t> first_order) {
+  const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
+  if (record.a.y == layout::NO_ORDER || !(t > ray.tmin && t < ray.tmax)) return {};
+  Hit hit;
+  if (query == HitQuery::kAny) {
+    hit.t = 0.0F;
+    return hit;
+  }
+  const PrimitiveId id = primitive_of_order(first_order, record.a.y);
+  hit.t = t;
+  hit.object = static_cast<int32_t>(id.object);
+  hit.primitive = static_cast<int32_t>(id.primitive);
+  hit.u = std::bit_cast<float>(record.a.z);
+  hit.v = std::bit_cast<float>(record.a.w);
+  hit.normal = {std::bit_cast<float>(record.b.x), std::bit_cast<float>(record.b.y), std::bit_cast<float>(record.b.z)};
+  return hit;
+}
+
+}  // namespace
+
+struct Caster::Impl {
+  Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options) : device(the_device) {
+    PackedScene packed = pack_scene(the_scene, options.builder);
+    const Stopwatch uploading;
+    scene = upload_scene(device, packed);
+    stats.upload_ms = uploading.ms();
+    stats.bvh = packed.bvh;
+    stats.bvh_ms = packed.bvh_ms;
+    stats.device_bytes = packed.size_bytes();
+    stats.features = features_of(the_scene) & kShapeFeatures;
+    first_order = std::move(packed.first_order);
+  }
+
+  RayKernel& kernel_for(HitQuery query) {
+    std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0];
+    if (!kernel) {
+      RayKernelOptions options;
+      options.features = stats.features;
+      options.query = query;
+      kernel.emplace(device, scene, options);
+      stats.pipeline_ms += kernel->pipeline_ms();
+    }
+    return *kernel;
+  }
+
+  /// At most RayKernel::kMaxRays.
+  double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
+    requests.resize(rays.size());
+    records.resize(rays.size());
+    std::transform(rays.begin(), rays.end(), requests.begin(), record_of);
+    const double time_ms = kernel_for(query).run(requests, records);
+    for (size_t i = 0; i < rays.size(); ++i) hits[i] = hit_of(records[i], rays[i], query, first_order);
+    return time_ms;
+  }
+
+  const gpu::Device& device;
+  std::shared_ptr<const DeviceScene> scene;
+  std::vector<uint32_t> first_order;
+  SetupStats stats;
+  std::array<std::optional<RayKernel>, 2> kernels;
+  std::vector<RayRecord> requests;
+  std::vector<HitRecord> records;
+};
+
+Caster::Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options)
+    : impl_(std::make_unique<Impl>(device, scene, options)) {}
+Caster::~Caster() = default;
+Caster::Caster(Caster&&) noexcept = default;
+Caster& Caster::operator=(Caster&&) noexcept = default;
+
+void Caster::prepare(HitQuery query) {
+  impl_->kernel_for(query);
+}
+
+double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query,
+                    const std::function<void(double)>& progress) {
+  assert(rays.size() == hits.size());
+  double time_ms = 0.0;
+  for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
+    const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
+    time_ms += impl_->cast(rays.subspan(first, count), hits.subspan(first, count), query);
+    if (progress) progress(static_cast<double>(first + count) / static_cast<double>(rays.size()));
+  }
+  return time_ms;
+}
+
+const SetupStats& Caster::setup_stats() const {
+  return impl_->stats;
+}
+
+}  // namespace promin

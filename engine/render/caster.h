@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "rays/ray.h"
+#include "render/setup_stats.h"
+#include "scene/scene.h"
+
+namespace promin {
+
+namespace gpu {
+class Device;
+}
+
+struct CasterOptions {
+  std::string builder = "sah";
+};
+
+/// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with. Keeps
+/// no reference to the Scene. One Caster serves one thread.
+class Caster {
+ public:
+  /// Builds the BVH and uploads. Throws UsageError for an unknown builder, RunError where memory does not suffice or a
+  /// device limit is passed.
+  Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options = {});
+  ~Caster();
+  Caster(Caster&&) noexcept;
+  Caster& operator=(Caster&&) noexcept;
+
+  /// Compiles for a kind of query; otherwise its first cast does. The time is in setup_stats().
+  void prepare(HitQuery query);
+
+  /// Answers each ray in the hit at the same place; as many hits as rays, any number. The answers do not depend on how
+  /// many rays are cast together. `progress` is called with the fraction done, 0...1. Returns device milliseconds of
+  /// the traversal dispatches alone.
+  double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
+              const std::function<void(double)>& progress = {});
+
+  const SetupStats& setup_stats() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace promin

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/pipeline.h"
+#include "render/pack_scene.h"
+
+namespace promin {
+
+/// A packed scene in device memory, with what of it goes along with each dispatch. Keeps no reference to the
+/// PackedScene.
+class DeviceScene {
+ public:
+  /// Throws vk::SystemError, and RunError where a device limit is passed.
+  DeviceScene(const gpu::Device& device, const PackedScene& packed);
+
+  /// What a picture's or a cast's constants take from the scene.
+  const layout::Frame& frame() const { return frame_; }
+  const layout::Dispatch& dispatch() const { return dispatch_; }
+  uint32_t stack_size() const { return stack_size_; }
+
+  /// What traversal reads: nodes and primitives.
+  std::vector<gpu::BoundBuffer> geometry() const;
+  gpu::BoundBuffer shading() const;
+
+ private:
+  gpu::Buffer nodes_;
+  gpu::Buffer primitives_;
+  gpu::Buffer shading_;
+  layout::Frame frame_;
+  layout::Dispatch dispatch_;
+  uint32_t stack_size_;
+};
+
+}  // namespace promin

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/ray_kernel.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <optional>
+
+#include "cast.spv.h"
+#include "core/stopwatch.h"
+#include "gpu/device.h"
+#include "render/device_scene.h"
+#include "render/tracing_kernel.h"
+
+namespace promin {
+namespace {
+
+constexpr uint32_t kGroupRays = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+/// Keeps the device's cores busy in the first dispatch.
+constexpr double kFirstRays = 64.0 * kGroupRays;
+static_assert(RayKernel::kMaxRays / kGroupRays <= 65535, "Vulkan's guaranteed workgroup count");
+
+vk::DeviceSize hits_size(size_t ray_count) {
+  return sizeof(layout::Dispatch) + ray_count * sizeof(layout::HitRecord);
+}
+
+}  // namespace
+
+std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed) {
+  std::shared_ptr<const DeviceScene> scene;
+  gpu::translate_vulkan_errors([&] { scene = std::make_shared<const DeviceScene>(device, packed); });
+  return scene;
+}
+
+std::span<const uint32_t> cast_spirv() {
+  return k_cast_spirv;
+}
+
+struct RayKernel::Impl {
+  Impl(const gpu::Device& the_device, std::shared_ptr<const DeviceScene> the_scene, const RayKernelOptions& the_options)
+      : device(the_device),
+        scene(std::move(the_scene)),
+        options(the_options),
+        pacer(options.target_dispatch_ms, kFirstRays) {
+    const Stopwatch compiling;
+    frame.emplace(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer);
+    frame->write(std::as_bytes(std::span(&scene->frame(), 1)));
+    make_buffers(1);
+    const std::array constants{
+        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features},
+        gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
+        gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
+    std::vector<gpu::BoundBuffer> buffers = scene->geometry();
+    buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame});
+    for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
+    kernel.emplace(device, options.spirv, constants, buffers);
+    // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
+    kernel->run(scene->dispatch(), *hits, 1);
+    pipeline_ms = compiling.ms();
+  }
+
+  std::array<gpu::BoundBuffer, 2> ray_buffers() const {
+    return {{{layout::BINDING_RAYS, vk::DescriptorType::eStorageBuffer, &*rays},
+             {layout::BINDING_HITS, vk::DescriptorType::eStorageBuffer, &*hits}}};
+  }
+
+  void make_buffers(size_t ray_count) {
+    if (ray_count <= capacity) return;
+    rays.emplace(device, ray_count * sizeof(layout::RayRecord), vk::BufferUsageFlagBits::eStorageBuffer);
+    hits.emplace(device, hits_size(ray_count), vk::BufferUsageFlagBits::eStorageBuffer);
+    capacity = ray_count;
+    if (!kernel) return;
+    for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);
+  }
+
+  double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
+    make_buffers(input.size());
+    rays->write(std::as_bytes(input));
+    double total_ms = 0.0;
+    layout::Dispatch dispatch = scene->dispatch();
+    const auto end = static_cast<uint32_t>(input.size());
+    for (uint32_t first = 0; first < end;) {
+      const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : pacer.units();
+      const auto count = static_cast<uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(end - first)));
+      dispatch.range = uvec4(first, first + count, 0, 0);
+      const double time_ms = kernel->run(dispatch, *hits, (count + kGroupRays - 1) / kGroupRays);
+      pacer.learn(count, time_ms);
+      total_ms += time_ms;
+      first += count;
+    }
+    hits->read(std::as_writable_bytes(records), sizeof(layout::Dispatch));
+    return total_ms;
+  }
+
+  const gpu::Device& device;
+  std::shared_ptr<const DeviceScene> scene;
+  RayKernelOptions options;
+  Pacer pacer;
+  std::optional<gpu::Buffer> frame;
+  std::optional<gpu::Buffer> rays;
+  std::optional<gpu::Buffer> hits;
+  size_t capacity = 0;
+  std::optional<TracingKernel> kernel;
+  double pipeline_ms = 0.0;
+};
+
+RayKernel::RayKernel(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
+                     const RayKernelOptions& options) {
+  gpu::translate_vulkan_errors([&] { impl_ = std::make_unique<Impl>(device, std::move(scene), options); });
+}
+RayKernel::~RayKernel() = default;
+RayKernel::RayKernel(RayKernel&&) noexcept = default;
+RayKernel& RayKernel::operator=(RayKernel&&) noexcept = default;
+
+double RayKernel::run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records) {
+  assert(rays.size() <= kMaxRays && rays.size() == records.size());
+  if (rays.empty()) return 0.0;
+  double time_ms = 0.0;
+  gpu::translate_vulkan_errors([&] { time_ms = impl_->run(rays, records); });
+  return time_ms;
+}
+
+double RayKernel::pipeline_ms() const {
+  return impl_->pipeline_ms;
+}
+
+}  // namespace promin

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "layout.h"
+#include "rays/ray.h"
+#include "render/pack_scene.h"
+#include "scene/features.h"
+
+namespace promin {
+
+namespace gpu {
+class Device;
+}
+class DeviceScene;
+
+/// Copies a packed scene to the device. Throws RunError where memory does not suffice or a device limit is passed.
+std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed);
+
+/// SPIR-V of shaders/cast.comp.
+std::span<const uint32_t> cast_spirv();
+
+struct RayKernelOptions {
+  /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements.
+  std::span<const uint32_t> spirv = cast_spirv();
+  FeatureMask features = all_features();
+  HitQuery query = HitQuery::kNearest;
+  /// A single dispatch is not meant to take longer.
+  double target_dispatch_ms = 25.0;
+  /// Fixed number of rays a dispatch, rounded up to whole workgroups, for tests; 0 adapts.
+  uint32_t rays_per_dispatch = 0;
+};
+
+/// A kernel that takes rays and gives a record for each; under Caster, and the bare device for tests.
+class RayKernel {
+ public:
+  /// Compiles; throws RunError.
+  RayKernel(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, const RayKernelOptions& options);
+  ~RayKernel();
+  RayKernel(RayKernel&&) noexcept;
+  RayKernel& operator=(RayKernel&&) noexcept;
+
+  /// Most rays that one call of run takes.
+  static constexpr size_t kMaxRays = size_t{1} << 20;
+
+  /// Fills as many records as there are rays, at most kMaxRays. Returns device milliseconds.
+  double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records);
+
+  /// Time that compiling took.
+  double pipeline_ms() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace promin

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/tracing_kernel.h"
+
+#include <algorithm>
+
+#include "core/stopwatch.h"
+#include "gpu/buffer.h"
+#include "gpu/device.h"
+
+namespace promin {
+
+void Pacer::learn(double units, double time_ms) {
+  // No faster than fourfold a step: the next tile may be dearer than the last.
+  const double ideal = units * target_ms_ / std::max(time_ms, 1e-3);
+  units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
+}
+
+TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
+                             std::span<const gpu::SpecializationConstant> constants,
+                             std::span<const gpu::BoundBuffer> buffers)
+    : device_(&device), pipeline_(device, spirv, constants, buffers) {
+  if (device.timestamp_period_ns() > 0.0) {
+    queries_ = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
+  }
+}
+
+double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head, uint32_t group_count) const {
+  const Stopwatch waiting;
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    using Access = vk::AccessFlagBits;
+    using Stage = vk::PipelineStageFlagBits;
+    const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite, Access::eTransferWrite);
+    commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, after_last, {}, {});
+    commands.updateBuffer<layout::Dispatch>(*head.handle(), 0, constants);
+    const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite,
+                                   Access::eShaderRead | Access::eShaderWrite | Access::eUniformRead);
+    commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader, {}, before, {}, {});
+    if (*queries_) {
+      commands.resetQueryPool(*queries_, 0, 2);
+      commands.writeTimestamp(Stage::eTopOfPipe, *queries_, 0);
+    }
+    pipeline_.dispatch(commands, group_count);
+    if (*queries_) commands.writeTimestamp(Stage::eBottomOfPipe, *queries_, 1);
+    const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead);
+    commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost, {}, after, {}, {});
+  });
+  if (!*queries_) return waiting.ms();
+  const auto [result, ticks] = queries_.getResults<uint64_t>(
+      0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+  return static_cast<double>(device_->ticks_between(ticks[0], ticks[1])) * device_->timestamp_period_ns() * 1e-6;
+}
+
+}  // namespace promin

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "gpu/pipeline.h"
+#include "layout.h"
+
+namespace promin {
+
+/// How much work the next dispatch takes so that it lasts about the target: drivers kill dispatches of seconds.
+class Pacer {
+ public:
+  Pacer(double target_ms, double first_units) : target_ms_(target_ms), units_(first_units) {}
+
+  double units() const { return units_; }
+  /// The last dispatch covered `units` in `time_ms`.
+  void learn(double units, double time_ms);
+
+ private:
+  double target_ms_;
+  double units_;
+};
+
+/// A pipeline that traces, timed by the device's clock where it has one.
+class TracingKernel {
+ public:
+  TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
+                std::span<const gpu::SpecializationConstant> constants, std::span<const gpu::BoundBuffer> buffers);
+
+  void bind(const gpu::BoundBuffer& buffer) { pipeline_.bind(buffer); }
+
+  /// Puts `constants` at the head of `head`, runs the workgroups and waits. Returns device milliseconds (waiting time
+  /// on the host where the queue has no timestamps).
+  double run(const layout::Dispatch& constants, const gpu::Buffer& head, uint32_t group_count) const;
+
+ private:
+  const gpu::Device* device_;
+  gpu::ComputePipeline pipeline_;
+  vk::raii::QueryPool queries_{nullptr};
+};
+
+}  // namespace promin

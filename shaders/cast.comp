@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Answers rays: the nearest hit, or with ANY_HIT whether there is one.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "layout.h"
+#include "bindings.glsl"
+#include "cast_bindings.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "primitives.glsl"
+#include "traversal.glsl"
+#include "cast.glsl"

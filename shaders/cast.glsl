@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Rays in, records out, one lane a ray: the body of cast.comp, which differs from a variant only in what it includes
+// before this.
+
+layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+
+HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
+  uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
+  HitRecord miss = HitRecord(uvec4(floatBitsToUint(INFINITY), NO_ORDER, 0u, 0u), uvec4(0u, 0u, 0u, steps));
+  if (hit.primitive == NO_PRIMITIVE) return miss;
+  // Back to the units of the direction as given. Where that overflows there is no t to tell of.
+  precise float t = hit.t * power_of_two_inverse(max_abs(request.direction_tmax.xyz));
+  if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
+  vec3 normal = surface_point(ray, primitives[hit.primitive], hit).normal;
+  return HitRecord(uvec4(floatBitsToUint(t), hit.order, floatBitsToUint(vec2(hit.u, hit.v))),
+                   uvec4(floatBitsToUint(normal), steps));
+}
+
+void main() {
+  uint index = dispatch.range.x + gl_GlobalInvocationID.x;
+  if (index >= dispatch.range.y) return;
+  RayRecord request = rays[index];
+  Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
+                     request.direction_tmax.w);
+  step_counts = uvec2(0u);
+  hits[index] = record_of(request, ray, trace(ray, ANY_HIT != 0u));
+}
