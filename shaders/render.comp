@@ -23,6 +23,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 #include "ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
+#include "secondary.glsl"
 #include "lights.glsl"
 #include "shading.glsl"
 #include "camera.glsl"
@@ -48,7 +49,7 @@ vec3 radiance(Ray ray, inout uvec3 ray_count, out Hit first) {
     precise vec3 next_weight = weight * point.material.reflection.xyz;
     weight = next_weight;
     if (!(max_abs(weight) > 0.0)) return sum;
-    ray = make_ray(lifted_origin(point.position, point), reflect_direction(point, direction), 0.0, INFINITY);
+    ray = mirror_ray(point, direction);
     ++ray_count.z;
   }
 }

@@ -72,11 +72,6 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
   return point;
 }
 
-vec3 lifted_origin(vec3 position, ShadingPoint point) {
-  precise vec3 origin = position + point.lift * point.geometric_normal;
-  return origin;
-}
-
 // One source's share, its shadow ray included.
 vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint shadow_rays) {
   LightSample sampled = sample_light(light, point.position);
@@ -99,7 +94,7 @@ vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint 
 
   if (has(FEATURE_SHADOWS)) {
     ++shadow_rays;
-    vec3 origin = lifted_origin(point.shadow_position, point);
+    vec3 origin = lift_off(point.shadow_position, point.geometric_normal, point.lift);
     precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
     Hit blocker = trace(make_ray(origin, to_source, 0.0, sampled.tmax), true);
     if (blocker.primitive != NO_PRIMITIVE) return vec3(0.0);
@@ -117,11 +112,8 @@ vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
   return sum;
 }
 
-// The mirror direction about the shading normal. Where that would enter the surface, which an interpolated normal can
-// do, the surface itself reflects it once more; at grazing rays the two agree.
-vec3 reflect_direction(ShadingPoint point, vec3 direction) {
-  precise vec3 mirrored = direction - 2.0 * dot3(direction, point.normal) * point.normal;
-  precise float below = min(0.0, dot3(mirrored, point.geometric_normal));
-  precise vec3 outward = mirrored - 2.0 * below * point.geometric_normal;
-  return normalize3(outward);
+// A function of its own: written into the loop that follows the bounces, glslang 12 runs out of memory over it.
+Ray mirror_ray(ShadingPoint point, vec3 direction) {
+  vec3 origin = lift_off(point.position, point.geometric_normal, point.lift);
+  return make_ray(origin, reflect_direction(direction, point.normal, point.geometric_normal), 0.0, INFINITY);
 }

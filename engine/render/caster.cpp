@@ -59,7 +59,7 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, std::span<co
 }  // namespace
 
 struct Caster::Impl {
-  Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options) : device(the_device) {
+  Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options) : device(the_device), spirv(options.spirv) {
     PackedScene packed = pack_scene(the_scene, options.builder);
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
@@ -77,6 +77,7 @@ struct Caster::Impl {
       RayKernelOptions options;
       options.features = stats.features;
       options.query = query;
+      if (!spirv.empty()) options.spirv = spirv;
       kernel.emplace(device, scene, options);
       stats.pipeline_ms += kernel->pipeline_ms();
     }
@@ -94,6 +95,7 @@ struct Caster::Impl {
   }
 
   const gpu::Device& device;
+  std::span<const uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
   std::vector<uint32_t> first_order;
   SetupStats stats;

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Where the renderer's secondary rays would start: for each ray that hits, a record of
+//   a  bits of the lifted origin; bits of the lift
+//   b  bits of the mirror direction; the primitive's number in order, NO_ORDER on a miss
+// by the renderer's own code.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "layout.h"
+
+layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+
+#include "bindings.glsl"
+#include "cast_bindings.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "primitives.glsl"
+#include "traversal.glsl"
+#include "secondary.glsl"
+
+void main() {
+  uint index = dispatch.range.x + gl_GlobalInvocationID.x;
+  if (index >= dispatch.range.y) return;
+  RayRecord request = rays[index];
+  Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
+                     request.direction_tmax.w);
+  Hit hit = trace(ray, ANY_HIT != 0u);
+  hits[index] = HitRecord(uvec4(0u), uvec4(0u, 0u, 0u, NO_ORDER));
+  if (hit.primitive == NO_PRIMITIVE) return;
+  SurfacePoint surface = surface_point(ray, primitives[hit.primitive], hit);
+  vec3 normal = dot3(surface.normal, ray.direction) > 0.0 ? -surface.normal : surface.normal;
+  vec3 origin = lift_off(surface.position, normal, surface.lift);
+  vec3 mirrored = reflect_direction(normalize3(ray.direction), normal, normal);
+  hits[index] = HitRecord(floatBitsToUint(vec4(origin, surface.lift)),
+                          uvec4(floatBitsToUint(mirrored), hit.order));
+}

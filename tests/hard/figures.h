@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hard/hard_case.h"
+
+namespace promin::hard {
+
+struct RowFigure {
+  int row = 0;
+  std::string what;
+  std::optional<double> bound;
+  double figure = 0.0;
+};
+
+struct PrimitiveFigures {
+  Tally tally;
+  uint64_t leaks = 0;
+};
+
+/// Everything that this process measured. Where the environment variable PROMIN_FIGURES names a file, it is written
+/// there as JSON when the tests have ended (tools/accuracy).
+struct Figures {
+  std::vector<RowFigure> rows;
+  std::map<std::string, PrimitiveFigures> primitives;
+};
+Figures& figures();
+
+}  // namespace promin::hard

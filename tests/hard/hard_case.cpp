@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hard/hard_case.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "bounce.spv.h"
+#include "core/file.h"
+#include "core/parallel.h"
+#include "hard/figures.h"
+#include "render/caster.h"
+
+namespace promin::hard {
+namespace {
+
+/// The kernel `name`.spv of the folder that PROMIN_TEST_KERNELS names, for tests of the tests; else promin's own.
+std::vector<uint32_t> load_kernel(const char* name, std::span<const uint32_t> own) {
+  const char* folder = std::getenv("PROMIN_TEST_KERNELS");
+  if (folder == nullptr) return {own.begin(), own.end()};
+  const std::vector<std::byte> bytes = read_file(std::filesystem::path(folder) / name);
+  std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
+  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
+  return words;
+}
+
+bool is_well_formed(const Hit& hit) {
+  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) &&
+         std::abs(glm::length(dvec3(hit.normal)) - 1.0) <= 4.0 * static_cast<double>(kUnitRoundoff);
+}
+
+void judge_one(const Scene& scene, const Ray& ray, const Hit& hit, Tally& tally) {
+  const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
+  const oracle::Verdict verdict = oracle::judge(scene, exact, {hit.t, hit.object, hit.primitive});
+  ++tally.rays;
+  if (hit.object >= 0 && !is_well_formed(hit)) ++tally.malformed;
+  if (!verdict.is_same) {
+    ++tally.misclassified;
+    tally.max_margin = std::max(tally.max_margin, static_cast<double>(verdict.margin));
+  } else if (hit.object >= 0) {
+    const auto t_error = static_cast<double>(verdict.t_error);
+    ++tally.hits;
+    tally.max_t_error = std::max(tally.max_t_error, t_error);
+    tally.sum_t_error2 += t_error * t_error;
+    tally.max_surface_error = std::max(tally.max_surface_error, static_cast<double>(verdict.surface_error));
+  }
+}
+
+}  // namespace
+
+double Tally::rms_t_error() const {
+  return hits > 0 ? std::sqrt(sum_t_error2 / static_cast<double>(hits)) : 0.0;
+}
+
+void Tally::add(const Tally& other) {
+  rays += other.rays;
+  hits += other.hits;
+  max_t_error = std::max(max_t_error, other.max_t_error);
+  sum_t_error2 += other.sum_t_error2;
+  max_surface_error = std::max(max_surface_error, other.max_surface_error);
+  misclassified += other.misclassified;
+  max_margin = std::max(max_margin, other.max_margin);
+  malformed += other.malformed;
+}
+
+dvec3 Random::direction() {
+  const double z = uniform(-1.0, 1.0);
+  const double angle = uniform(0.0, 6.283185307179586);
+  const double radius = std::sqrt(1.0 - z * z);
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+dvec3 Random::perpendicular(const dvec3& axis) {
+  for (;;) {
+    const dvec3 cross = glm::cross(axis, direction());
+    if (glm::length(cross) > 0.1) return glm::normalize(cross);
+  }
+}
+
+double Lab::rounding_factor() const {
+  return gpu::info_of(device_).driver.find("llvmpipe") != std::string::npos ? 1.0 : 2.0;
+}
+
+std::vector<Hit> Lab::cast(const Scene& scene, std::span<const Ray> rays, HitQuery query) const {
+  static const std::vector<uint32_t> kKernel = load_kernel("cast.spv", cast_spirv());
+  CasterOptions options;
+  options.spirv = kKernel;
+  std::vector<Hit> hits(rays.size());
+  Caster(device_, scene, options).cast(rays, hits, query);
+  return hits;
+}
+
+Tally Lab::judge(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits) {
+  constexpr size_t kChunk = 4096;
+  std::vector<Tally> tallies((rays.size() + kChunk - 1) / kChunk);
+  for_each_index(tallies.size(), 0, [&](size_t chunk) {
+    const size_t end = std::min(rays.size(), (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) judge_one(scene, rays[i], hits[i], tallies[chunk]);
+  });
+  Tally total;
+  for (const Tally& tally : tallies) total.add(tally);
+  return total;
+}
+
+Tally Lab::cast_and_judge(const Scene& scene, std::span<const Ray> rays) const {
+  return judge(scene, rays, cast(scene, rays));
+}
+
+void Lab::expect_at_most(const std::string& what, double bound, double figure) const {
+  std::printf("row %02d | %-58s | bound %-9.4g | %.4g\n", row_, what.c_str(), bound, figure);
+  figures().rows.push_back({row_, what, bound, figure});
+  // Written so that NaN fails.
+  EXPECT_TRUE(figure <= bound) << "row " << row_ << ", " << what << ": " << figure << " is beyond " << bound;
+}
+
+void Lab::note(const std::string& what, double figure) const {
+  std::printf("row %02d | %-58s |                 | %.4g\n", row_, what.c_str(), figure);
+  figures().rows.push_back({row_, what, std::nullopt, figure});
+}
+
+void Lab::credit(const std::string& primitive, const Tally& tally, uint64_t leaks) {
+  PrimitiveFigures& entry = figures().primitives[primitive];
+  entry.tally.add(tally);
+  entry.leaks += leaks;
+}
+
+std::span<const uint32_t> Lab::bounce_kernel() {
+  static const std::vector<uint32_t> kKernel = load_kernel("bounce.spv", k_bounce_spirv);
+  return kKernel;
+}
+
+Scene scene_of(std::vector<Shape> shapes) {
+  Scene scene;
+  scene.file = "hard case";
+  scene.materials.resize(1);
+  for (Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
+  return scene;
+}
+
+Ray ray_towards(const dvec3& origin, const dvec3& target) {
+  const vec3 start(origin);
+  return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), std::numeric_limits<float>::infinity()};
+}
+
+}  // namespace promin::hard

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The hard cases of ray tracing in floating point, each with the bound that it must meet, through the device.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gpu/open_device.h"
+#include "layout.h"
+#include "oracle/verdict.h"
+#include "rays/ray.h"
+#include "render/ray_kernel.h"
+#include "scene/scene.h"
+
+namespace promin::hard {
+
+class Lab;
+
+/// One row of the table of hard cases.
+struct HardCase {
+  int row = 0;
+  const char* name = "";
+  void (*run)(Lab& lab) = nullptr;
+};
+
+/// Each file's rows.
+std::span<const HardCase> sphere_cases();
+std::span<const HardCase> plane_cases();
+std::span<const HardCase> solid_cases();
+std::span<const HardCase> triangle_cases();
+std::span<const HardCase> box_cases();
+std::span<const HardCase> ray_cases();
+std::span<const HardCase> secondary_cases();
+std::span<const HardCase> host_cases();
+std::span<const HardCase> tree_cases();
+
+/// What the answers to many rays come to against the oracle. Errors in units of u S (numerics.md).
+struct Tally {
+  uint64_t rays = 0;
+  /// Both the device and the oracle tell of the same hit.
+  uint64_t hits = 0;
+  /// Of those, |dt| |d| cos / (u S): B1.
+  double max_t_error = 0.0;
+  double sum_t_error2 = 0.0;
+  /// Distance of o + t d from the surface / (u S): BK.
+  double max_surface_error = 0.0;
+  /// Another id, or one of them a miss; and how far from an edge or silhouette the worst of these passes: B2.
+  uint64_t misclassified = 0;
+  double max_margin = 0.0;
+  /// Hits whose t, u, v or normal is not finite, or whose normal is not of unit length.
+  uint64_t malformed = 0;
+
+  double rms_t_error() const;
+  void add(const Tally& other);
+};
+
+/// Deterministic on every platform, unlike the standard distributions.
+class Random {
+ public:
+  explicit Random(uint64_t seed) : generator_(seed) {}
+  /// [0, 1).
+  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
+  double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
+  /// A unit vector, all directions alike.
+  dvec3 direction();
+  /// A unit vector perpendicular to a unit vector.
+  dvec3 perpendicular(const dvec3& axis);
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// What a hard case works with: the device, the oracle, and where figures go.
+class Lab {
+ public:
+  Lab(const gpu::Device& device, int row) : device_(device), row_(row) {}
+
+  const gpu::Device& device() const { return device_; }
+
+  /// 1 where the driver divides and takes roots with correct rounding, else 2: bounds on K are stated times this.
+  double rounding_factor() const;
+
+  /// Casts through the public Caster, or the kernel that PROMIN_TEST_KERNELS names.
+  std::vector<Hit> cast(const Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) const;
+
+  /// Each answer against the oracle's; shared out over all cores.
+  static Tally judge(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
+  Tally cast_and_judge(const Scene& scene, std::span<const Ray> rays) const;
+
+  /// Prints the figure beside its bound, keeps it for docs/accuracy.md and fails the test where it passes the bound.
+  /// `what` names the figure and its unit: "K of t, distance 1e4".
+  void expect_at_most(const std::string& what, double bound, double figure) const;
+  /// As much for what has no bound: printed and kept.
+  void note(const std::string& what, double figure) const;
+
+  /// Adds to the table of primitives: every ray that was judged for this primitive in any row.
+  static void credit(const std::string& primitive, const Tally& tally, uint64_t leaks = 0);
+
+  /// SPIR-V of tests/hard/bounce.comp, or the one of PROMIN_TEST_KERNELS.
+  static std::span<const uint32_t> bounce_kernel();
+
+ private:
+  const gpu::Device& device_;
+  int row_;
+};
+
+/// A scene of these shapes with one material.
+Scene scene_of(std::vector<Shape> shapes);
+
+/// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
+Ray ray_towards(const dvec3& origin, const dvec3& target);
+
+}  // namespace promin::hard

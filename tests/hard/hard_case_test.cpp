@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "gpu/device_fixture.h"
+#include "hard/hard_case.h"
+
+namespace promin::hard {
+namespace {
+
+std::vector<HardCase> all_cases() {
+  std::vector<HardCase> cases;
+  for (const auto rows : {sphere_cases(), plane_cases(), solid_cases(), triangle_cases(), box_cases(), ray_cases(),
+                          secondary_cases(), host_cases(), tree_cases()}) {
+    cases.insert(cases.end(), rows.begin(), rows.end());
+  }
+  std::sort(cases.begin(), cases.end(), [](const HardCase& a, const HardCase& b) { return a.row < b.row; });
+  return cases;
+}
+
+class HardCaseTest : public test::DeviceTest, public testing::WithParamInterface<HardCase> {};
+
+TEST_P(HardCaseTest, MeetsItsBound) {
+  Lab lab(device(), GetParam().row);
+  GetParam().run(lab);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, HardCaseTest, testing::ValuesIn(all_cases()), [](const auto& test) {
+  const int row = test.param.row;
+  return (row < 10 ? "Row0" : "Row") + std::to_string(row) + "_" + test.param.name;
+});
+
+TEST(HardCases, AreThirtyEightRows) {
+  const std::vector<HardCase> cases = all_cases();
+  ASSERT_EQ(cases.size(), 38U);
+  for (size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(cases[i].row, static_cast<int>(i) + 1);
+}
+
+}  // namespace
+}  // namespace promin::hard

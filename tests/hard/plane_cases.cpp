@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "hard/hard_case.h"
+
+namespace promin::hard {
+namespace {
+
+constexpr size_t kRayCount = 100000;
+
+/// |dt n.d| / (u (|q - o| + |t d|)) of the worst hit; infinite where a hit is missing.
+double worst_plane_error(const Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
+  using oracle::Real;
+  using oracle::Vector;
+  const Vector n(plane.normal);
+  double worst = 0.0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Vector d(rays[i].direction);
+    const Vector to_plane = Vector(plane.point) - Vector(rays[i].origin);
+    const Real slope = glm::dot(n, d);
+    const Real t = glm::dot(n, to_plane) / slope;
+    if (hits[i].object != 0) return std::numeric_limits<double>::infinity();
+    const Real scale = kUnitRoundoff * (glm::length(to_plane) + t * glm::length(d));
+    worst = std::max(worst, static_cast<double>(std::abs((hits[i].t - t) * slope) / scale));
+  }
+  return worst;
+}
+
+void run_slopes(Lab& lab) {
+  Random random(10);
+  for (const double cosine : {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    const dvec3 normal = random.direction();
+    const Plane plane{vec3(1e5F, -1e5F, 1e5F), vec3(normal)};
+    const dvec3 n = glm::normalize(dvec3(plane.normal));
+    std::vector<Ray> rays;
+    while (rays.size() < kRayCount) {
+      const dvec3 origin = dvec3(plane.point) + 10.0 * n + 10.0 * random.uniform() * random.perpendicular(n);
+      const dvec3 along = std::sqrt(1.0 - cosine * cosine) * random.perpendicular(n);
+      const Ray ray = ray_towards(origin, origin - cosine * n + along);
+      // Rounding may turn the direction off the plane.
+      const oracle::Real slope = glm::dot(oracle::Vector(plane.normal), oracle::Vector(ray.direction));
+      if (slope < -0.5L * cosine) rays.push_back(ray);
+    }
+    const double worst = worst_plane_error(plane, rays, lab.cast(scene_of({plane}), rays));
+    char what[96];
+    std::snprintf(what, sizeof what, "|dt n.d| / u(|q-o| + |td|), cos %.0e", cosine);
+    lab.expect_at_most(what, 8.0 * lab.rounding_factor(), worst);
+    Tally tally;
+    tally.rays = tally.hits = rays.size();
+    tally.max_t_error = worst;
+    Lab::credit("plane", tally);
+  }
+}
+
+void run_parallel(Lab& lab) {
+  const Plane plane{vec3(1.0F, 2.0F, 3.0F), vec3(0.0F, 1.0F, 0.0F)};
+  const float infinity = std::numeric_limits<float>::infinity();
+  std::vector<Ray> rays;
+  for (const float height : {2.0F, 2.5F, 1.5F}) {
+    for (const float zero : {0.0F, -0.0F}) {
+      for (const vec3& direction : {vec3(1, zero, 0), vec3(-1, zero, 2), vec3(zero, zero, -1)}) {
+        rays.push_back({vec3(0.0F, height, 0.0F), 0.0F, direction, infinity});
+      }
+    }
+  }
+  // Behind.
+  rays.push_back({vec3(0.0F, 3.0F, 0.0F), 0.0F, vec3(0.0F, 1.0F, 0.0F), infinity});
+  rays.push_back({vec3(0.0F, 1.0F, 0.0F), 0.0F, vec3(5.0F, -1e-20F, 0.0F), infinity});
+  const std::vector<Hit> hits = lab.cast(scene_of({plane}), rays);
+  const auto is_hit = [](const Hit& hit) { return hit.object >= 0 || !std::isinf(hit.t); };
+  lab.expect_at_most("hits of parallel rays and of a plane behind", 0.0,
+                     static_cast<double>(std::count_if(hits.begin(), hits.end(), is_hit)));
+}
+
+constexpr std::array kCases{HardCase{10, "PlaneFarFromTheOrigin", run_slopes},
+                            HardCase{11, "ParallelToThePlane", run_parallel}};
+
+}  // namespace
+
+std::span<const HardCase> plane_cases() {
+  return kCases;
+}
+
+}  // namespace promin::hard
