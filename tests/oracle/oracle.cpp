@@ -14,10 +14,6 @@ bool is_finite(const Vector& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-bool can_hit(const Ray& ray) {
-  return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Vector(0) && ray.tmin < ray.tmax;
-}
-
 /// The solutions of a t^2 + 2 b t + c = 0; NaN or infinite where there are fewer. Adding what has the same sign
 /// (Press et al., "Numerical Recipes", 5.6) keeps both accurate, and holds for a = 0.
 std::array<Real, 2> solve_quadratic(Real a, Real b, Real c) {
@@ -132,6 +128,10 @@ class Search {
 };
 
 }  // namespace
+
+bool can_hit(const Ray& ray) {
+  return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Vector(0) && ray.tmin < ray.tmax;
+}
 
 Hit find_nearest_hit(const Scene& scene, const Ray& ray) {
   if (!can_hit(ray)) return {};

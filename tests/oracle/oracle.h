@@ -42,6 +42,9 @@ struct Hit {
   bool exists() const { return object >= 0; }
 };
 
+/// Whether a ray may meet anything at all: see Ray.
+bool can_hit(const Ray& ray);
+
 /// The nearest hit; of hits at the same t the one with the lower (object, primitive).
 Hit find_nearest_hit(const Scene& scene, const Ray& ray);
 

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+
+namespace promin::oracle {
+namespace {
+
+using Corners = std::array<Vector, 3>;
+
+Corners corners_of(const Mesh& mesh, int32_t triangle) {
+  const glm::uvec3& t = mesh.triangles[static_cast<size_t>(triangle)];
+  return {Vector(mesh.positions[t.x]), Vector(mesh.positions[t.y]), Vector(mesh.positions[t.z])};
+}
+
+Vector normal_of(const Corners& c) {
+  return glm::cross(c[1] - c[0], c[2] - c[0]);
+}
+
+struct Bound {
+  int32_t primitive;
+
+  BoundingSphere operator()(const NotDrawn&) const { return {}; }
+  BoundingSphere operator()(const Sphere& s) const { return {Vector(s.center), s.radius}; }
+  BoundingSphere operator()(const Plane& p) const { return {Vector(p.point), 0}; }
+  BoundingSphere operator()(const Cylinder& c) const {
+    return {Vector(c.center), std::hypot(Real(c.half_height), Real(c.radius))};
+  }
+  BoundingSphere operator()(const Cone& c) const {
+    return {Vector(c.center), std::hypot(Real(c.half_height), Real(std::max(c.radius_bottom, c.radius_top)))};
+  }
+  BoundingSphere operator()(const Mesh& mesh) const {
+    const Corners corners = corners_of(mesh, primitive);
+    const Vector center = (corners[0] + corners[1] + corners[2]) / Real(3);
+    Real radius = 0;
+    for (const Vector& corner : corners) radius = std::max(radius, glm::distance(center, corner));
+    return {center, radius};
+  }
+};
+
+struct SignedDistance {
+  int32_t primitive;
+  const Vector& point;
+
+  Real operator()(const NotDrawn&) const { return kInfinity; }
+  Real operator()(const Sphere& s) const { return glm::distance(point, Vector(s.center)) - s.radius; }
+  Real operator()(const Plane& p) const {
+    return std::abs(glm::dot(point - Vector(p.point), glm::normalize(Vector(p.normal))));
+  }
+  Real operator()(const Cylinder& c) const {
+    return frustum(Vector(c.center), Vector(c.axis), c.half_height, c.radius, c.radius);
+  }
+  Real operator()(const Cone& c) const {
+    return frustum(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
+  }
+
+  /// In the half plane through the axis and the point: to the segments of the profile, or from inside to the lines.
+  Real frustum(const Vector& center, const Vector& axis, Real h, Real bottom, Real top) const {
+    const Vector v = glm::normalize(axis);
+    const Real z = glm::dot(point - center, v);
+    const Vector q(glm::length(point - center - z * v), z, 0);
+    const Vector bottom_rim(bottom, -h, 0);
+    const Vector top_rim(top, h, 0);
+    const Vector outward = glm::normalize(Vector(2 * h, bottom - top, 0));
+    const Real inside = std::max(glm::dot(q - bottom_rim, outward), std::abs(z) - h);
+    if (inside <= 0) return inside;
+    return std::min({distance_to_segment(q, bottom_rim, top_rim), distance_to_segment(q, Vector(0, -h, 0), bottom_rim),
+                     distance_to_segment(q, Vector(0, h, 0), top_rim)});
+  }
+
+  Real operator()(const Mesh& mesh) const {
+    const Corners c = corners_of(mesh, primitive);
+    const Vector normal = glm::normalize(normal_of(c));
+    bool is_above = true;
+    Real to_edges = kInfinity;
+    for (size_t i = 0; i < 3; ++i) {
+      const Vector& a = c[i];
+      const Vector& b = c[(i + 1) % 3];
+      is_above = is_above && glm::dot(glm::cross(b - a, point - a), normal) >= 0;
+      to_edges = std::min(to_edges, distance_to_segment(point, a, b));
+    }
+    return is_above ? std::abs(glm::dot(point - c[0], normal)) : to_edges;
+  }
+};
+
+}  // namespace
+
+bool is_hittable(const Shape& shape, int32_t primitive) {
+  if (primitive < 0 || static_cast<uint32_t>(primitive) >= primitive_count(shape)) return false;
+  const Mesh* mesh = std::get_if<Mesh>(&shape);
+  return mesh == nullptr || normal_of(corners_of(*mesh, primitive)) != Vector(0);
+}
+
+BoundingSphere bounding_sphere(const Shape& shape, int32_t primitive) {
+  return std::visit(Bound{primitive}, shape);
+}
+
+Real scale_of(const Shape& shape, int32_t primitive, const Ray& ray) {
+  const BoundingSphere bound = bounding_sphere(shape, primitive);
+  return glm::distance(ray.origin, bound.center) + bound.radius;
+}
+
+Real signed_distance(const Shape& shape, int32_t primitive, const Vector& point) {
+  return std::visit(SignedDistance{primitive, point}, shape);
+}
+
+Real distance_to_segment(const Vector& point, const Vector& a, const Vector& b) {
+  const Vector edge = b - a;
+  const Real length2 = glm::dot(edge, edge);
+  const Real s = length2 > 0 ? std::clamp(glm::dot(point - a, edge) / length2, Real(0), Real(1)) : Real(0);
+  return glm::distance(point, a + s * edge);
+}
+
+}  // namespace promin::oracle

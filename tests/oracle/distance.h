@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "oracle/oracle.h"
+
+/// Distances to single primitives: triangle `primitive` of a mesh, or an analytic shape, whose only one is 0.
+namespace promin::oracle {
+
+/// fp32's unit roundoff, 2^-24.
+inline constexpr Real kRoundoff = 0x1p-24L;
+
+struct BoundingSphere {
+  Vector center{0};
+  Real radius = 0;
+};
+
+/// Whether the primitive exists and can be hit: a degenerate triangle cannot.
+bool is_hittable(const Shape& shape, int32_t primitive);
+
+/// Of a plane its point and 0; of a triangle around its centroid, of cylinder and cone around the middle of the axis.
+/// The primitive is hittable, here and below.
+BoundingSphere bounding_sphere(const Shape& shape, int32_t primitive);
+
+/// numerics.md's S = |o - c| + size, the length that bounds B1, B2 and BK are counted in, times kRoundoff.
+Real scale_of(const Shape& shape, int32_t primitive, const Ray& ray);
+
+/// From a point to the surface. Inside a sphere, cylinder or cone it is negative, so that it is a convex function of
+/// the point; disks are part of the surface.
+Real signed_distance(const Shape& shape, int32_t primitive, const Vector& point);
+
+/// From a point to the segment between `a` and `b`, which may be the same.
+Real distance_to_segment(const Vector& point, const Vector& a, const Vector& b);
+
+}  // namespace promin::oracle

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/distance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace promin::oracle {
+namespace {
+
+constexpr Real kTolerance = 1e-15L;
+
+Mesh make_triangle() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 1, 1}};
+  return mesh;
+}
+
+TEST(Distance, FromTheInsideItIsNegative) {
+  EXPECT_NEAR(signed_distance(Sphere{{1, 0, 0}, 2}, 0, {1, 5, 0}), 3, kTolerance);
+  EXPECT_NEAR(signed_distance(Sphere{{1, 0, 0}, 2}, 0, {1, 0.5L, 0}), -1.5L, kTolerance);
+  EXPECT_NEAR(signed_distance(Plane{{0, 1, 0}, {0, 2, 0}}, 0, {7, -2, 0}), 3, kTolerance);
+  const Cylinder can{{0, 0, 0}, {0, 1, 0}, 2, 1};
+  EXPECT_NEAR(signed_distance(can, 0, {0.25L, 0, 0}), -0.75L, kTolerance);
+  EXPECT_NEAR(signed_distance(can, 0, {0.25L, 1.5L, 0}), -0.5L, kTolerance);
+  EXPECT_NEAR(signed_distance(can, 0, {0, 0, 3}), 2, kTolerance);
+  EXPECT_NEAR(signed_distance(can, 0, {0.5L, 3, 0}), 1, kTolerance);
+  EXPECT_NEAR(signed_distance(can, 0, {4, 6, 0}), 5, kTolerance) << "to the rim, 3 and 4 away";
+}
+
+TEST(Distance, ConesHaveASlope) {
+  // Apex at (0, 1, 0); the side falls one in height on two across.
+  const Cone cone{{0, 0, 0}, {0, 1, 0}, 1, 4, 0};
+  const Real root = std::sqrt(Real(5));
+  EXPECT_NEAR(signed_distance(cone, 0, {0, 0, 0}), -2 / root, kTolerance);
+  EXPECT_NEAR(signed_distance(cone, 0, {2, 0, 0}), 0, kTolerance);
+  EXPECT_NEAR(signed_distance(cone, 0, Vector(3, 2, 0)), 5 / root, kTolerance);
+  EXPECT_NEAR(signed_distance(cone, 0, {0, 3, 0}), 2, kTolerance) << "to the apex";
+  EXPECT_NEAR(signed_distance(cone, 0, {2, -3, 0}), 2, kTolerance);
+}
+
+TEST(Distance, TrianglesHaveFacesEdgesAndCorners) {
+  const Mesh mesh = make_triangle();
+  EXPECT_NEAR(signed_distance(mesh, 0, {1, 1, -2}), 2, kTolerance);
+  EXPECT_NEAR(signed_distance(mesh, 0, {1, -3, 4}), 5, kTolerance);
+  EXPECT_NEAR(signed_distance(mesh, 0, {3, 3, 0}), 3 / std::sqrt(Real(2)), kTolerance);
+  EXPECT_NEAR(signed_distance(mesh, 0, {6, -4, 0}), 5, kTolerance);
+}
+
+TEST(Distance, TheScaleIsDistanceAndSize) {
+  const Ray ray{{0, 3, 4}, {0, 0, 1}};
+  EXPECT_NEAR(scale_of(Sphere{{0, 0, 0}, 2}, 0, ray), 7, kTolerance);
+  EXPECT_NEAR(scale_of(Plane{{0, 0, 0}, {0, 1, 0}}, 0, ray), 5, kTolerance);
+  EXPECT_NEAR(scale_of(Cylinder{{0, 0, 0}, {0, 1, 0}, 4, 3}, 0, ray), 10, kTolerance);
+  EXPECT_NEAR(scale_of(Cone{{0, 0, 0}, {0, 1, 0}, 4, 1, 3}, 0, ray), 10, kTolerance);
+  EXPECT_NEAR(scale_of(make_triangle(), 0, {{1, 1, 5}, {0, 0, 1}}), 5 + std::sqrt(Real(5)), kTolerance);
+}
+
+TEST(Distance, OnlyWhatCanBeHitIsHittable) {
+  EXPECT_TRUE(is_hittable(Sphere{}, 0));
+  EXPECT_FALSE(is_hittable(Sphere{}, 1));
+  EXPECT_FALSE(is_hittable(Sphere{}, -1));
+  EXPECT_FALSE(is_hittable(NotDrawn{}, 0));
+  EXPECT_TRUE(is_hittable(make_triangle(), 0));
+  EXPECT_FALSE(is_hittable(make_triangle(), 1)) << "degenerate";
+  EXPECT_FALSE(is_hittable(make_triangle(), 2));
+}
+
+}  // namespace
+}  // namespace promin::oracle

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+namespace promin::oracle {
+namespace {
+
+/// Margins are sought between these, in u S: less is none, more is no rounding but another scene.
+constexpr Real kLeastMargin = 0x1p-10L;
+constexpr Real kMostMargin = 0x1p24L;
+
+/// Of t; by default at infinity, where nothing is reported.
+struct Interval {
+  Real lo = kInfinity;
+  Real hi = kInfinity;
+};
+
+/// Where a ray's line may cross a primitive whose surface is off by no more than an allowance.
+struct Reach {
+  /// Into a solid, or through a flat primitive.
+  Interval entry;
+  /// Out of a solid.
+  Interval exit;
+  /// Whether it does however the surface lies.
+  bool is_certain = false;
+};
+
+/// A primitive and a ray's line. Along the line the distance to a convex primitive is a convex function: it falls to
+/// `deepest_` and rises again, and what is grown by x begins and ends where it is x.
+class Body {
+ public:
+  Body(const Shape& shape, int32_t primitive, const Ray& ray)
+      : shape_(shape),
+        primitive_(primitive),
+        ray_(ray),
+        speed_(glm::length(ray.direction)),
+        scale_(scale_of(shape, primitive, ray)),
+        plane_(std::get_if<Plane>(&shape)) {
+    if (plane_ != nullptr) return;
+    const BoundingSphere bound = bounding_sphere(shape, primitive);
+    size_ = bound.radius;
+    t_closest_ = glm::dot(bound.center - ray.origin, ray.direction) / (speed_ * speed_);
+    closest_ = ray.origin + t_closest_ * ray.direction;
+    find_deepest();
+    depth_ = -distance_at(deepest_);
+    if (const Mesh* mesh = std::get_if<Mesh>(&shape)) depth_ = depth_in_outline(*mesh);
+  }
+
+  /// Whether the line itself meets the primitive, were it not for the ray's ends.
+  bool is_met() const { return plane_ != nullptr || depth_ > 0; }
+
+  bool is_entry(Real t) const { return is_flat() || t <= t_of(deepest_); }
+
+  /// `allowance` is in u S.
+  Reach reach(Real allowance) const {
+    if (plane_ != nullptr) return reach_plane(allowance * kRoundoff);
+    const Real offset = allowance * kRoundoff * scale_;
+    Reach result;
+    if (distance_at(deepest_) > offset) return result;
+    result.is_certain = depth_ > offset;
+    const Interval grown = interval_within(offset);
+    if (is_flat()) {
+      result.entry = grown;
+      return result;
+    }
+    const Interval shrunk = result.is_certain ? interval_within(-offset) : Interval{t_of(deepest_), t_of(deepest_)};
+    result.entry = {grown.lo, shrunk.lo};
+    result.exit = {shrunk.hi, grown.hi};
+    return result;
+  }
+
+ private:
+  bool is_flat() const { return plane_ != nullptr || std::holds_alternative<Mesh>(shape_); }
+
+  // Along the line we count `s`, the length from the point that is closest to the centre: everything happens near 0.
+  Real t_of(Real s) const { return t_closest_ + s / speed_; }
+  Real distance_at(Real s) const { return signed_distance(shape_, primitive_, closest_ + s / speed_ * ray_.direction); }
+
+  void find_deepest() {
+    Real lo = -size_;
+    Real hi = size_;
+    for (int i = 0; i < 110; ++i) {  // (2/3)^110 is under the roundoff of Real
+      const Real third = (hi - lo) / 3;
+      if (distance_at(lo + third) <= distance_at(hi - third)) {
+        hi -= third;
+      } else {
+        lo += third;
+      }
+    }
+    deepest_ = (lo + hi) / 2;
+  }
+
+  /// Where the distance is at most `offset`, as t. It is so at `deepest_`, and nowhere beyond size_ + offset.
+  Interval interval_within(Real offset) const {
+    const auto find_end = [&](Real outside) {
+      Real inside = deepest_;
+      for (int i = 0; i < 80; ++i) {
+        const Real middle = (inside + outside) / 2;
+        (distance_at(middle) <= offset ? inside : outside) = middle;
+      }
+      return t_of(inside);
+    };
+    const Real far = size_ + std::max(offset, Real(0));
+    return {find_end(-far), find_end(far)};
+  }
+
+  /// How far inside a triangle's edges the line passes, seen along itself; 0 if it passes outside.
+  Real depth_in_outline(const Mesh& mesh) const {
+    const glm::uvec3& corners = mesh.triangles[static_cast<size_t>(primitive_)];
+    const Vector along = ray_.direction / speed_;
+    std::array<Vector, 3> seen;
+    for (int i = 0; i < 3; ++i) {
+      const Vector from_line = Vector(mesh.positions[corners[i]]) - closest_;
+      seen[static_cast<size_t>(i)] = from_line - glm::dot(from_line, along) * along;
+    }
+    Real depth = kInfinity;
+    int turns = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      const Vector& a = seen[i];
+      const Vector& b = seen[(i + 1) % 3];
+      turns += glm::dot(glm::cross(a, b), along) > 0 ? 1 : -1;
+      depth = std::min(depth, distance_to_segment(Vector(0), a, b));
+    }
+    return std::abs(turns) == 3 ? depth : 0;
+  }
+
+  /// t >= 0 with |n.(o - q) + t n.d| <= e (|o - q| + t |d|), with the origin on the positive side.
+  Reach reach_plane(Real e) const {
+    const Vector n = glm::normalize(Vector(plane_->normal));
+    const Real signed_height = glm::dot(n, ray_.origin - Vector(plane_->point));
+    const Real height = std::abs(signed_height);
+    const Real fall = glm::dot(n, ray_.direction) * (signed_height < 0 ? 1 : -1);
+    Reach result;
+    const Real first_fall = fall + e * speed_;
+    const Real last_fall = fall - e * speed_;
+    if (height <= e * scale_) {
+      result.entry.lo = 0;
+    } else if (first_fall > 0) {
+      result.entry.lo = (height - e * scale_) / first_fall;
+    } else {
+      return result;
+    }
+    result.is_certain = last_fall > 0;
+    result.entry.hi = result.is_certain ? (height + e * scale_) / last_fall : kInfinity;
+    return result;
+  }
+
+  const Shape& shape_;
+  int32_t primitive_;
+  const Ray& ray_;
+  Real speed_;
+  Real scale_;
+  const Plane* plane_;
+  Real size_ = 0;
+  Real t_closest_ = 0;
+  Vector closest_{0};
+  Real deepest_ = 0;
+  /// How far a solid would have to shrink, or a triangle's edges to move, for the line to miss it.
+  Real depth_ = 0;
+};
+
+/// The last t at which the ray may report the primitive; infinite if it need not report it at all.
+Real latest_report(const Reach& reach, const Ray& ray) {
+  if (!reach.is_certain) return kInfinity;
+  const Real t = reach.entry.lo > ray.tmin ? reach.entry.hi : reach.exit.lo > ray.tmin ? reach.exit.hi : kInfinity;
+  return t < ray.tmax ? t : kInfinity;
+}
+
+/// The first t at which the ray may report this end of the primitive; infinite if it cannot.
+Real earliest_report(const Reach& reach, bool is_entry, const Ray& ray) {
+  const bool may_skip_entry = !reach.is_certain || reach.entry.lo <= ray.tmin;
+  if (!is_entry && !may_skip_entry) return kInfinity;
+  const Interval& end = is_entry ? reach.entry : reach.exit;
+  const Real t = std::max(end.lo, ray.tmin);
+  return end.hi > ray.tmin && t < ray.tmax ? t : kInfinity;
+}
+
+/// Least allowance for which `answer` may be true; `is_hit` says that it names a primitive which can be hit.
+Real find_margin(const Scene& scene, const Ray& ray, const Answer& answer, bool is_hit) {
+  std::vector<Body> others;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const Shape& shape = scene.objects[i].shape;
+    for (uint32_t j = 0; j < primitive_count(shape); ++j) {
+      const Answer other{0, static_cast<int32_t>(i), static_cast<int32_t>(j)};
+      if (is_hit && other.object == answer.object && other.primitive == answer.primitive) continue;
+      if (!is_hittable(shape, other.primitive)) continue;
+      const BoundingSphere bound = bounding_sphere(shape, other.primitive);
+      const Real distance =
+          glm::length(glm::cross(bound.center - ray.origin, ray.direction)) / glm::length(ray.direction);
+      if (distance > bound.radius && !std::holds_alternative<Plane>(shape)) continue;
+      if (const Body body(shape, other.primitive, ray); body.is_met()) others.push_back(body);
+    }
+  }
+  const auto is_possible = [&](Real allowance) {
+    Real reported = ray.tmax;
+    if (is_hit) {
+      const Body body(scene.objects[static_cast<size_t>(answer.object)].shape, answer.primitive, ray);
+      reported = earliest_report(body.reach(allowance), body.is_entry(answer.t), ray);
+      if (reported == kInfinity) return false;
+    }
+    return std::all_of(others.begin(), others.end(),
+                       [&](const Body& other) { return latest_report(other.reach(allowance), ray) >= reported; });
+  };
+  Real no = kLeastMargin;
+  Real yes = kMostMargin;
+  if (is_possible(no)) return 0;
+  if (!is_possible(yes)) return kInfinity;
+  while (yes / no > 1 + 1e-9L) {
+    const Real middle = std::sqrt(yes * no);
+    (is_possible(middle) ? yes : no) = middle;
+  }
+  return yes;
+}
+
+/// Length over u S; what is 0 is 0 for an S of 0 too.
+Real in_units(Real length, Real scale) {
+  return length == 0 ? 0 : length / (kRoundoff * scale);
+}
+
+/// How far o + t d lies beyond a triangle's corners, along the ray: rounding weighs the corners wrong (the more so the
+/// thinner the triangle), but weighs them.
+Real distance_beyond_corners(const Mesh& mesh, int32_t triangle, const Ray& ray, Real t) {
+  Real lo = kInfinity;
+  Real hi = -kInfinity;
+  const Real speed = glm::length(ray.direction);
+  const glm::uvec3& corners = mesh.triangles[static_cast<size_t>(triangle)];
+  for (int i = 0; i < 3; ++i) {
+    const Real s = glm::dot(Vector(mesh.positions[corners[i]]) - ray.origin, ray.direction) / speed;
+    lo = std::min(lo, s);
+    hi = std::max(hi, s);
+  }
+  return std::max({Real(0), lo - t * speed, t * speed - hi});
+}
+
+bool names_hittable(const Scene& scene, const Answer& answer) {
+  return answer.object >= 0 && static_cast<size_t>(answer.object) < scene.objects.size() &&
+         is_hittable(scene.objects[static_cast<size_t>(answer.object)].shape, answer.primitive);
+}
+
+}  // namespace
+
+Verdict judge(const Scene& scene, const Ray& given_ray, const Answer& answer) {
+  Ray ray = given_ray;
+  ray.tmin = std::max(Real(0), given_ray.tmin);
+  Verdict verdict;
+  verdict.exact = find_nearest_hit(scene, given_ray);
+  const Hit& exact = verdict.exact;
+  if (answer.object == -1) {
+    verdict.is_same = !exact.exists();
+    if (!verdict.is_same) verdict.margin = find_margin(scene, ray, answer, false);
+    return verdict;
+  }
+  if (!can_hit(given_ray) || !names_hittable(scene, answer) || !std::isfinite(answer.t)) {
+    verdict.t_error = verdict.surface_error = verdict.margin = kInfinity;
+    return verdict;
+  }
+
+  const Shape& shape = scene.objects[static_cast<size_t>(answer.object)].shape;
+  const Real speed = glm::length(ray.direction);
+  const Real scale = scale_of(shape, answer.primitive, ray);
+  const bool is_plane = std::holds_alternative<Plane>(shape);
+  const Mesh* mesh = std::get_if<Mesh>(&shape);
+  if (mesh == nullptr) {
+    const Real off = std::abs(signed_distance(shape, answer.primitive, ray.origin + answer.t * ray.direction));
+    verdict.surface_error = in_units(off, scale + (is_plane ? std::abs(answer.t) * speed : 0));
+  }
+  if (exact.object == answer.object && exact.primitive == answer.primitive) {
+    const Real error = std::abs((answer.t - exact.t) * glm::dot(ray.direction, exact.normal));
+    verdict.t_error = in_units(error, scale + (is_plane ? exact.t * speed : 0));
+    verdict.is_same = verdict.t_error <= kB1;
+    if (!verdict.is_same) {
+      const Body body(shape, answer.primitive, ray);
+      verdict.is_same = body.is_entry(answer.t) == body.is_entry(exact.t);
+    }
+    if (verdict.is_same) return verdict;
+    verdict.t_error = 0;
+  }
+
+  verdict.margin = find_margin(scene, ray, answer, true);
+  const Real off_primitive = mesh == nullptr
+                                 ? verdict.surface_error
+                                 : in_units(distance_beyond_corners(*mesh, answer.primitive, ray, answer.t), scale);
+  if (off_primitive > kBK) verdict.margin = std::max(verdict.margin, off_primitive);
+  return verdict;
+}
+
+}  // namespace promin::oracle

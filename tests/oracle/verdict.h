@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "oracle/distance.h"
+
+/// Judges the answer of a device to a ray by the exact one, in the units of numerics.md: u S, where u = 2^-24 and S is
+/// scale_of the primitive. For a plane S grows by |t d|, as in row 10 of the hard cases.
+namespace promin::oracle {
+
+/// numerics.md: |dt| |d| cos <= kB1 u S; a hit's point within kBK u S of the surface; another answer than the exact
+/// one only within kB2 u S of where the answer changes.
+inline constexpr Real kB1 = 8;
+inline constexpr Real kB2 = 2;
+inline constexpr Real kBK = 8;
+
+/// What a device says of a ray. `object` is -1 on a miss, and the rest has no meaning then.
+struct Answer {
+  /// In units of the ray's direction.
+  Real t = kInfinity;
+  int32_t object = -1;
+  int32_t primitive = -1;
+};
+
+struct Verdict {
+  Hit exact;
+  /// Both miss, or both name the same end of the ray's way through the same primitive: entering a solid and leaving it
+  /// are two answers.
+  bool is_same = false;
+  /// If the same: |dt| |d| cos / (u S), with the angle at the exact hit.
+  Real t_error = 0;
+  /// Of a hit on an analytic shape, the same or not: distance of o + t d from the shape's surface / (u S).
+  Real surface_error = 0;
+  /// If not the same: the least k for which surfaces that are off by k u S, each by its own S, can make the answer the
+  /// true one: what the ray hits instead may be absent, behind or beyond the interval's ends, and what is named present
+  /// and in front. Solids grow and shrink by k u S, a triangle's edges and plane move by it, a plane shifts and tilts.
+  /// At least the answer's own surface_error where that is beyond kBK; of a triangle, where o + t d is as far beyond
+  /// the corners along the ray.
+  Real margin = 0;
+};
+
+/// All is infinite that an answer has no right to: a primitive that does not exist or cannot be hit, t that is not
+/// finite, a hit of a ray that meets nothing by definition. That t lies strictly between tmin and tmax is for the
+/// caller to check: rounding on the way here may have moved it.
+Verdict judge(const Scene& scene, const Ray& ray, const Answer& answer);
+
+}  // namespace promin::oracle
