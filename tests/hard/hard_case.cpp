@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <ostream>
 
 #include "bounce.spv.h"
 #include "core/file.h"
@@ -40,7 +41,12 @@ void judge_one(const Scene& scene, const Ray& ray, const Hit& hit, Tally& tally)
   const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
   const oracle::Verdict verdict = oracle::judge(scene, exact, {hit.t, hit.object, hit.primitive});
   ++tally.rays;
-  if (hit.object >= 0 && !is_well_formed(hit)) ++tally.malformed;
+  if (hit.object >= 0) {
+    if (!is_well_formed(hit)) ++tally.malformed;
+    tally.max_surface_error = std::max(tally.max_surface_error, static_cast<double>(verdict.surface_error));
+  } else if (verdict.exact.exists()) {
+    ++tally.misses;
+  }
   if (!verdict.is_same) {
     ++tally.misclassified;
     tally.max_margin = std::max(tally.max_margin, static_cast<double>(verdict.margin));
@@ -49,7 +55,6 @@ void judge_one(const Scene& scene, const Ray& ray, const Hit& hit, Tally& tally)
     ++tally.hits;
     tally.max_t_error = std::max(tally.max_t_error, t_error);
     tally.sum_t_error2 += t_error * t_error;
-    tally.max_surface_error = std::max(tally.max_surface_error, static_cast<double>(verdict.surface_error));
   }
 }
 
@@ -62,6 +67,7 @@ double Tally::rms_t_error() const {
 void Tally::add(const Tally& other) {
   rays += other.rays;
   hits += other.hits;
+  misses += other.misses;
   max_t_error = std::max(max_t_error, other.max_t_error);
   sum_t_error2 += other.sum_t_error2;
   max_surface_error = std::max(max_surface_error, other.max_surface_error);
@@ -134,6 +140,16 @@ void Lab::credit(const std::string& primitive, const Tally& tally, uint64_t leak
 std::span<const uint32_t> Lab::bounce_kernel() {
   static const std::vector<uint32_t> kKernel = load_kernel("bounce.spv", k_bounce_spirv);
   return kKernel;
+}
+
+std::ostream& operator<<(std::ostream& out, const HardCase& hard_case) {
+  return out << "row " << hard_case.row << ", " << hard_case.name;
+}
+
+std::string label(const char* what, double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%s %.4g", what, value);
+  return text.data();
 }
 
 Scene scene_of(std::vector<Shape> shapes) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <iosfwd>
 #include <random>
 #include <span>
 #include <string>
@@ -28,6 +28,8 @@ struct HardCase {
   void (*run)(Lab& lab) = nullptr;
 };
 
+std::ostream& operator<<(std::ostream& out, const HardCase& hard_case);
+
 /// Each file's rows.
 std::span<const HardCase> sphere_cases();
 std::span<const HardCase> plane_cases();
@@ -44,10 +46,12 @@ struct Tally {
   uint64_t rays = 0;
   /// Both the device and the oracle tell of the same hit.
   uint64_t hits = 0;
+  /// The oracle has a hit, the device none.
+  uint64_t misses = 0;
   /// Of those, |dt| |d| cos / (u S): B1.
   double max_t_error = 0.0;
   double sum_t_error2 = 0.0;
-  /// Distance of o + t d from the surface / (u S): BK.
+  /// Of all hits on analytic shapes, the distance of o + t d from the surface / (u S): BK.
   double max_surface_error = 0.0;
   /// Another id, or one of them a miss; and how far from an edge or silhouette the worst of these passes: B2.
   uint64_t misclassified = 0;
@@ -111,6 +115,9 @@ class Lab {
 
 /// A scene of these shapes with one material.
 Scene scene_of(std::vector<Shape> shapes);
+
+/// "distance 1e+04" and the like.
+std::string label(const char* what, double value);
 
 /// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
 Ray ray_towards(const dvec3& origin, const dvec3& target);

@@ -27,9 +27,9 @@ TEST_P(HardCaseTest, MeetsItsBound) {
   GetParam().run(lab);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rows, HardCaseTest, testing::ValuesIn(all_cases()), [](const auto& test) {
-  const int row = test.param.row;
-  return (row < 10 ? "Row0" : "Row") + std::to_string(row) + "_" + test.param.name;
+INSTANTIATE_TEST_SUITE_P(Rows, HardCaseTest, testing::ValuesIn(all_cases()), [](const auto& param_info) {
+  const int row = param_info.param.row;
+  return (row < 10 ? "Row0" : "Row") + std::to_string(row) + "_" + param_info.param.name;
 });
 
 TEST(HardCases, AreThirtyEightRows) {

@@ -10,12 +10,6 @@ namespace {
 
 constexpr size_t kRayCount = 100000;
 
-std::string label(const char* what, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%s%.4g", what, value);
-  return text;
-}
-
 /// From random places at a distance from the centre, at targets spread over a disk of `spread` radii across the view.
 std::vector<Ray> rays_at(const Sphere& sphere, double distance, double spread, Random& random) {
   std::vector<Ray> rays;
@@ -40,7 +34,7 @@ void run_distances(Lab& lab) {
   Random random(1);
   const Sphere sphere{vec3(0.0F), 1.0F};
   for (const double distance : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6}) {
-    expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), label("distance ", distance));
+    expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), label("distance", distance));
   }
 }
 
@@ -48,7 +42,7 @@ void run_small(Lab& lab) {
   Random random(2);
   const Sphere sphere{vec3(0.0F), 1e-3F};
   for (const double distance : {1.0, 100.0}) {
-    expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), label("distance ", distance));
+    expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), label("distance", distance));
   }
 }
 
@@ -56,8 +50,7 @@ void run_small(Lab& lab) {
 void expect_bk(Lab& lab, const Sphere& sphere, std::span<const Ray> rays, const std::string& where) {
   const Tally tally = lab.cast_and_judge(scene_of({sphere}), rays);
   lab.expect_at_most("|P - surface| / uS (BK), " + where, 8.0 * lab.rounding_factor(), tally.max_surface_error);
-  lab.expect_at_most("rays without the hit that they must have, " + where, 0.0,
-                     static_cast<double>(rays.size() - tally.hits));
+  lab.expect_at_most("missed, " + where, 0.0, static_cast<double>(tally.misses));
   Lab::credit("sphere", tally);
 }
 
@@ -80,7 +73,7 @@ void run_extreme_sizes(Lab& lab) {
   for (const auto& [radius, distance] : {std::array{1e6, 1e9}, std::array{1e-20, 1e-18}}) {
     const Sphere sphere{vec3(0.0F), static_cast<float>(radius)};
     const Tally tally = lab.cast_and_judge(scene_of({sphere}), rays_at(sphere, distance, 1.05, random));
-    const std::string where = label("r = ", radius) + label(" at ", distance);
+    const std::string where = label("r =", radius) + label(" at", distance);
     lab.expect_at_most("K of t (B1), " + where, 8.0 * lab.rounding_factor(), tally.max_t_error);
     Lab::credit("sphere", tally);
   }
@@ -108,7 +101,7 @@ void run_inside(Lab& lab) {
       const dvec3 origin = dvec3(sphere.center) + 2.0 * depth * random.direction();
       rays.push_back(ray_towards(origin, origin + random.direction()));
     }
-    expect_bk(lab, sphere, rays, label("from inside at r times ", depth));
+    expect_bk(lab, sphere, rays, label("from inside at r times", depth));
   }
   // From the surface inwards: the start itself, which rounding has put beside the surface, or the far side.
   std::vector<Ray> rays;
@@ -127,13 +120,14 @@ void run_inside(Lab& lab) {
       ++misses;
       continue;
     }
-    const oracle::Vector p = oracle::Vector(rays[i].origin) + hits[i].t * oracle::Vector(rays[i].direction);
+    const oracle::Vector p =
+        oracle::Vector(rays[i].origin) + oracle::Real(hits[i].t) * oracle::Vector(rays[i].direction);
     const oracle::Real distance = glm::length(p - oracle::Vector(sphere.center)) - oracle::Real(sphere.radius);
     // S = |o - c| + r = 2 r.
     worst = std::max(worst, static_cast<double>(std::abs(distance)) / (kUnitRoundoff * 2.0 * sphere.radius));
   }
   lab.expect_at_most("|P - surface| / uS (BK), from the surface", 8.0 * lab.rounding_factor(), worst);
-  lab.expect_at_most("rays without a hit, from the surface", 0.0, static_cast<double>(misses));
+  lab.expect_at_most("missed, from the surface", 0.0, static_cast<double>(misses));
 }
 
 void run_direction_lengths(Lab& lab) {
@@ -142,7 +136,7 @@ void run_direction_lengths(Lab& lab) {
   for (const double length : {1e-3, 1e3, 1e-30, 1e30}) {
     std::vector<Ray> rays = rays_at(sphere, 10.0, 1.05, random);
     for (Ray& ray : rays) ray.direction = vec3(length * dvec3(ray.direction));
-    expect_b1_b2(lab, sphere, rays, label("|d| = ", length));
+    expect_b1_b2(lab, sphere, rays, label("|d| =", length));
   }
 }
 
@@ -150,7 +144,7 @@ void run_offsets(Lab& lab) {
   Random random(9);
   for (const float offset : {1e5F, 1e7F}) {
     const Sphere sphere{vec3(offset, -offset, offset), 1.0F};
-    expect_b1_b2(lab, sphere, rays_at(sphere, 10.0, 1.05, random), label("centre at ", offset));
+    expect_b1_b2(lab, sphere, rays_at(sphere, 10.0, 1.05, random), label("centre at", offset));
   }
 }
 
