@@ -37,4 +37,8 @@ DeferredSignals::~DeferredSignals() {
   if (pending_signal != 0) std::raise(pending_signal);
 }
 
+bool DeferredSignals::is_pending() const {
+  return pending_signal != 0;
+}
+
 }  // namespace promin::app

@@ -12,6 +12,9 @@ class DeferredSignals {
   ~DeferredSignals();
   DeferredSignals(const DeferredSignals&) = delete;
   DeferredSignals& operator=(const DeferredSignals&) = delete;
+
+  /// Whether one waits: long work stops then, and leaves nothing behind.
+  bool is_pending() const;
 };
 
 }  // namespace promin::app

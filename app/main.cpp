@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arguments.h"
+#include "cast_command.h"
 #include "core/error.h"
 #include "devices_command.h"
 #include "info_command.h"
@@ -22,12 +23,12 @@ using namespace promin;
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4 };
 
 void run(int argc, const char* const* argv) {
-  CLI::App program("Ray tracer in Vulkan compute shaders: renders glTF and OBJ scenes to EXR and PNG pictures.",
-                   "promin");
+  CLI::App program(
+      "Ray tracer in Vulkan compute shaders: glTF and OBJ scenes to EXR and PNG pictures, or rays to hits.", "promin");
   program.get_formatter()->column_width(34);
   app::add_common_options(program);
-  const std::vector<app::Command> commands = {app::add_render_command(program), app::add_info_command(program),
-                                              app::add_devices_command(program)};
+  const std::vector<app::Command> commands = {app::add_render_command(program), app::add_cast_command(program),
+                                              app::add_info_command(program), app::add_devices_command(program)};
   if (!app::parse_arguments(program, argc, argv)) return;
   for (const app::Command& command : commands) {
     if (command.app->parsed()) return command.run();

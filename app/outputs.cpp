@@ -34,26 +34,31 @@ void check_writable(const fs::path& file) {
 
 }  // namespace
 
-void check_outputs(const fs::path& scene, const std::vector<fs::path>& pictures, const std::optional<fs::path>& stats) {
+void check_pictures(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures) {
     if (!is_writable_format(picture)) {
       throw UsageError(
           {"unknown output ending \"" + picture.extension().string() + "\"", picture.string(), "use .exr or .png"});
     }
   }
-  std::vector<fs::path> files = pictures;
+}
+
+void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,
+                   const std::optional<fs::path>& stats) {
+  std::vector<fs::path> files = outputs;
   if (stats) files.push_back(*stats);
-  std::vector<fs::path> taken = {resolve(scene)};
+  std::vector<fs::path> read;
+  for (const fs::path& input : inputs) read.push_back(resolve(input));
+  std::vector<fs::path> written;
   for (const fs::path& file : files) {
     const fs::path resolved = resolve(file);
-    const auto same = std::find(taken.begin(), taken.end(), resolved);
-    if (same == taken.begin()) {
-      throw UsageError({"the output would overwrite the scene", file.string(), "name another file"});
+    if (std::find(read.begin(), read.end(), resolved) != read.end()) {
+      throw UsageError({"the output would overwrite an input", file.string(), "name another file"});
     }
-    if (same != taken.end()) {
+    if (std::find(written.begin(), written.end(), resolved) != written.end()) {
       throw UsageError({"the same output file is named twice", file.string(), "name different files"});
     }
-    taken.push_back(resolved);
+    written.push_back(resolved);
   }
   const DeferredSignals while_probing;
   for (const fs::path& file : files) check_writable(file);

@@ -8,9 +8,12 @@
 
 namespace promin::app {
 
-/// Finds before the work what would make it useless: pictures of an unknown ending, the same file twice, the scene as
-/// an output (UsageError), a missing folder or one that cannot be written (RunError). No file is changed.
-void check_outputs(const std::filesystem::path& scene, const std::vector<std::filesystem::path>& pictures,
+/// Throws UsageError for a picture of an ending that write_image does not know.
+void check_pictures(const std::vector<std::filesystem::path>& pictures);
+
+/// Finds before the work what would make it useless: the same file twice, an input as an output (UsageError), a
+/// missing folder or one that cannot be written (RunError). No file is changed.
+void check_outputs(const std::vector<std::filesystem::path>& inputs, const std::vector<std::filesystem::path>& outputs,
                    const std::optional<std::filesystem::path>& stats);
 
 }  // namespace promin::app

@@ -5,6 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <memory>
 
 #include "console.h"
@@ -12,106 +15,110 @@
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
-#include "gpu/open_device.h"
 #include "image/image.h"
 #include "outputs.h"
 #include "progress.h"
 #include "render_options.h"
-#include "scene/load_scene.h"
-#include "stats.h"
+#include "tracing_run.h"
 #include "view_setup.h"
 
 namespace promin::app {
 namespace {
 
 /// Sets the renderer up, traces as often as asked for and leaves what it took in `stats`.
-Image trace(const gpu::Device& device, const Scene& scene, const RenderOptions& options, RenderStats& stats,
-            const Console& console) {
+RenderResult trace(const gpu::Device& device, const Scene& scene, const RenderOptions& options, RunStats& stats,
+                   const Console& console) {
   RendererOptions renderer_options;
-  renderer_options.builder = options.builder;
+  renderer_options.builder = options.tracing.builder;
   renderer_options.force_all_features = options.has_all_features;
+  renderer_options.with_aovs = options.aovs.any();
   Renderer renderer(device, scene, renderer_options);
-  stats.setup = renderer.setup_stats();
-  console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", stats.setup.bvh.builder,
-                             stats.setup.bvh.nodes, stats.setup.bvh.depth, stats.setup.bvh.sah_cost,
-                             stats.setup.bvh_ms));
-  console.detail(fmt::format("features: {}", fmt::join(feature_names(stats.setup.features), ", ")));
-  console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms", stats.setup.upload_ms,
-                             1e-6 * static_cast<double>(stats.setup.device_bytes), stats.setup.pipeline_ms));
+  take_setup(renderer.setup_stats(), stats, console);
 
   RenderResult result;
   Progress progress(console.is_quiet());
-  for (uint32_t i = 0; i < options.repeat_count; ++i) {
-    result =
-        renderer.render(stats.view, [&](double fraction) { progress.update((i + fraction) / options.repeat_count); });
+  const uint32_t repeats = options.tracing.repeat_count;
+  for (uint32_t i = 0; i < repeats; ++i) {
+    result = renderer.render(*stats.view, [&](double fraction) { progress.update((i + fraction) / repeats); });
     stats.trace_ms.push_back(result.trace_ms);
   }
   stats.rays = result.rays;
-  return std::move(result.image);
+  return result;
 }
 
-Metadata make_metadata(const RenderStats& stats) {
+Channel channel_of(const std::string& name, std::span<const float> values) {
+  Channel channel{name, false, std::vector<uint32_t>(values.size())};
+  std::transform(values.begin(), values.end(), channel.values.begin(),
+                 [](float value) { return std::bit_cast<uint32_t>(value); });
+  return channel;
+}
+
+std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
+  std::vector<Channel> channels;
+  if (choice.depth) channels.push_back(channel_of("Z", aovs.depth));
+  for (int axis = 0; choice.normal && axis < 3; ++axis) {
+    std::vector<float> component;
+    for (const vec3& normal : aovs.normal) component.push_back(normal[axis]);
+    channels.push_back(channel_of(std::array{"N.X", "N.Y", "N.Z"}[static_cast<size_t>(axis)], component));
+  }
+  if (choice.object) channels.push_back({"object", true, aovs.object});
+  if (choice.primitive) channels.push_back({"primitive", true, aovs.primitive});
+  return channels;
+}
+
+Metadata make_metadata(const RunStats& stats) {
   return {{"promin:version", PROMIN_VERSION},
           {"promin:scene", stats.scene_file},
           {"promin:device", stats.device.name},
           {"promin:driver", stats.device.driver},
-          {"promin:size", fmt::format("{}x{}", stats.view.size.x, stats.view.size.y)},
-          {"promin:spp", std::to_string(stats.view.samples_per_pixel)},
-          {"promin:max_depth", std::to_string(stats.view.max_depth)},
+          {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
+          {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
+          {"promin:max_depth", std::to_string(stats.view->max_depth)},
           {"promin:trace_ms", fmt::format("{:.3f}", stats.median_trace_ms())}};
 }
 
-void write_pictures(const std::vector<std::filesystem::path>& files, const Image& image, const RenderStats& stats) {
+void write_pictures(const RenderOptions& options, const RenderResult& result, const RunStats& stats) {
   std::optional<CropPlacement> placement;
-  if (stats.view.crop) placement = CropPlacement{stats.view.crop->lo, stats.view.size};
+  if (stats.view->crop) placement = CropPlacement{stats.view->crop->lo, stats.view->size};
   const Metadata metadata = make_metadata(stats);
-  for (const std::filesystem::path& file : files) write_image(file, image, metadata, placement);
+  const std::vector<Channel> channels = make_channels(result.aovs, options.aovs);
+  for (const std::filesystem::path& file : options.pictures) {
+    write_image(file, result.image, metadata, placement, channels);
+  }
 }
 
-std::string summarize(const RenderStats& stats, const RenderOptions& options) {
+std::string summarize(const RunStats& stats, const RenderOptions& options) {
   std::vector<std::string> files;
   for (const std::filesystem::path& file : options.pictures) files.push_back(file.string());
-  return fmt::format("{}x{}, {} spp, {:.4g} Mrays in {:.1f} ms ({:.3g} Mrays/s) on {}: {}", stats.view.size.x,
-                     stats.view.size.y, stats.view.samples_per_pixel, 1e-6 * static_cast<double>(stats.rays.total()),
+  return fmt::format("{}x{}, {} spp, {:.4g} Mrays in {:.1f} ms ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
+                     stats.view->size.y, stats.view->samples_per_pixel, 1e-6 * static_cast<double>(stats.rays.total()),
                      stats.median_trace_ms(), stats.mrays_per_s(), stats.device.name, fmt::join(files, ", "));
 }
 
 void render(const RenderOptions& options) {
   const Stopwatch total;
+  const TracingOptions& tracing = options.tracing;
   check_render_options(options);
-  check_outputs(options.scene, options.pictures, options.stats);
-  const Console console(options.verbosity());
+  check_pictures(options.pictures);
+  check_outputs({tracing.scene}, options.pictures, tracing.stats);
+  const Console console(tracing.verbosity());
 
-  RenderStats stats;
-  const Stopwatch load;
-  Scene scene = load_scene(options.scene);
-  stats.load_ms = load.ms();
-  for (const std::string& warning : scene.warnings) console.warn(warning);
+  RunStats stats;
+  Scene scene = load_for(tracing, stats, console);
   stats.view = make_view(scene, options.view, console);
-  light_up(scene, stats.view.camera, console);
-  stats.scene_file = options.scene.filename().string();
-  stats.scene = count_scene(scene);
-  stats.object_count = scene.objects.size();
-  stats.material_count = scene.materials.size();
+  light_up(scene, stats.view->camera, console);
   stats.light_count = scene.lights.size();
-  console.detail(fmt::format("loaded {}: objects {}, primitives {}, {:.1f} ms", options.scene.string(),
-                             scene.objects.size(), stats.scene.primitives, stats.load_ms));
 
-  const gpu::DeviceHandle device = gpu::open_device(options.device);
-  stats.device = gpu::info_of(*device);
-  console.detail(gpu::choice_of(*device));
-  const Image image = trace(*device, scene, options, stats, console);
-  if (const uint64_t count = gpu::validation_message_count(*device); count > 0) {
-    throw RunError({fmt::format("the Vulkan validation layers reported {} problems", count), stats.device.name,
-                    "report them as a bug of promin"});
-  }
+  const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
+  const RenderResult result = trace(*device, scene, options, stats, console);
+  check_validation(*device, stats);
 
   const DeferredSignals while_writing;
   const Stopwatch write;
-  write_pictures(options.pictures, image, stats);
+  write_pictures(options, result, stats);
   stats.write_ms = write.ms();
   stats.total_ms = total.ms();
-  if (options.stats) write_text_file(*options.stats, to_json(stats));
+  if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
   if (!console.is_quiet()) fmt::print("{}\n", summarize(stats, options));
 }
 

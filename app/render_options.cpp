@@ -4,10 +4,13 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "arguments.h"
 #include "core/error.h"
+#include "image/image.h"
 #include "render/sampling.h"
 #include "scene/load_scene.h"
 
@@ -15,11 +18,28 @@ namespace promin::app {
 namespace {
 
 constexpr uint32_t kMaxDepth = 1000;
-constexpr uint32_t kMaxRepeats = 10000;
 /// The limits 0 and 180 themselves show nothing.
 constexpr double kMinFovDeg = 1e-3;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
+constexpr std::array<std::string_view, 4> kAovNames = {"depth", "normal", "object", "primitive"};
+
+/// From names between commas.
+AovChoice read_aovs(const Words& words) {
+  AovChoice choice;
+  const std::array<bool*, kAovNames.size()> switches = {&choice.depth, &choice.normal, &choice.object,
+                                                        &choice.primitive};
+  std::istringstream list(words.text() + ",");
+  for (std::string name; std::getline(list, name, ',');) {
+    const auto known = std::find(kAovNames.begin(), kAovNames.end(), name);
+    if (known == kAovNames.end()) {
+      words.refuse(
+          fmt::format("--aov takes names of {} with commas between, not \"{}\"", fmt::join(kAovNames, ", "), name));
+    }
+    *switches[static_cast<size_t>(known - kAovNames.begin())] = true;
+  }
+  return choice;
+}
 
 PixelWindow read_window(const Words& words) {
   const PixelWindow window = {{words.whole(0, 0, kMaxSide), words.whole(1, 0, kMaxSide)},
@@ -32,17 +52,12 @@ PixelWindow read_window(const Words& words) {
 
 }  // namespace
 
-Verbosity RenderOptions::verbosity() const {
-  if (is_quiet) return Verbosity::kQuiet;
-  return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
-}
-
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   PoseOptions& pose = view.pose;
   OptionTable table(command);
 
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj", [&](const Words& w) { options.scene = w.text(); });
+  add_scene_argument(table, options.tracing);
   table.add_required_repeated("-o,--output", "FILE",
                               "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
                               [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
@@ -69,23 +84,18 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
             [&](const Words& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
 
-  table.add("--device", "NAME|INDEX", "Vulkan device by a part of its name or its index in `promin devices`",
-            [&](const Words& w) { options.device = w.text(); });
-  table.add("--builder", "NAME", fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), options.builder),
-            [&](const Words& w) { options.builder = w.choice(builder_names()); });
+  table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(kAovNames, ",")),
+            [&](const Words& w) { options.aovs = read_aovs(w); });
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
             [&](const Words& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
-  table.add("--repeat", "N", "Trace N times and report the median time [1]",
-            [&](const Words& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
-  table.add("--stats", "FILE.json", "Write counts and times as JSON",
-            [&](const Words& w) { options.stats = w.text(); });
-  table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
-  table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
+  add_tracing_options(table, options.tracing);
 }
 
 void check_render_options(const RenderOptions& options) {
-  if (options.is_quiet && options.is_verbose) {
-    throw UsageError({"--quiet and --verbose contradict each other", "on the command line", "leave one out"});
+  check_tracing_options(options.tracing);
+  const auto& pictures = options.pictures;
+  if (options.aovs.any() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {
+    throw UsageError({"--aov has no picture to go to", "on the command line", "give -o with the ending .exr as well"});
   }
 }
 

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bvh/builder.h"
-#include "console.h"
 #include "core/math.h"
 #include "render/renderer.h"
+#include "tracing_options.h"
 
 namespace CLI {
 class App;
@@ -43,20 +42,23 @@ struct ViewOptions {
   PoseOptions pose;
 };
 
-struct RenderOptions {
-  std::filesystem::path scene;
-  std::vector<std::filesystem::path> pictures;
-  std::optional<std::filesystem::path> stats;
-  ViewOptions view;
-  /// Name or index of a device.
-  std::optional<std::string> device;
-  std::string builder = RendererOptions{}.builder;
-  bool has_all_features = false;
-  uint32_t repeat_count = 1;
-  bool is_quiet = false;
-  bool is_verbose = false;
+/// What --aov asks for.
+struct AovChoice {
+  bool depth = false;
+  bool normal = false;
+  bool object = false;
+  bool primitive = false;
 
-  Verbosity verbosity() const;
+  bool any() const { return depth || normal || object || primitive; }
+};
+
+struct RenderOptions {
+  TracingOptions tracing;
+  std::vector<std::filesystem::path> pictures;
+  ViewOptions view;
+  /// Channels that an EXR carries beside R, G and B.
+  AovChoice aovs;
+  bool has_all_features = false;
 };
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.

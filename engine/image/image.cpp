@@ -6,6 +6,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <memory>
@@ -33,9 +34,16 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-OIIO::ImageSpec make_exr_spec(const Image& image, const Metadata& metadata, const std::optional<CropPlacement>& crop) {
-  OIIO::ImageSpec spec(static_cast<int>(image.size.x), static_cast<int>(image.size.y), 3, OIIO::TypeDesc::FLOAT);
+OIIO::ImageSpec make_exr_spec(const Image& image, const Metadata& metadata, const std::optional<CropPlacement>& crop,
+                              std::span<const Channel> channels) {
+  OIIO::ImageSpec spec(static_cast<int>(image.size.x), static_cast<int>(image.size.y),
+                       static_cast<int>(3 + channels.size()), OIIO::TypeDesc::FLOAT);
   spec.channelnames = {"R", "G", "B"};
+  spec.channelformats.assign(3, OIIO::TypeDesc::FLOAT);
+  for (const Channel& channel : channels) {
+    spec.channelnames.push_back(channel.name);
+    spec.channelformats.push_back(channel.is_integer ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT);
+  }
   spec.attribute("compression", "zip");
   // Otherwise the writer puts the time of day in, and equal pictures would differ.
   spec.attribute("DateTime", "");
@@ -53,6 +61,17 @@ OIIO::ImageSpec make_png_spec(const Image& image) {
   OIIO::ImageSpec spec(static_cast<int>(image.size.x), static_cast<int>(image.size.y), 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   return spec;
+}
+
+/// A pixel after the other, its channels in the order of the EXR's spec; each is four bytes.
+std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> channels) {
+  std::vector<uint32_t> words;
+  words.reserve(image.pixels.size() * (3 + channels.size()));
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) words.push_back(std::bit_cast<uint32_t>(image.pixels[i][c]));
+    for (const Channel& channel : channels) words.push_back(channel.values[i]);
+  }
+  return words;
 }
 
 std::vector<uint8_t> encode_pixels(const Image& image) {
@@ -82,6 +101,10 @@ bool is_writable_format(const fs::path& file) {
   return !format_of(file).empty();
 }
 
+bool has_named_channels(const fs::path& file) {
+  return format_of(file) == "openexr";
+}
+
 float encode_srgb(float linear) {
   if (!(linear > 0.0F)) return 0.0F;
   if (linear >= 1.0F) return 1.0F;
@@ -90,7 +113,7 @@ float encode_srgb(float linear) {
 }
 
 void write_image(const fs::path& file, const Image& image, const Metadata& metadata,
-                 const std::optional<CropPlacement>& crop) {
+                 const std::optional<CropPlacement>& crop, std::span<const Channel> channels) {
   const std::string format = format_of(file);
   if (format.empty()) {
     throw RunError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
@@ -99,12 +122,12 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
   OIIO::Filesystem::IOVecOutput encoded;
   const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(format);
   const bool is_exr = format == "openexr";
-  const bool is_encoded =
-      writer && writer->set_ioproxy(&encoded) &&
-      writer->open(file.filename().string(), is_exr ? make_exr_spec(image, metadata, crop) : make_png_spec(image)) &&
-      (is_exr ? writer->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data())
-              : writer->write_image(OIIO::TypeDesc::UINT8, encode_pixels(image).data())) &&
-      writer->close();
+  const bool is_encoded = writer && writer->set_ioproxy(&encoded) &&
+                          writer->open(file.filename().string(), is_exr ? make_exr_spec(image, metadata, crop, channels)
+                                                                        : make_png_spec(image)) &&
+                          (is_exr ? writer->write_image(OIIO::TypeDesc::UNKNOWN, interleave(image, channels).data())
+                                  : writer->write_image(OIIO::TypeDesc::UINT8, encode_pixels(image).data())) &&
+                          writer->close();
   if (!is_encoded) {
     throw RunError({"cannot encode the picture (" + first_line(writer ? writer->geterror() : OIIO::geterror()) + ")",
                     file.string(), "try the other format, .exr or .png"});

@@ -151,7 +151,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.jpg"}, "unknown output ending \".jpg\", a.jpg; use .exr or .png"},
       {{"render", "square.gltf", "-o", "a"}, "unknown output ending \"\", a;"},
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
-      {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite the scene"},
+      {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite an input"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "a.exr"}, "the same output file is named twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "too few values for --spp"},
       {{"render", "square.gltf", "-o", "a.exr", "--spp", "0"}, "--spp takes a whole number from 1 to "},

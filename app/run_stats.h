@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,16 @@
 
 namespace promin::app {
 
-/// What one `promin render` made and cost: the content of `--stats`. Times in milliseconds.
-struct RenderStats {
+/// What one run over a scene made and cost: the content of `--stats`. Times in milliseconds.
+struct RunStats {
   gpu::DeviceInfo device;
   std::string scene_file;
   SceneCounts scene;
   size_t object_count = 0;
   size_t material_count = 0;
   size_t light_count = 0;
-  View view;
+  /// Of a picture.
+  std::optional<View> view;
   SetupStats setup;
   RayCounts rays;
   /// Of each repetition.
@@ -35,6 +37,6 @@ struct RenderStats {
 };
 
 /// As a JSON object, indented.
-std::string to_json(const RenderStats& stats);
+std::string to_json(const RunStats& stats);
 
 }  // namespace promin::app

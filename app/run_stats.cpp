@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "stats.h"
+#include "run_stats.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of_scene(const RenderStats& stats) {
+Json json_of_scene(const RunStats& stats) {
   Json json = {{"file", stats.scene_file}, {"objects", stats.object_count}};
   for (size_t i = 0; i < kShapeNames.size(); ++i) json[std::string(kShapeNames[i])] = stats.scene.objects[i];
   json["primitives"] = stats.scene.primitives;
@@ -37,7 +37,7 @@ Json json_of_bvh(const BvhStats& bvh) {
 
 }  // namespace
 
-double RenderStats::median_trace_ms() const {
+double RunStats::median_trace_ms() const {
   if (trace_ms.empty()) return 0.0;
   std::vector<double> sorted = trace_ms;
   std::sort(sorted.begin(), sorted.end());
@@ -45,19 +45,18 @@ double RenderStats::median_trace_ms() const {
   return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
 }
 
-double RenderStats::mrays_per_s() const {
+double RunStats::mrays_per_s() const {
   const double ms = median_trace_ms();
   return ms > 0.0 ? static_cast<double>(rays.total()) / (1e3 * ms) : 0.0;
 }
 
-std::string to_json(const RenderStats& stats) {
-  const Json json = {
+std::string to_json(const RunStats& stats) {
+  Json json = {
       {"version", PROMIN_VERSION},
       {"device", stats.device.name},
       {"device_type", stats.device.type},
       {"driver", stats.device.driver},
       {"scene", json_of_scene(stats)},
-      {"view", json_of_view(stats.view)},
       {"features", feature_names(stats.setup.features)},
       {"bvh", json_of_bvh(stats.setup.bvh)},
       {"device_bytes", stats.setup.device_bytes},
@@ -73,6 +72,7 @@ std::string to_json(const RenderStats& stats) {
       {"rays", {{"primary", stats.rays.primary}, {"shadow", stats.rays.shadow}, {"reflection", stats.rays.reflection}}},
       {"mrays_per_s", stats.mrays_per_s()},
   };
+  if (stats.view) json["view"] = json_of_view(*stats.view);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

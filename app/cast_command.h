@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "arguments.h"
+
+namespace promin::app {
+
+/// Adds `promin cast`: rays from a file, hits to a file.
+Command add_cast_command(CLI::App& program);
+
+}  // namespace promin::app

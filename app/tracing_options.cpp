@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tracing_options.h"
+
+#include <fmt/ranges.h>
+
+#include "arguments.h"
+#include "core/error.h"
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kMaxRepeats = 10000;
+
+}  // namespace
+
+Verbosity TracingOptions::verbosity() const {
+  if (is_quiet) return Verbosity::kQuiet;
+  return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+}
+
+void add_scene_argument(OptionTable& table, TracingOptions& options) {
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj", [&](const Words& w) { options.scene = w.text(); });
+}
+
+void add_tracing_options(OptionTable& table, TracingOptions& options) {
+  table.add("--device", "NAME|INDEX", "Vulkan device by a part of its name or its index in `promin devices`",
+            [&](const Words& w) { options.device = w.text(); });
+  table.add("--builder", "NAME", fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), options.builder),
+            [&](const Words& w) { options.builder = w.choice(builder_names()); });
+  table.add("--repeat", "N", "Trace N times and report the median time [1]",
+            [&](const Words& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
+  table.add("--stats", "FILE.json", "Write counts and times as JSON",
+            [&](const Words& w) { options.stats = w.text(); });
+  table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
+  table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
+}
+
+void check_tracing_options(const TracingOptions& options) {
+  if (options.is_quiet && options.is_verbose) {
+    throw UsageError({"--quiet and --verbose contradict each other", "on the command line", "leave one out"});
+  }
+}
+
+}  // namespace promin::app

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tracing_run.h"
+
+#include <fmt/ranges.h>
+
+#include "core/error.h"
+#include "core/stopwatch.h"
+#include "scene/load_scene.h"
+
+namespace promin::app {
+
+Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console) {
+  const Stopwatch load;
+  Scene scene = load_scene(options.scene);
+  stats.load_ms = load.ms();
+  for (const std::string& warning : scene.warnings) console.warn(warning);
+  stats.scene_file = options.scene.filename().string();
+  stats.scene = count_scene(scene);
+  stats.object_count = scene.objects.size();
+  stats.material_count = scene.materials.size();
+  stats.light_count = scene.lights.size();
+  console.detail(fmt::format("loaded {}: objects {}, primitives {}, {:.1f} ms", options.scene.string(),
+                             scene.objects.size(), stats.scene.primitives, stats.load_ms));
+  return scene;
+}
+
+gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Console& console) {
+  gpu::DeviceHandle device = gpu::open_device(options.device);
+  stats.device = gpu::info_of(*device);
+  console.detail(gpu::choice_of(*device));
+  return device;
+}
+
+void take_setup(const SetupStats& setup, RunStats& stats, const Console& console) {
+  stats.setup = setup;
+  console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,
+                             setup.bvh.nodes, setup.bvh.depth, setup.bvh.sah_cost, setup.bvh_ms));
+  console.detail(fmt::format("features: {}", fmt::join(feature_names(setup.features), ", ")));
+  console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms", setup.upload_ms,
+                             1e-6 * static_cast<double>(setup.device_bytes), setup.pipeline_ms));
+}
+
+void check_validation(const gpu::Device& device, const RunStats& stats) {
+  const uint64_t count = gpu::validation_message_count(device);
+  if (count == 0) return;
+  throw RunError({fmt::format("the Vulkan validation layers reported {} problems", count), stats.device.name,
+                  "report them as a bug of promin"});
+}
+
+}  // namespace promin::app

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "console.h"
+#include "gpu/open_device.h"
+#include "run_stats.h"
+#include "scene/scene.h"
+#include "tracing_options.h"
+
+namespace promin::app {
+
+// The steps that every command takes that traces a scene. Each tells the console and leaves what it took in the stats.
+
+/// Throws InputError.
+Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console);
+
+/// Throws DeviceError.
+gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Console& console);
+
+/// Takes over what setting the scene up has cost.
+void take_setup(const SetupStats& setup, RunStats& stats, const Console& console);
+
+/// Throws RunError if the validation layers have spoken: then nothing is written.
+void check_validation(const gpu::Device& device, const RunStats& stats);
+
+}  // namespace promin::app

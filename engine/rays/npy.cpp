@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/npy.h"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace promin {
+namespace fs = std::filesystem;
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "rays and hits lie in the file as in memory");
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+/// Larger headers than any array of numbers has.
+constexpr uint32_t kMaxHeaderBytes = 1U << 16;
+constexpr const char* kCure =
+    "save it by numpy.save(file, numpy.ascontiguousarray(rays, '<f4')) with rays of shape (N, 8)";
+
+/// The entries of a Python dictionary of literals with string keys, each value as written: what a .npy header holds.
+/// None if it is not one.
+std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std::string_view text) {
+  std::map<std::string_view, std::string_view> entries;
+  size_t at = 0;
+  const auto skip_spaces = [&] {
+    while (at < text.size() && (text[at] == ' ' || text[at] == '\n')) ++at;
+  };
+  const auto take = [&](char expected) {
+    skip_spaces();
+    if (at >= text.size() || text[at] != expected) return false;
+    ++at;
+    return true;
+  };
+  if (!take('{')) return std::nullopt;
+  while (!take('}')) {
+    skip_spaces();
+    const char quote = at < text.size() ? text[at] : '\0';
+    if (quote != '\'' && quote != '"') return std::nullopt;
+    const size_t key_end = text.find(quote, at + 1);
+    if (key_end == std::string_view::npos) return std::nullopt;
+    const std::string_view key = text.substr(at + 1, key_end - at - 1);
+    at = key_end + 1;
+    if (!take(':')) return std::nullopt;
+    skip_spaces();
+    // The value ends at a comma or brace outside of its own brackets.
+    const size_t first = at;
+    for (int depth = 0; at < text.size() && (depth > 0 || (text[at] != ',' && text[at] != '}')); ++at) {
+      if (text[at] == '(' || text[at] == '[') ++depth;
+      if (text[at] == ')' || text[at] == ']') --depth;
+    }
+    entries[key] = text.substr(first, at - first);
+    take(',');
+  }
+  skip_spaces();
+  return at == text.size() ? std::optional(entries) : std::nullopt;
+}
+
+/// N of "(N, 8)", however it is spaced.
+std::optional<uint64_t> parse_shape(std::string_view text) {
+  std::string tight;
+  for (const char c : text) {
+    if (c != ' ') tight += c;
+  }
+  uint64_t count = 0;
+  const char* end = tight.data() + tight.size();
+  if (tight.empty() || tight[0] != '(') return std::nullopt;
+  const auto [rest, error] = std::from_chars(tight.data() + 1, end, count);
+  const std::string_view tail(rest, static_cast<size_t>(end - rest));
+  if (error != std::errc() || (tail != ",8)" && tail != ",8,)")) return std::nullopt;
+  return count;
+}
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+/// Number of rays by the header's dictionary.
+uint64_t parse_header(std::string_view header, const fs::path& file) {
+  const auto entries = parse_dictionary(header);
+  if (!entries || !entries->contains("descr") || !entries->contains("fortran_order") || !entries->contains("shape")) {
+    throw InputError({"the header is damaged", file.string(), kCure});
+  }
+  const std::string_view type = trim(entries->at("descr"));
+  if (type != "'<f4'" && type != "\"<f4\"") {
+    throw InputError({"the array's type is " + std::string(type) + ", not '<f4'", file.string(), kCure});
+  }
+  if (trim(entries->at("fortran_order")) != "False") {
+    throw InputError({"the array is in Fortran order", file.string(), kCure});
+  }
+  const std::optional<uint64_t> count = parse_shape(entries->at("shape"));
+  if (!count) {
+    throw InputError(
+        {"the array's shape is " + std::string(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
+  }
+  return *count;
+}
+
+std::string make_hit_header(uint64_t count) {
+  std::string dictionary =
+      "{'descr': [('t', '<f4'), ('object', '<i4'), ('primitive', '<i4'), ('u', '<f4'), ('v', '<f4'), "
+      "('normal', '<f4', (3,))], 'fortran_order': False, 'shape': (" +
+      std::to_string(count) + ",), }";
+  // Magic, version and length take 10 bytes; the data begins at a multiple of 64.
+  const size_t padding = 64 - (10 + dictionary.size() + 1) % 64;
+  dictionary.append(padding, ' ');
+  dictionary += '\n';
+  std::string header(kMagic);
+  header += '\x01';
+  header += '\x00';
+  header += static_cast<char>(dictionary.size() & 0xFF);
+  header += static_cast<char>(dictionary.size() >> 8);
+  return header + dictionary;
+}
+
+}  // namespace
+
+RayReader::RayReader(const fs::path& file) : file_(file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
+  if (!fs::is_regular_file(status)) throw InputError({"not a regular file", file.string(), "name a .npy file"});
+  const uint64_t file_bytes = fs::file_size(file, error);
+  stream_.open(file, std::ios::binary);
+  if (!stream_ || error) throw InputError({"cannot open the file", file.string(), "check its permissions"});
+
+  std::array<char, 12> head{};
+  stream_.read(head.data(), 8);
+  const char version = head[6];
+  if (!stream_ || std::string_view(head.data(), kMagic.size()) != kMagic || version < 1 || version > 3) {
+    throw InputError({"not a NumPy array file", file.string(), kCure});
+  }
+  const std::streamsize length_bytes = version == 1 ? 2 : 4;
+  stream_.read(head.data() + 8, length_bytes);
+  uint32_t header_bytes = 0;
+  std::memcpy(&header_bytes, head.data() + 8, static_cast<size_t>(length_bytes));
+  if (!stream_ || header_bytes > kMaxHeaderBytes) throw InputError({"the header is damaged", file.string(), kCure});
+  std::string header(header_bytes, '\0');
+  if (!stream_.read(header.data(), header_bytes)) {
+    throw InputError({"the file ends within its header", file.string(), kCure});
+  }
+  count_ = parse_header(header, file);
+  const uint64_t data_bytes = file_bytes - (8 + static_cast<uint64_t>(length_bytes) + header_bytes);
+  if (data_bytes % sizeof(Ray) != 0 || data_bytes / sizeof(Ray) != count_) {
+    throw InputError({"the header tells of " + std::to_string(count_) + " rays, the file holds " +
+                          std::to_string(data_bytes) + " bytes of them, 32 each",
+                      file.string(), "write the file again"});
+  }
+}
+
+void RayReader::read(std::span<Ray> rays) {
+  if (rays.empty()) return;
+  if (!stream_.read(reinterpret_cast<char*>(rays.data()), static_cast<std::streamsize>(rays.size_bytes()))) {
+    throw InputError({"cannot read the file to its end", file_.string(), "check the disk"});
+  }
+}
+
+HitWriter::HitWriter(const fs::path& file, uint64_t count)
+    : target_(file), output_(file), stream_(output_.temporary(), std::ios::binary), missing_(count) {
+  const std::string header = make_hit_header(count);
+  stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
+  check();
+}
+
+void HitWriter::write(std::span<const Hit> hits) {
+  assert(hits.size() <= missing_);
+  missing_ -= hits.size();
+  stream_.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size_bytes()));
+  check();
+}
+
+void HitWriter::commit() {
+  assert(missing_ == 0);
+  stream_.close();
+  check();
+  output_.commit();
+}
+
+void HitWriter::check() const {
+  if (stream_) return;
+  throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
+                  "check the disk and permissions"});
+}
+
+}  // namespace promin
