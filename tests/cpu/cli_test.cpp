@@ -12,11 +12,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
 
-#include "image/image.h"
-#include "process.h"
+#include "cli_fixture.h"
 
 namespace promin {
 namespace {
@@ -29,97 +27,9 @@ using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
-using Words = std::vector<std::string>;
-
-/// No camera, no light.
-constexpr const char* kTriangleObj = R"(o triangle
-v -1 -1 0
-v 1 -1 0
-v 0 1 0
-f 1 2 3
-)";
-
-/// A unit square at z = 0, a point source and two cameras.
-constexpr const char* kSquareGltf =
-    R"({
-  "asset": {"version": "2.0"},
-  "extensionsUsed": ["KHR_lights_punctual"],
-  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}},
-  "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)"
-    R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAABAAIAAAACAAMA"}],
-  "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
-  "accessors": [
-    {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
-    {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-  "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7853981633974483, "znear": 0.01}}],
-  "nodes": [
-    {"mesh": 0},
-    {"name": "main", "camera": 0, "translation": [0, 0, 4]},
-    {"name": "side", "camera": 0, "translation": [1, 0.5, 3]},
-    {"translation": [0, 0, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
-  "scenes": [{"nodes": [0, 1, 2, 3]}],
-  "scene": 0
-})";
-
-class CliTest : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::replace(name.begin(), name.end(), '/', '_');
-    options_.folder = fs::path(testing::TempDir()) / ("promin_cli_" + name);
-    fs::remove_all(folder());
-    fs::create_directories(folder());
-    write("triangle.obj", kTriangleObj);
-    write("square.gltf", kSquareGltf);
-  }
-  void TearDown() override { fs::remove_all(folder()); }
-
-  const fs::path& folder() const { return options_.folder; }
-
-  void write(const std::string& file, const std::string& text) const { std::ofstream(folder() / file) << text; }
-
-  std::string read(const std::string& file) const {
-    std::ifstream stream(folder() / file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
-  /// Names in the folder beside the scenes.
-  std::set<std::string> files() const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder())) names.insert(entry.path().filename());
-    names.erase("triangle.obj");
-    names.erase("square.gltf");
-    return names;
-  }
-
-  ProcessResult run(const Words& arguments) const { return Process(PROMIN_EXECUTABLE, arguments, options_).wait(); }
-
-  /// Renders in a small size; fails the test if the program does.
-  Image render(Words arguments, const std::string& output) const {
-    arguments.insert(arguments.begin(), "render");
-    arguments.insert(arguments.end(), {"-o", output, "--quiet"});
-    const ProcessResult result = run(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return result.exit_code == 0 ? read_image(folder() / output) : Image{};
-  }
-
-  ProcessOptions options_;
-};
-
-/// One line of the form that every failure has.
-void expect_failure(const ProcessResult& result, int exit_code, const std::string& part) {
-  EXPECT_EQ(result.exit_code, exit_code) << result.err;
-  EXPECT_THAT(result.out, IsEmpty());
-  const size_t start = result.err.find("promin: error: ");
-  ASSERT_NE(start, std::string::npos) << result.err;
-  const std::string line = result.err.substr(start);
-  EXPECT_THAT(line, HasSubstr(part));
-  EXPECT_EQ(line.find('\n'), line.size() - 1) << line;
-}
 
 TEST_F(CliTest, HelpAndVersionEverywhere) {
-  for (const Words& command : {Words{}, Words{"render"}, Words{"info"}, Words{"devices"}}) {
+  for (const Words& command : {Words{}, Words{"render"}, Words{"cast"}, Words{"info"}, Words{"devices"}}) {
     Words with_help = command;
     with_help.emplace_back("--help");
     const ProcessResult help = run(with_help);
@@ -423,6 +333,24 @@ TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
     EXPECT_EQ(read("old.exr"), "old");
     EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
   }
+}
+
+TEST_F(CliTest, AovsAreChannelsOfTheExr) {
+  const Words view = {"square.gltf", "--size", "16", "9"};
+  const auto with = [&](Words words) {
+    words.insert(words.begin(), view.begin(), view.end());
+    return words;
+  };
+  const Image plain = render(with({}), "plain.exr");
+  const Image picture = render(with({"--aov", "depth,object"}), "a.exr");
+  ASSERT_EQ(picture.size, plain.size);
+  EXPECT_EQ(picture.pixels, plain.pixels);
+  EXPECT_THAT(read("a.exr"), testing::AllOf(HasSubstr("object"), Not(HasSubstr("primitive")), Not(HasSubstr("N.X"))));
+
+  expect_failure(run({"render", "square.gltf", "-o", "a.png", "--aov", "depth"}), 2, "give -o with the ending .exr");
+  expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--aov", "depth,colour"}), 2, "not \"colour\"");
+  EXPECT_EQ(
+      run({"render", "square.gltf", "-o", "b.exr", "-o", "b.png", "--aov", "normal", "--size", "8", "8"}).exit_code, 0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <bit>
 #include <csignal>
 #include <fstream>
 #include <limits>
@@ -157,6 +158,33 @@ TEST_F(ImageTest, PicturesWithoutRgbOrOfAbsurdSizeAreRefused) {
   EXPECT_THAT(message_of_reading(folder_ / "grey.pgm"), HasSubstr("no channels R, G, B"));
   std::ofstream(folder_ / "huge.ppm") << "P6 65000 65000 255\n";
   EXPECT_THAT(message_of_reading(folder_ / "huge.ppm"), HasSubstr("too large"));
+}
+
+TEST_F(ImageTest, ChannelsKeepTheirNamesTypesAndBits) {
+  const Image image = make_ramp(3, 2);
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> depths = {1.0F, infinity, 3.0F, 1e-30F, 5.0F, 6.5F};
+  std::vector<Channel> channels = {{"Z", false, {}}, {"object", true, {0, 0xFFFFFFFF, 2, 3, 16777217, 5}}};
+  for (const float depth : depths) channels[0].values.push_back(std::bit_cast<uint32_t>(depth));
+  const fs::path file = folder_ / "a.exr";
+  write_image(file, image, {}, std::nullopt, channels);
+  EXPECT_EQ(read_image(file).pixels, image.pixels);
+
+  const auto reader = OIIO::ImageInput::open(file.string());
+  ASSERT_TRUE(reader);
+  const OIIO::ImageSpec spec = reader->spec();
+  ASSERT_EQ(spec.nchannels, 5);
+  const int z = spec.channelindex("Z");
+  const int object = spec.channelindex("object");
+  ASSERT_TRUE(z >= 0 && object >= 0);
+  EXPECT_EQ(spec.channelformat(z), OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(spec.channelformat(object), OIIO::TypeDesc::UINT32);
+  std::vector<float> read_depths(6);
+  std::vector<uint32_t> read_objects(6);
+  ASSERT_TRUE(reader->read_image(0, 0, z, z + 1, OIIO::TypeDesc::FLOAT, read_depths.data()));
+  ASSERT_TRUE(reader->read_image(0, 0, object, object + 1, OIIO::TypeDesc::UINT32, read_objects.data()));
+  EXPECT_EQ(read_depths, depths);
+  EXPECT_EQ(read_objects, channels[1].values);
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ TEST_P(SceneGoldenTest, LooksAsStored) {
   FAIL() << problem << "; the difference, fourfold, is " << difference;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SceneGoldenTest, testing::ValuesIn(scene_names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneGoldenTest, testing::ValuesIn(scene_names()), [](const auto& param_info) {
+  std::string name = param_info.param;
   std::replace_if(
       name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
   return name;

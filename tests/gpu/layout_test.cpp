@@ -7,6 +7,7 @@
 
 #include <cstddef>
 
+#include "cast.spv.h"
 #include "gpu/spirv_module.h"
 #include "render.spv.h"
 
@@ -40,36 +41,60 @@ const Layout kLayouts[] = {
       OFFSET(Frame, background), OFFSET(Frame, tree_bounds), OFFSET(Frame, film_center), OFFSET(Frame, first_index)}},
     {"Dispatch",
      {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts)}},
+    {"RayRecord", {OFFSET(RayRecord, origin_tmin), OFFSET(RayRecord, direction_tmax)}},
+    {"HitRecord", {OFFSET(HitRecord, a), OFFSET(HitRecord, b)}},
 };
+
+struct Shader {
+  const char* name;
+  std::span<const uint32_t> spirv;
+};
+
+const Shader kShaders[] = {{"Cast", k_cast_spirv}, {"Render", k_render_spirv}};
+
+void PrintTo(const Shader& shader, std::ostream* out) {
+  *out << shader.name;
+}
 
 class LayoutTest : public testing::TestWithParam<Layout> {};
 
 TEST_P(LayoutTest, HostOffsetsAreTheShaders) {
-  const test::SpirvModule module(k_render_spirv);
-  const auto variants = module.offsets_of(GetParam().name);
-  ASSERT_THAT(variants, Not(IsEmpty())) << "the shader does not use " << GetParam().name;
+  std::vector<std::vector<uint32_t>> variants;
+  for (const Shader& shader : kShaders) {
+    const auto more = test::SpirvModule(shader.spirv).offsets_of(GetParam().name);
+    variants.insert(variants.end(), more.begin(), more.end());
+  }
+  ASSERT_THAT(variants, Not(IsEmpty())) << "no shader uses " << GetParam().name;
   EXPECT_THAT(variants, Each(GetParam().offsets));
 }
 
 INSTANTIATE_TEST_SUITE_P(Structs, LayoutTest, testing::ValuesIn(kLayouts),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& param_info) { return std::string(param_info.param.name); });
 
 TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
-  const test::SpirvModule module(k_render_spirv);
-  EXPECT_THAT(module.spec_ids, ElementsAre(testing::Pair("FEATURES", layout::CONSTANT_FEATURES),
-                                           testing::Pair("STACK_SIZE", layout::CONSTANT_STACK_SIZE)));
+  using testing::Pair;
+  EXPECT_THAT(test::SpirvModule(k_render_spirv).spec_ids, ElementsAre(Pair("FEATURES", layout::CONSTANT_FEATURES),
+                                                                      Pair("STACK_SIZE", layout::CONSTANT_STACK_SIZE)));
+  EXPECT_THAT(test::SpirvModule(k_cast_spirv).spec_ids,
+              ElementsAre(Pair("ANY_HIT", layout::CONSTANT_ANY_HIT), Pair("FEATURES", layout::CONSTANT_FEATURES),
+                          Pair("STACK_SIZE", layout::CONSTANT_STACK_SIZE)));
 }
 
+class ShaderTest : public testing::TestWithParam<Shader> {};
+
 // A driver may contract and reassociate what is not `precise`: bits and watertightness would depend on its taste.
-TEST(SpirvTest, EveryFloatOperationIsPrecise) {
-  const test::SpirvModule module(k_render_spirv);
+TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
+  const test::SpirvModule module(GetParam().spirv);
   EXPECT_GT(module.float_operation_count, 200U);
   EXPECT_THAT(module.contractible, IsEmpty());
 }
 
-TEST(SpirvTest, NoMoreStorageBuffersThanVulkanGuarantees) {
-  EXPECT_LE(test::SpirvModule(k_render_spirv).storage_bindings.size(), 4U);
+TEST_P(ShaderTest, HasNoMoreStorageBuffersThanVulkanGuarantees) {
+  EXPECT_LE(test::SpirvModule(GetParam().spirv).storage_bindings.size(), 4U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Shaders, ShaderTest, testing::ValuesIn(kShaders),
+                         [](const auto& param_info) { return std::string(param_info.param.name); });
 
 }  // namespace
 }  // namespace promin

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/npy.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "cpu/temp_folder.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// As numpy.save writes it: format 1.0 with the header padded, here not to a multiple of 64.
+std::string npy(const std::string& dictionary, const std::string& data, char version = 1) {
+  const std::string header = dictionary + "\n";
+  std::string file = "\x93NUMPY";
+  file += version;
+  file += '\0';
+  const size_t length_bytes = version == 1 ? 2 : 4;
+  for (size_t i = 0; i < length_bytes; ++i) file += static_cast<char>((header.size() >> (8 * i)) & 0xFF);
+  return file + header + data;
+}
+
+std::string header_of(uint64_t count) {
+  return "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(count) + ", 8), }";
+}
+
+std::string bytes_of(const std::vector<float>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)};
+}
+
+class NpyTest : public TempFolder {
+ protected:
+  fs::path write(const std::string& bytes) const {
+    fs::path file = folder_ / "rays.npy";
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << bytes;
+    return file;
+  }
+  std::string refusal(const std::string& bytes) const {
+    const fs::path file = write(bytes);
+    return message_of([&] { RayReader reader(file); });
+  }
+  std::string read(const fs::path& file) const {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+};
+
+TEST_F(NpyTest, ReadsRaysPieceByPiece) {
+  const std::string data =
+      bytes_of({0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12, 13, 14, 15, 16, 17, 20, 21, 22, 23, 24, 25, 26, 27});
+  RayReader reader(write(npy(header_of(3), data)));
+  ASSERT_EQ(reader.count(), 3U);
+  std::vector<Ray> rays(2);
+  reader.read(rays);
+  EXPECT_EQ(rays[0].origin, vec3(0, 1, 2));
+  EXPECT_EQ(rays[0].tmin, 3.0F);
+  EXPECT_EQ(rays[0].direction, vec3(4, 5, 6));
+  EXPECT_EQ(rays[0].tmax, 7.0F);
+  EXPECT_EQ(rays[1].origin, vec3(10, 11, 12));
+  reader.read(std::span(rays).first(1));
+  EXPECT_EQ(rays[0].direction, vec3(24, 25, 26));
+}
+
+TEST_F(NpyTest, ReadsEveryVersionAndSpelling) {
+  const std::string data = bytes_of(std::vector<float>(8, 1.0F));
+  for (const char version : {1, 2, 3}) EXPECT_EQ(refusal(npy(header_of(1), data, version)), "") << int{version};
+  EXPECT_EQ(refusal(npy("{\"shape\":(1,8),\"fortran_order\":False,\"descr\":\"<f4\"}", data)), "");
+  EXPECT_EQ(refusal(npy("{'shape': (1, 8,), 'fortran_order': False, 'descr': '<f4', 'more': [1, {}], }   ", data)), "");
+  EXPECT_EQ(refusal(npy(header_of(0), "")), "");
+}
+
+TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
+  const std::string data = bytes_of(std::vector<float>(8, 1.0F));
+  EXPECT_THAT(refusal(""), HasSubstr("not a NumPy array file"));
+  EXPECT_THAT(refusal("PK\x03\x04 an .npz"), HasSubstr("not a NumPy array file"));
+  EXPECT_THAT(refusal(npy(header_of(1), data, 4)), HasSubstr("not a NumPy array file"));
+  EXPECT_THAT(refusal(npy(header_of(1), data).substr(0, 30)), HasSubstr("ends within its header"));
+  EXPECT_THAT(refusal(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 8), }", data)), HasSubstr("'<f8'"));
+  EXPECT_THAT(refusal(npy("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 8), }", data)), HasSubstr("Fortran"));
+  for (const char* shape : {"(8,)", "(1, 7)", "(1, 1, 8)", "(-1, 8)", "()", "(1e3, 8)", "(99999999999999999999, 8)"}) {
+    EXPECT_THAT(refusal(npy(std::string("{'descr': '<f4', 'fortran_order': False, 'shape': ") + shape + "}", data)),
+                HasSubstr("not (N, 8)"))
+        << shape;
+  }
+  for (const char* header :
+       {"", "[]", "{'descr': '<f4'}", "{'descr", "{'descr': '<f4', 'fortran_order': False, 'shape'", "{descr: 1}",
+        "{'a': ((((", "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)} x"}) {
+    EXPECT_THAT(refusal(npy(header, data)), HasSubstr("header is damaged")) << header;
+  }
+  const std::string message = refusal(npy(header_of(1), data + "x"));
+  EXPECT_THAT(message, HasSubstr("1 rays, the file holds 33 bytes"));
+  EXPECT_THAT(refusal(npy(header_of(2), data)), HasSubstr("2 rays, the file holds 32 bytes"));
+  // The product with 32 would wrap to the right size.
+  EXPECT_THAT(refusal(npy(header_of((uint64_t{1} << 59) + 1), data)), HasSubstr("rays, the file holds 32 bytes"));
+  EXPECT_THAT(message_of([&] { RayReader(folder_ / "none.npy"); }), HasSubstr("file not found"));
+  EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }), HasSubstr("not a regular file"));
+}
+
+// Any flipped or missing byte of the header gives rays or a sentence, never a crash.
+TEST_F(NpyTest, EveryDamagedHeaderEndsWell) {
+  const std::string good = npy(header_of(1), bytes_of(std::vector<float>(8, 1.0F)));
+  for (size_t i = 0; i < good.size() - 32; ++i) {
+    for (const char flip : {'\x01', '\x20', '\x7F'}) {
+      std::string bad = good;
+      bad[i] = static_cast<char>(bad[i] ^ flip);
+      refusal(bad);
+    }
+    refusal(good.substr(0, i));
+  }
+}
+
+TEST_F(NpyTest, WritesAStructuredArray) {
+  const fs::path file = folder_ / "hits.npy";
+  std::vector<Hit> hits(3);
+  hits[1] = {2.5F, 7, 9, 0.25F, 0.5F, vec3(0, 1, 0)};
+  HitWriter writer(file, hits.size());
+  writer.write(std::span(hits).first(2));
+  writer.write(std::span(hits).last(1));
+  EXPECT_FALSE(fs::exists(file));
+  writer.commit();
+  const std::string bytes = read(file);
+  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\0", 8));
+  const size_t header = 10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
+  EXPECT_EQ(header % 64, 0U);
+  EXPECT_EQ(bytes[header - 1], '\n');
+  EXPECT_THAT(bytes, HasSubstr("'descr': [('t', '<f4'), ('object', '<i4'), ('primitive', '<i4'), ('u', '<f4'), "
+                               "('v', '<f4'), ('normal', '<f4', (3,))], 'fortran_order': False, 'shape': (3,), }"));
+  ASSERT_EQ(bytes.size(), header + 96);
+  EXPECT_EQ(std::memcmp(bytes.data() + header, hits.data(), 96), 0);
+}
+
+TEST_F(NpyTest, WithoutACommitTheOldFileStays) {
+  const fs::path file = folder_ / "hits.npy";
+  std::ofstream(file) << "old";
+  { HitWriter writer(file, 5); }
+  EXPECT_EQ(read(file), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+}  // namespace
+}  // namespace promin

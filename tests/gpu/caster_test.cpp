@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/caster.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "core/error.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "oracle/verdict.h"
+#include "render/pack_scene.h"
+#include "render/renderer.h"
+
+namespace promin {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Towards the scene of everything from all around it.
+std::vector<Ray> make_rays(size_t count) {
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i) {
+    const auto x = static_cast<float>(i);
+    const vec3 eye(8.0F * std::cos(x), 3.0F + 2.0F * std::sin(7.0F * x), 8.0F * std::sin(x));
+    const vec3 target(3.0F * std::sin(11.0F * x), 1.5F + 1.5F * std::cos(5.0F * x), 2.0F * std::sin(3.0F * x));
+    rays.push_back({eye, 0.0F, target - eye, kInfinity});
+  }
+  return rays;
+}
+
+class CasterTest : public test::DeviceTest {
+ protected:
+  static std::vector<Hit> cast(const Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) {
+    std::vector<Hit> hits(rays.size());
+    Caster(device(), scene).cast(rays, hits, query);
+    return hits;
+  }
+};
+
+bool has_same_bits(std::span<const Hit> a, std::span<const Hit> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+TEST_F(CasterTest, AnswersAsTheOracle) {
+  const Scene scene = test::make_scene_of_everything();
+  const std::vector<Ray> rays = make_rays(20000);
+  const std::vector<Hit> hits = cast(scene, rays);
+  const std::vector<Hit> any = cast(scene, rays, HitQuery::kAny);
+  size_t hit_count = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const oracle::Ray ray{oracle::Vector(rays[i].origin), oracle::Vector(rays[i].direction)};
+    const oracle::Verdict verdict = oracle::judge(scene, ray, {hits[i].t, hits[i].object, hits[i].primitive});
+    ASSERT_LE(verdict.margin, oracle::kB2) << "ray " << i;
+    ASSERT_LE(verdict.t_error, oracle::kB1) << "ray " << i;
+    ASSERT_EQ(any[i].t, hits[i].object >= 0 ? 0.0F : kInfinity) << "ray " << i;
+    if (hits[i].object < 0 || !verdict.is_same) continue;
+    ++hit_count;
+    ASSERT_LE(glm::distance(oracle::Vector(hits[i].normal), verdict.exact.normal), 1e-4L) << "ray " << i;
+    ASSERT_NEAR(hits[i].u, verdict.exact.u, 1e-4L) << "ray " << i;
+    ASSERT_NEAR(hits[i].v, verdict.exact.v, 1e-4L) << "ray " << i;
+  }
+  EXPECT_GT(hit_count, rays.size() / 2);
+}
+
+TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
+  const Scene scene = test::make_scene_of_everything();
+  const std::vector<Ray> rays = make_rays(3000);
+  Caster caster(device(), scene);
+  std::vector<Hit> together(rays.size());
+  caster.cast(rays, together);
+  std::vector<Hit> apart(rays.size());
+  for (size_t first = 0; first < rays.size(); first += 777) {
+    const size_t count = std::min<size_t>(777, rays.size() - first);
+    caster.cast(std::span(rays).subspan(first, count), std::span(apart).subspan(first, count));
+  }
+  EXPECT_TRUE(has_same_bits(apart, together));
+}
+
+// Directions that fp32 arithmetic alone would lose: denormal, and near the largest number.
+TEST_F(CasterTest, DirectionsHaveAnyLength) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.objects = {{"", Sphere{vec3(0.0F), 1e-3F}, 0}};
+  const vec3 origin(0, 0, 2e-3F);
+  for (const float length : {1e-40F, 1e-37F, 1.2e-38F, 1.0F, 1e37F, 1.7e38F, 3e38F}) {
+    const std::vector<Ray> rays = {{origin, 0.0F, vec3(0, 0, -length), kInfinity},
+                                   {origin, 0.0F, vec3(0, 0, length), kInfinity}};
+    const std::vector<Hit> hits = cast(scene, rays);
+    EXPECT_EQ(hits[0].object, 0) << length;
+    EXPECT_NEAR(static_cast<double>(hits[0].t) * static_cast<double>(length), 1e-3, 1e-9) << length;
+    EXPECT_EQ(hits[1].object, -1) << length;
+  }
+  // t would be 1e42, which no float holds: a miss, for tmax is at most infinite.
+  Scene far = scene;
+  far.objects[0].shape = Sphere{vec3(0, 0, -1e4F), 1.0F};
+  EXPECT_EQ(cast(far, std::vector<Ray>{{origin, 0.0F, vec3(0, 0, -1e-38F), kInfinity}})[0].object, -1);
+}
+
+TEST_F(CasterTest, ObjectsWithoutPrimitivesTakeANumber) {
+  Scene scene;
+  scene.materials.resize(1);
+  Mesh mesh;
+  mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
+  mesh.triangles = {{0, 1, 1}, {0, 1, 2}};  // the first is degenerate
+  scene.objects = {{"", NotDrawn{}, 0}, {"", Mesh{}, 0}, {"", mesh, 0}, {"", NotDrawn{}, 0}, {"", Sphere{}, 0}};
+  scene.objects[4].shape = Sphere{vec3(0, 0, 9), 1.0F};
+  const std::vector<Ray> rays = {{vec3(0.2F, 0.2F, 4), 0, vec3(0, 0, -1), kInfinity},
+                                 {vec3(0.2F, 0.2F, 4), 0, vec3(0, 0, 1), kInfinity}};
+  const std::vector<Hit> hits = cast(scene, rays);
+  EXPECT_EQ(hits[0].object, 2);
+  EXPECT_EQ(hits[0].primitive, 1);
+  EXPECT_EQ(hits[1].object, 4);
+  EXPECT_EQ(hits[1].primitive, 0);
+}
+
+TEST_F(CasterTest, UnknownBuildersAreRefused) {
+  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), CasterOptions{"shah", {}}), UsageError);
+}
+
+// AOVs are what a cast of the pixel's ray tells, and leave the picture's bits alone.
+TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
+  const Scene scene = test::make_scene_of_everything();
+  View view = test::make_view(uvec2(150, 100));
+  RendererOptions options;
+  options.with_aovs = true;
+  options.blocks_per_dispatch = 7;
+  Renderer renderer(device(), scene, options);
+  const RenderResult with = renderer.render(view);
+  EXPECT_TRUE(test::has_same_bits(with.image, Renderer(device(), scene).render(view).image));
+
+  std::vector<Ray> rays;
+  const dvec3 look(view.camera.look);
+  const dvec3 up(view.camera.up);
+  const dvec3 right = glm::cross(look, up);
+  const double pixel = 2.0 * std::tan(0.5 * static_cast<double>(view.camera.yfov)) / view.size.y;
+  for (uint32_t y = 0; y < view.size.y; ++y) {
+    for (uint32_t x = 0; x < view.size.x; ++x) {
+      const dvec3 on_film = pixel * ((x + 0.5 - 0.5 * view.size.x) * right + (0.5 * view.size.y - y - 0.5) * up);
+      rays.push_back({view.camera.eye, 0.0F, vec3(look + on_film), kInfinity});
+    }
+  }
+  const std::vector<Hit> hits = cast(scene, rays);
+  size_t other_ids = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (static_cast<int32_t>(with.aovs.object[i]) != hits[i].object ||
+        static_cast<int32_t>(with.aovs.primitive[i]) != hits[i].primitive) {
+      ++other_ids;
+      continue;
+    }
+    if (hits[i].object < 0) {
+      EXPECT_EQ(with.aovs.depth[i], kInfinity);
+      EXPECT_EQ(with.aovs.normal[i], vec3(0.0F));
+      continue;
+    }
+    const double distance = static_cast<double>(hits[i].t) * glm::length(dvec3(rays[i].direction));
+    EXPECT_NEAR(with.aovs.depth[i], distance, 1e-5 * distance) << "pixel " << i;
+    EXPECT_LE(glm::distance(with.aovs.normal[i], hits[i].normal), 2e-4F) << "pixel " << i;
+  }
+  EXPECT_LE(other_ids, 3U);
+
+  // The middle sample of an odd number is the centre; a crop has the values of the whole.
+  view.samples_per_pixel = 3;
+  EXPECT_EQ(renderer.render(view).aovs.depth, with.aovs.depth);
+  view.crop = PixelWindow{uvec2(13, 29), uvec2(14, 71)};
+  const RenderResult crop = renderer.render(view);
+  ASSERT_EQ(crop.aovs.object.size(), 42U);
+  for (uint32_t y = 0; y < 42; ++y) {
+    EXPECT_EQ(crop.aovs.object[y], with.aovs.object[(y + 29) * 150 + 13]);
+    EXPECT_EQ(crop.aovs.normal[y], with.aovs.normal[(y + 29) * 150 + 13]);
+  }
+}
+
+TEST(PrimitiveOfOrder, FindsTheObject) {
+  const std::vector<uint32_t> first = {0, 0, 2, 3, 3, 5};
+  const auto id = [&](uint32_t order) {
+    const PrimitiveId found = primitive_of_order(first, order);
+    return std::pair(found.object, found.primitive);
+  };
+  EXPECT_EQ(id(0), std::pair(1U, 0U));
+  EXPECT_EQ(id(1), std::pair(1U, 1U));
+  EXPECT_EQ(id(2), std::pair(2U, 0U));
+  EXPECT_EQ(id(3), std::pair(4U, 0U));
+  EXPECT_EQ(id(4), std::pair(4U, 1U));
+}
+
+}  // namespace
+}  // namespace promin
