@@ -90,7 +90,9 @@ TEST_F(CasterTest, DirectionsHaveAnyLength) {
                                    {origin, 0.0F, vec3(0, 0, length), kInfinity}};
     const std::vector<Hit> hits = cast(scene, rays);
     EXPECT_EQ(hits[0].object, 0) << length;
-    EXPECT_NEAR(static_cast<double>(hits[0].t) * static_cast<double>(length), 1e-3, 1e-9) << length;
+    // The step between denormal t, of which the longest directions make one.
+    const double step = 0x1p-149 * static_cast<double>(length);
+    EXPECT_NEAR(static_cast<double>(hits[0].t) * static_cast<double>(length), 1e-3, 1e-9 + step) << length;
     EXPECT_EQ(hits[1].object, -1) << length;
   }
   // t would be 1e42, which no float holds: a miss, for tmax is at most infinite.
