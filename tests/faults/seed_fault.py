@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Builds the shaders with a fault in them, for tests of the tests: what removes robustness must make a test fail.
+
+seed_fault.py FAULT SHADERS KERNELS GLSLANG OUT: copies the folder SHADERS and the .comp file KERNELS into OUT, puts the
+fault in, and compiles cast.comp and KERNELS to OUT/*.spv. A fault whose place is gone is an error."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+# fma(a, b, c) with the one rounding that hardware gives, of fp32 alone: the product's own error by Dekker's splitting.
+FUSED = """
+float fused(float a, float b, float c) {
+  precise float split_a = 4097.0 * a;
+  precise float a_hi = split_a - (split_a - a);
+  precise float a_lo = a - a_hi;
+  precise float split_b = 4097.0 * b;
+  precise float b_hi = split_b - (split_b - b);
+  precise float b_lo = b - b_hi;
+  precise float product = a * b;
+  precise float error = ((a_hi * b_hi - product) + a_hi * b_lo + a_lo * b_hi) + a_lo * b_lo;
+  precise float sum = (product + c) + error;
+  return sum;
+}
+"""
+
+# By name, pairs of a regular expression and what replaces it, by file.
+FAULTS = {
+    "unpadded_boxes": {
+        "ray.glsl": [(r"BOX_PADDING = [^;]*;", "BOX_PADDING = 0.0;")],
+        "traversal.glsl": [(r"WIDENED = [^;]*;", "WIDENED = 1.0;")],
+    },
+    "fixed_epsilon": {"secondary.glsl": [(r"position \+ lift \*", "position + 1e-4 *")]},
+    "one_sided_fma": {
+        "primitives/triangle.glsl": [
+            (r"(Crossing intersect_triangle)", FUSED + r"\1"),
+            (r"= c2\.x \* b2\.y - c2\.y \* b2\.x;", "= fused(c2.x, b2.y, -(c2.y * b2.x));"),
+            (r"= a2\.x \* c2\.y - a2\.y \* c2\.x;", "= fused(a2.x, c2.y, -(a2.y * c2.x));"),
+            (r"= b2\.x \* a2\.y - b2\.y \* a2\.x;", "= fused(b2.x, a2.y, -(b2.y * a2.x));"),
+        ]
+    },
+    "nothing_precise": {"primitives/triangle.glsl": [(r"\bprecise ", "")]},
+}
+
+
+def main():
+    fault, shaders, kernel, glslang, out = sys.argv[1], *map(pathlib.Path, sys.argv[2:])
+    folder = out / "shaders"
+    shutil.rmtree(out, ignore_errors=True)
+    shutil.copytree(shaders, folder)
+    shutil.copy(kernel, folder)
+    for file, changes in FAULTS[fault].items():
+        text = (folder / file).read_text()
+        for pattern, replacement in changes:
+            text, count = re.subn(pattern, replacement, text)
+            if count == 0:
+                sys.exit(f"seed_fault.py: error: {file} has no {pattern} for the fault {fault}; mend the pattern")
+        (folder / file).write_text(text)
+    for source in (folder / "cast.comp", folder / kernel.name):
+        spirv = out / (source.stem + ".spv")
+        subprocess.run([glslang, "--quiet", "-V", "--target-env", "vulkan1.1", "-o", spirv, source], check=True)
+
+
+main()
