@@ -9,6 +9,14 @@ layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
 
 bool has(uint feature) { return (FEATURES & feature) != 0u; }
 
+const uint SOLID_FEATURES = FEATURE_TRIANGLES | FEATURE_SPHERES | FEATURE_CYLINDERS | FEATURE_CONES;
+
+// Whether a primitive of the tree is of this kind; without a test where the scene has no other.
+bool is_kind(uint kind, uint wanted, uint feature) {
+  if ((FEATURES & SOLID_FEATURES) == feature) return true;
+  return has(feature) && kind == wanted;
+}
+
 layout(std140, set = 0, binding = BINDING_FRAME) uniform FrameBlock { Frame frame; };
 layout(std430, set = 0, binding = BINDING_NODES) readonly buffer Nodes { Node nodes[]; };
 layout(std430, set = 0, binding = BINDING_PRIMITIVES) readonly buffer Primitives { Primitive primitives[]; };

@@ -8,6 +8,7 @@
 #include "cast_bindings.glsl"
 #include "math.glsl"
 #include "ray.glsl"
+#include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
 #include "cast.glsl"

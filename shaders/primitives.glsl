@@ -17,14 +17,6 @@ struct SurfacePoint {
 #include "primitives/cylinder.glsl"
 #include "primitives/cone.glsl"
 
-const uint SOLID_FEATURES = FEATURE_TRIANGLES | FEATURE_SPHERES | FEATURE_CYLINDERS | FEATURE_CONES;
-
-// Whether a primitive of the tree is of this kind; without a test where the scene has no other.
-bool is_kind(uint kind, uint wanted, uint feature) {
-  if ((FEATURES & SOLID_FEATURES) == feature) return true;
-  return has(feature) && kind == wanted;
-}
-
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
   if (has(FEATURE_PLANES) && p.c.z == KIND_PLANE) return plane_surface(ray, p, hit);
   if (is_kind(p.c.z, KIND_TRIANGLE, FEATURE_TRIANGLES)) return triangle_surface(p, hit);

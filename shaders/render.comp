@@ -21,6 +21,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 
 #include "math.glsl"
 #include "ray.glsl"
+#include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
 #include "secondary.glsl"

@@ -10,17 +10,15 @@ void keep_nearest(Ray ray, Crossing crossing, uint primitive, uint order, inout 
 }
 
 // Entry of a ray into a child's box, as t; the box is met if entry <= exit. An absent child is never met.
-// (plane - origin) * inverse, never plane * inverse - origin * inverse, which cancels (numerics.md). The exit is
-// widened by 2^-20 for divisions that are good to 2.5 ulp, Vulkan's promise.
+// (plane - origin) * inverse, never plane * inverse - origin * inverse, which cancels (numerics.md).
 vec2 child_interval(Ray ray, vec2 x, vec2 y, vec2 z, float t_limit) {
   bvec3 is_backward = lessThan(ray.inverse_direction, vec3(0.0));
   vec3 near = vec3(is_backward.x ? x.y : x.x, is_backward.y ? y.y : y.x, is_backward.z ? z.y : z.x);
   vec3 far = vec3(is_backward.x ? x.x : x.y, is_backward.y ? y.x : y.y, is_backward.z ? z.x : z.y);
   precise vec3 t_near = (near - ray.near_origin) * ray.inverse_direction;
   precise vec3 t_far = (far - ray.far_origin) * ray.inverse_direction;
-  const float WIDENED = 1.0 + 16.0 * UNIT_ROUNDOFF;
   float entry = max(max(t_near.x, t_near.y), max(t_near.z, ray.tmin));
-  precise float exit = min(min(t_far.x, t_far.y), t_far.z) * WIDENED;
+  precise float exit = min(min(t_far.x, t_far.y), t_far.z) * BOX_WIDENING;
   return vec2(entry, min(exit, t_limit));
 }
 

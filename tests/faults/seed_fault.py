@@ -31,8 +31,10 @@ float fused(float a, float b, float c) {
 # By name, pairs of a regular expression and what replaces it, by file.
 FAULTS = {
     "unpadded_boxes": {
-        "ray.glsl": [(r"BOX_PADDING = [^;]*;", "BOX_PADDING = 0.0;")],
-        "traversal.glsl": [(r"WIDENED = [^;]*;", "WIDENED = 1.0;")],
+        "make_ray.glsl": [
+            (r"BOX_PADDING = [^;]*;", "BOX_PADDING = 0.0;"),
+            (r"BOX_WIDENING = [^;]*;", "BOX_WIDENING = 1.0;"),
+        ]
     },
     "fixed_epsilon": {"secondary.glsl": [(r"position \+ lift \*", "position + 1e-4 *")]},
     "one_sided_fma": {

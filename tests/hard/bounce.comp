@@ -14,6 +14,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "cast_bindings.glsl"
 #include "math.glsl"
 #include "ray.glsl"
+#include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
 #include "secondary.glsl"

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// From an origin and a direction to what traversal needs of them.
+
+// The box test's allowance, as a multiple of the distance that intersections may span: every accepted hit lies within
+// 8 u S of its primitive (numerics.md, BK), so a box grown by 16 u S never hides one, whatever the tree.
+const float BOX_PADDING = 16.0 * UNIT_ROUNDOFF;
+// And of the slab test's exit, for divisions that are good to 2.5 ulp, Vulkan's promise: 2^-20.
+const float BOX_WIDENING = 1.0 + 16.0 * UNIT_ROUNDOFF;
+
+// Whether all components are finite; by their bits, as a compiler may assume that there are no NaNs.
+bool is_finite(vec3 v) {
+  uvec3 exponents = floatBitsToUint(v) & 0x7F800000u;
+  return all(notEqual(exponents, uvec3(0x7F800000u)));
+}
+
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7FFFFFFFu) > 0x7F800000u; }
+
+// `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Any other
+// direction, NaN anywhere, an infinite tmin and an origin beyond 10^38 give a ray that misses everything.
+Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
+  Ray ray;
+  float size = max_abs(direction);
+  bool is_valid = is_finite(direction) && size >= 1.17549435e-38 && size < 1.7014118e+38 && is_finite(origin) &&
+                  max_abs(origin) < 1e38 && !is_nan(tmin) && !is_nan(tmax) && tmin < tmax && tmin < INFINITY;
+  float scale = is_valid ? power_of_two_inverse(size) : 1.0;
+  ray.origin = is_valid ? origin : vec3(0.0);
+  ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);
+  // t * direction is kept, so t grows by what the direction loses.
+  float unscale = power_of_two_inverse(scale);
+  precise float scaled_tmin = max(tmin, 0.0) * unscale;
+  precise float scaled_tmax = tmax * unscale;
+  ray.tmin = is_valid ? scaled_tmin : 1.0;
+  ray.tmax = is_valid ? scaled_tmax : 0.0;
+
+  precise float inverse_length2 = 1.0 / dot3(ray.direction, ray.direction);
+  ray.inverse_length2 = inverse_length2;
+
+  vec3 signs = vec3(ray.direction.x < 0.0 ? -1.0 : 1.0, ray.direction.y < 0.0 ? -1.0 : 1.0,
+                    ray.direction.z < 0.0 ? -1.0 : 1.0);
+  precise vec3 inverse_direction = 1.0 / (signs * max(abs(ray.direction), vec3(TWO_POW_MINUS_80)));
+  ray.inverse_direction = inverse_direction;
+  precise vec3 padding =
+      signs * (BOX_PADDING * (max_abs(ray.origin - frame.tree_bounds.xyz) + frame.tree_bounds.w));
+  precise vec3 near_origin = ray.origin + padding;
+  precise vec3 far_origin = ray.origin - padding;
+  ray.near_origin = near_origin;
+  ray.far_origin = far_origin;
+
+  ray.shear_axis = 2u;
+  ray.shear = vec3(0.0);
+  if (has(FEATURE_TRIANGLES)) {
+    vec3 a = abs(ray.direction);
+    ray.shear_axis = a.x > a.y ? (a.x > a.z ? 0u : 2u) : (a.y > a.z ? 1u : 2u);
+    vec3 d = permute_axes(ray.direction, ray.shear_axis);
+    precise vec3 shear = vec3(d.x / d.z, d.y / d.z, 1.0 / d.z);
+    ray.shear = shear;
+  }
+  return ray;
+}

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// cast.comp with the plain methods; the traversal is promin's own.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "layout.h"
+#include "bindings.glsl"
+#include "cast_bindings.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "plain_ray.glsl"
+#include "plain_primitives.glsl"
+#include "traversal.glsl"
+#include "cast.glsl"

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// make_ray.glsl without what makes it robust: boxes as they are, inverses as they come.
+
+const float BOX_WIDENING = 1.0;
+
+Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
+  Ray ray;
+  // The scale is the interface's, not a matter of robustness: cast.glsl gives t in its units.
+  float scale = power_of_two_inverse(max_abs(direction));
+  ray.origin = origin;
+  ray.direction = direction * scale;
+  ray.tmin = max(tmin, 0.0) / scale;
+  ray.tmax = tmax / scale;
+  ray.inverse_length2 = 1.0 / dot(ray.direction, ray.direction);
+  ray.inverse_direction = 1.0 / ray.direction;
+  ray.near_origin = origin;
+  ray.far_origin = origin;
+  ray.shear_axis = 0u;
+  ray.shear = vec3(0.0);
+  return ray;
+}
