@@ -119,14 +119,15 @@ class Search {
     const Vector t0 = ray_.origin - corner_a;
     const Vector e1 = corner_b - corner_a;
     const Vector e2 = corner_c - corner_a;
-    const Vector normal = glm::cross(e1, e2);
     const Vector p = glm::cross(ray_.direction, e2);
-    const Vector q = glm::cross(t0, e1);
     const Real det = glm::dot(p, e1);
-    if (normal == Vector(0) || det == 0) return;
+    if (det == 0) return;
     const Real u = glm::dot(p, t0) / det;
+    if (!(u >= 0 && u <= 1)) return;  // most triangles: this decides the time of a picture
+    const Vector q = glm::cross(t0, e1);
     const Real v = glm::dot(q, ray_.direction) / det;
-    if (u >= 0 && v >= 0 && u + v <= 1) offer(glm::dot(q, e2) / det, primitive, u, v, normal);
+    const Vector normal = glm::cross(e1, e2);
+    if (v >= 0 && u + v <= 1 && normal != Vector(0)) offer(glm::dot(q, e2) / det, primitive, u, v, normal);
   }
 
   Ray ray_;
