@@ -42,6 +42,28 @@ struct Bound {
   }
 };
 
+struct CreaseDistance {
+  const Vector& point;
+
+  template <typename Other>
+  Real operator()(const Other&) const {
+    return kInfinity;
+  }
+  Real operator()(const Cylinder& c) const {
+    return to_rims(Vector(c.center), Vector(c.axis), c.half_height, c.radius, c.radius);
+  }
+  Real operator()(const Cone& c) const {
+    return to_rims(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
+  }
+
+  Real to_rims(const Vector& center, const Vector& axis, Real h, Real bottom, Real top) const {
+    const Vector v = glm::normalize(axis);
+    const Real z = glm::dot(point - center, v);
+    const Real radius = glm::length(point - center - z * v);
+    return std::min(std::hypot(radius - bottom, z + h), std::hypot(radius - top, z - h));
+  }
+};
+
 struct SignedDistance {
   int32_t primitive;
   const Vector& point;
@@ -106,6 +128,10 @@ Real scale_of(const Shape& shape, int32_t primitive, const Ray& ray) {
 
 Real signed_distance(const Shape& shape, int32_t primitive, const Vector& point) {
   return std::visit(SignedDistance{primitive, point}, shape);
+}
+
+Real distance_to_crease(const Shape& shape, const Vector& point) {
+  return std::visit(CreaseDistance{point}, shape);
 }
 
 Real distance_to_segment(const Vector& point, const Vector& a, const Vector& b) {

@@ -29,6 +29,9 @@ Real scale_of(const Shape& shape, int32_t primitive, const Ray& ray);
 /// the point; disks are part of the surface.
 Real signed_distance(const Shape& shape, int32_t primitive, const Vector& point);
 
+/// From a point to where the surface has a crease: the rims of cylinder and cone and the apex; infinite for others.
+Real distance_to_crease(const Shape& shape, const Vector& point);
+
 /// From a point to the segment between `a` and `b`, which may be the same.
 Real distance_to_segment(const Vector& point, const Vector& a, const Vector& b);
 

@@ -49,6 +49,14 @@ TEST(Distance, TrianglesHaveFacesEdgesAndCorners) {
   EXPECT_NEAR(signed_distance(mesh, 0, {6, -4, 0}), 5, kTolerance);
 }
 
+TEST(Distance, CreasesAreRimsAndApices) {
+  const Cone cone{{0, 0, 0}, {0, 2, 0}, 1, 4, 0};
+  EXPECT_NEAR(distance_to_crease(cone, {0, 3, 0}), 2, kTolerance);
+  EXPECT_NEAR(distance_to_crease(cone, {0, -5, 7}), 5, kTolerance);
+  EXPECT_NEAR(distance_to_crease(Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}, {0.5L, 2, 0}), 0.5L, kTolerance);
+  EXPECT_EQ(distance_to_crease(Sphere{}, {0, 0, 0}), kInfinity);
+}
+
 TEST(Distance, TheScaleIsDistanceAndSize) {
   const Ray ray{{0, 3, 4}, {0, 0, 1}};
   EXPECT_NEAR(scale_of(Sphere{{0, 0, 0}, 2}, 0, ray), 7, kTolerance);

@@ -41,13 +41,20 @@ class Search {
 
   void intersect(const NotDrawn&) {}
 
+  /// t of the ray's closest approach to `center`. Quadratics are solved from there: from far away a small solid drowns
+  /// in the square of the distance, in long double too.
+  Real approach(const Vector& center) const {
+    return glm::dot(center - ray_.origin, ray_.direction) / glm::dot(ray_.direction, ray_.direction);
+  }
+
   /// |P - C|^2 = r^2
   void intersect(const Sphere& sphere) {
     const Vector& d = ray_.direction;
-    const Vector oc = ray_.origin - Vector(sphere.center);
+    const Real near = approach(sphere.center);
+    const Vector oc = ray_.origin - Vector(sphere.center) + near * d;
     const Real r = sphere.radius;
     for (const Real t : solve_quadratic(glm::dot(d, d), glm::dot(d, oc), glm::dot(oc, oc) - r * r)) {
-      offer(t, oc + t * d);
+      offer(near + t, oc + t * d);
     }
   }
 
@@ -71,14 +78,14 @@ class Search {
     const Vector w = glm::normalize(axis);
     // From the narrow end, so that a cone is solved from its apex.
     const Vector v = bottom <= top ? w : -w;
-    const Vector c0 = center - half_height * v;
     const Real h = 2 * half_height;
     const Real r = std::min(bottom, top);
     const Real s = (std::max(bottom, top) - r) / h;
     const Real k = 1 + s * s;
 
     const Vector& d = ray_.direction;
-    const Vector oc = ray_.origin - c0;
+    const Real near = approach(center);
+    const Vector oc = ray_.origin - center + near * d + half_height * v;
     const Real dv = glm::dot(d, v);
     const Real ov = glm::dot(oc, v);
     const Real a = glm::dot(d, d) - k * dv * dv;
@@ -86,17 +93,17 @@ class Search {
     const Real c = glm::dot(oc, oc) - k * ov * ov - 2 * s * r * ov - r * r;
     for (const Real t : solve_quadratic(a, b, c)) {
       const Real m = ov + t * dv;
-      if (m >= 0 && m <= h) offer(t, oc + t * d - (k * m + s * r) * v);
+      if (m >= 0 && m <= h) offer(near + t, oc + t * d - (k * m + s * r) * v);
     }
-    intersect_disk(c0, -v, r);
-    intersect_disk(c0 + h * v, v, r + s * h);
+    intersect_disk(near, oc, -v, r);
+    intersect_disk(near, oc - h * v, v, r + s * h);
   }
 
-  void intersect_disk(const Vector& center, const Vector& normal, Real radius) {
-    const Vector oc = ray_.origin - center;
+  /// `oc` leads from the disk's centre to the ray at `near`.
+  void intersect_disk(Real near, const Vector& oc, const Vector& normal, Real radius) {
     const Real t = -glm::dot(oc, normal) / glm::dot(ray_.direction, normal);
     const Vector p = oc + t * ray_.direction;
-    if (radius > 0 && glm::dot(p, p) <= radius * radius) offer(t, normal);
+    if (radius > 0 && glm::dot(p, p) <= radius * radius) offer(near + t, normal);
   }
 
   void intersect(const Mesh& mesh) {
@@ -112,14 +119,15 @@ class Search {
     const Vector t0 = ray_.origin - corner_a;
     const Vector e1 = corner_b - corner_a;
     const Vector e2 = corner_c - corner_a;
-    const Vector normal = glm::cross(e1, e2);
     const Vector p = glm::cross(ray_.direction, e2);
-    const Vector q = glm::cross(t0, e1);
     const Real det = glm::dot(p, e1);
-    if (normal == Vector(0) || det == 0) return;
+    if (det == 0) return;
     const Real u = glm::dot(p, t0) / det;
+    if (!(u >= 0 && u <= 1)) return;  // most triangles: this decides the time of a picture
+    const Vector q = glm::cross(t0, e1);
     const Real v = glm::dot(q, ray_.direction) / det;
-    if (u >= 0 && v >= 0 && u + v <= 1) offer(glm::dot(q, e2) / det, primitive, u, v, normal);
+    const Vector normal = glm::cross(e1, e2);
+    if (v >= 0 && u + v <= 1 && normal != Vector(0)) offer(glm::dot(q, e2) / det, primitive, u, v, normal);
   }
 
   Ray ray_;

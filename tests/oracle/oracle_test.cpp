@@ -28,6 +28,11 @@ void expect_hit(const Hit& hit, Real t, const Vector& normal) {
   EXPECT_NEAR(glm::distance(hit.normal, normal), 0, kTolerance);
 }
 
+/// To a few roundings of long double.
+void expect_near_relative(Real value, Real expected) {
+  EXPECT_NEAR(value, expected, 0x1p-62L * expected);
+}
+
 Mesh make_triangle() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 4, 0}};
@@ -58,6 +63,14 @@ TEST(Oracle, PlaneKeepsItsOwnNormal) {
   EXPECT_FALSE(cast(plane, {0, 3, 0}, {1, 0, 0}).exists());
   EXPECT_FALSE(cast(plane, {0, 1, 0}, {1, 0, 0}).exists());
   EXPECT_FALSE(cast(plane, {0, 3, 0}, {0, 1, 0}).exists());
+}
+
+TEST(Oracle, SmallSolidsFarAwayKeepTheirShape) {
+  // A chord of 8 around the middle, at a distance of 1e10 sizes: a plain quadratic is off by 50.
+  constexpr Real kFar = 1e10L;
+  expect_near_relative(cast(Sphere{{0, 0, 0}, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
+  expect_near_relative(cast(Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
+  expect_near_relative(cast(Cone{{0, 0, 0}, {0, 1, 0}, 1, 10, 0}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
 }
 
 TEST(Oracle, CylinderSideAndDisks) {

@@ -245,12 +245,15 @@ bool names_hittable(const Scene& scene, const Answer& answer) {
 
 }  // namespace
 
-Verdict judge(const Scene& scene, const Ray& given_ray, const Answer& answer) {
+Verdict judge(const Scene& scene, const Ray& ray, const Answer& answer) {
+  return judge(scene, ray, find_nearest_hit(scene, ray), answer);
+}
+
+Verdict judge(const Scene& scene, const Ray& given_ray, const Hit& exact, const Answer& answer) {
   Ray ray = given_ray;
   ray.tmin = std::max(Real(0), given_ray.tmin);
   Verdict verdict;
-  verdict.exact = find_nearest_hit(scene, given_ray);
-  const Hit& exact = verdict.exact;
+  verdict.exact = exact;
   if (answer.object == -1) {
     verdict.is_same = !exact.exists();
     if (!verdict.is_same) verdict.margin = find_margin(scene, ray, answer, false);

@@ -44,4 +44,7 @@ struct Verdict {
 /// caller to check: rounding on the way here may have moved it.
 Verdict judge(const Scene& scene, const Ray& ray, const Answer& answer);
 
+/// The same where find_nearest_hit(scene, ray) is known already.
+Verdict judge(const Scene& scene, const Ray& ray, const Hit& exact, const Answer& answer);
+
 }  // namespace promin::oracle

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/compare_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <variant>
+
+namespace promin::oracle {
+namespace {
+
+bool is_mirror(const Material& material) {
+  return max_component(material.reflection) > 0.0F;
+}
+
+/// Radius of curvature of the primitive at a hit; infinite where it is flat.
+struct Curvature {
+  const Vector& point;
+  const Vector& normal;
+
+  template <typename Flat>
+  Real operator()(const Flat&) const {
+    return kInfinity;
+  }
+  Real operator()(const Sphere& s) const { return s.radius; }
+  Real operator()(const Cylinder& c) const { return around(Vector(c.center), Vector(c.axis)); }
+  Real operator()(const Cone& c) const { return around(Vector(c.center), Vector(c.axis)); }
+
+  Real around(const Vector& center, const Vector& axis) const {
+    const Vector v = glm::normalize(axis);
+    const bool is_disk = std::abs(glm::dot(normal, v)) > 1 - 1e-15L;
+    return is_disk ? kInfinity : glm::length(glm::cross(point - center, v));
+  }
+};
+
+Real allowed_normal_error(const Shape& shape, const Ray& ray, const Hit& hit) {
+  if (std::holds_alternative<Mesh>(shape)) return 1e-4L;
+  const Vector point = ray.origin + hit.t * ray.direction;
+  const Real cosine = std::abs(glm::dot(hit.normal, glm::normalize(ray.direction)));
+  const Real radius = std::visit(Curvature{point, hit.normal}, shape);
+  return 1e-6L + 16 * kRoundoff * scale_of(shape, hit.primitive, ray) / (radius * cosine);
+}
+
+/// Distance from the ray to the nearest crease around its hit. There the distance falls and rises once, so that thirds
+/// find the least; were it not so, what they find would be too much rather than too little.
+Real distance_from_crease(const Shape& shape, const Ray& ray, const Hit& hit) {
+  const Real reach = 0.01L * bounding_sphere(shape, hit.primitive).radius / glm::length(ray.direction);
+  Real lo = hit.t - reach;
+  Real hi = hit.t + reach;
+  const auto distance_at = [&](Real t) { return distance_to_crease(shape, ray.origin + t * ray.direction); };
+  for (int i = 0; i < 100; ++i) {
+    const Real third = (hi - lo) / 3;
+    if (distance_at(lo + third) <= distance_at(hi - third)) {
+      hi -= third;
+    } else {
+      lo += third;
+    }
+  }
+  return distance_at((lo + hi) / 2);
+}
+
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
+             const PictureBounds& bounds)
+      : scene_(scene), expected_(expected), image_(image), aovs_(aovs) {
+    report_.bounds = bounds;
+    report_.pixel_count = expected.pixels.size();
+    report_.has_mirrors = std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror);
+  }
+
+  PictureReport run() {
+    for (uint32_t y = 0; y < expected_.size.y; ++y) {
+      for (uint32_t x = 0; x < expected_.size.x; ++x) {
+        at_ = uvec2(x, y);
+        index_ = static_cast<size_t>(y) * expected_.size.x + x;
+        if (!is_finite_here()) {
+          report_.non_finite.push_back(at_);
+          continue;
+        }
+        compare_color();
+        if (!aovs_.object.empty()) compare_hit();
+      }
+    }
+    if (color_count_ > 0) report_.color_mean = color_sum_ / (3 * static_cast<Real>(color_count_));
+    return std::move(report_);
+  }
+
+ private:
+  bool is_finite_here() const {
+    if (!is_finite(image_.pixels[index_])) return false;
+    if (aovs_.object.empty()) return true;
+    const bool is_miss = aovs_.object[index_] == kNoObject;
+    const float depth = aovs_.depth[index_];
+    return is_finite(aovs_.normal[index_]) && (is_miss ? depth == kInfinity : std::isfinite(depth));
+  }
+
+  void compare_color() {
+    const Vector difference = glm::abs(Vector(image_.pixels[index_]) - expected_.pixels[index_].color);
+    const Real error = std::max({difference.x, difference.y, difference.z});
+    if (error > report_.bounds.color_error) {
+      report_.color_errors.push_back({at_, error});
+    } else {
+      color_sum_ += difference.x + difference.y + difference.z;
+      ++color_count_;
+    }
+  }
+
+  void compare_hit() {
+    const Pixel& pixel = expected_.pixels[index_];
+    const Real t = aovs_.depth[index_] / glm::length(pixel.ray.direction);
+    // kNoObject becomes -1.
+    const Answer answer{t, static_cast<int32_t>(aovs_.object[index_]), static_cast<int32_t>(aovs_.primitive[index_])};
+    const Verdict verdict = judge(scene_, pixel.ray, pixel.hit, answer);
+    if (!verdict.is_same) {
+      report_.id_mismatches.push_back({at_, pixel.hit, answer, verdict.margin});
+      return;
+    }
+    report_.largest_depth_error = std::max(report_.largest_depth_error, verdict.t_error);
+    if (verdict.t_error > report_.bounds.depth_error) report_.depth_errors.push_back({at_, verdict.t_error});
+    if (pixel.hit.exists()) compare_normal(pixel);
+  }
+
+  void compare_normal(const Pixel& pixel) {
+    const Shape& shape = scene_.objects[static_cast<size_t>(pixel.hit.object)].shape;
+    const Real error = glm::distance(Vector(aovs_.normal[index_]), pixel.hit.normal) /
+                       allowed_normal_error(shape, pixel.ray, pixel.hit);
+    if (error > 1) {
+      const Real crease = distance_from_crease(shape, pixel.ray, pixel.hit);
+      const Real unit = kRoundoff * scale_of(shape, pixel.hit.primitive, pixel.ray);
+      if (crease <= report_.bounds.id_margin * unit) {
+        report_.normals_at_creases.push_back({at_, error});
+        return;
+      }
+      report_.normal_errors.push_back({at_, error});
+    }
+    report_.largest_normal_error = std::max(report_.largest_normal_error, error);
+  }
+
+  const Scene& scene_;
+  const Picture& expected_;
+  const Image& image_;
+  const DeviceAovs& aovs_;
+  PictureReport report_;
+  uvec2 at_{0};
+  size_t index_ = 0;
+  Real color_sum_ = 0;
+  uint64_t color_count_ = 0;
+};
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+std::string name_hit(const Scene& scene, int32_t object, int32_t primitive) {
+  if (object < 0) return "a miss";
+  const bool exists = static_cast<size_t>(object) < scene.objects.size();
+  const std::string name = exists ? scene.objects[static_cast<size_t>(object)].name : "none such";
+  return "object " + std::to_string(object) + " '" + name + "' primitive " + std::to_string(primitive);
+}
+
+std::string name_pixel(const uvec2& pixel) {
+  return format("\n  pixel (%u, %u)", pixel.x, pixel.y);
+}
+
+/// The list's title and its first lines.
+template <typename Item, typename Describe>
+std::string list(const std::string& title, const std::vector<Item>& items, size_t most_lines, Describe describe) {
+  if (items.empty()) return "";
+  std::string text = format("\n%zu ", items.size()) + title + ":";
+  for (size_t i = 0; i < std::min(items.size(), most_lines); ++i) text += describe(items[i]);
+  if (items.size() > most_lines) text += "\n  ...";
+  return text;
+}
+
+}  // namespace
+
+bool PictureReport::passes() const {
+  const auto count = static_cast<double>(pixel_count);
+  const double color_share = has_mirrors ? bounds.color_share_with_mirrors : bounds.color_share;
+  const bool are_ids_explained = std::all_of(id_mismatches.begin(), id_mismatches.end(),
+                                             [&](const IdMismatch& each) { return each.margin <= bounds.id_margin; });
+  return non_finite.empty() && are_ids_explained &&
+         static_cast<double>(id_mismatches.size()) <= bounds.id_share * count && depth_errors.empty() &&
+         normal_errors.empty() && static_cast<double>(color_errors.size()) <= color_share * count &&
+         color_mean <= bounds.color_mean;
+}
+
+std::string PictureReport::summary(const Scene& scene, size_t most_lines) const {
+  std::string text = passes() ? "passes" : "fails";
+  text += format(
+      ": %llu pixels, largest error of depth %.3Lg u S, of normals %.3Lg of what is allowed; mean of colour "
+      "%.3Lg",
+      static_cast<unsigned long long>(pixel_count), largest_depth_error, largest_normal_error, color_mean);
+  const auto name_error = [](const PixelError& each) { return name_pixel(each.pixel) + format(": %.4Lg", each.error); };
+  text += list("pixels not finite", non_finite, most_lines, name_pixel);
+  text += list("pixels of another primitive", id_mismatches, most_lines, [&](const IdMismatch& each) {
+    return name_pixel(each.pixel) + ": " + name_hit(scene, each.got.object, each.got.primitive) + ", not " +
+           name_hit(scene, each.expected.object, each.expected.primitive) + format("; margin %.4Lg u S", each.margin);
+  });
+  text += list("depths beyond the bound, in u S", depth_errors, most_lines, name_error);
+  text += list("normals beyond the bound, in units of it", normal_errors, most_lines, name_error);
+  text += list("normals from across a crease", normals_at_creases, most_lines, name_error);
+  text += list("pixels of another colour", color_errors, most_lines, name_error);
+  return text;
+}
+
+PictureReport compare_picture(const Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
+                              const PictureBounds& bounds) {
+  const size_t count = expected.pixels.size();
+  const bool has_aovs = !aovs.object.empty();
+  const bool is_complete = aovs.depth.size() == count && aovs.normal.size() == count && aovs.object.size() == count &&
+                           aovs.primitive.size() == count;
+  if (image.size != expected.size || image.pixels.size() != count || (has_aovs && !is_complete)) {
+    throw std::invalid_argument("the pictures differ in size");
+  }
+  return Comparison(scene, expected, image, aovs, bounds).run();
+}
+
+}  // namespace promin::oracle

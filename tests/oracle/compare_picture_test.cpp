@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/compare_picture.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace promin::oracle {
+namespace {
+
+using testing::HasSubstr;
+
+/// A picture as a device would give it: the oracle's, rounded to fp32.
+struct DevicePicture {
+  Image image;
+  std::vector<float> depth;
+  std::vector<vec3> normal;
+  std::vector<uint32_t> object;
+  std::vector<uint32_t> primitive;
+
+  explicit DevicePicture(const Picture& picture) {
+    image.size = picture.size;
+    for (const Pixel& pixel : picture.pixels) {
+      image.pixels.emplace_back(pixel.color);
+      depth.push_back(static_cast<float>(pixel.depth()));
+      normal.emplace_back(pixel.hit.normal);
+      object.push_back(static_cast<uint32_t>(pixel.hit.object));
+      primitive.push_back(static_cast<uint32_t>(pixel.hit.primitive));
+    }
+  }
+  DeviceAovs aovs() const { return {depth, normal, object, primitive}; }
+};
+
+/// A ball, a can and a sheet stand on a mirroring floor.
+Scene make_scene() {
+  Scene scene;
+  scene.ambient = vec3(0.1F);
+  scene.background = vec3(0.2F, 0.4F, 0.6F);
+  scene.materials.resize(2);
+  scene.materials[1].reflection = vec3(0.5F);
+  Mesh sheet;
+  sheet.positions = {{-3, 0, -1}, {-1, 0, -1}, {-1, 2, -1}, {-3, 2, -1}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.objects = {{"floor", Plane{}, 1},
+                   {"ball", Sphere{{0, 1, 0}, 1}, 0},
+                   {"can", Cylinder{{2, 0.5F, 1}, {0, 1, 0}, 0.5F, 0.5F}, 0},
+                   {"sheet", sheet, 0}};
+  scene.lights.resize(2);
+  scene.lights[0].position = vec3(3, 6, 5);
+  scene.lights[0].diffuse = vec3(0.6F);
+  scene.lights[1].kind = LightKind::kDirectional;
+  scene.lights[1].direction = glm::normalize(vec3(1, -1, -1));
+  scene.lights[1].diffuse = vec3(0.3F);
+  return scene;
+}
+
+View make_view() {
+  View view;
+  view.size = uvec2(80, 50);
+  view.camera.eye = vec3(0, 2, 8);
+  view.camera.look = glm::normalize(vec3(0, -0.125F, -1));
+  view.camera.up = glm::normalize(vec3(0, 1, -0.125F));
+  view.max_depth = 2;
+  return view;
+}
+
+class ComparePictureTest : public testing::Test {
+ protected:
+  PictureReport compare(const DevicePicture& device) const {
+    return compare_picture(scene, picture, device.image, device.aovs());
+  }
+  void expect_failure(const DevicePicture& device) const {
+    const PictureReport report = compare(device);
+    EXPECT_FALSE(report.passes()) << report.summary(scene);
+  }
+  /// The lowest: those of the floor at the horizon are so far away that rounding may move them a lot.
+  size_t find_pixel_of(int32_t object) const {
+    size_t i = picture.pixels.size() - 1;
+    while (picture.pixels[i].hit.object != object) --i;
+    return i;
+  }
+
+  const Scene scene = make_scene();
+  const View view = make_view();
+  const Picture picture = render(scene, view);
+  const DevicePicture rounded{picture};
+};
+
+TEST_F(ComparePictureTest, TheRoundedPicturePasses) {
+  const PictureReport report = compare(rounded);
+  EXPECT_TRUE(report.passes()) << report.summary(scene);
+  EXPECT_TRUE(report.has_mirrors);
+  EXPECT_EQ(report.pixel_count, 4000U);
+  EXPECT_TRUE(report.id_mismatches.empty());
+  EXPECT_TRUE(report.normals_at_creases.empty());
+  EXPECT_LE(report.largest_depth_error, 1);
+  EXPECT_GT(report.largest_depth_error, 0);
+  EXPECT_LE(report.largest_normal_error, 1);
+  EXPECT_LE(report.color_mean, 1e-7L);
+  EXPECT_THAT(report.summary(scene), HasSubstr("passes: 4000 pixels"));
+}
+
+TEST_F(ComparePictureTest, ColoursAloneCanBeCompared) {
+  EXPECT_TRUE(compare_picture(scene, picture, rounded.image, {}).passes());
+  DevicePicture dark = rounded;
+  for (vec3& color : dark.image.pixels) color *= 0.9F;
+  EXPECT_FALSE(compare_picture(scene, picture, dark.image, {}).passes());
+}
+
+TEST_F(ComparePictureTest, AHalfPixelShiftFails) {
+  View shifted = view;
+  const float pixel = 2 * std::tan(0.5F * view.camera.yfov) / static_cast<float>(view.size.y);
+  shifted.camera.look += 0.5F * pixel * glm::cross(view.camera.look, view.camera.up);
+  const DevicePicture device(render(scene, shifted));
+  expect_failure(device);
+  const PictureReport report = compare(device);
+  EXPECT_GT(report.id_mismatches.size(), 20U);
+  EXPECT_FALSE(compare_picture(scene, picture, device.image, {}).passes());
+}
+
+TEST_F(ComparePictureTest, AMissingShadowFails) {
+  Scene without_ball = scene;
+  without_ball.objects[1].shape = NotDrawn{};
+  const Picture bare = render(without_ball, view);
+  DevicePicture device = rounded;
+  for (size_t i = 0; i < bare.pixels.size(); ++i) {
+    if (picture.pixels[i].hit.object == 0) device.image.pixels[i] = vec3(bare.pixels[i].color);
+  }
+  expect_failure(device);
+  EXPECT_GT(compare(device).color_errors.size(), 20U);
+}
+
+TEST_F(ComparePictureTest, ABounceLessFails) {
+  View shallow = view;
+  --shallow.max_depth;
+  // Nothing but the floor reflects, so that the second bounce brings nothing.
+  EXPECT_TRUE(compare(DevicePicture(render(scene, shallow))).passes());
+  --shallow.max_depth;
+  expect_failure(DevicePicture(render(scene, shallow)));
+}
+
+TEST_F(ComparePictureTest, ALightThatIsOffFails) {
+  for (size_t i = 0; i < 2; ++i) {
+    Scene dim = scene;
+    dim.lights.erase(dim.lights.begin() + static_cast<std::ptrdiff_t>(i));
+    expect_failure(DevicePicture(render(dim, view)));
+  }
+}
+
+TEST_F(ComparePictureTest, ASmallErrorOfEveryColourFails) {
+  DevicePicture device = rounded;
+  for (vec3& color : device.image.pixels) color += 2e-4F;
+  expect_failure(device);
+  EXPECT_TRUE(compare(device).color_errors.empty());
+}
+
+TEST_F(ComparePictureTest, AShareOfColoursMayDiffer) {
+  DevicePicture device = rounded;
+  for (size_t i = 0; i < 20; ++i) device.image.pixels[100 * i].y += 0.5F;
+  EXPECT_TRUE(compare(device).passes()) << "20 of 4000 are 0.5 %";
+  device.image.pixels[7].x -= 0.03F;
+  expect_failure(device);
+  EXPECT_EQ(compare(device).color_errors.size(), 21U);
+}
+
+TEST_F(ComparePictureTest, WhatIsNotFiniteFails) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  const size_t hit = find_pixel_of(1);
+  const size_t miss = find_pixel_of(-1);
+  for (int i = 0; i < 6; ++i) {
+    DevicePicture device = rounded;
+    if (i == 0) device.image.pixels[miss].z = nan;
+    if (i == 1) device.image.pixels[hit].x = infinity;
+    if (i == 2) device.normal[hit].y = nan;
+    if (i == 3) device.depth[hit] = infinity;
+    if (i == 4) device.depth[miss] = nan;
+    if (i == 5) device.depth[miss] = 1000;
+    expect_failure(device);
+    EXPECT_EQ(compare(device).non_finite.size(), 1U) << i;
+  }
+}
+
+TEST_F(ComparePictureTest, AnotherObjectIsListedWithItsMargin) {
+  DevicePicture device = rounded;
+  const size_t at = find_pixel_of(1);
+  device.object[at] = 2;
+  const PictureReport report = compare(device);
+  EXPECT_FALSE(report.passes());
+  ASSERT_EQ(report.id_mismatches.size(), 1U);
+  EXPECT_GT(report.id_mismatches[0].margin, 1000);
+  const std::string pixel = "pixel (" + std::to_string(at % 80) + ", " + std::to_string(at / 80) + ")";
+  EXPECT_THAT(report.summary(scene),
+              HasSubstr(pixel + ": object 2 'can' primitive 0, not object 1 'ball' primitive 0; margin"));
+  device.object[at] = kNoObject;
+  device.depth[at] = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(compare(device).summary(scene), HasSubstr("a miss, not object 1 'ball' primitive 0"));
+  device = rounded;
+  device.primitive[find_pixel_of(3)] ^= 1U;
+  expect_failure(device);
+}
+
+TEST_F(ComparePictureTest, ErrorsOfDepthFail) {
+  for (const int32_t object : {0, 1, 2, 3}) {
+    DevicePicture device = rounded;
+    device.depth[find_pixel_of(object)] *= 1.0001F;
+    expect_failure(device);
+    EXPECT_EQ(compare(device).depth_errors.size(), 1U);
+  }
+}
+
+TEST_F(ComparePictureTest, ErrorsOfNormalsFail) {
+  for (const int32_t object : {0, 1, 2, 3}) {
+    DevicePicture device = rounded;
+    vec3& normal = device.normal[find_pixel_of(object)];
+    normal = -normal;
+    expect_failure(device);
+    normal = -normal + vec3(2e-4F, 0, 0);
+    expect_failure(device);
+    EXPECT_EQ(compare(device).normal_errors.size(), 1U);
+  }
+}
+
+/// A can before a wall.
+Scene make_can() {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.objects = {{"can", Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 1}, 0}, {"wall", Plane{{0, 0, 4}, {0, 0, 1}}, 0}};
+  return scene;
+}
+
+/// 2000 pixels of which the first `count` look along this ray and the others see nothing.
+Picture make_picture_of(const Scene& scene, const Ray& ray, size_t count) {
+  Picture picture;
+  picture.size = uvec2(2000, 1);
+  picture.pixels.resize(2000);
+  std::fill_n(picture.pixels.begin(), count, Pixel{ray, find_nearest_hit(scene, ray), Vector(0)});
+  return picture;
+}
+
+TEST(ComparePicture, AtARimEitherNormalIsRight) {
+  const Scene scene = make_can();
+  const auto compare_below_rim = [&](Real units) {
+    const Real offset = units * kRoundoff * (std::sqrt(Real(8)) + std::sqrt(Real(2)));
+    // Meets the side just below the rim, the device says the disk.
+    const Ray ray{Vector(0, 2, 2) - offset * glm::normalize(Vector(0, 1, -1)), {0, -1, -1}};
+    const Picture picture = make_picture_of(scene, ray, 1);
+    DevicePicture device(picture);
+    EXPECT_EQ(device.normal[0], vec3(0, 0, 1));
+    device.normal[0] = vec3(0, 1, 0);
+    return compare_picture(scene, picture, device.image, device.aovs());
+  };
+  EXPECT_TRUE(compare_below_rim(2).passes());
+  EXPECT_EQ(compare_below_rim(2).normals_at_creases.size(), 1U);
+  EXPECT_FALSE(compare_below_rim(10).passes());
+}
+
+TEST(ComparePicture, AtASilhouetteEitherObjectIsRightInAFewPixels) {
+  const Scene scene = make_can();
+  const auto compare_past_rim = [&](Real units, size_t count) {
+    const Real offset = units * kRoundoff * (std::sqrt(Real(10)) + std::sqrt(Real(2)));
+    // Passes the rim from behind and meets the wall, the device says the can.
+    const Ray ray{Vector(0, 3, -1) + offset * glm::normalize(Vector(0, 1, 1)), {0, -1, 1}};
+    const Picture picture = make_picture_of(scene, ray, count);
+    EXPECT_EQ(picture.pixels[0].hit.object, 1);
+    DevicePicture device(picture);
+    for (size_t i = 0; i < count; ++i) {
+      device.object[i] = 0;
+      device.depth[i] = std::sqrt(8.0F);
+    }
+    return compare_picture(scene, picture, device.image, device.aovs());
+  };
+  EXPECT_TRUE(compare_past_rim(2, 1).passes()) << compare_past_rim(2, 1).summary(scene);
+  EXPECT_EQ(compare_past_rim(2, 1).id_mismatches.size(), 1U);
+  EXPECT_FALSE(compare_past_rim(2, 2).passes());
+  EXPECT_FALSE(compare_past_rim(10, 1).passes());
+}
+
+TEST(ComparePicture, SizesMustMatch) {
+  Picture picture;
+  picture.size = uvec2(2, 1);
+  picture.pixels.resize(2);
+  DevicePicture device(picture);
+  device.depth.pop_back();
+  EXPECT_THROW(compare_picture(Scene(), picture, device.image, device.aovs()), std::invalid_argument);
+  device.image.size = uvec2(1, 2);
+  EXPECT_THROW(compare_picture(Scene(), picture, device.image, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace promin::oracle

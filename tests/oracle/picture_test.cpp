@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace promin::oracle {
+namespace {
+
+/// Cameras, lights and colours are fp32 numbers.
+constexpr Real kTolerance = 1e-6L;
+
+const Plane kFloor{{0, 0, 0}, {0, 1, 0}};
+
+void expect_color(const Vector& color, const Vector& expected) {
+  EXPECT_LE(glm::distance(color, expected), kTolerance)
+      << "(" << color.x << ", " << color.y << ", " << color.z << "), not (" << expected.x << ", " << expected.y << ", "
+      << expected.z << ")";
+}
+
+/// One pixel wide, so that it is what the ray along `look` brings.
+View look_at(const vec3& eye, const vec3& target, const vec3& up) {
+  View view;
+  view.size = uvec2(1);
+  view.camera.eye = eye;
+  view.camera.look = glm::normalize(target - eye);
+  view.camera.up = up;
+  return view;
+}
+
+Vector color_of(const Scene& scene, const View& view) {
+  return render(scene, view).at(0, 0).color;
+}
+
+/// A material that shows nothing by itself.
+Material make_black() {
+  Material material;
+  material.ambient = material.diffuse = vec3(0.0F);
+  return material;
+}
+
+Material make_emitter(const vec3& color) {
+  Material material = make_black();
+  material.emissive = color;
+  return material;
+}
+
+Material make_mirror(const vec3& reflection, const vec3& emissive = vec3(0.0F)) {
+  Material material = make_emitter(emissive);
+  material.reflection = reflection;
+  return material;
+}
+
+/// A floor of diffuse white under a classic point light of power 1 at (0, 2, 0).
+Scene make_lit_floor() {
+  Scene scene;
+  scene.materials = {make_black()};
+  scene.materials[0].diffuse = vec3(1.0F);
+  scene.objects = {{"floor", kFloor, 0}};
+  scene.lights.resize(1);
+  scene.lights[0].position = vec3(0, 2, 0);
+  return scene;
+}
+
+/// A point of that floor seen from straight above.
+View look_down_at(float x) {
+  return look_at(vec3(x, 1, 0), vec3(x, 0, 0), vec3(0, 0, -1));
+}
+
+/// Around the origin in the plane z = 0, corners at distance 1, normals as of a sphere around (0, 0, -2).
+Mesh make_bent_triangle() {
+  Mesh mesh;
+  const float y = std::sqrt(0.75F);
+  mesh.positions = {{1, 0, 0}, {-0.5F, y, 0}, {-0.5F, -y, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  for (const vec3& p : mesh.positions) mesh.normals.push_back(glm::normalize(p + vec3(0, 0, 2)));
+  return mesh;
+}
+
+TEST(OraclePicture, RaysGoThroughThePixelsCentres) {
+  Camera camera;
+  camera.eye = vec3(1, 2, 3);
+  camera.yfov = 1.57079633F;
+  const Ray ray = camera_ray(camera, uvec2(4, 2), 0, 0);
+  EXPECT_EQ(ray.origin, Vector(1, 2, 3));
+  EXPECT_LE(glm::distance(ray.direction, Vector(-1.5L, 0.5L, -1)), kTolerance);
+  camera.projection = Projection::kOrthographic;
+  camera.ymag = 4;
+  const Ray parallel = camera_ray(camera, uvec2(4, 2), 3, 1);
+  EXPECT_EQ(parallel.origin, Vector(7, 0, 3));
+  EXPECT_EQ(parallel.direction, Vector(0, 0, -1));
+}
+
+TEST(OraclePicture, NothingBeforeTheViewportIsDrawn) {
+  Scene scene = make_lit_floor();
+  View view = look_at(vec3(0, 1, 0), vec3(0, 0, 0), vec3(0, 0, -1));
+  for (const float near : {0.0F, 0.5F, 1.0F}) {
+    view.camera.near = near;
+    EXPECT_EQ(render(scene, view).at(0, 0).hit.object, 0) << near;
+  }
+  view.camera.near = std::nextafter(1.0F, 2.0F);
+  EXPECT_FALSE(render(scene, view).at(0, 0).hit.exists());
+}
+
+TEST(OraclePicture, DepthCountsFromTheEyeAndNormalsAreNotFlipped) {
+  const Scene scene = make_lit_floor();
+  View view = look_at(vec3(0, -3, 0), vec3(0, 0, -4), vec3(0, 0.8F, 0.6F));
+  const Pixel seen = render(scene, view).at(0, 0);
+  EXPECT_NEAR(seen.depth(), 5, kTolerance);
+  EXPECT_EQ(seen.hit.normal, Vector(0, 1, 0));
+  EXPECT_EQ(seen.hit.primitive, 0);
+  view.camera.look = -view.camera.look;
+  EXPECT_EQ(render(scene, view).at(0, 0).depth(), kInfinity);
+}
+
+TEST(OraclePicture, WhatMissesShowsTheBackground) {
+  Scene scene;
+  scene.background = vec3(0.25F, 0.5F, 1.0F);
+  expect_color(color_of(scene, look_down_at(0)), {0.25L, 0.5L, 1});
+}
+
+TEST(OraclePicture, AmbientAndEmissiveAdd) {
+  Scene scene = make_lit_floor();
+  scene.lights.clear();
+  scene.ambient = vec3(0.5F, 1.0F, 2.0F);
+  scene.materials[0].ambient = vec3(0.25F);
+  scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
+  expect_color(color_of(scene, look_down_at(0)), {0.125L, 0.25L, 1.5L});
+}
+
+TEST(OraclePicture, DiffuseLightFollowsTheCosine) {
+  Scene scene = make_lit_floor();
+  expect_color(color_of(scene, look_down_at(0)), Vector(1));
+  expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L));
+  // The floor's underside faces away from the light.
+  expect_color(color_of(scene, look_at(vec3(0, -1, 0), vec3(0), vec3(0, 0, 1))), Vector(0));
+  scene.lights[0].kind = LightKind::kDirectional;
+  scene.lights[0].direction = vec3(0.6F, -0.8F, 0);
+  expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L));
+}
+
+TEST(OraclePicture, HighlightsFollowThePower) {
+  Scene scene = make_lit_floor();
+  scene.materials[0].diffuse = vec3(0.0F);
+  scene.materials[0].specular = vec3(0.5F);
+  scene.materials[0].shininess = 10;
+  const vec3 eye(std::sqrt(1.0F / 3.0F), 1, 0);
+  const View view = look_at(eye, vec3(0), glm::normalize(vec3(-1, std::sqrt(1.0F / 3.0F), 0)));
+  expect_color(color_of(scene, view), Vector(0.5L * std::pow(0.75L, Real(5))));
+  scene.materials[0].shininess = 0;
+  expect_color(color_of(scene, view), Vector(0));
+}
+
+TEST(OraclePicture, ShadowsAreCastByWhatLiesBetween) {
+  Scene scene = make_lit_floor();
+  scene.objects.push_back({"ball", Sphere{{1, 1.5F, 0}, 0.25F}, 0});
+  // The shadow of the ball's centre falls on x = 4.
+  expect_color(color_of(scene, look_down_at(4)), Vector(0));
+  expect_color(color_of(scene, look_down_at(-4)), Vector(1 / std::sqrt(Real(5))));
+  // What lies behind a point light casts none, and a directional light has no behind.
+  scene.objects[1].shape = Sphere{{0, 3, 0}, 0.25F};
+  expect_color(color_of(scene, look_down_at(0)), Vector(1));
+  scene.lights[0].kind = LightKind::kDirectional;
+  scene.lights[0].direction = vec3(0, -1, 0);
+  expect_color(color_of(scene, look_down_at(0)), Vector(0));
+}
+
+TEST(OraclePicture, PhysicalLightsFallOffToTheirRange) {
+  Scene scene = make_lit_floor();
+  scene.lights[0].attenuation = Attenuation::kInverseSquare;
+  expect_color(color_of(scene, look_down_at(0)), Vector(0.25L));
+  expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L / 6.25L));
+  scene.lights[0].range = 4;
+  expect_color(color_of(scene, look_down_at(0)), Vector(0.25L * 15 / 16));
+  scene.lights[0].range = 2;
+  expect_color(color_of(scene, look_down_at(0)), Vector(0));
+}
+
+TEST(OraclePicture, SpotsFadeBetweenTheirAngles) {
+  Scene scene = make_lit_floor();
+  scene.lights[0].kind = LightKind::kSpot;
+  scene.lights[0].direction = vec3(0, -1, 0);
+  scene.lights[0].inner_cone_angle = 0.2F;
+  scene.lights[0].outer_cone_angle = 0.4F;
+  const auto seen_at = [&](Real angle) {
+    return color_of(scene, look_down_at(static_cast<float>(2 * std::tan(angle)))).x / std::cos(angle);
+  };
+  const Real ramp = (std::cos(0.3L) - std::cos(0.4L)) / (std::cos(0.2L) - std::cos(0.4L));
+  EXPECT_NEAR(seen_at(0.19L), 1, kTolerance);
+  EXPECT_NEAR(seen_at(0.3L), ramp * ramp, kTolerance);
+  EXPECT_NEAR(seen_at(0.41L), 0, kTolerance);
+}
+
+TEST(OraclePicture, AMirrorAddsWhatItSees) {
+  Scene scene;
+  scene.background = vec3(2.0F);
+  scene.materials = {make_mirror(vec3(0.5F, 0.25F, 0.0F), vec3(0.125F)), make_emitter(vec3(1.0F, 1.0F, 8.0F))};
+  scene.objects = {{"floor", kFloor, 0}, {"lamp", Sphere{{4, 3, 0}, 1}, 1}};
+  View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
+  expect_color(color_of(scene, view), {0.625L, 0.375L, 0.125L});
+  view.max_depth = 0;
+  expect_color(color_of(scene, view), Vector(0.125L));
+  view.max_depth = 1;
+  scene.objects.pop_back();
+  expect_color(color_of(scene, view), {1.125L, 0.625L, 0.125L});
+}
+
+TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
+  Scene scene;
+  scene.background = vec3(100.0F);
+  scene.materials = {make_mirror(vec3(0.5F), vec3(1.0F))};
+  scene.objects = {{"", kFloor, 0}, {"", Plane{{0, 2, 0}, {0, 1, 0}}, 0}};
+  View view = look_down_at(0);
+  for (const uint32_t depth : {0U, 1U, 5U, 20U}) {
+    view.max_depth = depth;
+    expect_color(color_of(scene, view), Vector(2 - std::pow(0.5L, Real(depth))));
+  }
+}
+
+TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {
+  Scene scene;
+  scene.ambient = vec3(1.0F);
+  scene.materials = {make_black(), Material()};
+  scene.materials[1].ambient = vec3(0.5F);
+  Mesh mesh = make_bent_triangle();
+  mesh.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+  mesh.triangle_materials = {1};
+  scene.objects = {{"", mesh, 0}};
+  const View view = look_at(vec3(0.4F, 0, 3), vec3(0.4F, 0, 0), vec3(0, 1, 0));
+  expect_color(color_of(scene, view), {0.3L, 0.1L, 0.1L});
+}
+
+TEST(OraclePicture, InterpolatedNormalsShadeFromEitherSide) {
+  Scene scene = make_lit_floor();
+  scene.objects = {{"", make_bent_triangle(), 0}};
+  scene.lights[0].kind = LightKind::kDirectional;
+  for (const float side : {1.0F, -1.0F}) {
+    // The normal is along (0.4, 0, 2), and faces the eye.
+    scene.lights[0].direction = vec3(0, 0, -side);
+    const View view = look_at(vec3(0.4F, 0, 3 * side), vec3(0.4F, 0, 0), vec3(0, 1, 0));
+    expect_color(color_of(scene, view), Vector(2 / std::sqrt(4.16L)));
+    EXPECT_EQ(render(scene, view).at(0, 0).hit.normal, Vector(0, 0, 1));
+  }
+}
+
+TEST(OraclePicture, ShadowRaysStartFromTheCurveThatVertexNormalsSuggest) {
+  // At (0.1, 0, 0) that is 0.4 (1 - 0.1^2) above the triangle. The light comes along the triangle's plane.
+  Scene scene = make_lit_floor();
+  scene.lights[0].kind = LightKind::kDirectional;
+  scene.lights[0].direction = vec3(-1, 0, 0);
+  const View view = look_at(vec3(0.1F, 0, 3), vec3(0.1F, 0, 0), vec3(0, 1, 0));
+  const auto is_lit_past = [&](float height) {
+    scene.objects = {{"", make_bent_triangle(), 0}, {"", Sphere{{5, 0, height}, 0.01F}, 0}};
+    return color_of(scene, view).x > 0;
+  };
+  EXPECT_TRUE(is_lit_past(0));
+  EXPECT_FALSE(is_lit_past(0.396F));
+  EXPECT_TRUE(is_lit_past(0.42F));
+}
+
+TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
+  Scene scene;
+  scene.materials = {make_mirror(vec3(1.0F)), make_emitter(vec3(0, 1, 0)), make_emitter(vec3(1, 0, 0))};
+  Mesh mesh = make_bent_triangle();
+  mesh.normals.assign(3, vec3(0.6F, 0, 0.8F));
+  scene.objects = {
+      {"", mesh, 0}, {"above", Plane{{0, 0, 1}, {0, 0, 1}}, 1}, {"below", Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
+  // The ray along (0.96, 0, -0.28) would go on along (0.5376, 0, -0.8432), below the triangle.
+  const View view = look_at(vec3(-1.92F, 0, 0.56F), vec3(0), vec3(0.28F, 0, 0.96F));
+  expect_color(color_of(scene, view), {0, 1, 0});
+}
+
+/// A ball and a can on a mirroring floor under two lights, in units of `size` around `center`.
+Picture render_still_life(float size, const vec3& center) {
+  Scene scene = make_lit_floor();
+  scene.materials[0].reflection = vec3(0.25F);
+  scene.objects = {{"", Plane{center, vec3(0, 1, 0)}, 0},
+                   {"", Sphere{center + size * vec3(0, 1, 0), size}, 0},
+                   {"", Cylinder{center + size * vec3(2, 1, 0), vec3(0, 1, 0), size, 0.5F * size}, 0},
+                   {"", Cone{center + size * vec3(-2, 1, 0), vec3(0, 1, 0), size, 0.5F * size, 0}, 0}};
+  scene.lights[0].position = center + size * vec3(3, 6, 5);
+  View view = look_at(center + size * vec3(0, 1, 8), center + size * vec3(0, 1, 0), vec3(0, 1, 0));
+  view.size = uvec2(48, 32);
+  return render(scene, view);
+}
+
+TEST(OraclePicture, SizeAndPlaceDoNotMatter) {
+  const Picture expected = render_still_life(1, vec3(0));
+  const struct {
+    float size;
+    vec3 center;
+  } places[] = {{0x1p-10F, vec3(0)}, {0x1p20F, vec3(0)}, {0x1p-6F, vec3(0x1p16F, -0x1p16F, 0x1p16F)}};
+  for (const auto& [size, center] : places) {
+    const Picture moved = render_still_life(size, center);
+    uint32_t differing = 0;
+    for (size_t i = 0; i < moved.pixels.size(); ++i) {
+      if (!(glm::distance(moved.pixels[i].color, expected.pixels[i].color) <= kTolerance)) ++differing;
+    }
+    EXPECT_EQ(differing, 0U) << size;
+  }
+}
+
+}  // namespace
+}  // namespace promin::oracle
