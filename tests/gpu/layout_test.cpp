@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "cast.spv.h"
+#include "core/file.h"
 #include "gpu/spirv_module.h"
 #include "render.spv.h"
 

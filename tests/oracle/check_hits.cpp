@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// promin-check-hits: a device's answers in a scene of any size against the oracle's brute force.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "gpu/open_device.h"
+#include "oracle/verdict.h"
+#include "render/caster.h"
+#include "scene/load_scene.h"
+
+namespace {
+
+using namespace promin;
+
+/// Half from the camera over its square view, half chords between points of the sphere around the scene.
+std::vector<Ray> make_rays(const Scene& scene, size_t count) {
+  std::mt19937 generator(1);
+  const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
+  const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
+  const dvec3 look(camera.look);
+  const dvec3 up(camera.up);
+  const dvec3 right = glm::cross(look, up);
+  const double half = std::tan(0.5 * static_cast<double>(camera.yfov));
+  const Bounds bounds = bounds_of(scene);
+  const dvec3 center(bounds.is_empty() ? camera.eye : bounds.center());
+  const double radius = bounds.is_empty() ? 1.0 : 0.5 * glm::length(dvec3(bounds.extent()));
+  const auto point = [&] {
+    dvec3 v;
+    do {
+      v = dvec3(uniform(), uniform(), uniform());
+    } while (glm::dot(v, v) > 1.0 || glm::dot(v, v) < 1e-3);
+    return center + radius * glm::normalize(v);
+  };
+  std::vector<Ray> rays(count);
+  for (size_t i = 0; i < count; ++i) {
+    if (i % 2 == 0) {
+      rays[i].origin = camera.eye;
+      rays[i].direction = vec3(look + half * (uniform() * right + uniform() * up));
+    } else {
+      rays[i].origin = vec3(point());
+      rays[i].direction = vec3(point() - dvec3(rays[i].origin));
+    }
+  }
+  return rays;
+}
+
+/// Whether every answer is the oracle's within the bounds of numerics.md; says so, with those that are not.
+bool check(const std::string& file, const std::string& builder, size_t count) {
+  const Scene scene = load_scene(file);
+  const std::vector<Ray> rays = make_rays(scene, count);
+  std::vector<Hit> hits(count);
+  const gpu::DeviceHandle device = gpu::open_device();
+  CasterOptions options;
+  options.builder = builder;
+  Caster(*device, scene, options).cast(rays, hits);
+
+  std::vector<oracle::Verdict> verdicts(count);
+  for_each_index(count, 0, [&](size_t i) {
+    const oracle::Ray ray{oracle::Vector(rays[i].origin), oracle::Vector(rays[i].direction), rays[i].tmin,
+                          rays[i].tmax};
+    verdicts[i] = oracle::judge(scene, ray, {hits[i].t, hits[i].object, hits[i].primitive});
+  });
+  size_t hit_count = 0;
+  size_t others = 0;
+  size_t unexcused = 0;
+  double max_k = 0.0;
+  for (size_t i = 0; i < count; ++i) {
+    const oracle::Verdict& verdict = verdicts[i];
+    hit_count += hits[i].object >= 0 ? 1 : 0;
+    max_k = std::max(max_k, static_cast<double>(verdict.t_error));
+    if (verdict.is_same) continue;
+    ++others;
+    if (verdict.margin > oracle::kB2) ++unexcused;
+    std::printf("ray %zu: object %d primitive %d at t = %.9g, the oracle's %d %d at %.9Lg; margin %.3Lg u S\n", i,
+                hits[i].object, hits[i].primitive, hits[i].t, verdict.exact.object, verdict.exact.primitive,
+                verdict.exact.t, verdict.margin);
+  }
+  std::printf("%s on %s: %zu rays, %zu hits; K of t at most %.3g; %zu other answers, %zu of them beyond 2 u S\n",
+              scene.file.filename().c_str(), gpu::info_of(*device).driver.c_str(), count, hit_count, max_k, others,
+              unexcused);
+  return unexcused == 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Checks a device's hits in a scene against brute force in long double.", "promin-check-hits");
+  std::string scene;
+  std::string builder = CasterOptions{}.builder;
+  size_t count = 10000;
+  program.add_option("SCENE", scene, "Scene file: .gltf, .glb or .obj")->required();
+  program.add_option("--rays", count, "Number of rays [10000]")->check(CLI::Range(1, 100000000));
+  program.add_option("--builder", builder, "BVH builder [sah]");
+  CLI11_PARSE(program, argc, argv);
+  try {
+    return check(scene, builder, count) ? 0 : 1;
+  } catch (const Error& error) {
+    std::fprintf(stderr, "promin-check-hits: error: %s\n", error.what());
+    return 1;
+  }
+}
