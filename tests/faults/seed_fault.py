@@ -33,6 +33,7 @@ FAULTS = {
     "unpadded_boxes": {
         "make_ray.glsl": [
             (r"BOX_PADDING = [^;]*;", "BOX_PADDING = 0.0;"),
+            (r"ORIGIN_PADDING = [^;]*;", "ORIGIN_PADDING = 0.0;"),
             (r"BOX_WIDENING = [^;]*;", "BOX_WIDENING = 1.0;"),
         ]
     },

@@ -95,9 +95,8 @@ double Lab::rounding_factor() const {
 }
 
 std::vector<Hit> Lab::cast(const Scene& scene, std::span<const Ray> rays, HitQuery query) const {
-  static const std::vector<uint32_t> kKernel = load_kernel("cast.spv", cast_spirv());
   CasterOptions options;
-  options.spirv = kKernel;
+  options.spirv = cast_kernel();
   std::vector<Hit> hits(rays.size());
   Caster(device_, scene, options).cast(rays, hits, query);
   return hits;
@@ -137,6 +136,26 @@ void Lab::credit(const std::string& primitive, const Tally& tally, uint64_t leak
   entry.leaks += leaks;
 }
 
+std::vector<layout::HitRecord> Lab::cast_packed(const PackedScene& packed, std::span<const Ray> rays, FeatureMask extra,
+                                                double* time_ms) const {
+  RayKernelOptions options;
+  options.spirv = cast_kernel();
+  options.features = all_features() | extra;
+  RayKernel kernel(device_, upload_scene(device_, packed), options);
+  std::vector<layout::RayRecord> requests;
+  requests.reserve(rays.size());
+  for (const Ray& ray : rays) requests.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
+  std::vector<layout::HitRecord> records(rays.size());
+  const double elapsed = kernel.run(requests, records);
+  if (time_ms != nullptr) *time_ms = elapsed;
+  return records;
+}
+
+std::span<const uint32_t> Lab::cast_kernel() {
+  static const std::vector<uint32_t> kKernel = load_kernel("cast.spv", cast_spirv());
+  return kKernel;
+}
+
 std::span<const uint32_t> Lab::bounce_kernel() {
   static const std::vector<uint32_t> kKernel = load_kernel("bounce.spv", k_bounce_spirv);
   return kKernel;
@@ -158,6 +177,24 @@ Scene scene_of(std::vector<Shape> shapes) {
   scene.materials.resize(1);
   for (Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
   return scene;
+}
+
+PackedScene with_infinite_boxes(PackedScene packed) {
+  constexpr float kFar = std::numeric_limits<float>::max();
+  for (layout::Node& node : packed.nodes) {
+    for (vec4* row : {&node.x, &node.y, &node.z}) {
+      // An absent child stays empty.
+      if ((*row)[0] <= (*row)[1]) (*row)[0] = -kFar, (*row)[1] = kFar;
+      if ((*row)[2] <= (*row)[3]) (*row)[2] = -kFar, (*row)[3] = kFar;
+    }
+  }
+  return packed;
+}
+
+uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const layout::HitRecord> b) {
+  uint64_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) count += a[i].a.x != b[i].a.x || a[i].a.y != b[i].a.y ? 1 : 0;
+  return count;
 }
 
 Ray ray_towards(const dvec3& origin, const dvec3& target) {

@@ -105,6 +105,13 @@ class Lab {
   /// Adds to the table of primitives: every ray that was judged for this primitive in any row.
   static void credit(const std::string& primitive, const Tally& tally, uint64_t leaks = 0);
 
+  /// The device's own records of a packed scene, which a test may have edited; with FEATURE_STEP_COUNTS in `extra` the
+  /// steps too. At most RayKernel::kMaxRays. `time_ms` takes the device's time.
+  std::vector<layout::HitRecord> cast_packed(const PackedScene& packed, std::span<const Ray> rays,
+                                             FeatureMask extra = 0, double* time_ms = nullptr) const;
+
+  /// SPIR-V of shaders/cast.comp, or the one of PROMIN_TEST_KERNELS.
+  static std::span<const uint32_t> cast_kernel();
   /// SPIR-V of tests/hard/bounce.comp, or the one of PROMIN_TEST_KERNELS.
   static std::span<const uint32_t> bounce_kernel();
 
@@ -118,6 +125,13 @@ Scene scene_of(std::vector<Shape> shapes);
 
 /// "distance 1e+04" and the like.
 std::string label(const char* what, double value);
+
+/// The same primitives in boxes without end: every ray tests every primitive, so that where the answers differ, a box
+/// has hidden a hit.
+PackedScene with_infinite_boxes(PackedScene packed);
+
+/// Rays whose records differ in order or in the bits of t.
+uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const layout::HitRecord> b);
 
 /// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
 Ray ray_towards(const dvec3& origin, const dvec3& target);

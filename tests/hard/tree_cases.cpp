@@ -1,11 +1,118 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "bvh/builder.h"
+#include "gpu/test_scenes.h"
 #include "hard/hard_case.h"
 
 namespace promin::hard {
+namespace {
+
+constexpr size_t kRaysPerScene = 250000;
+constexpr size_t kJudged = 4000;
+
+struct TreeScene {
+  const char* name;
+  Scene scene;
+  /// Where the rays go, around this.
+  dvec3 center;
+  double radius;
+};
+
+vec3 turned_axis(Random& random) {
+  return vec3(random.direction());
+}
+
+/// Shapes of every kind strewn over a ball, some much larger than others.
+Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
+  std::vector<Shape> shapes;
+  for (int i = 0; i < count; ++i) {
+    const vec3 place(center + radius * std::cbrt(random.uniform()) * random.direction());
+    const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
+    switch (i % 5) {
+      case 0:
+        shapes.emplace_back(Sphere{place, size});
+        break;
+      case 1:
+        shapes.emplace_back(Cylinder{place, turned_axis(random), size, 0.5F * size});
+        break;
+      case 2:
+        shapes.emplace_back(Cone{place, turned_axis(random), size, size, i % 2 == 0 ? 0.0F : 0.4F * size});
+        break;
+      default: {
+        Mesh mesh;
+        for (int corner = 0; corner < 3; ++corner) mesh.positions.push_back(place + 2.0F * size * turned_axis(random));
+        mesh.triangles = {{0, 1, 2}};
+        shapes.emplace_back(std::move(mesh));
+      }
+    }
+  }
+  shapes.emplace_back(Plane{vec3(center - dvec3(0.0, radius, 0.0)), turned_axis(random)});
+  return scene_of(std::move(shapes));
+}
+
+/// A field of squares with shared edges, every second one twice: equal t wherever one looks.
+Scene make_ties() {
+  Mesh mesh;
+  for (int i = 0; i < 11 * 11; ++i) mesh.positions.emplace_back(i % 11, 0.1F * static_cast<float>((i * i) % 7), i / 11);
+  for (uint32_t i = 0; i < 100; ++i) {
+    const uint32_t p = i / 10 * 11 + i % 10;
+    for (uint32_t repeat = 0; repeat <= i % 2; ++repeat) {
+      mesh.triangles.emplace_back(p, p + 1, p + 12);
+      mesh.triangles.emplace_back(p, p + 12, p + 11);
+    }
+  }
+  return scene_of({mesh, Plane{vec3(0.0F), vec3(0, 1, 0)}, Sphere{vec3(5, 0, 5), 2.0F}, Sphere{vec3(5, 0, 5), 2.0F}});
+}
+
+Ray ray_through(const TreeScene& in, Random& random, size_t index) {
+  // From outside, from within, and from within along an axis.
+  const dvec3 within = in.center + in.radius * std::cbrt(random.uniform()) * random.direction();
+  const dvec3 target = in.center + in.radius * std::cbrt(random.uniform()) * random.direction();
+  if (index % 8 < 5) return ray_towards(in.center + 3.0 * in.radius * random.direction(), target);
+  Ray ray = ray_towards(within, target);
+  if (index % 8 == 7) {
+    ray.direction = vec3(0.0F);
+    ray.direction[static_cast<int>(index / 8 % 3)] = index % 16 < 8 ? 1.0F : -1.0F;
+  }
+  if (index % 8 == 6) ray.tmax = static_cast<float>(in.radius * random.uniform());
+  return ray;
+}
+
+void run_trees(Lab& lab) {
+  Random random(38);
+  const dvec3 far_away(1e5, -2e5, 3e5);
+  const std::array scenes{
+      TreeScene{"everything", test::make_scene_of_everything(60), dvec3(0, 1.5, 0), 5.0},
+      TreeScene{"strewn", make_strewn(dvec3(0.0), 1.0, 120, random), dvec3(0.0), 1.0},
+      TreeScene{"strewn at 1e5", make_strewn(far_away, 10.0, 100, random), far_away, 10.0},
+      TreeScene{"ties", make_ties(), dvec3(5, 0, 5), 6.0},
+  };
+  for (const TreeScene& in : scenes) {
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < kRaysPerScene; ++i) rays.push_back(ray_through(in, random, i));
+    std::vector<layout::HitRecord> expected;
+    for (const std::string_view builder : builder_names()) {
+      const PackedScene packed = pack_scene(in.scene, builder);
+      if (expected.empty()) expected = lab.cast_packed(with_infinite_boxes(packed), rays);
+      lab.expect_at_most("other id or bits of t than brute force, " + std::string(builder) + ", " + in.name, 0.0,
+                         static_cast<double>(count_differences(expected, lab.cast_packed(packed, rays))));
+    }
+    const Tally tally = lab.cast_and_judge(in.scene, std::span(rays).first(kJudged));
+    lab.expect_at_most(std::string("margin of other answers than the oracle's / uS (B2), ") + in.name, 2.0,
+                       tally.max_margin);
+    lab.note(std::string("K of t, ") + in.name, tally.max_t_error);
+  }
+}
+
+constexpr std::array kCases{HardCase{38, "TreesAgainstBruteForce", run_trees}};
+
+}  // namespace
 
 std::span<const HardCase> tree_cases() {
-  return {};
+  return kCases;
 }
 
 }  // namespace promin::hard
