@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
-# What setup, render and test share; sourced, never run. Progress goes to stderr, details to build/*.log.
+# What the scripts of tools/ share; sourced, never run. Progress goes to stderr, details to build/*.log.
 
 set -euo pipefail
 unset CDPATH
@@ -15,6 +15,9 @@ die() {
   say "$(basename -- "$0"): error: $*"
   exit 1
 }
+
+# os_release KEY: that value of this system's description; nothing where there is none.
+os_release() { sed --quiet --regexp-extended "s/^$1=\"?([^\"]*)\"?$/\\1/p" /etc/os-release 2>/dev/null || true; }
 
 # run_logged LOG COMMAND...: the command's output goes to build/LOG, and here only if it fails.
 run_logged() {
