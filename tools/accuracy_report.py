@@ -110,8 +110,17 @@ def rows_section(runs):
             entry = figures.setdefault((row["row"], row["what"]), {"bound": row.get("bound")})
             entry[index] = row["figure"]
     body = []
-    for (row, what), entry in sorted(figures.items(), key=lambda item: item[0][0]):
-        body.append([str(row), what, number(entry["bound"])] + [number(entry.get(i)) for i in range(len(runs))])
+    for row in sorted({row for row, what in figures}):
+        entries = {what: entry for (r, what), entry in figures.items() if r == row}
+        # What must not happen at all is told in one line where it did not.
+        never = [w for w, e in entries.items() if e["bound"] == 0 and not any(e.get(i) for i in range(len(runs)))]
+        for what, entry in entries.items():
+            if what not in never:
+                body.append([str(row), what, number(entry["bound"])] + [number(entry.get(i)) for i in range(len(runs))])
+        if len(never) == 1:
+            body.append([str(row), never[0], "0"] + ["0"] * len(runs))
+        elif never:
+            body.append([str(row), f"{len(never)} counts such as: {never[0]}", "0"] + ["0"] * len(runs))
     header = ["row", "figure", "bound"] + [run["driver"] for run in runs]
     return (
         "## The hard cases\n\nWithout a bound a figure is only told. Bounds on K are doubled on drivers whose division"

@@ -44,7 +44,7 @@ show_quarters() {
   done
 }
 
-# prepare TARGET: installs what is missing and brings that target of build/release up to date; nothing to do takes no
+# prepare TARGET...: installs what is missing and brings these targets of build/release up to date; nothing to do takes no
 # time.
 prepare() {
   local log="$repository/build/build.log"
@@ -54,9 +54,17 @@ prepare() {
     say "Configuring build/release"
     run_logged configure.log cmake --preset release
   fi
-  if ! cmake --build --preset release --target "$1" 2>&1 | tee "$log" | show_quarters; then
+  if ! cmake --build --preset release --target "$@" 2>&1 | tee "$log" | show_quarters; then
     grep -A 20 -m 1 '^FAILED' "$log" >&2 || tail -n 20 "$log" >&2
     die "the build failed; the whole output is in $log"
   fi
   cd -- "$OLDPWD"
+}
+
+# on_driver ICD COMMAND...: runs the command with the driver of this ICD file alone and the libraries beside it.
+on_driver() {
+  local icd="$1"
+  shift
+  env VK_DRIVER_FILES="$icd" VK_ICD_FILENAMES="$icd" \
+    LD_LIBRARY_PATH="${icd%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" "$@"
 }

@@ -62,7 +62,7 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
   const vk::raii::ShaderModule module(handle, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                 &specialization);
-  pipeline_ = vk::raii::Pipeline(handle, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+  pipeline_ = vk::raii::Pipeline(handle, device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
 }
 
 void ComputePipeline::bind(const BoundBuffer& buffer) {

@@ -19,7 +19,8 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed)
       shading_(upload(device, packed.shading)),
       frame_(packed.frame),
       dispatch_(packed.dispatch),
-      stack_size_(packed.stack_size) {}
+      // In steps, so that scenes of about the same depth share pipelines.
+      stack_size_((packed.stack_size + 7) / 8 * 8) {}
 
 std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {
   return {{layout::BINDING_NODES, vk::DescriptorType::eStorageBuffer, &nodes_},
