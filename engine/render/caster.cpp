@@ -38,7 +38,7 @@ RayRecord record_of(const Ray& ray) {
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
 }
 
-Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, std::span<const uint32_t> first_order) {
+Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const PrimitiveNumbers& numbers) {
   const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
   if (record.a.y == layout::NO_ORDER || !(t > ray.tmin && t < ray.tmax)) return {};
   Hit hit;
@@ -46,12 +46,14 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, std::span<co
     hit.t = 0.0F;
     return hit;
   }
-  const PrimitiveId id = primitive_of_order(first_order, record.a.y);
+  const PrimitiveId id = primitive_of_order(numbers, record.a.y);
   hit.t = t;
   hit.object = static_cast<int32_t>(id.object);
   hit.primitive = static_cast<int32_t>(id.primitive);
-  hit.u = std::bit_cast<float>(record.a.z);
-  hit.v = std::bit_cast<float>(record.a.w);
+  const vec2 weights(std::bit_cast<float>(record.a.z), std::bit_cast<float>(record.a.w));
+  const vec2 of_triangle = weights_of_triangle(numbers, record.a.y, weights);
+  hit.u = of_triangle.x;
+  hit.v = of_triangle.y;
   hit.normal = {std::bit_cast<float>(record.b.x), std::bit_cast<float>(record.b.y), std::bit_cast<float>(record.b.z)};
   return hit;
 }
@@ -59,7 +61,8 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, std::span<co
 }  // namespace
 
 struct Caster::Impl {
-  Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options) : device(the_device), spirv(options.spirv) {
+  Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options)
+      : device(the_device), spirv(options.spirv) {
     PackedScene packed = pack_scene(the_scene, options.builder);
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
@@ -68,7 +71,7 @@ struct Caster::Impl {
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = packed.size_bytes();
     stats.features = features_of(the_scene) & kShapeFeatures;
-    first_order = std::move(packed.first_order);
+    numbers = std::move(packed.numbers);
   }
 
   RayKernel& kernel_for(HitQuery query) {
@@ -90,14 +93,14 @@ struct Caster::Impl {
     records.resize(rays.size());
     std::transform(rays.begin(), rays.end(), requests.begin(), record_of);
     const double time_ms = kernel_for(query).run(requests, records);
-    for (size_t i = 0; i < rays.size(); ++i) hits[i] = hit_of(records[i], rays[i], query, first_order);
+    for (size_t i = 0; i < rays.size(); ++i) hits[i] = hit_of(records[i], rays[i], query, numbers);
     return time_ms;
   }
 
   const gpu::Device& device;
   std::span<const uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
-  std::vector<uint32_t> first_order;
+  PrimitiveNumbers numbers;
   SetupStats stats;
   std::array<std::optional<RayKernel>, 2> kernels;
   std::vector<RayRecord> requests;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "render/cut_triangles.h"
 
 namespace promin {
 namespace {
@@ -34,12 +35,16 @@ Primitive pack(const Cone& c) {
 Primitive pack(const Plane& p) {
   return {vec4(p.point, 0.0F), vec4(p.normal, 0.0F), uvec4(0, 0, KIND_PLANE, 0)};
 }
-Primitive pack_triangle(const Mesh& mesh, uint32_t index) {
-  const uvec3 t = mesh.triangles[index];
-  const vec3 a = mesh.positions[t.x];
-  const vec3 b = mesh.positions[t.y];
-  const vec3 c = mesh.positions[t.z];
-  return {vec4(a, b.x), vec4(b.y, b.z, c.x, c.y), uvec4(bits_of(c.z), 0, KIND_TRIANGLE, 0)};
+Primitive pack(const TrianglePart& part) {
+  const auto& [a, b, c] = part;
+  return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),
+          uvec4(bits_of(c.position.z), 0, KIND_TRIANGLE, 0)};
+}
+
+Bounds bounds_of(const TrianglePart& part) {
+  Bounds bounds;
+  for (const PartCorner& corner : part) bounds.extend(corner.position);
+  return bounds;
 }
 
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
@@ -51,33 +56,37 @@ struct Collected {
   std::vector<SurfaceRecord> plane_surfaces;
   std::vector<vec4> normals;
   std::vector<vec4> colors;
-  std::vector<uint32_t> first_order;
+  PrimitiveNumbers numbers;
   uint32_t order = 0;
 };
 
 class Collector {
  public:
-  explicit Collector(const Scene& scene) {
+  explicit Collector(const Scene& scene) : cut_triangles_(scene) {
     size_t count = 0;
     for (const Object& object : scene.objects) count += primitive_count(object.shape);
-    if (count > CHILD_FIRST_MASK) {
-      throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
-                      "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
-    }
+    check_count(scene, count);
     result_.solids.reserve(count);
     result_.solid_surfaces.reserve(count);
     result_.boxes.reserve(count);
     for (const Object& object : scene.objects) {
       material_ = object.material;
-      result_.first_order.push_back(result_.order);
+      result_.numbers.first_order.push_back(result_.order);
       std::visit([this](const auto& shape) { add(shape); }, object.shape);
+      check_count(scene, result_.solids.size());
     }
-    result_.first_order.push_back(result_.order);
+    result_.numbers.first_order.push_back(result_.order);
   }
 
   Collected take() { return std::move(result_); }
 
  private:
+  static void check_count(const Scene& scene, size_t count) {
+    if (count <= CHILD_FIRST_MASK) return;
+    throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
+                    "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
+  }
+
   void add(const NotDrawn&) {}
 
   void add(const Plane& plane) {
@@ -93,16 +102,16 @@ class Collector {
   }
 
   void add(const Mesh& mesh) {
-    const auto first_vertex = static_cast<uint32_t>(std::max(result_.normals.size(), result_.colors.size()));
+    first_vertex_ = static_cast<uint32_t>(std::max(result_.normals.size(), result_.colors.size()));
     uint32_t flags = 0;
     if (!mesh.normals.empty()) {
       flags |= SURFACE_IS_SMOOTH;
-      result_.normals.resize(first_vertex);
+      result_.normals.resize(first_vertex_);
       for (const vec3& n : mesh.normals) result_.normals.emplace_back(n, 0.0F);
     }
     if (!mesh.colors.empty()) {
       flags |= SURFACE_IS_COLORED;
-      result_.colors.resize(first_vertex);
+      result_.colors.resize(first_vertex_);
       result_.colors.insert(result_.colors.end(), mesh.colors.begin(), mesh.colors.end());
     }
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -111,9 +120,45 @@ class Collector {
         continue;
       }
       const uint32_t material = mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[i];
-      const uvec3 corners = flags == 0 ? uvec3(0) : mesh.triangles[i] + first_vertex;
-      add_solid(pack_triangle(mesh, i), bounds_of_triangle(mesh, i), uvec4(corners, material | flags));
+      cut_triangles_.cut(mesh, i, parts_);
+      for (const TrianglePart& part : parts_) {
+        uvec3 vertices(0);
+        for (int corner = 0; corner < 3 && flags != 0; ++corner) {
+          vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
+        }
+        if (parts_.size() > 1) add_part(part, &part == parts_.data());
+        add_solid(pack(part), bounds_of(part), uvec4(vertices, material | flags));
+      }
     }
+  }
+
+  /// The vertex at a part's corner, from the mesh's first. Where a triangle was cut there is none with what it has
+  /// there, so it is added.
+  uint32_t vertex_of(const Mesh& mesh, const uvec3& corners, const PartCorner& corner) {
+    if (corner.weights == dvec2(0, 0)) return corners.x;
+    if (corner.weights == dvec2(1, 0)) return corners.y;
+    if (corner.weights == dvec2(0, 1)) return corners.z;
+    const auto mix = [&](const auto& values) {
+      const auto& [u, v] = std::pair(static_cast<float>(corner.weights.x), static_cast<float>(corner.weights.y));
+      return (1.0F - u - v) * values[corners.x] + u * values[corners.y] + v * values[corners.z];
+    };
+    const size_t vertex = std::max(result_.normals.size(), result_.colors.size());
+    if (!mesh.normals.empty()) {
+      result_.normals.resize(vertex);
+      result_.normals.emplace_back(mix(mesh.normals), 0.0F);
+    }
+    if (!mesh.colors.empty()) {
+      result_.colors.resize(vertex);
+      result_.colors.push_back(mix(mesh.colors));
+    }
+    return static_cast<uint32_t>(vertex) - first_vertex_;
+  }
+
+  void add_part(const TrianglePart& part, bool is_first) {
+    std::vector<PackedPart>& parts = result_.numbers.parts;
+    PackedPart packed{result_.order, (parts.empty() ? 0 : parts.back().further_parts) + (is_first ? 0U : 1U), {}};
+    for (size_t corner = 0; corner < 3; ++corner) packed.weights[corner] = vec2(part[corner].weights);
+    parts.push_back(packed);
   }
 
   void add_solid(Primitive primitive, const Bounds& box, const uvec4& surface) {
@@ -123,8 +168,13 @@ class Collector {
     result_.boxes.push_back(box);
   }
 
+  CutTriangles cut_triangles_;
   Collected result_;
   uint32_t material_ = 0;
+  /// Of the mesh at hand.
+  uint32_t first_vertex_ = 0;
+  /// Of the triangle at hand.
+  std::vector<TrianglePart> parts_;
 };
 
 MaterialRecord pack(const Material& m) {
@@ -190,7 +240,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
 
   PackedScene packed;
-  packed.first_order = std::move(collected.first_order);
+  packed.numbers = std::move(collected.numbers);
   packed.bvh_ms = elapsed.count();
   packed.bvh = measure_bvh(builder, bvh);
   PackedTree tree = pack_tree(bvh);
@@ -224,12 +274,35 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   return packed;
 }
 
-PrimitiveId primitive_of_order(std::span<const uint32_t> first_order, uint32_t order) {
+namespace {
+
+/// The last part at or before a number; null if there is none.
+const PackedPart* find_part(const PrimitiveNumbers& numbers, uint32_t order) {
+  const auto next = std::upper_bound(numbers.parts.begin(), numbers.parts.end(), order,
+                                     [](uint32_t number, const PackedPart& part) { return number < part.order; });
+  return next == numbers.parts.begin() ? nullptr : &*(next - 1);
+}
+
+}  // namespace
+
+PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order) {
   // The last object that begins at or before it: objects without primitives begin where the next one does.
-  const auto next = std::upper_bound(first_order.begin(), first_order.end(), order);
-  assert(next != first_order.begin() && next != first_order.end());
-  const auto object = static_cast<uint32_t>(next - first_order.begin()) - 1;
-  return {object, order - first_order[object]};
+  const auto next = std::upper_bound(numbers.first_order.begin(), numbers.first_order.end(), order);
+  assert(next != numbers.first_order.begin() && next != numbers.first_order.end());
+  const auto further_parts = [&](uint32_t number) {
+    const PackedPart* part = find_part(numbers, number);
+    return part == nullptr ? 0 : part->further_parts;
+  };
+  const uint32_t first = *(next - 1);
+  return {static_cast<uint32_t>(next - numbers.first_order.begin()) - 1,
+          order - first - (further_parts(order) - further_parts(first))};
+}
+
+vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights) {
+  const PackedPart* part = find_part(numbers, order);
+  if (part == nullptr || part->order != order) return weights;
+  return part->weights[0] + weights.x * (part->weights[1] - part->weights[0]) +
+         weights.y * (part->weights[2] - part->weights[0]);
 }
 
 }  // namespace promin

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string_view>
@@ -12,6 +13,23 @@
 #include "scene/scene.h"
 
 namespace promin {
+
+/// One of the parts that a triangle is packed as (render/cut_triangles.h).
+struct PackedPart {
+  uint32_t order = 0;
+  /// Parts up to this one, of all triangles, that are not their triangle's first.
+  uint32_t further_parts = 0;
+  /// The weights of the triangle's second and third corner at the part's three.
+  std::array<vec2, 3> weights{};
+};
+
+/// What the numbers in Primitive::c.y stand for: they count primitives in (object, primitive) order.
+struct PrimitiveNumbers {
+  /// Of each object the number of its first primitive; then the number of all.
+  std::vector<uint32_t> first_order;
+  /// Of all triangles in more than one part, by their order.
+  std::vector<PackedPart> parts;
+};
 
 /// A scene in the layout of shaders/layout.h, ready to be copied to the device. Vulkan-free.
 struct PackedScene {
@@ -24,9 +42,7 @@ struct PackedScene {
   /// What a picture's constants take from the scene; the camera's and the picture's parts are left at zero.
   layout::Frame frame{};
   layout::Dispatch dispatch{};
-  /// Of each object the number of its first primitive in (object, primitive) order, which Primitive::c.y counts in;
-  /// then the number of all.
-  std::vector<uint32_t> first_order;
+  PrimitiveNumbers numbers;
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
   BvhStats bvh;
@@ -42,12 +58,15 @@ struct PackedScene {
 /// hold (2^27 primitives).
 PackedScene pack_scene(const Scene& scene, std::string_view builder);
 
-/// What a primitive's number in (object, primitive) order stands for, by PackedScene::first_order.
+/// What a primitive's number stands for.
 struct PrimitiveId {
   uint32_t object = 0;
   uint32_t primitive = 0;
 };
-PrimitiveId primitive_of_order(std::span<const uint32_t> first_order, uint32_t order);
+PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order);
+
+/// From the weights of what was packed under a number to those of the triangle.
+vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights);
 
 /// The device's form of a binary tree, with the depth of the stack that traversing it takes.
 struct PackedTree {

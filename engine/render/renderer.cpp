@@ -74,7 +74,7 @@ struct Renderer::Impl {
     stats.device_bytes = packed.size_bytes();
     stats.features = options.force_all_features ? all_features() : features_of(the_scene);
     stats.features &= ~options.left_out_features;
-    first_order = std::move(packed.first_order);
+    numbers = std::move(packed.numbers);
 
     const Stopwatch uploading;
     scene.emplace(device, packed);
@@ -207,7 +207,7 @@ struct Renderer::Impl {
       aovs.depth[first + i] = std::bit_cast<float>(normal_and_depth.w);
       const uint32_t order = film_records[i].w;
       if (order == layout::NO_ORDER) continue;
-      const PrimitiveId id = primitive_of_order(first_order, order);
+      const PrimitiveId id = primitive_of_order(numbers, order);
       aovs.object[first + i] = id.object;
       aovs.primitive[first + i] = id.primitive;
     }
@@ -221,7 +221,7 @@ struct Renderer::Impl {
   RendererOptions options;
   Pacer pacer;
   SetupStats stats;
-  std::vector<uint32_t> first_order;
+  PrimitiveNumbers numbers;
   std::optional<DeviceScene> scene;
   std::optional<gpu::Buffer> frame_buffer;
   std::optional<gpu::Buffer> film;

@@ -95,7 +95,7 @@ void run_box_edges(Lab& lab) {
     for (const double distance : {0.02, 1.0, 1e3}) {
       const BlockScene blocks = make_blocks(offset, random);
       std::vector<Ray> rays;
-      for (size_t i = 0; i < 60000; ++i) {
+      for (size_t i = 0; i < 40000; ++i) {
         rays.push_back(ray_at_block(blocks.blocks[i % blocks.blocks.size()], distance, random, i));
       }
       const PackedScene packed = pack_scene(blocks.scene, builder_names().front());

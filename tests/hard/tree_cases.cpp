@@ -56,15 +56,16 @@ Scene make_strewn(const dvec3& center, double radius, int count, Random& random)
 /// A field of squares with shared edges, every second one twice: equal t wherever one looks.
 Scene make_ties() {
   Mesh mesh;
-  for (int i = 0; i < 11 * 11; ++i) mesh.positions.emplace_back(i % 11, 0.1F * static_cast<float>((i * i) % 7), i / 11);
-  for (uint32_t i = 0; i < 100; ++i) {
-    const uint32_t p = i / 10 * 11 + i % 10;
+  for (int i = 0; i < 8 * 8; ++i) mesh.positions.emplace_back(i % 8, 0.1F * static_cast<float>((i * i) % 7), i / 8);
+  for (uint32_t i = 0; i < 49; ++i) {
+    const uint32_t p = i / 7 * 8 + i % 7;
     for (uint32_t repeat = 0; repeat <= i % 2; ++repeat) {
-      mesh.triangles.emplace_back(p, p + 1, p + 12);
-      mesh.triangles.emplace_back(p, p + 12, p + 11);
+      mesh.triangles.emplace_back(p, p + 1, p + 9);
+      mesh.triangles.emplace_back(p, p + 9, p + 8);
     }
   }
-  return scene_of({mesh, Plane{vec3(0.0F), vec3(0, 1, 0)}, Sphere{vec3(5, 0, 5), 2.0F}, Sphere{vec3(5, 0, 5), 2.0F}});
+  return scene_of(
+      {mesh, Plane{vec3(0.0F), vec3(0, 1, 0)}, Sphere{vec3(3.5F, 0, 3.5F), 1.5F}, Sphere{vec3(3.5F, 0, 3.5F), 1.5F}});
 }
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {
@@ -85,10 +86,10 @@ void run_trees(Lab& lab) {
   Random random(38);
   const dvec3 far_away(1e5, -2e5, 3e5);
   const std::array scenes{
-      TreeScene{"everything", test::make_scene_of_everything(60), dvec3(0, 1.5, 0), 5.0},
-      TreeScene{"strewn", make_strewn(dvec3(0.0), 1.0, 120, random), dvec3(0.0), 1.0},
-      TreeScene{"strewn at 1e5", make_strewn(far_away, 10.0, 100, random), far_away, 10.0},
-      TreeScene{"ties", make_ties(), dvec3(5, 0, 5), 6.0},
+      TreeScene{"everything", test::make_scene_of_everything(40), dvec3(0, 1.5, 0), 5.0},
+      TreeScene{"strewn", make_strewn(dvec3(0.0), 1.0, 80, random), dvec3(0.0), 1.0},
+      TreeScene{"strewn at 1e5", make_strewn(far_away, 10.0, 80, random), far_away, 10.0},
+      TreeScene{"ties", make_ties(), dvec3(3.5, 0, 3.5), 4.5},
   };
   for (const TreeScene& in : scenes) {
     std::vector<Ray> rays;
