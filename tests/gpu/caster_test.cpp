@@ -176,9 +176,9 @@ TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
 }
 
 TEST(PrimitiveOfOrder, FindsTheObject) {
-  const std::vector<uint32_t> first = {0, 0, 2, 3, 3, 5};
+  const PrimitiveNumbers numbers{{0, 0, 2, 3, 3, 5}, {}};
   const auto id = [&](uint32_t order) {
-    const PrimitiveId found = primitive_of_order(first, order);
+    const PrimitiveId found = primitive_of_order(numbers, order);
     return std::pair(found.object, found.primitive);
   };
   EXPECT_EQ(id(0), std::pair(1U, 0U));
