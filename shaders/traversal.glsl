@@ -10,7 +10,9 @@ void keep_nearest(Ray ray, Crossing crossing, uint primitive, uint order, inout 
 }
 
 // Entry of a ray into a child's box, as t; the box is met if entry <= exit. An absent child is never met.
-// (plane - origin) * inverse, never plane * inverse - origin * inverse, which cancels (numerics.md).
+// (plane - origin) * inverse, never plane * inverse - origin * inverse, which cancels (numerics.md). No hit hidden in
+// 3.6e5 rays at edges and corners, offset 0...1e5 (hard case 28; 5 % without padding), nor in 1e6 through mixed scenes
+// (hard case 38).
 vec2 child_interval(Ray ray, vec2 x, vec2 y, vec2 z, float t_limit) {
   bvec3 is_backward = lessThan(ray.inverse_direction, vec3(0.0));
   vec3 near = vec3(is_backward.x ? x.y : x.x, is_backward.y ? y.y : y.x, is_backward.z ? z.y : z.x);

@@ -10,8 +10,8 @@
 namespace promin {
 
 /// P(t) = origin + t * direction; a hit has tmin < t < tmax. The direction has any length but 0, and t is in its
-/// units. A negative tmin counts as 0; tmax may be infinite. NaN anywhere, an infinity elsewhere or an origin beyond
-/// 10^38 makes a ray that misses everything.
+/// units. A negative tmin, -infinity too, counts as 0; tmax may be infinite. NaN anywhere, an infinity elsewhere or an
+/// origin beyond 10^38 makes a ray that misses everything.
 struct Ray {
   vec3 origin{0.0F};
   float tmin = 0.0F;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: shear the triangle so that the ray runs
 // along an axis, and compare products in 2D. Every triangle sees the same sheared vertex, so none leaks at a shared
-// edge or vertex, as long as nothing is contracted. Another answer than the exact one only within 0.7 u S of an edge,
-// and |dt||d|cos <= 3.6 u S, measured, but for slivers: that times a tenth of their aspect (hard cases 25, 29, 38).
+// edge or vertex, as long as nothing is contracted. Measured: another answer than the exact one only within 0.6 u S of
+// an edge (bound 2), |dt||d|cos <= 3.6 u S; of a sliver that grows to a tenth of its aspect, while P(u,v) stays within
+// 0.7 u S of the plane (bound 8; hard cases 25, 29, 38).
 
 vec3 corner0(Primitive p) { return p.a.xyz; }
 vec3 corner1(Primitive p) { return vec3(p.a.w, p.b.xy); }

@@ -31,7 +31,7 @@ struct Bounce {
 /// The renderer's secondary rays in a scene.
 class Bouncer {
  public:
-  Bouncer(const gpu::Device& device, const Scene& scene) : kernel_(device, upload(device, scene), options()) {}
+  Bouncer(const gpu::Device& device, const Scene& scene) : kernel_(device, upload(device, scene), options_for(scene)) {}
 
   std::vector<Bounce> bounce(std::span<const Ray> rays) {
     std::vector<layout::RayRecord> requests;
@@ -53,8 +53,9 @@ class Bouncer {
   static std::shared_ptr<const DeviceScene> upload(const gpu::Device& device, const Scene& scene) {
     return upload_scene(device, pack_scene(scene, "sah"));
   }
-  static RayKernelOptions options() {
+  static RayKernelOptions options_for(const Scene& scene) {
     RayKernelOptions options;
+    options.features = features_of(scene);
     options.spirv = Lab::bounce_kernel();
     return options;
   }
