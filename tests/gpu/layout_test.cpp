@@ -61,6 +61,10 @@ void PrintTo(const Shader& shader, std::ostream* out) {
   *out << shader.name;
 }
 
+void PrintTo(const Layout& layout, std::ostream* out) {
+  *out << layout.name;
+}
+
 class LayoutTest : public testing::TestWithParam<Layout> {};
 
 TEST_P(LayoutTest, HostOffsetsAreTheShaders) {
