@@ -38,8 +38,9 @@ std::string describe_objects(const SceneCounts& counts, size_t object_count) {
   return kinds.empty() ? "0" : fmt::format("{} ({})", object_count, fmt::join(kinds, ", "));
 }
 
-std::string describe_lights(const std::vector<Light>& lights) {
-  if (lights.empty()) return "0; a headlight along the view and ambient light stand in";
+std::string describe_lights(const std::vector<Light>& lights, const vec3& ambient) {
+  if (lights.empty() && ambient == vec3(0.0F)) return "0; a headlight along the view and ambient light stand in";
+  if (lights.empty()) return "0; a headlight along the view stands in";
   size_t counts[3] = {};
   for (const Light& light : lights) ++counts[static_cast<size_t>(light.kind)];
   return fmt::format("{} (point: {}, directional: {}, spot: {})", lights.size(), counts[0], counts[1], counts[2]);
@@ -78,7 +79,7 @@ void print_info(const std::filesystem::path& file) {
   print_row("primitives", std::to_string(counts.primitives));
   print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, counts.degenerate_triangles));
   print_row("materials", std::to_string(scene.materials.size()));
-  print_row("lights", describe_lights(scene.lights));
+  print_row("lights", describe_lights(scene.lights, scene.ambient));
   print_rows("cameras", describe_cameras(scene.cameras));
   print_row("bounds", describe_bounds(bounds_of(scene)));
   // What follows is of the scene as it would be rendered, with the lights that stand in.

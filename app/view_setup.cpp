@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "camera.h"
 #include "core/error.h"
 
 namespace promin::app {
@@ -15,11 +16,6 @@ namespace {
 constexpr uint32_t kDefaultHeight = 720;
 constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
 constexpr float kDefaultAmbient = 0.1F;
-
-/// Directions count as orthonormal, and are used as they are, within what rounding to fp32 and to 9 digits leaves.
-constexpr double kOrthonormalTolerance = 1e-6;
-/// Sine of the least angle between look and up that says which way is up.
-constexpr double kParallelTolerance = 1e-6;
 
 std::string list_cameras(const Scene& scene) {
   std::string text;
@@ -57,34 +53,15 @@ Camera choose_camera(const Scene& scene, const ViewOptions& options, const Conso
                                          : kDefaultAspectRatio);
 }
 
-bool is_orthonormal(const dvec3& look, const dvec3& up) {
-  return std::abs(glm::length(look) - 1.0) <= kOrthonormalTolerance &&
-         std::abs(glm::length(up) - 1.0) <= kOrthonormalTolerance &&
-         std::abs(glm::dot(look, up)) <= kOrthonormalTolerance;
-}
-
-void orient(Camera& camera, dvec3 look, dvec3 up) {
-  if (!is_orthonormal(look, up)) {
-    const double look_length = glm::length(look);
-    const double up_length = glm::length(up);
-    const dvec3 right = glm::cross(look, up);
-    // Written so that a zero vector is refused.
-    if (!(glm::length(right) > kParallelTolerance * look_length * up_length)) {
-      throw UsageError({"the directions of view and up are parallel or zero", "on the command line",
-                        "give --look and --up that differ"});
-    }
-    look /= look_length;
-    up = glm::normalize(glm::cross(right, look));
-  }
-  camera.look = vec3(look);
-  camera.up = vec3(up);
-}
-
 void apply_pose(Camera& camera, const PoseOptions& pose) {
   if (pose.eye) camera.eye = vec3(*pose.eye);
   if (pose.look || pose.up) {
     const dvec3 default_up = pose.look ? dvec3(0.0, 1.0, 0.0) : dvec3(camera.up);
-    orient(camera, pose.look.value_or(dvec3(camera.look)), pose.up.value_or(default_up));
+    const Camera posed = FreeCamera::from_pose(camera.eye, vec3(pose.look.value_or(dvec3(camera.look))),
+                                               vec3(pose.up.value_or(default_up)))
+                             .camera();
+    camera.look = posed.look;
+    camera.up = posed.up;
   }
   if (pose.fov_deg) {
     camera.projection = Projection::kPerspective;
