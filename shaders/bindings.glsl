@@ -18,5 +18,30 @@ bool is_kind(uint kind, uint wanted, uint feature) {
 }
 
 layout(std140, set = 0, binding = BINDING_FRAME) uniform FrameBlock { Frame frame; };
+
+// Nodes and primitives come as storage buffers, which every device has for any scene, and as texel buffers of the same
+// memory: lavapipe gathers a load from a storage buffer word by word, a texel at once.
+layout(constant_id = CONSTANT_FETCHES_TEXELS) const uint FETCHES_TEXELS = 0u;
 layout(std430, set = 0, binding = BINDING_NODES) readonly buffer Nodes { Node nodes[]; };
 layout(std430, set = 0, binding = BINDING_PRIMITIVES) readonly buffer Primitives { Primitive primitives[]; };
+layout(set = 0, binding = BINDING_NODE_TEXELS) uniform usamplerBuffer node_texels;
+layout(set = 0, binding = BINDING_PRIMITIVE_TEXELS) uniform usamplerBuffer primitive_texels;
+
+Node load_node(uint index) {
+  if (FETCHES_TEXELS == 0u) return nodes[index];
+  int first = int(4u * index);
+  return Node(texelFetch(node_texels, first), texelFetch(node_texels, first + 1), texelFetch(node_texels, first + 2),
+              texelFetch(node_texels, first + 3));
+}
+
+Primitive load_primitive(uint index) {
+  if (FETCHES_TEXELS == 0u) return primitives[index];
+  int first = int(3u * index);
+  return Primitive(uintBitsToFloat(texelFetch(primitive_texels, first)),
+                   uintBitsToFloat(texelFetch(primitive_texels, first + 1)), texelFetch(primitive_texels, first + 2));
+}
+
+uint load_primitive_kind(uint index) {
+  if (FETCHES_TEXELS == 0u) return primitives[index].c.z;
+  return texelFetch(primitive_texels, int(3u * index + 2u)).z;
+}

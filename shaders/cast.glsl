@@ -12,7 +12,7 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   // Back to the units of the direction as given. Where that overflows there is no t to tell of.
   precise float t = hit.t * power_of_two_inverse(max_abs(request.direction_tmax.xyz));
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
-  vec3 normal = surface_point(ray, primitives[hit.primitive], hit).normal;
+  vec3 normal = surface_point(ray, load_primitive(hit.primitive), hit).normal;
   return HitRecord(uvec4(floatBitsToUint(t), hit.order, floatBitsToUint(vec2(hit.u, hit.v))),
                    uvec4(floatBitsToUint(normal), steps));
 }

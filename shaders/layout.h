@@ -55,24 +55,30 @@ LAYOUT_CONSTANT BINDING_SHADING = 3u;
 LAYOUT_CONSTANT BINDING_FILM = 4u;
 LAYOUT_CONSTANT BINDING_RAYS = 5u;
 LAYOUT_CONSTANT BINDING_HITS = 6u;
+LAYOUT_CONSTANT BINDING_NODE_TEXELS = 7u;
+LAYOUT_CONSTANT BINDING_PRIMITIVE_TEXELS = 8u;
 
 // Specialisation constants.
 LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;
 LAYOUT_CONSTANT CONSTANT_STACK_SIZE = 1u;
 LAYOUT_CONSTANT CONSTANT_ANY_HIT = 2u;
+LAYOUT_CONSTANT CONSTANT_FETCHES_TEXELS = 3u;
 
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
 
-// Two children with their boxes, an axis a row: (left lo, left hi, right lo, right hi).
-// An inner child is its node index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below, and its first
-// primitive in the rest. An absent child has an empty box.
+// Up to four children with their boxes in bytes: a plane of a box lies at origin + byte * 2^(exponent - 127), each axis
+// with an exponent of its own. The four bytes of a word are the four children's, the first the lowest.
+// A child that is an inner node is its index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below, and its
+// first primitive in the rest.
 struct Node {
-  vec4 x;
-  vec4 y;
-  vec4 z;
-  uvec4 children;  // left, right, 0, 0
+  uvec4 frame;     // bits of the origin; w = exponents of x, y, z, the lowest byte first
+  uvec4 lo;        // of x, y, z; w = hi of x
+  uvec4 hi;        // of y, z; 0, 0
+  uvec4 children;  // CHILD_ABSENT beyond the last
 };
+LAYOUT_CONSTANT NODE_WIDTH = 4u;
+LAYOUT_CONSTANT CHILD_ABSENT = 0xFFFFFFFFu;
 LAYOUT_CONSTANT CHILD_IS_LEAF = 0x80000000u;
 LAYOUT_CONSTANT CHILD_COUNT_SHIFT = 27u;
 LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;

@@ -8,7 +8,7 @@ struct Ray {
   float tmin;      // a hit has tmin < t < tmax, in units of the scaled direction
   float tmax;
   float inverse_length2;   // 1 / |direction|^2
-  vec3 inverse_direction;  // finite: components under 2^-80 count as 2^-80 with their sign
+  vec3 inverse_direction;  // finite: components under 2^-60 count as 2^-60 with their sign
   vec3 near_origin;        // origin, moved so that the slab test's near and far planes lie `padding` further out
   vec3 far_origin;
   uint shear_axis;  // where |direction| is largest

@@ -58,7 +58,7 @@ vec3 radiance(Ray ray, inout uvec3 ray_count, out Hit first) {
 // Bits of the normal, as wound or outward, and of the distance from the ray's origin; infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
   if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
-  SurfacePoint surface = surface_point(ray, primitives[hit.primitive], hit);
+  SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
   precise float depth = hit.t * length3(ray.direction);
   return floatBitsToUint(vec4(surface.normal, depth));
 }

@@ -47,7 +47,7 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
 }
 
 ShadingPoint make_shading_point(Ray ray, Hit hit) {
-  Primitive p = primitives[hit.primitive];
+  Primitive p = load_primitive(hit.primitive);
   SurfaceRecord record = surfaces[hit.primitive];
   SurfacePoint surface = surface_point(ray, p, hit);
   bool is_flipped = dot3(surface.normal, ray.direction) > 0.0;

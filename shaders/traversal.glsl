@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// One traversal for every ray: primary, mirror and shadow. No recursion; the stack holds at most one entry a level.
+// One traversal for every ray: primary, mirror and shadow. No recursion; the stack has the size that the tree needs.
 
 // Takes the crossing if it is nearer, or as near and of a lower number: the hit does not depend on the tree.
 void keep_nearest(Ray ray, Crossing crossing, uint primitive, uint order, inout Hit hit) {
@@ -9,19 +9,62 @@ void keep_nearest(Ray ray, Crossing crossing, uint primitive, uint order, inout 
   }
 }
 
-// Entry of a ray into a child's box, as t; the box is met if entry <= exit. An absent child is never met.
-// (plane - origin) * inverse, never plane * inverse - origin * inverse, which cancels (numerics.md). No hit hidden in
-// 3.6e5 rays at edges and corners, offset 0...1e5 (hard case 28; 5 % without padding), nor in 1e6 through mixed scenes
-// (hard case 38).
-vec2 child_interval(Ray ray, vec2 x, vec2 y, vec2 z, float t_limit) {
+vec4 unpack_bytes(uint word) { return vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu); }
+
+// The four children of a node as a ray meets them.
+struct Encounter {
+  vec4 entry;  // t; infinite where the box is missed
+  uvec4 child;
+};
+
+// A box is met if entry <= exit; <=, so that one at the distance of the hit so far is still opened: its primitive may
+// have a lower number. (origin - ray's origin) comes first, never byte * scale * inverse - origin * inverse, which
+// cancels (numerics.md). No hit hidden in 3.6e5 rays at edges and corners, offset 0...1e5 (hard case 28; 5 % without
+// padding), nor in 1e6 through mixed scenes (hard case 38).
+Encounter meet_children(Ray ray, Node node, float t_limit) {
+  vec3 origin = uintBitsToFloat(node.frame.xyz);
+  uvec3 exponents = (uvec3(node.frame.w) >> uvec3(0u, 8u, 16u)) & 0xFFu;
+  precise vec3 step = uintBitsToFloat(exponents << 23) * ray.inverse_direction;
+  precise vec3 near_base = (origin - ray.near_origin) * ray.inverse_direction;
+  precise vec3 far_base = (origin - ray.far_origin) * ray.inverse_direction;
+  uvec3 lo = node.lo.xyz;
+  uvec3 hi = uvec3(node.lo.w, node.hi.xy);
   bvec3 is_backward = lessThan(ray.inverse_direction, vec3(0.0));
-  vec3 near = vec3(is_backward.x ? x.y : x.x, is_backward.y ? y.y : y.x, is_backward.z ? z.y : z.x);
-  vec3 far = vec3(is_backward.x ? x.x : x.y, is_backward.y ? y.x : y.y, is_backward.z ? z.x : z.y);
-  precise vec3 t_near = (near - ray.near_origin) * ray.inverse_direction;
-  precise vec3 t_far = (far - ray.far_origin) * ray.inverse_direction;
-  float entry = max(max(t_near.x, t_near.y), max(t_near.z, ray.tmin));
-  precise float exit = min(min(t_far.x, t_far.y), t_far.z) * BOX_WIDENING;
-  return vec2(entry, min(exit, t_limit));
+  uvec3 near = uvec3(is_backward.x ? hi.x : lo.x, is_backward.y ? hi.y : lo.y, is_backward.z ? hi.z : lo.z);
+  uvec3 far = uvec3(is_backward.x ? lo.x : hi.x, is_backward.y ? lo.y : hi.y, is_backward.z ? lo.z : hi.z);
+  precise vec4 near_x = unpack_bytes(near.x) * step.x + near_base.x;
+  precise vec4 near_y = unpack_bytes(near.y) * step.y + near_base.y;
+  precise vec4 near_z = unpack_bytes(near.z) * step.z + near_base.z;
+  precise vec4 far_x = unpack_bytes(far.x) * step.x + far_base.x;
+  precise vec4 far_y = unpack_bytes(far.y) * step.y + far_base.y;
+  precise vec4 far_z = unpack_bytes(far.z) * step.z + far_base.z;
+  vec4 entry = max(max(near_x, near_y), max(near_z, vec4(ray.tmin)));
+  precise vec4 exit = min(min(far_x, far_y), far_z) * BOX_WIDENING;
+  exit = min(exit, vec4(t_limit));
+  for (uint i = 0u; i < NODE_WIDTH; ++i) {
+    bool is_met = entry[i] <= exit[i] && node.children[i] != CHILD_ABSENT;
+    entry[i] = is_met ? entry[i] : INFINITY;
+  }
+  return Encounter(entry, node.children);
+}
+
+// The nearer of two to the front.
+void sort_pair(inout Encounter e, uint a, uint b) {
+  bool is_swapped = e.entry[b] < e.entry[a];
+  vec2 entry = is_swapped ? vec2(e.entry[b], e.entry[a]) : vec2(e.entry[a], e.entry[b]);
+  uvec2 child = is_swapped ? uvec2(e.child[b], e.child[a]) : uvec2(e.child[a], e.child[b]);
+  e.entry[a] = entry.x;
+  e.entry[b] = entry.y;
+  e.child[a] = child.x;
+  e.child[b] = child.y;
+}
+
+void sort_by_entry(inout Encounter e) {
+  sort_pair(e, 0u, 1u);
+  sort_pair(e, 2u, 3u);
+  sort_pair(e, 0u, 2u);
+  sort_pair(e, 1u, 3u);
+  sort_pair(e, 1u, 2u);
 }
 
 // What this invocation's rays took: x = node steps, y = primitive tests.
@@ -33,8 +76,8 @@ void count_steps(uint nodes, uint tests) {
 
 // The primitives of one kind at the head of [i, end): leaves hold them sorted by kind.
 #define INTERSECT_RUN(KIND, FEATURE, INTERSECT)                          \
-  while (i < end && is_kind(primitives[i].c.z, KIND, FEATURE)) {         \
-    Primitive p = primitives[i];                                         \
+  while (i < end && is_kind(load_primitive_kind(i), KIND, FEATURE)) {         \
+    Primitive p = load_primitive(i);                                     \
     keep_nearest(ray, INTERSECT(ray, p), i, p.c.y, hit);                 \
     ++i;                                                                 \
   }
@@ -49,7 +92,7 @@ void intersect_leaf(Ray ray, uint child, inout Hit hit) {
   INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)
 }
 
-// What is left to visit: each inner node on the way down leaves at most one child here.
+// What is left to visit: each inner node on the way down leaves its farther children here.
 uint stack[STACK_SIZE];
 float stack_entry[STACK_SIZE];
 uint stack_top;
@@ -68,7 +111,7 @@ Hit trace(Ray ray, bool any_hit) {
   Hit hit = Hit(ray.tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   if (has(FEATURE_PLANES)) {
     for (uint i = dispatch.counts.x; i < dispatch.counts.x + dispatch.counts.y; ++i) {
-      Primitive p = primitives[i];
+      Primitive p = load_primitive(i);
       keep_nearest(ray, intersect_plane(ray, p), i, p.c.y, hit);
     }
   }
@@ -81,21 +124,16 @@ Hit trace(Ray ray, bool any_hit) {
   while (current != DONE) {
     while ((current & CHILD_IS_LEAF) == 0u) {
       count_steps(1u, 0u);
-      Node node = nodes[current];
-      vec2 left = child_interval(ray, node.x.xy, node.y.xy, node.z.xy, hit.t);
-      vec2 right = child_interval(ray, node.x.zw, node.y.zw, node.z.zw, hit.t);
-      // <=, so that a box at the distance of the hit so far is still opened: its primitive may have a lower number.
-      bool meets_left = left.x <= left.y;
-      bool meets_right = right.x <= right.y;
-      bool takes_right = meets_right && !(meets_left && left.x <= right.x);
-      current = takes_right ? node.children.y : node.children.x;
-      if (meets_left && meets_right) {
-        stack[stack_top] = takes_right ? node.children.x : node.children.y;
-        stack_entry[stack_top] = max(left.x, right.x);
-        ++stack_top;
-      } else if (!(meets_left || meets_right)) {
-        current = pop_child(hit.t);
+      Encounter e = meet_children(ray, load_node(current), hit.t);
+      sort_by_entry(e);
+      for (uint i = NODE_WIDTH - 1u; i > 0u; --i) {
+        if (e.entry[i] < INFINITY) {
+          stack[stack_top] = e.child[i];
+          stack_entry[stack_top] = e.entry[i];
+          ++stack_top;
+        }
       }
+      current = e.entry[0] < INFINITY ? e.child[0] : pop_child(hit.t);
     }
     if (current == DONE) break;
     intersect_leaf(ray, current, hit);

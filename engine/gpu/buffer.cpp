@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/buffer.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstring>
@@ -31,9 +32,15 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
 Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,
                std::span<const vk::MemoryPropertyFlags> preferences)
     : device_(&device), size_bytes_(size_bytes) {
-  if ((usage & vk::BufferUsageFlagBits::eStorageBuffer) && size_bytes > device.limits().maxStorageBufferRange) {
+  const vk::PhysicalDeviceLimits& limits = device.limits();
+  vk::DeviceSize most_bytes = ~vk::DeviceSize{0};
+  if (usage & vk::BufferUsageFlagBits::eStorageBuffer) most_bytes = limits.maxStorageBufferRange;
+  if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer) {
+    most_bytes = std::max(most_bytes, limits.maxTexelBufferElements * kTexelBytes);
+  }
+  if (size_bytes > most_bytes) {
     throw RunError({"the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB",
-                    "on a device that allows " + std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB",
+                    "on a device that allows " + std::to_string(most_bytes >> 20) + " MiB",
                     "use a smaller scene or another --device"});
   }
   buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, size_bytes, usage));
@@ -52,6 +59,12 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
   if ((properties & kMappable) == kMappable) {
     mapped_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
   }
+}
+
+vk::raii::BufferView Buffer::make_texel_view() const {
+  const vk::DeviceSize most_bytes = device_->limits().maxTexelBufferElements * kTexelBytes;
+  return {device_->handle(),
+          vk::BufferViewCreateInfo({}, *buffer_, vk::Format::eR32G32B32A32Uint, 0, std::min(size_bytes_, most_bytes))};
 }
 
 void Buffer::write(std::span<const std::byte> data) {

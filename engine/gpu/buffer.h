@@ -10,16 +10,22 @@ namespace promin::gpu {
 
 class Device;
 
+/// Bytes of a texel: R32G32B32A32_UINT.
+inline constexpr vk::DeviceSize kTexelBytes = 16;
+
 /// A buffer with memory of its own. It lies in device-local memory; where the host can map that (integrated GPUs, CPU
 /// devices) it is written and read directly, elsewhere through a staging buffer.
 class Buffer {
  public:
-  /// `size_bytes` > 0. Throws vk::SystemError, or RunError if a storage buffer would pass the device's
-  /// maxStorageBufferRange.
+  /// `size_bytes` > 0. Throws vk::SystemError, or RunError if the buffer could not be bound: a storage buffer beyond
+  /// the device's maxStorageBufferRange that is not a texel buffer within its maxTexelBufferElements either.
   Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage);
 
   const vk::raii::Buffer& handle() const { return buffer_; }
   vk::DeviceSize size_bytes() const { return size_bytes_; }
+
+  /// The buffer, or as much of it as the device allows, as texels of four words.
+  vk::raii::BufferView make_texel_view() const;
 
   /// Copies to the start of the buffer, and from `offset_bytes` of it. The device is idle with respect to this buffer
   /// before and after.

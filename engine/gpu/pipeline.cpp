@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/pipeline.h"
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -66,9 +67,19 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
 }
 
 void ComputePipeline::bind(const BoundBuffer& buffer) {
-  const vk::DescriptorBufferInfo info(*buffer.buffer->handle(), 0, VK_WHOLE_SIZE);
-  device_->handle().updateDescriptorSets(
-      vk::WriteDescriptorSet(*set_, buffer.binding, 0, 1, buffer.type, nullptr, &info), {});
+  vk::WriteDescriptorSet write(*set_, buffer.binding, 0, 1, buffer.type);
+  // What lies beyond the range of a storage buffer, the shader reads as texels.
+  const vk::DeviceSize range =
+      std::min<vk::DeviceSize>(buffer.buffer->size_bytes(), device_->limits().maxStorageBufferRange);
+  const vk::DescriptorBufferInfo info(*buffer.buffer->handle(), 0, range);
+  vk::BufferView view;
+  if (buffer.view != nullptr) {
+    view = **buffer.view;
+    write.pTexelBufferView = &view;
+  } else {
+    write.pBufferInfo = &info;
+  }
+  device_->handle().updateDescriptorSets(write, {});
 }
 
 void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, uint32_t group_count) const {

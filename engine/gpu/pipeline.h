@@ -22,6 +22,8 @@ struct BoundBuffer {
   uint32_t binding = 0;
   vk::DescriptorType type = vk::DescriptorType::eStorageBuffer;
   const Buffer* buffer = nullptr;
+  /// Of a texel buffer, its view.
+  const vk::raii::BufferView* view = nullptr;
 };
 
 /// Whether a SPIR-V module declares a specialisation constant with this SpecId.

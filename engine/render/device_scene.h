@@ -22,17 +22,22 @@ class DeviceScene {
   const layout::Dispatch& dispatch() const { return dispatch_; }
   uint32_t stack_size() const { return stack_size_; }
 
-  /// What traversal reads: nodes and primitives.
+  /// What traversal reads: nodes and primitives, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> geometry() const;
+  /// Whether the device's texel buffers hold all of it: CONSTANT_FETCHES_TEXELS.
+  bool fetches_texels() const { return fetches_texels_; }
   gpu::BoundBuffer shading() const;
 
  private:
   gpu::Buffer nodes_;
   gpu::Buffer primitives_;
+  vk::raii::BufferView node_texels_;
+  vk::raii::BufferView primitive_texels_;
   gpu::Buffer shading_;
   layout::Frame frame_;
   layout::Dispatch dispatch_;
   uint32_t stack_size_;
+  bool fetches_texels_;
 };
 
 }  // namespace promin

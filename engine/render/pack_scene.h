@@ -68,7 +68,8 @@ PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order);
 /// From the weights of what was packed under a number to those of the triangle.
 vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights);
 
-/// The device's form of a binary tree, with the depth of the stack that traversing it takes.
+/// The device's form of a binary tree: nodes of up to four children whose boxes, in bytes, hold those of the binary
+/// tree; and the entries that the stack of a traversal takes at most.
 struct PackedTree {
   std::vector<layout::Node> nodes;
   uint32_t stack_size = 1;

@@ -100,8 +100,10 @@ struct Renderer::Impl {
 
   void make_kernel() {
     const FeatureMask features = stats.features | (options.with_aovs ? layout::FEATURE_AOVS : 0);
-    const std::array constants{gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
-                               gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()}};
+    const std::array constants{
+        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
+        gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
+        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene->fetches_texels() ? 1U : 0U}};
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back(scene->shading());
     buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame_buffer});

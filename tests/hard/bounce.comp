@@ -28,7 +28,7 @@ void main() {
   Hit hit = trace(ray, ANY_HIT != 0u);
   hits[index] = HitRecord(uvec4(0u), uvec4(0u, 0u, 0u, NO_ORDER));
   if (hit.primitive == NO_PRIMITIVE) return;
-  SurfacePoint surface = surface_point(ray, primitives[hit.primitive], hit);
+  SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
   vec3 normal = dot3(surface.normal, ray.direction) > 0.0 ? -surface.normal : surface.normal;
   vec3 origin = lift_off(surface.position, normal, surface.lift);
   vec3 mirrored = reflect_direction(normalize3(ray.direction), normal, normal);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -180,13 +181,12 @@ Scene scene_of(std::vector<Shape> shapes) {
 }
 
 PackedScene with_infinite_boxes(PackedScene packed) {
-  constexpr float kFar = std::numeric_limits<float>::max();
+  // From -2^127 in 255 steps of 2^120 on every axis.
+  const uint32_t origin = std::bit_cast<uint32_t>(-0x1p127F);
   for (layout::Node& node : packed.nodes) {
-    for (vec4* row : {&node.x, &node.y, &node.z}) {
-      // An absent child stays empty.
-      if ((*row)[0] <= (*row)[1]) (*row)[0] = -kFar, (*row)[1] = kFar;
-      if ((*row)[2] <= (*row)[3]) (*row)[2] = -kFar, (*row)[3] = kFar;
-    }
+    node.frame = uvec4(origin, origin, origin, 0xF7F7F7);
+    node.lo = uvec4(0, 0, 0, 0xFFFFFFFF);
+    node.hi = uvec4(0xFFFFFFFF, 0xFFFFFFFF, 0, 0);
   }
   return packed;
 }

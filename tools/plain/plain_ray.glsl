@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// make_ray.glsl without what makes it robust: boxes as they are, inverses as they come.
+// make_ray.glsl without what makes it robust: boxes as they are.
 
 const float BOX_WIDENING = 1.0;
 
@@ -13,7 +13,9 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   ray.tmin = max(tmin, 0.0) / scale;
   ray.tmax = tmax / scale;
   ray.inverse_length2 = 1.0 / dot(ray.direction, ray.direction);
-  ray.inverse_direction = 1.0 / ray.direction;
+  // Not 1 / 0, for the sake of the quantised boxes, which would be 0 * infinity there.
+  vec3 signs = mix(vec3(1.0), vec3(-1.0), lessThan(ray.direction, vec3(0.0)));
+  ray.inverse_direction = 1.0 / (signs * max(abs(ray.direction), vec3(1e-18)));
   ray.near_origin = origin;
   ray.far_origin = origin;
   ray.shear_axis = 0u;

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "render/pack_scene.h"
+
+namespace promin {
+namespace {
+
+using layout::Node;
+using Real = long double;
+
+struct Box {
+  Real lo[3];
+  Real hi[3];
+};
+
+uint32_t byte_of(uint32_t word, int child) {
+  return (word >> (8 * child)) & 0xFF;
+}
+
+/// A child's box as the layout defines it, without rounding.
+Box decode(const Node& node, int child) {
+  const uint32_t hi_words[3] = {node.lo.w, node.hi.x, node.hi.y};
+  Box box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Real origin = std::bit_cast<float>(node.frame[axis]);
+    const Real step = std::ldexp(Real(1), static_cast<int>(byte_of(node.frame.w, axis)) - 127);
+    box.lo[axis] = origin + step * byte_of(node.lo[axis], child);
+    box.hi[axis] = origin + step * byte_of(hi_words[axis], child);
+  }
+  return box;
+}
+
+std::vector<Bounds> random_boxes(size_t count, double spread, double size, uint32_t seed) {
+  std::mt19937 generator(seed);
+  const auto uniform = [&] { return static_cast<double>(generator()) * 0x1p-32; };
+  std::vector<Bounds> boxes(count);
+  for (Bounds& box : boxes) {
+    const dvec3 center = spread * (2.0 * dvec3(uniform(), uniform(), uniform()) - 1.0);
+    // Some are flat.
+    const dvec3 half = size * dvec3(uniform(), generator() % 4 == 0 ? 0.0 : uniform(), uniform());
+    box.lo = vec3(center - half);
+    box.hi = vec3(center + half);
+  }
+  return boxes;
+}
+
+/// Walks the device's tree and checks what a traversal relies on.
+class Walk {
+ public:
+  Walk(const PackedTree& tree, const Bvh& bvh, std::span<const Bounds> boxes)
+      : tree_(tree), bvh_(bvh), boxes_(boxes), seen_(boxes.size(), 0) {
+    visit(0, 0);
+  }
+
+  void expect_whole() const {
+    EXPECT_EQ(std::count(seen_.begin(), seen_.end(), 1), static_cast<std::ptrdiff_t>(seen_.size()))
+        << "each primitive in one leaf";
+    EXPECT_EQ(visited_, tree_.nodes.size());
+    EXPECT_EQ(std::max(most_entries_, 1U), tree_.stack_size) << "no more and no less stack than it takes";
+  }
+
+ private:
+  /// Returns the bounds of all primitives below.
+  Bounds visit(uint32_t index, uint32_t entries) {
+    ++visited_;
+    const Node& node = tree_.nodes.at(index);
+    uint32_t child_count = 0;
+    while (child_count < layout::NODE_WIDTH && node.children[static_cast<int>(child_count)] != layout::CHILD_ABSENT) {
+      ++child_count;
+    }
+    const uint32_t below = entries + (child_count > 0 ? child_count - 1 : 0);
+    most_entries_ = std::max(most_entries_, below);
+    Bounds all;
+    for (uint32_t i = 0; i < child_count; ++i) {
+      const uint32_t child = node.children[static_cast<int>(i)];
+      const Bounds held = (child & layout::CHILD_IS_LEAF) != 0 ? visit_leaf(child) : visit(child, below);
+      const Box box = decode(node, static_cast<int>(i));
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LE(box.lo[axis], Real(held.lo[axis])) << "node " << index << ", child " << i;
+        EXPECT_GE(box.hi[axis], Real(held.hi[axis])) << "node " << index << ", child " << i;
+      }
+      all.extend(held);
+    }
+    return all;
+  }
+
+  Bounds visit_leaf(uint32_t child) {
+    const uint32_t first = child & layout::CHILD_FIRST_MASK;
+    const uint32_t count = ((child >> layout::CHILD_COUNT_SHIFT) & 15U) + 1;
+    Bounds all;
+    for (uint32_t i = first; i < first + count; ++i) {
+      ++seen_.at(bvh_.references.at(i));
+      all.extend(boxes_[bvh_.references[i]]);
+    }
+    return all;
+  }
+
+  const PackedTree& tree_;
+  const Bvh& bvh_;
+  std::span<const Bounds> boxes_;
+  std::vector<int> seen_;
+  size_t visited_ = 0;
+  uint32_t most_entries_ = 0;
+};
+
+TEST(PackTree, EveryBoxHoldsWhatIsBelowIt) {
+  for (const std::string_view builder : builder_names()) {
+    for (const size_t count : {1U, 2U, 3U, 17U, 1000U}) {
+      for (const auto& [spread, size] : {std::pair(1.0, 0.1), std::pair(1e6, 1e-3), std::pair(1e15, 1e14),
+                                         std::pair(1e-18, 1e-20), std::pair(0.0, 1.0), std::pair(1.0, 0.0)}) {
+        const std::vector<Bounds> boxes = random_boxes(count, spread, size, static_cast<uint32_t>(count));
+        const Bvh bvh = build_bvh(builder, boxes);
+        const PackedTree tree = pack_tree(bvh);
+        SCOPED_TRACE(std::string(builder) + ", boxes " + std::to_string(count) + ", spread " + std::to_string(spread));
+        Walk(tree, bvh, boxes).expect_whole();
+      }
+    }
+  }
+}
+
+TEST(PackTree, NodesAreFilled) {
+  const std::vector<Bounds> boxes = random_boxes(4000, 1.0, 0.01, 7);
+  const Bvh bvh = build_bvh("sah", boxes);
+  const PackedTree tree = pack_tree(bvh);
+  const auto leaves = static_cast<size_t>(
+      std::count_if(bvh.nodes.begin(), bvh.nodes.end(), [](const BvhNode& node) { return node.count > 0; }));
+  // Full nodes would take a third of the leaves.
+  EXPECT_LT(tree.nodes.size(), leaves / 2);
+}
+
+TEST(PackTree, NoPrimitivesAreANodeWithoutChildren) {
+  const PackedTree tree = pack_tree(Bvh());
+  ASSERT_EQ(tree.nodes.size(), 1U);
+  EXPECT_EQ(tree.nodes[0].children, uvec4(layout::CHILD_ABSENT));
+}
+
+}  // namespace
+}  // namespace promin
