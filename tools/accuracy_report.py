@@ -15,7 +15,10 @@ METHODS = {
         "around the closest approach, corrected once; discriminant (r - |p|)(r + |p|) in units of r",
         "Haines et al., Ray Tracing Gems, ch. 7",
     ),
-    "plane": ("t = n.(q - o) / (n.d), q the plane's point", "-"),
+    "plane": (
+        "t = n.(q - o) / (n.d), q the plane's point",
+        "Haines, in Glassner (ed.), An Introduction to Ray Tracing, 1989, 2.3",
+    ),
     "cylinder": (
         "as the frustum of slope 0",
         "as the frustum",
@@ -98,7 +101,8 @@ def primitives_section(runs):
         "## Primitives\n\n"
         + table(["primitive", "method", "source"], methods)
         + "\n\nOver all rays of the hard cases below, which aim at edges and silhouettes far more often than a picture"
-        + " does:\n\n"
+        + " does. Cylinders, cones and frustums are held to BK: where a ray meets a rim, the exact hit may be on the side"
+        + " and the device's on the cap or the other way round, each at another angle, and K of t may pass 8.\n\n"
         + table(header, rows)
     )
 

@@ -59,7 +59,9 @@ std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::Physic
       has_device_extension(device, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
     const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
     const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
-    return std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
+    const std::string name = driver.driverName.data();
+    const std::string version = driver.driverInfo.data();
+    return version.empty() ? name : name + " " + version;
   }
   return "driver " + version_text(properties.driverVersion);
 }

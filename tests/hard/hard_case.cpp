@@ -92,7 +92,8 @@ dvec3 Random::perpendicular(const dvec3& axis) {
 }
 
 double Lab::rounding_factor() const {
-  return gpu::info_of(device_).driver.find("llvmpipe") != std::string::npos ? 1.0 : 2.0;
+  // On the CPU they are the processor's own.
+  return gpu::info_of(device_).type == "CPU" ? 1.0 : 2.0;
 }
 
 std::vector<Hit> Lab::cast(const Scene& scene, std::span<const Ray> rays, HitQuery query) const {

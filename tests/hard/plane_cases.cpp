@@ -12,22 +12,25 @@ namespace {
 
 constexpr size_t kRayCount = 100000;
 
-/// |dt n.d| / (u (|q - o| + |t d|)) of the worst hit; infinite where a hit is missing.
-double worst_plane_error(const Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
+/// Of |dt n.d| / (u (|q - o| + |t d|)); infinite where a hit is missing.
+Tally judge_plane(const Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
   using oracle::Real;
   using oracle::Vector;
   const Vector n(plane.normal);
-  double worst = 0.0;
+  Tally tally;
+  tally.rays = tally.hits = rays.size();
   for (size_t i = 0; i < rays.size(); ++i) {
     const Vector d(rays[i].direction);
     const Vector to_plane = Vector(plane.point) - Vector(rays[i].origin);
     const Real slope = glm::dot(n, d);
     const Real t = glm::dot(n, to_plane) / slope;
-    if (hits[i].object != 0) return std::numeric_limits<double>::infinity();
     const Real scale = kUnitRoundoff * (glm::length(to_plane) + t * glm::length(d));
-    worst = std::max(worst, static_cast<double>(std::abs((hits[i].t - t) * slope) / scale));
+    const auto error = hits[i].object == 0 ? static_cast<double>(std::abs((hits[i].t - t) * slope) / scale)
+                                           : std::numeric_limits<double>::infinity();
+    tally.max_t_error = std::max(tally.max_t_error, error);
+    tally.sum_t_error2 += error * error;
   }
-  return worst;
+  return tally;
 }
 
 void run_slopes(Lab& lab) {
@@ -45,13 +48,10 @@ void run_slopes(Lab& lab) {
       const oracle::Real slope = glm::dot(oracle::Vector(plane.normal), oracle::Vector(ray.direction));
       if (slope < -0.5L * cosine) rays.push_back(ray);
     }
-    const double worst = worst_plane_error(plane, rays, lab.cast(scene_of({plane}), rays));
+    const Tally tally = judge_plane(plane, rays, lab.cast(scene_of({plane}), rays));
     char what[96];
     std::snprintf(what, sizeof what, "|dt n.d| / u(|q-o| + |td|), cos %.0e", cosine);
-    lab.expect_at_most(what, 8.0 * lab.rounding_factor(), worst);
-    Tally tally;
-    tally.rays = tally.hits = rays.size();
-    tally.max_t_error = worst;
+    lab.expect_at_most(what, 8.0 * lab.rounding_factor(), tally.max_t_error);
     Lab::credit("plane", tally);
   }
 }
