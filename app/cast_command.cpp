@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <cctype>
 #include <memory>
 #include <vector>
 
@@ -40,16 +41,21 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
   add_scene_argument(table, options.tracing);
   table.add_required("RAYS.npy", "", "NumPy array of N x 8 float32: origin xyz, tmin, direction xyz (any length), tmax",
                      [&](const Words& w) { options.rays = w.text(); });
-  table.add_required("-o,--output", "HITS.npy",
-                     "NumPy array to write: t, object, primitive, u, v, normal of each ray's nearest hit",
-                     [&](const Words& w) { options.hits = w.text(); });
+  table.add_required_repeated("-o,--output", "HITS.npy",
+                              "NumPy array to write: t, object, primitive, u, v, normal of each ray's nearest hit",
+                              [&](const Words& w) {
+                                if (w.all().size() > 1) w.refuse("--output takes one file here");
+                                options.hits = w.text();
+                              });
   table.add_flag("--any", "Ask only whether anything is hit: t is 0 then, and infinite on a miss", options.is_any);
   add_tracing_options(table, options.tracing);
 }
 
 void check_cast_options(const CastOptions& options) {
   check_tracing_options(options.tracing);
-  if (options.hits.extension() != ".npy") {
+  std::string ending = options.hits.extension();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".npy") {
     throw UsageError(
         {"unknown output ending \"" + options.hits.extension().string() + "\"", options.hits.string(), "use .npy"});
   }

@@ -134,8 +134,8 @@ struct Frame {
   uvec4 first_index;  // of x = materials, y = lights, z = normals, w = colours in their views of the shading buffer
 };
 
-// What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform buffer, because
-// lavapipe compiles the shader anew for each value of those that control flow depends on.
+// What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform buffer,
+// because lavapipe compiles the shader anew for each value of those that control flow depends on.
 struct Dispatch {
   uvec4 range;     // x = first block, y = first sample, z = samples to take; w = mirror bounces
                    // casting: x = first ray, y = one past the last

@@ -4,8 +4,7 @@
 
 // The box test's allowance, as a multiple of the distance that intersections may span: every accepted hit lies within
 // 8 u S of its primitive (numerics.md, BK), and the box test's own rounding moves a plane by 6 u S: so a box grown by
-// 24 u S never hides a hit, whatever the tree. Slivers of aspect beyond 1e2 are the exception: P(u,v) lies so near, but
-// t may be off by more (hard case 25).
+// 24 u S never hides a hit, whatever the tree.
 const float BOX_PADDING = 24.0 * UNIT_ROUNDOFF;
 // Twice what rounding can take of the padding when it is added to the origin: far from the world's origin that would be
 // all of it, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
@@ -29,7 +28,7 @@ bool is_nan(float x) { return (floatBitsToUint(x) & 0x7FFFFFFFu) > 0x7F800000u; 
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
   float size = max_abs(direction);
-  bool is_valid = is_finite(direction) && size >= 1.17549435e-38 && size < 1.7014118e+38 && is_finite(origin) &&
+  bool is_valid = is_finite(direction) && size >= SMALLEST_NORMAL && size < 1.7014118e+38 && is_finite(origin) &&
                   max_abs(origin) < 1e38 && !is_nan(tmin) && !is_nan(tmax) && tmin < tmax && tmin < INFINITY;
   float scale = is_valid ? power_of_two_inverse(size) : 1.0;
   ray.origin = is_valid ? origin : vec3(0.0);

@@ -4,6 +4,7 @@
 // cross(), length() and normalize() leave the order to the driver, so promin has its own.
 
 const float UNIT_ROUNDOFF = 5.9604644775390625e-8;  // 2^-24
+const float SMALLEST_NORMAL = 1.17549435e-38;      // 2^-126
 const float TWO_POW_MINUS_80 = 8.271806125530277e-25;
 #define INFINITY uintBitsToFloat(0x7F800000u)
 
@@ -17,7 +18,7 @@ precise float length3(vec3 v) { return sqrt(dot3(v, v)); }
 
 float max_abs(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// 2^-e for x in [2^e, 2^(e+1)): multiplying by it is exact. For normal x below 2^126.
+// 2^-e for x in [2^e, 2^(e+1)): multiplying by it is exact. For normal x below 2^127.
 float power_of_two_inverse(float x) { return uintBitsToFloat((254u << 23) - (floatBitsToUint(x) & 0x7F800000u)); }
 
 // v / |v| for any v between overflow and underflow; relative error <= 3 u. A zero vector stays zero.

@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 std::vector<std::byte> read_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::none) {
+    throw InputError({"cannot reach the file (" + error.message() + ")", file.string(), "check its permissions"});
+  }
   if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
   if (fs::is_directory(status)) throw InputError({"is a folder, not a file", file.string(), "name a file in it"});
   std::ifstream stream(file, std::ios::binary | std::ios::ate);

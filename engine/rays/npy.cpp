@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/npy.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -60,8 +61,8 @@ std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std
       if (text[at] == '(' || text[at] == '[') ++depth;
       if (text[at] == ')' || text[at] == ']') --depth;
     }
-    entries[key] = text.substr(first, at - first);
-    take(',');
+    if (!entries.emplace(key, text.substr(first, at - first)).second) return std::nullopt;
+    if (!take(',') && (at >= text.size() || text[at] != '}')) return std::nullopt;
   }
   skip_spaces();
   return at == text.size() ? std::optional(entries) : std::nullopt;
@@ -82,6 +83,15 @@ std::optional<uint64_t> parse_shape(std::string_view text) {
   return count;
 }
 
+/// For a message: without what would move a terminal's cursor, and not longer than a line.
+std::string quote(std::string_view text) {
+  constexpr size_t kMost = 60;
+  std::string quoted(text.substr(0, kMost));
+  std::replace_if(
+      quoted.begin(), quoted.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.size() > kMost ? quoted + "..." : quoted;
+}
+
 std::string_view trim(std::string_view text) {
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   return text;
@@ -95,7 +105,7 @@ uint64_t parse_header(std::string_view header, const fs::path& file) {
   }
   const std::string_view type = trim(entries->at("descr"));
   if (type != "'<f4'" && type != "\"<f4\"") {
-    throw InputError({"the array's type is " + std::string(type) + ", not '<f4'", file.string(), kCure});
+    throw InputError({"the array's type is " + quote(type) + ", not '<f4'", file.string(), kCure});
   }
   if (trim(entries->at("fortran_order")) != "False") {
     throw InputError({"the array is in Fortran order", file.string(), kCure});
@@ -103,7 +113,7 @@ uint64_t parse_header(std::string_view header, const fs::path& file) {
   const std::optional<uint64_t> count = parse_shape(entries->at("shape"));
   if (!count) {
     throw InputError(
-        {"the array's shape is " + std::string(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
+        {"the array's shape is " + quote(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
   }
   return *count;
 }
@@ -130,6 +140,9 @@ std::string make_hit_header(uint64_t count) {
 RayReader::RayReader(const fs::path& file) : file_(file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::none) {
+    throw InputError({"cannot reach the file (" + error.message() + ")", file.string(), "check its permissions"});
+  }
   if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
   if (!fs::is_regular_file(status)) throw InputError({"not a regular file", file.string(), "name a .npy file"});
   const uint64_t file_bytes = fs::file_size(file, error);
@@ -156,7 +169,7 @@ RayReader::RayReader(const fs::path& file) : file_(file) {
   if (data_bytes % sizeof(Ray) != 0 || data_bytes / sizeof(Ray) != count_) {
     throw InputError({"the header tells of " + std::to_string(count_) + " rays, the file holds " +
                           std::to_string(data_bytes) + " bytes of them, 32 each",
-                      file.string(), "write the file again"});
+                      file.string(), "let NumPy write the file again"});
   }
 }
 

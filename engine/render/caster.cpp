@@ -24,7 +24,7 @@ using layout::RayRecord;
 constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATURE_SPHERES | layout::FEATURE_CYLINDERS |
                                        layout::FEATURE_CONES | layout::FEATURE_PLANES;
 
-/// A power of two that brings the direction to where the shader takes it (shaders/ray.glsl); mostly 1.
+/// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
   const float size = max_abs_component(direction);
   if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;

@@ -126,15 +126,15 @@ void CutTriangles::cut(const Mesh& mesh, uint32_t triangle, std::vector<Triangle
   const TrianglePart whole{PartCorner{mesh.positions[corners.x], dvec2(0, 0)},
                            PartCorner{mesh.positions[corners.y], dvec2(1, 0)},
                            PartCorner{mesh.positions[corners.z], dvec2(0, 1)}};
+  const std::array inside{points_inside(whole[0].position, whole[1].position),
+                          points_inside(whole[1].position, whole[2].position),
+                          points_inside(whole[2].position, whole[0].position)};
   parts.clear();
-  if (line_of_edge_.empty()) {
+  if (inside[0].size() + inside[1].size() + inside[2].size() >= kMaxParts) {
     parts.push_back(whole);
-    return;
+  } else {
+    cut_at(whole, inside, parts);
   }
-  cut_at(whole,
-         {points_inside(whole[0].position, whole[1].position), points_inside(whole[1].position, whole[2].position),
-          points_inside(whole[2].position, whole[0].position)},
-         parts);
 }
 
 }  // namespace promin

@@ -22,9 +22,14 @@ using TrianglePart = std::array<PartCorner, 3>;
 
 /// Where a triangle's corners lie in a line it is not packed, but its middle corner lies on the edge of a neighbour. In
 /// the intersection's rounding that corner is beside the edge, and a ray slips through between (hard case 21). So such
-/// neighbours are cut at the corner: what is packed is the same surface, and closed vertex to vertex.
+/// neighbours are cut at the corner: what is packed is the same surface, and closed vertex to vertex. Interpolated
+/// normals and colours stay as they were; only the terminator's lift, which looks at the corners, may come out smaller
+/// along a cut. A triangle with more than kMaxParts parts is left whole.
 class CutTriangles {
  public:
+  /// Bounds what a file can make of one triangle.
+  static constexpr size_t kMaxParts = 64;
+
   /// Finds the corners in the middle of edges, of all meshes together.
   explicit CutTriangles(const Scene& scene);
 

@@ -62,10 +62,10 @@ struct Collected {
 
 class Collector {
  public:
-  explicit Collector(const Scene& scene) : cut_triangles_(scene) {
+  explicit Collector(const Scene& scene) : scene_(scene), cut_triangles_(scene) {
     size_t count = 0;
     for (const Object& object : scene.objects) count += primitive_count(object.shape);
-    check_count(scene, count);
+    check_count(count);
     result_.solids.reserve(count);
     result_.solid_surfaces.reserve(count);
     result_.boxes.reserve(count);
@@ -73,7 +73,6 @@ class Collector {
       material_ = object.material;
       result_.numbers.first_order.push_back(result_.order);
       std::visit([this](const auto& shape) { add(shape); }, object.shape);
-      check_count(scene, result_.solids.size());
     }
     result_.numbers.first_order.push_back(result_.order);
   }
@@ -81,9 +80,9 @@ class Collector {
   Collected take() { return std::move(result_); }
 
  private:
-  static void check_count(const Scene& scene, size_t count) {
+  void check_count(size_t count) const {
     if (count <= CHILD_FIRST_MASK) return;
-    throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
+    throw RunError({"the scene has " + std::to_string(count) + " primitives", scene_.file.string(),
                     "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
   }
 
@@ -162,12 +161,14 @@ class Collector {
   }
 
   void add_solid(Primitive primitive, const Bounds& box, const uvec4& surface) {
+    check_count(result_.solids.size() + 1);
     primitive.c.y = result_.order++;
     result_.solids.push_back(primitive);
     result_.solid_surfaces.push_back({surface});
     result_.boxes.push_back(box);
   }
 
+  const Scene& scene_;
   CutTriangles cut_triangles_;
   Collected result_;
   uint32_t material_ = 0;

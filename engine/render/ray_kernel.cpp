@@ -68,8 +68,12 @@ struct RayKernel::Impl {
 
   void make_buffers(size_t ray_count) {
     if (ray_count <= capacity) return;
-    rays.emplace(device, ray_count * sizeof(layout::RayRecord), vk::BufferUsageFlagBits::eStorageBuffer);
-    hits.emplace(device, hits_size(ray_count), vk::BufferUsageFlagBits::eStorageBuffer);
+    // Both are there before either is replaced: the pipeline stays bound to buffers that live.
+    constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
+    gpu::Buffer new_rays(device, ray_count * sizeof(layout::RayRecord), kStorage);
+    gpu::Buffer new_hits(device, hits_size(ray_count), kStorage);
+    rays.emplace(std::move(new_rays));
+    hits.emplace(std::move(new_hits));
     capacity = ray_count;
     if (!kernel) return;
     for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 
@@ -32,7 +31,7 @@ struct RayKernelOptions {
   HitQuery query = HitQuery::kNearest;
   /// A single dispatch is not meant to take longer.
   double target_dispatch_ms = 25.0;
-  /// Fixed number of rays a dispatch, rounded up to whole workgroups, for tests; 0 adapts.
+  /// Fixed number of rays a dispatch, for tests; 0 adapts.
   uint32_t rays_per_dispatch = 0;
 };
 

@@ -24,6 +24,21 @@ bool has_anything_to_draw(const Scene& scene) {
                      [](const Object& object) { return primitive_count(object.shape) > 0; });
 }
 
+/// A triangle's area in the sheared plane must be a normal float (shaders/primitives/triangle.glsl).
+constexpr float kSmallestMesh = 1e-18F;
+
+/// Meshes that are not refused for their size, but too small to be hit.
+void warn_of_tiny_meshes(Scene& scene) {
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&scene.objects[i].shape);
+    if (mesh == nullptr || mesh->triangles.empty()) continue;
+    Bounds bounds;
+    for (const vec3& position : mesh->positions) bounds.extend(position);
+    if (max_component(bounds.extent()) >= kSmallestMesh) continue;
+    scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
+  }
+}
+
 constexpr SceneFormat kFormats[] = {{".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}};
 
 }  // namespace
@@ -36,6 +51,7 @@ Scene load_scene(const std::filesystem::path& file) {
   for (const SceneFormat& format : kFormats) {
     if (ending == format.ending) {
       Scene scene = format.load(file);
+      warn_of_tiny_meshes(scene);
       if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
       return scene;
     }

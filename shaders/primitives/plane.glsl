@@ -10,8 +10,8 @@ Crossing intersect_plane(Ray ray, Primitive p) {
   return Crossing(t, 0.0, 0.0, PART_SIDE);
 }
 
-// Only the error across the plane needs the lift, and across an axis-aligned plane there is hardly any: by running error
-// analysis n.(position - point) is off by at most u sum |n_i| (4 |from_point_i| + |position_i|), and rounding the
+// Only the error across the plane needs the lift, and across an axis-aligned plane there is hardly any: by running
+// error analysis n.(position - point) is off by at most u sum |n_i| (4 |from_point_i| + |position_i|), and rounding the
 // lifted origin adds as much as |position_i| again.
 SurfacePoint plane_surface(Ray ray, Primitive p, Hit hit) {
   precise vec3 along_ray = ray.origin + hit.t * ray.direction;

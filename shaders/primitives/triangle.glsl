@@ -3,12 +3,46 @@
 // Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: shear the triangle so that the ray runs
 // along an axis, and compare products in 2D. Every triangle sees the same sheared vertex, so none leaks at a shared
 // edge or vertex, as long as nothing is contracted. Measured: another answer than the exact one only within 0.6 u S of
-// an edge (bound 2), |dt||d|cos <= 3.6 u S; of a sliver that grows to a tenth of its aspect, while P(u,v) stays within
-// 0.7 u S of the plane (bound 8; hard cases 25, 29, 38).
+// an edge (bound 2), |dt||d|cos <= 3.6 u S (bound 8) up to an aspect of 10^6, P(u,v) within 0.7 u S of the plane (bound
+// 8; hard cases 25, 29, 38).
 
 vec3 corner0(Primitive p) { return p.a.xyz; }
 vec3 corner1(Primitive p) { return vec3(p.a.w, p.b.xy); }
 vec3 corner2(Primitive p) { return vec3(p.b.zw, uintBitsToFloat(p.c.x)); }
+
+float dot2(vec2 a, vec2 b) {
+  precise float sum = a.x * b.x + a.y * b.y;
+  return sum;
+}
+
+// The weights' point should be the origin of the sheared plane. Of slivers and of triangles seen edge-on the weights
+// are rounding and little else, but only along the triangle: a step along its longest side brings the point back; where
+// that leads out of the triangle, the point is the nearest of the side that it would cross. Without this such a hit may
+// be anywhere on the triangle, and whether it is found would depend on the tree.
+vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
+  precise vec2 ab = b - a;
+  precise vec2 bc = c - b;
+  precise vec2 ca = a - c;
+  vec3 squares = vec3(dot2(ab, ab), dot2(bc, bc), dot2(ca, ca));
+  bool is_ab = squares.x >= squares.y && squares.x >= squares.z;
+  bool is_bc = !is_ab && squares.y >= squares.z;
+  vec2 longest = is_ab ? ab : (is_bc ? bc : ca);
+  vec3 step = is_ab ? vec3(-1.0, 1.0, 0.0) : (is_bc ? vec3(0.0, -1.0, 1.0) : vec3(1.0, 0.0, -1.0));
+  precise vec2 point = weights.x * a + weights.y * b + weights.z * c;
+  // No less than the determinant, so not 0.
+  precise float shift = dot2(point, longest) / max(squares.x, max(squares.y, squares.z));
+  precise vec3 centered = weights - shift * step;
+
+  float least = min(centered.x, min(centered.y, centered.z));
+  if (least >= 0.0) return centered;
+  bool beyond_a = centered.x == least;
+  bool beyond_b = !beyond_a && centered.y == least;
+  vec2 start = beyond_a ? b : (beyond_b ? c : a);
+  vec2 side = beyond_a ? bc : (beyond_b ? ca : ab);
+  precise float part = clamp(-dot2(start, side) / max(dot2(side, side), SMALLEST_NORMAL), 0.0, 1.0);
+  precise float rest = 1.0 - part;
+  return beyond_a ? vec3(0.0, rest, part) : (beyond_b ? vec3(part, 0.0, rest) : vec3(rest, part, 0.0));
+}
 
 Crossing intersect_triangle(Ray ray, Primitive p) {
   precise vec3 a = permute_axes(corner0(p) - ray.origin, ray.shear_axis);
@@ -31,11 +65,12 @@ Crossing intersect_triangle(Ray ray, Primitive p) {
   bool is_beyond = max(lo.x, lo.y) > 0.0 || min(hi.x, hi.y) < 0.0;
   precise float determinant = u + v + w;
   // Edge-on, or an area whose inverse is no longer a float.
-  bool has_area = abs(determinant) >= 1.17549435e-38;
+  bool has_area = abs(determinant) >= SMALLEST_NORMAL;
   if (is_outside || is_beyond || !has_area) return NO_CROSSING;
 
   precise float inverse = 1.0 / determinant;
-  precise vec3 weights = vec3(u, v, w) * inverse;
+  precise vec3 raw_weights = vec3(u, v, w) * inverse;
+  vec3 weights = center_weights(raw_weights, a2, b2, c2);
   precise float t = (weights.x * a.z + weights.y * b.z + weights.z * c.z) * ray.shear.z;
   if (!(t > ray.tmin)) return NO_CROSSING;
   return Crossing(t, weights.y, weights.z, PART_SIDE);

@@ -130,6 +130,7 @@ TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.csv"}), 2, "use .npy");
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "rays.npy"}), 2, "overwrite an input");
   expect_failure(run({"cast", "square.gltf", "-o", "hits.npy"}), 2, "RAYS.npy");
+  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "a.npy", "-o", "b.npy"}), 2, "takes one file");
   expect_failure(run({"cast", "square.gltf", "none.npy", "-o", "hits.npy"}), 3, "none.npy");
   expect_failure(run({"cast", "square.gltf", "square.gltf", "-o", "hits.npy"}), 3, "not a NumPy array");
   expect_failure(run({"cast", "none.obj", "rays.npy", "-o", "hits.npy"}), 3, "none.obj");

@@ -95,6 +95,15 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
         "{'a': ((((", "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)} x"}) {
     EXPECT_THAT(refusal(npy(header, data)), HasSubstr("header is damaged")) << header;
   }
+  // What a file says is quoted on one line of harmless characters.
+  const std::string loud = refusal(
+      npy("{'descr': 'a\n\x1B" + std::string(500, 'b') + "', 'fortran_order': False, 'shape': (1, 8)}", data));
+  EXPECT_THAT(loud, testing::AllOf(HasSubstr("'a??bbb"), HasSubstr("...")));
+  EXPECT_LT(loud.size(), 400U);
+  EXPECT_THAT(refusal(npy("{'descr': '<f4', 'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)}", data)),
+              HasSubstr("header is damaged"));
+  EXPECT_THAT(refusal(npy("{'descr': '<f4' 'fortran_order': False, 'shape': (1, 8)}", data)),
+              HasSubstr("header is damaged"));
   const std::string message = refusal(npy(header_of(1), data + "x"));
   EXPECT_THAT(message, HasSubstr("1 rays, the file holds 33 bytes"));
   EXPECT_THAT(refusal(npy(header_of(2), data)), HasSubstr("2 rays, the file holds 32 bytes"));

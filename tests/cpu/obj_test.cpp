@@ -14,6 +14,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -315,6 +316,14 @@ TEST(TriangulateTest, EveryPolygonGivesTwoTrianglesLessThanCorners) {
   for (const auto& corners : {collinear, same, crossing}) {
     EXPECT_EQ(triangulate_polygon(corners).size(), corners.size() - 2);
   }
+}
+
+TEST_F(ObjTest, TriangleTooSmallToHitIsSaid) {
+  const auto triangle = [](const std::string& size) {
+    return "v 0 0 0\nv " + size + " 0 0\nv 0 " + size + " 0\nf 1 2 3\n";
+  };
+  EXPECT_THAT(load("small.obj", triangle("1e-17")).warnings, Not(Contains(HasSubstr("1e-18"))));
+  EXPECT_THAT(load("tiny.obj", triangle("1e-20")).warnings, Contains(HasSubstr("object 0 is smaller than 1e-18")));
 }
 
 }  // namespace
