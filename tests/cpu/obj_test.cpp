@@ -322,8 +322,8 @@ TEST_F(ObjTest, TriangleTooSmallToHitIsSaid) {
   const auto triangle = [](const std::string& size) {
     return "v 0 0 0\nv " + size + " 0 0\nv 0 " + size + " 0\nf 1 2 3\n";
   };
-  EXPECT_THAT(load("small.obj", triangle("1e-17")).warnings, Not(Contains(HasSubstr("1e-18"))));
-  EXPECT_THAT(load("tiny.obj", triangle("1e-20")).warnings, Contains(HasSubstr("object 0 is smaller than 1e-18")));
+  EXPECT_THAT(load(triangle("1e-17")).warnings, Not(Contains(HasSubstr("1e-18"))));
+  EXPECT_THAT(load(triangle("1e-20")).warnings, Contains(HasSubstr("object 0 is smaller than 1e-18")));
 }
 
 }  // namespace
