@@ -50,7 +50,8 @@ struct RayKernel::Impl {
     const std::array constants{
         gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features},
         gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
-        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene->fetches_texels() ? 1U : 0U},
+        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS,
+                                    scene->fetches_texels() && !options.avoids_texels ? 1U : 0U},
         gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame});

@@ -29,6 +29,8 @@ struct RayKernelOptions {
   std::span<const uint32_t> spirv = cast_spirv();
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;
+  /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
+  bool avoids_texels = false;
   /// A single dispatch is not meant to take longer.
   double target_dispatch_ms = 25.0;
   /// Fixed number of rays a dispatch, for tests; 0 adapts.

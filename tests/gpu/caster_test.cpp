@@ -12,6 +12,7 @@
 #include "gpu/test_scenes.h"
 #include "oracle/verdict.h"
 #include "render/pack_scene.h"
+#include "render/ray_kernel.h"
 #include "render/renderer.h"
 
 namespace promin {
@@ -116,6 +117,23 @@ TEST_F(CasterTest, ObjectsWithoutPrimitivesTakeANumber) {
   EXPECT_EQ(hits[0].primitive, 1);
   EXPECT_EQ(hits[1].object, 4);
   EXPECT_EQ(hits[1].primitive, 0);
+}
+
+// Two ways to the same memory: the words of a storage buffer, and texels.
+TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
+  const PackedScene packed = pack_scene(test::make_scene_of_everything(2000), "sah");
+  const std::shared_ptr<const DeviceScene> scene = upload_scene(device(), packed);
+  std::vector<layout::RayRecord> requests;
+  for (const Ray& ray : make_rays(20000)) {
+    requests.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
+  }
+  std::vector<layout::HitRecord> by_texels(requests.size());
+  std::vector<layout::HitRecord> by_words(requests.size());
+  RayKernelOptions options;
+  RayKernel(device(), scene, options).run(requests, by_texels);
+  options.avoids_texels = true;
+  RayKernel(device(), scene, options).run(requests, by_words);
+  EXPECT_EQ(std::memcmp(by_texels.data(), by_words.data(), by_texels.size() * sizeof(layout::HitRecord)), 0);
 }
 
 TEST_F(CasterTest, UnknownBuildersAreRefused) {
