@@ -167,6 +167,7 @@ void cast_at_collinear_corners(Lab& lab) {
   expect_no_leaks(lab, scene, rays, "at edges with a collinear corner");
   const Tally tally = lab.cast_and_judge(scene, std::span(rays).first(300));
   lab.expect_at_most("margin of other answers / uS (B2), collinear corner", 2.0, tally.max_margin);
+  lab.expect_at_most("K of t (B1), collinear corner", 8.0 * lab.rounding_factor(), tally.max_t_error);
   lab.expect_at_most("malformed hits, collinear corner", 0.0, static_cast<double>(tally.malformed));
 }
 
