@@ -74,6 +74,8 @@ class Random {
   dvec3 direction();
   /// A unit vector perpendicular to a unit vector.
   dvec3 perpendicular(const dvec3& axis);
+  /// In the triangle, all places alike.
+  dvec3 inside(const dvec3& a, const dvec3& b, const dvec3& c);
 
  private:
   std::mt19937_64 generator_;
@@ -135,5 +137,12 @@ uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const
 
 /// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
 Ray ray_towards(const dvec3& origin, const dvec3& target);
+
+/// A triangle of its own, of ordinary shape: about 1 in size, turned as it comes.
+Mesh random_triangle(const dvec3& center, Random& random);
+
+/// Across a mesh's triangle from one point of it to another, at a cosine of 1e-9...3e-6 to its plane: the rounding of
+/// origin and direction alone decides where the ray meets the plane.
+Ray ray_grazing(const Mesh& mesh, const uvec3& triangle, Random& random);
 
 }  // namespace promin::hard

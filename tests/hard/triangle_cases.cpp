@@ -64,11 +64,7 @@ dvec3 pick_on_edge(const Mesh& mesh, Random& random) {
 
 dvec3 pick_inside(const Mesh& mesh, Random& random) {
   const uvec3& corners = mesh.triangles[pick(random, mesh.triangles.size())];
-  double u = random.uniform();
-  double v = random.uniform();
-  if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
-  const dvec3 a = mesh.positions[corners.x];
-  return a + u * (dvec3(mesh.positions[corners.y]) - a) + v * (dvec3(mesh.positions[corners.z]) - a);
+  return random.inside(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]);
 }
 
 template <typename MakeRay>
@@ -326,8 +322,73 @@ void cast_edge_on(Lab& lab) {
   Lab::credit("triangle", tally, 0);
 }
 
+/// How far o + t d of the worst hit lies from its triangle's plane, and outside the box around its corners, in u S.
+struct Stray {
+  Real off_plane = 0;
+  Real off_box = 0;
+
+  void add(const Mesh& mesh, std::span<const Ray> rays, std::span<const Hit> hits) {
+    // Written so that NaN stays.
+    const auto raise = [](Real& worst, Real error) { worst = error <= worst ? worst : error; };
+    for (size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].object < 0) continue;
+      const uvec3& corners = mesh.triangles[static_cast<size_t>(hits[i].primitive)];
+      const Vector a(mesh.positions[corners.x]);
+      const Vector b(mesh.positions[corners.y]);
+      const Vector c(mesh.positions[corners.z]);
+      const oracle::Ray ray{Vector(rays[i].origin), Vector(rays[i].direction)};
+      const Vector p = ray.origin + Real(hits[i].t) * ray.direction;
+      const Vector beyond = glm::max(glm::min(glm::min(a, b), c) - p, p - glm::max(glm::max(a, b), c));
+      const Real unit = oracle::kRoundoff * oracle::scale_of(mesh, hits[i].primitive, ray);
+      raise(off_plane, std::abs(glm::dot(p - a, glm::normalize(glm::cross(b - a, c - a)))) / unit);
+      raise(off_box, std::max({beyond.x, beyond.y, beyond.z}) / unit);
+    }
+  }
+
+  void expect_little(Lab& lab, const std::string& where) const {
+    lab.expect_at_most("|o + t d - plane| / uS, " + where, 8.0 * lab.rounding_factor(), static_cast<double>(off_plane));
+    // A multiple of BK: P moves along the ray, not across it, and what follows from a hit needs it at the triangle.
+    lab.expect_at_most("o + t d outside the triangle's box / uS, " + where, 24.0 * lab.rounding_factor(),
+                       static_cast<double>(off_box));
+  }
+};
+
+/// Rays almost in the plane of a triangle and across it. Whether they hit is for rounding to say, but where they do
+/// is a point of the triangle, to which shadows and reflections start.
+void cast_across(Lab& lab) {
+  Random random(241);
+  Tally tally;
+  for (const double offset : {0.0, 100.0}) {
+    Stray stray;
+    for (int i = 0; i < 32; ++i) {
+      const Mesh mesh = random_triangle(dvec3(offset) + random.direction(), random);
+      const std::vector<Ray> rays = make_rays(10000, [&] { return ray_grazing(mesh, mesh.triangles.front(), random); });
+      stray.add(mesh, rays, lab.cast(scene_of({mesh}), rays));
+      tally.rays += rays.size();
+    }
+    stray.expect_little(lab, label("grazing, offset", offset));
+  }
+  // A turned wall from points of its plane.
+  Stray stray;
+  for (int i = 0; i < 16; ++i) {
+    const dvec3 right = random.direction();
+    const dvec3 up = random.perpendicular(right);
+    const Mesh mesh = make_square({"wall", dvec3(0.0), right, up}, 1, 1);
+    const std::vector<Ray> rays = make_rays(10000, [&] {
+      const double angle = random.uniform(-0.35, 0.35);
+      const dvec3 along = std::cos(angle) * right + std::sin(angle) * up;
+      return ray_towards(-3.0 * right, -3.0 * right + along);
+    });
+    stray.add(mesh, rays, lab.cast(scene_of({mesh}), rays));
+    tally.rays += rays.size();
+  }
+  stray.expect_little(lab, "in the plane of a wall");
+  Lab::credit("triangle", tally);
+}
+
 void run_degenerate(Lab& lab) {
   cast_edge_on(lab);
+  cast_across(lab);
   Random random(24);
   struct Degenerate {
     const char* name;
