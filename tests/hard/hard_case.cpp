@@ -42,6 +42,7 @@ void judge_one(const Scene& scene, const Ray& ray, const Hit& hit, Tally& tally)
   const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
   const oracle::Verdict verdict = oracle::judge(scene, exact, {hit.t, hit.object, hit.primitive});
   ++tally.rays;
+  ++tally.judged;
   if (hit.object >= 0) {
     if (!is_well_formed(hit)) ++tally.malformed;
     tally.max_surface_error = std::max(tally.max_surface_error, static_cast<double>(verdict.surface_error));
@@ -67,6 +68,7 @@ double Tally::rms_t_error() const {
 
 void Tally::add(const Tally& other) {
   rays += other.rays;
+  judged += other.judged;
   hits += other.hits;
   misses += other.misses;
   max_t_error = std::max(max_t_error, other.max_t_error);
@@ -75,6 +77,13 @@ void Tally::add(const Tally& other) {
   misclassified += other.misclassified;
   max_margin = std::max(max_margin, other.max_margin);
   malformed += other.malformed;
+}
+
+Tally Tally::without_t_errors() const {
+  Tally rest = *this;
+  rest.hits = 0;
+  rest.max_t_error = rest.sum_t_error2 = 0.0;
+  return rest;
 }
 
 dvec3 Random::direction() {

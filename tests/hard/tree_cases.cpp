@@ -25,11 +25,17 @@ vec3 turned_axis(Random& random) {
   return vec3(random.direction());
 }
 
+/// In a ball, all places alike.
+dvec3 random_point(const dvec3& center, double radius, Random& random) {
+  const double distance = radius * std::cbrt(random.uniform());
+  return center + distance * random.direction();
+}
+
 /// Shapes of every kind strewn over a ball, some much larger than others.
 Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
   std::vector<Shape> shapes;
   for (int i = 0; i < count; ++i) {
-    const vec3 place(center + radius * std::cbrt(random.uniform()) * random.direction());
+    const vec3 place(random_point(center, radius, random));
     const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
     switch (i % 5) {
       case 0:
@@ -70,8 +76,8 @@ Scene make_ties() {
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {
   // From outside, from within, and from within along an axis.
-  const dvec3 within = in.center + in.radius * std::cbrt(random.uniform()) * random.direction();
-  const dvec3 target = in.center + in.radius * std::cbrt(random.uniform()) * random.direction();
+  const dvec3 within = random_point(in.center, in.radius, random);
+  const dvec3 target = random_point(in.center, in.radius, random);
   if (index % 8 < 5) return ray_towards(in.center + 3.0 * in.radius * random.direction(), target);
   Ray ray = ray_towards(within, target);
   if (index % 8 == 7) {

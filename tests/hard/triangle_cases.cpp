@@ -100,16 +100,21 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
   Random random(steps);
   const Mesh mesh = make_uv_sphere(center, steps, [](uint32_t, uint32_t) { return 2.0; });
   const Scene scene = scene_of({mesh});
-  const auto origin = [&] { return center + random.uniform() * random.direction(); };
+  const auto origin = [&] {
+    const double reach = random.uniform();
+    return center + reach * random.direction();
+  };
   const auto at_random = [&] {
     const dvec3 from = origin();
     return ray_towards(from, dvec3(vec3(from)) + random.direction());
   };
   expect_no_leaks(lab, scene, make_rays(random_count, at_random), "random rays from inside" + where);
-  expect_no_leaks(lab, scene, make_rays(100000, [&] { return ray_towards(origin(), pick_vertex(mesh, random)); }),
-                  "at vertices from inside" + where);
-  expect_no_leaks(lab, scene, make_rays(100000, [&] { return ray_towards(origin(), pick_on_edge(mesh, random)); }),
-                  "at edges from inside" + where);
+  const auto at = [&](dvec3 (*pick_target)(const Mesh&, Random&)) {
+    const dvec3 from = origin();
+    return ray_towards(from, pick_target(mesh, random));
+  };
+  expect_no_leaks(lab, scene, make_rays(100000, [&] { return at(pick_vertex); }), "at vertices from inside" + where);
+  expect_no_leaks(lab, scene, make_rays(100000, [&] { return at(pick_on_edge); }), "at edges from inside" + where);
 
   // From outside through the inside: past the middle, the near side has let the ray through.
   std::vector<Ray> rays;
@@ -539,6 +544,7 @@ void run_slivers(Lab& lab) {
         leaks += count_misses(hits);
         constexpr size_t kJudged = 100;  // by brute force
         tally.add(Lab::judge(scene, std::span(rays).first(kJudged), std::span(hits).first(kJudged)));
+        tally.rays += rays.size() - kJudged;
         worst = std::max(worst, worst_plane_distance(lab, mesh, rays));
       }
       const std::string where = ", " + kind + label(" of aspect", aspect);
@@ -547,8 +553,7 @@ void run_slivers(Lab& lab) {
       lab.note("K of t" + where, tally.max_t_error);
       lab.note("margin of other answers / uS" + where, tally.max_margin);
       // K of t is the slivers', not the primitive's: it has its own lines.
-      tally.max_t_error = tally.sum_t_error2 = 0.0;
-      Lab::credit("triangle", tally, leaks);
+      Lab::credit("triangle", tally.without_t_errors(), leaks);
     }
   }
 }
@@ -562,7 +567,9 @@ void run_coincident(Lab& lab) {
   mesh.triangles.assign(10000, mesh.triangles[0]);
   const Scene scene = scene_of({mesh});
   const std::vector<Ray> rays = make_rays(1000, [&] {
-    return ray_towards(pick_inside(mesh, random) + 3.0 * random.direction(), pick_inside(mesh, random));
+    const dvec3 away = 3.0 * random.direction();
+    const dvec3 target = pick_inside(mesh, random);
+    return ray_towards(target + away, target);
   });
   const std::vector<Hit> first = lab.cast(scene, rays);
   const std::vector<Hit> second = lab.cast(scene, rays);
@@ -589,7 +596,7 @@ void run_unit_triangle(Lab& lab) {
         // A lattice folded into the triangle.
         dvec3 target((x + 0.25) / 16.0, (y + 0.5) / 16.0, 0.0);
         if (target.x + target.y > 1.0) target = dvec3(1.0 - target.x, 1.0 - target.y, 0.0);
-        const dvec3 slant = is_oblique ? dvec3(random.uniform(-1, 1), random.uniform(-1, 1), 0.0) : dvec3(0.0);
+        const dvec3 slant = is_oblique ? dvec3{random.uniform(-1, 1), random.uniform(-1, 1), 0.0} : dvec3(0.0);
         rays.push_back(ray_towards(target + slant + dvec3(0, 0, 1), target));
       }
     }
