@@ -42,6 +42,7 @@ void judge_one(const Scene& scene, const Ray& ray, const Hit& hit, Tally& tally)
   const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
   const oracle::Verdict verdict = oracle::judge(scene, exact, {hit.t, hit.object, hit.primitive});
   ++tally.rays;
+  ++tally.judged;
   if (hit.object >= 0) {
     if (!is_well_formed(hit)) ++tally.malformed;
     tally.max_surface_error = std::max(tally.max_surface_error, static_cast<double>(verdict.surface_error));
@@ -67,6 +68,7 @@ double Tally::rms_t_error() const {
 
 void Tally::add(const Tally& other) {
   rays += other.rays;
+  judged += other.judged;
   hits += other.hits;
   misses += other.misses;
   max_t_error = std::max(max_t_error, other.max_t_error);
@@ -75,6 +77,13 @@ void Tally::add(const Tally& other) {
   misclassified += other.misclassified;
   max_margin = std::max(max_margin, other.max_margin);
   malformed += other.malformed;
+}
+
+Tally Tally::without_t_errors() const {
+  Tally rest = *this;
+  rest.hits = 0;
+  rest.max_t_error = rest.sum_t_error2 = 0.0;
+  return rest;
 }
 
 dvec3 Random::direction() {
@@ -89,6 +98,13 @@ dvec3 Random::perpendicular(const dvec3& axis) {
     const dvec3 cross = glm::cross(axis, direction());
     if (glm::length(cross) > 0.1) return glm::normalize(cross);
   }
+}
+
+dvec3 Random::inside(const dvec3& a, const dvec3& b, const dvec3& c) {
+  double u = uniform();
+  double v = uniform();
+  if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+  return a + u * (b - a) + v * (c - a);
 }
 
 double Lab::rounding_factor() const {
@@ -201,6 +217,30 @@ uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const
 Ray ray_towards(const dvec3& origin, const dvec3& target) {
   const vec3 start(origin);
   return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), std::numeric_limits<float>::infinity()};
+}
+
+Mesh random_triangle(const dvec3& center, Random& random) {
+  const dvec3 right = random.direction();
+  const dvec3 up = random.perpendicular(right);
+  Mesh mesh;
+  for (const dvec2& corner : {dvec2(-1.0, -0.5), dvec2(1.0, -0.5), dvec2(0.2, 0.7)}) {
+    mesh.positions.emplace_back(center + corner.x * right + corner.y * up);
+  }
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+Ray ray_grazing(const Mesh& mesh, const uvec3& triangle, Random& random) {
+  const dvec3 a(mesh.positions[triangle.x]);
+  const dvec3 b(mesh.positions[triangle.y]);
+  const dvec3 c(mesh.positions[triangle.z]);
+  const dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+  const dvec3 target = random.inside(a, b, c);
+  const dvec3 along = glm::normalize(random.inside(a, b, c) - target);
+  const double side = random.uniform() < 0.5 ? 1.0 : -1.0;
+  const double cosine = side * std::pow(10.0, random.uniform(-9.0, -5.5));
+  const double distance = std::pow(10.0, random.uniform(-0.3, 1.5));
+  return ray_towards(target - distance * glm::normalize(along + cosine * normal), target);
 }
 
 }  // namespace promin::hard

@@ -44,11 +44,13 @@ std::span<const HardCase> tree_cases();
 /// What the answers to many rays come to against the oracle. Errors in units of u S (numerics.md).
 struct Tally {
   uint64_t rays = 0;
+  /// Of those, compared with the oracle: what all below but rays that slip through is of.
+  uint64_t judged = 0;
   /// Both the device and the oracle tell of the same hit.
   uint64_t hits = 0;
   /// The oracle has a hit, the device none.
   uint64_t misses = 0;
-  /// Of those, |dt| |d| cos / (u S): B1.
+  /// Of the hits, |dt| |d| cos / (u S): B1.
   double max_t_error = 0.0;
   double sum_t_error2 = 0.0;
   /// Of all hits on analytic shapes, the distance of o + t d from the surface / (u S): BK.
@@ -61,6 +63,9 @@ struct Tally {
 
   double rms_t_error() const;
   void add(const Tally& other);
+  /// Without `hits` and their errors of t: for the table of primitives, where these tell of an edge, an apex or a
+  /// sliver rather than of the primitive.
+  Tally without_t_errors() const;
 };
 
 /// Deterministic on every platform, unlike the standard distributions.
@@ -74,6 +79,8 @@ class Random {
   dvec3 direction();
   /// A unit vector perpendicular to a unit vector.
   dvec3 perpendicular(const dvec3& axis);
+  /// In the triangle, all places alike.
+  dvec3 inside(const dvec3& a, const dvec3& b, const dvec3& c);
 
  private:
   std::mt19937_64 generator_;
@@ -102,7 +109,7 @@ class Lab {
   /// As much for what has no bound: printed and kept.
   void note(const std::string& what, double figure) const;
 
-  /// Adds to the table of primitives: every ray that was judged for this primitive in any row.
+  /// Adds to the table of primitives, from scenes of this kind of shape alone: every ray cast in any row.
   static void credit(const std::string& primitive, const Tally& tally, uint64_t leaks = 0);
 
   /// The device's own records of a packed scene, which a test may have edited; with FEATURE_STEP_COUNTS in `extra` the
@@ -135,5 +142,12 @@ uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const
 
 /// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
 Ray ray_towards(const dvec3& origin, const dvec3& target);
+
+/// A triangle of its own, of ordinary shape: about 1 in size, turned as it comes.
+Mesh random_triangle(const dvec3& center, Random& random);
+
+/// Across a mesh's triangle from one point of it to another, at a cosine of 1e-9...3e-6 to its plane: the rounding of
+/// origin and direction alone decides where the ray meets the plane.
+Ray ray_grazing(const Mesh& mesh, const uvec3& triangle, Random& random);
 
 }  // namespace promin::hard

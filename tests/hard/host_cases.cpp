@@ -118,7 +118,8 @@ void run_camera(Lab& lab) {
     const double beta = random.uniform(-1.0, 1.0);
     const double gamma = random.uniform(-1.0, 1.0);
     camera.rotate(alpha, beta, gamma);
-    camera.move(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    const dvec3 way{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
+    camera.move(way.x, way.y, way.z);
     keep_worst(worst, orthonormality_error(camera.rotation()));
     const dvec3 look(camera.camera().look);
     const dvec3 up(camera.camera().up);

@@ -18,7 +18,7 @@ Tally judge_plane(const Plane& plane, std::span<const Ray> rays, std::span<const
   using oracle::Vector;
   const Vector n(plane.normal);
   Tally tally;
-  tally.rays = tally.hits = rays.size();
+  tally.rays = tally.judged = tally.hits = rays.size();
   for (size_t i = 0; i < rays.size(); ++i) {
     const Vector d(rays[i].direction);
     const Vector to_plane = Vector(plane.point) - Vector(rays[i].origin);
@@ -41,7 +41,8 @@ void run_slopes(Lab& lab) {
     const dvec3 n = glm::normalize(dvec3(plane.normal));
     std::vector<Ray> rays;
     while (rays.size() < kRayCount) {
-      const dvec3 origin = dvec3(plane.point) + 10.0 * n + 10.0 * random.uniform() * random.perpendicular(n);
+      const double reach = 10.0 * random.uniform();
+      const dvec3 origin = dvec3(plane.point) + 10.0 * n + reach * random.perpendicular(n);
       const dvec3 along = std::sqrt(1.0 - cosine * cosine) * random.perpendicular(n);
       const Ray ray = ray_towards(origin, origin - cosine * n + along);
       // Rounding may turn the direction off the plane.

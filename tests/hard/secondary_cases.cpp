@@ -85,7 +85,8 @@ uint64_t count_self_hits(Lab& lab, const Shape& shape, double scale, const dvec3
   const Scene scene = scene_of({shape});
   std::vector<Ray> rays;
   for (int i = 0; i < 2000; ++i) {
-    rays.push_back(ray_towards(center + 4.0 * scale * random.direction(), center + 0.8 * scale * random.direction()));
+    const dvec3 origin = center + 4.0 * scale * random.direction();
+    rays.push_back(ray_towards(origin, center + 0.8 * scale * random.direction()));
   }
   const std::vector<Hit> hits = lab.cast(scene, rays);
   const std::vector<Bounce> bounces = Bouncer(lab.device(), scene).bounce(rays);
@@ -144,7 +145,8 @@ void run_plane_lift(Lab& lab) {
       const double cosine = std::pow(10.0, random.uniform(-3.0, 0.0));
       const vec3 direction = direction_at(-side * n, cosine, random);
       const double distance = std::pow(10.0, random.uniform(-2.0, 4.0));
-      const dvec3 target = dvec3(plane.point) + 10.0 * random.uniform() * random.perpendicular(n);
+      const double reach = 10.0 * random.uniform();
+      const dvec3 target = dvec3(plane.point) + reach * random.perpendicular(n);
       rays.push_back({vec3(target - distance * dvec3(direction)), 0.0F, direction, kInfinity});
     }
     const std::vector<Hit> hits = lab.cast(scene, rays);
@@ -255,7 +257,7 @@ void run_facing_mirrors(Lab& lab) {
     Bouncer bouncer(lab.device(), scene);
     std::vector<Ray> rays;
     for (int i = 0; i < 10000; ++i) {
-      const dvec3 origin(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.5 * static_cast<double>(gap));
+      const dvec3 origin{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.5 * static_cast<double>(gap)};
       rays.push_back(
           {vec3(origin), 0.0F, direction_at(dvec3(0.0, 0.0, 1.0), random.uniform(0.1, 1.0), random), kInfinity});
     }

@@ -16,7 +16,7 @@ constexpr size_t kRayCount = 25000;
 /// Rays that touch an edge: many answers differ from the oracle's, and the search for the margin of one takes a
 /// millisecond. So one in so many is judged by B2; that hits lie on the surface is asked of all.
 constexpr size_t kEdgeRaysPerMargin = 64;
-/// A million over four forms and four axes.
+/// For each of the four axes: a quarter of a million a form.
 constexpr size_t kRimRayCount = 62500;
 constexpr double kRadian = 57.29577951308232;
 
@@ -80,7 +80,8 @@ dvec3 random_point(const Solid& solid, double spread, Random& random) {
 std::vector<Ray> rays_around(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
-    rays.push_back(ray_towards(solid.center + distance * random.direction(), random_point(solid, 1.1, random)));
+    const dvec3 origin = solid.center + distance * random.direction();
+    rays.push_back(ray_towards(origin, random_point(solid, 1.1, random)));
   }
   return rays;
 }
@@ -113,10 +114,8 @@ Tally cast_at(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
 
 /// Where rays touch an edge or an apex the normal jumps, or there is none, so B1 has no meaning: the table of
 /// primitives takes the rest.
-void credit_at_edge(const Solid& solid, Tally tally, uint64_t leaks = 0) {
-  tally.hits = 0;
-  tally.max_t_error = tally.sum_t_error2 = 0.0;
-  Lab::credit(solid.kind, tally, leaks);
+void credit_at_edge(const Solid& solid, const Tally& tally, uint64_t leaks = 0) {
+  Lab::credit(solid.kind, tally.without_t_errors(), leaks);
 }
 
 /// |o + t d - surface| / (u S) of the worst hit; NaN of a t that is not finite stays.
@@ -146,6 +145,7 @@ Tally cast_at_edge(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
     judged_hits.push_back(hits[j]);
   }
   Tally tally = Lab::judge(scene, judged_rays, judged_hits);
+  tally.rays = rays.size();
   tally.max_surface_error = worst_surface_error(solid, rays, hits);
   credit_at_edge(solid, tally);
   return tally;
@@ -291,8 +291,9 @@ dvec3 random_direction_onto(const dvec3& face, const dvec3& other, Random& rando
   const dvec3 across = glm::normalize(face - other);
   // Up to here along `across` is neither face turned away; no further than 45 degrees where they are almost one.
   const double most = std::min(1.0, glm::dot(face, middle) / glm::dot(face, across));
-  return -glm::normalize(middle + random.uniform(-0.8, 0.8) * most * across +
-                         random.uniform(-1.0, 1.0) * glm::cross(middle, across));
+  const double aside = random.uniform(-0.8, 0.8) * most;
+  const double along_rim = random.uniform(-1.0, 1.0);
+  return -glm::normalize(middle + aside * across + along_rim * glm::cross(middle, across));
 }
 
 /// At points of the rims, well inside the silhouette: cap and side both face the ray. The last `around` rays are from

@@ -25,11 +25,17 @@ vec3 turned_axis(Random& random) {
   return vec3(random.direction());
 }
 
+/// In a ball, all places alike.
+dvec3 random_point(const dvec3& center, double radius, Random& random) {
+  const double distance = radius * std::cbrt(random.uniform());
+  return center + distance * random.direction();
+}
+
 /// Shapes of every kind strewn over a ball, some much larger than others.
 Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
   std::vector<Shape> shapes;
   for (int i = 0; i < count; ++i) {
-    const vec3 place(center + radius * std::cbrt(random.uniform()) * random.direction());
+    const vec3 place(random_point(center, radius, random));
     const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
     switch (i % 5) {
       case 0:
@@ -70,8 +76,8 @@ Scene make_ties() {
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {
   // From outside, from within, and from within along an axis.
-  const dvec3 within = in.center + in.radius * std::cbrt(random.uniform()) * random.direction();
-  const dvec3 target = in.center + in.radius * std::cbrt(random.uniform()) * random.direction();
+  const dvec3 within = random_point(in.center, in.radius, random);
+  const dvec3 target = random_point(in.center, in.radius, random);
   if (index % 8 < 5) return ray_towards(in.center + 3.0 * in.radius * random.direction(), target);
   Ray ray = ray_towards(within, target);
   if (index % 8 == 7) {
@@ -82,7 +88,37 @@ Ray ray_through(const TreeScene& in, Random& random, size_t index) {
   return ray;
 }
 
+/// Every builder's boxes against none.
+void expect_as_brute_force(Lab& lab, const std::string& name, const Scene& scene, std::span<const Ray> rays) {
+  std::vector<layout::HitRecord> expected;
+  for (const std::string_view builder : builder_names()) {
+    const PackedScene packed = pack_scene(scene, builder);
+    if (expected.empty()) expected = lab.cast_packed(with_infinite_boxes(packed), rays);
+    lab.expect_at_most("other id or bits of t than brute force, " + std::string(builder) + ", " + name, 0.0,
+                       static_cast<double>(count_differences(expected, lab.cast_packed(packed, rays))));
+  }
+}
+
+/// Triangles that rays graze: were t of a hit outside the triangle's box, the tree would pass over it or not, as the
+/// builder has it.
+void run_grazed_trees(Lab& lab) {
+  Random random(380);
+  Mesh mesh;
+  for (uint32_t i = 0; i < 300; ++i) {
+    const dvec3 center{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
+    const Mesh one = random_triangle(center, random);
+    mesh.positions.insert(mesh.positions.end(), one.positions.begin(), one.positions.end());
+    mesh.triangles.push_back(uvec3(0, 1, 2) + 3 * i);
+  }
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < kRaysPerScene; ++i) {
+    rays.push_back(ray_grazing(mesh, mesh.triangles[i % mesh.triangles.size()], random));
+  }
+  expect_as_brute_force(lab, "grazed", scene_of({mesh}), rays);
+}
+
 void run_trees(Lab& lab) {
+  run_grazed_trees(lab);
   Random random(38);
   const dvec3 far_away(1e5, -2e5, 3e5);
   const std::array scenes{
@@ -94,13 +130,7 @@ void run_trees(Lab& lab) {
   for (const TreeScene& in : scenes) {
     std::vector<Ray> rays;
     for (size_t i = 0; i < kRaysPerScene; ++i) rays.push_back(ray_through(in, random, i));
-    std::vector<layout::HitRecord> expected;
-    for (const std::string_view builder : builder_names()) {
-      const PackedScene packed = pack_scene(in.scene, builder);
-      if (expected.empty()) expected = lab.cast_packed(with_infinite_boxes(packed), rays);
-      lab.expect_at_most("other id or bits of t than brute force, " + std::string(builder) + ", " + in.name, 0.0,
-                         static_cast<double>(count_differences(expected, lab.cast_packed(packed, rays))));
-    }
+    expect_as_brute_force(lab, in.name, in.scene, rays);
     const Tally tally = lab.cast_and_judge(in.scene, std::span(rays).first(kJudged));
     lab.expect_at_most(std::string("margin of other answers than the oracle's / uS (B2), ") + in.name, 2.0,
                        tally.max_margin);
