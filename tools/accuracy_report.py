@@ -3,9 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes docs/accuracy.md to the standard output from figures that the hard cases and promin-robustness left.
 
-accuracy_report.py FOLDER: FOLDER holds <driver>.json and <driver>.robustness.json for each driver measured."""
+accuracy_report.py FOLDER: FOLDER holds <driver>.log for each driver tried, and <driver>.json and
+<driver>.*.robustness.json for each driver measured."""
 
 import json
+import math
 import pathlib
 import sys
 
@@ -47,15 +49,26 @@ sphere and o the ray's origin (a plane: its point and 0, plus |t d|).
 - **Misclassified** rays have another id than the oracle's, or one of the two misses. The **margin** says how far, in u S,
   such a ray passes from the edge or silhouette that explains it: bound B2 is 2.
 - **Leaks** are rays that slip through a closed surface.
+
+Figures **in bold** are beyond their bounds.
 """
 
 
 def number(value):
     if value is None:
         return ""
+    value = float(value)  # "inf" and "nan" too, for which JSON has no numbers
+    if not math.isfinite(value):
+        return str(value)
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))
     return f"{value:.3g}"
+
+
+def cell(figure, bound):
+    """The figure, in bold beyond its bound; NaN is beyond any."""
+    is_beyond = figure is not None and bound is not None and not float(figure) <= bound
+    return f"**{number(figure)}**" if is_beyond else number(figure)
 
 
 def table(header, rows):
@@ -72,24 +85,27 @@ def primitives_section(runs):
             figures = run.get("primitives", {}).get(name)
             if figures is None:
                 continue
-            per_million = 1e6 * figures["misclassified"] / max(figures["rays"], 1)
+            judged = figures["judged"]
+            per_million = 1e6 * figures["misclassified"] / judged if judged else None
             rows.append(
                 [
                     name,
                     run["driver"],
                     f"{figures['rays']:,}",
+                    f"{judged:,}",
                     number(figures["max_k"]),
                     number(figures["rms_k"]),
                     number(figures["max_surface_k"]),
                     number(per_million),
                     number(figures["max_margin"]),
-                    str(figures["leaks"]),
+                    cell(figures["leaks"], 0),
                 ]
             )
     header = [
         "primitive",
         "driver",
         "rays",
+        "judged",
         "K of t, max",
         "K of t, rms",
         "K of P, max",
@@ -100,31 +116,38 @@ def primitives_section(runs):
     return (
         "## Primitives\n\n"
         + table(["primitive", "method", "source"], methods)
-        + "\n\nOver all rays of the hard cases below, which aim at edges and silhouettes far more often than a picture"
-        + " does. Cylinders, cones and frustums are held to BK: where a ray meets a rim, the exact hit may be on the side"
-        + " and the device's on the cap or the other way round, each at another angle, and K of t may pass 8.\n\n"
+        + "\n\nOver all rays of the hard cases below with one kind of primitive, which aim at edges and silhouettes far"
+        + " more often than a picture does. Of all rays leaks are counted; the oracle judges so many, and misclassified"
+        + " are counted of these. Cylinders, cones and frustums are held to BK: where a ray meets a rim, the exact hit may"
+        + " be on the side and the device's on the cap or the other way round, each at another angle, and K of t may pass 8.\n\n"
         + table(header, rows)
     )
+
+
+def bounds_of(entry):
+    """The bound; in the order of the drivers that have the figure where theirs differ."""
+    bounds = [number(bound) for figure, bound in entry.values()]
+    return bounds[0] if len(set(bounds)) == 1 else " / ".join(bounds)
 
 
 def rows_section(runs):
     figures = {}
     for index, run in enumerate(runs):
         for row in run["rows"]:
-            entry = figures.setdefault((row["row"], row["what"]), {"bound": row.get("bound")})
-            entry[index] = row["figure"]
+            figures.setdefault((row["row"], row["what"]), {})[index] = (row["figure"], row.get("bound"))
     body = []
     for row in sorted({row for row, what in figures}):
         entries = {what: entry for (r, what), entry in figures.items() if r == row}
         # What must not happen at all is told in one line where it did not.
-        never = [w for w, e in entries.items() if e["bound"] == 0 and not any(e.get(i) for i in range(len(runs)))]
+        never = [what for what, entry in entries.items() if all(measured == (0, 0) for measured in entry.values())]
         for what, entry in entries.items():
             if what not in never:
-                body.append([str(row), what, number(entry["bound"])] + [number(entry.get(i)) for i in range(len(runs))])
-        if len(never) == 1:
-            body.append([str(row), never[0], "0"] + ["0"] * len(runs))
-        elif never:
-            body.append([str(row), f"{len(never)} counts such as: {never[0]}", "0"] + ["0"] * len(runs))
+                figures_of_runs = [entry.get(i, (None, None)) for i in range(len(runs))]
+                body.append([str(row), what, bounds_of(entry)] + [cell(*measured) for measured in figures_of_runs])
+        if never:
+            what = never[0] if len(never) == 1 else f"{len(never)} counts such as: {never[0]}"
+            is_measured = [any(i in entries[each] for each in never) for i in range(len(runs))]
+            body.append([str(row), what, "0"] + ["0" if each else "" for each in is_measured])
     header = ["row", "figure", "bound"] + [run["driver"] for run in runs]
     return (
         "## The hard cases\n\nWithout a bound a figure is only told. Bounds on K are doubled on drivers whose division"
@@ -160,13 +183,28 @@ def robustness_section(folder):
     )
 
 
+def drivers_section(runs, tried):
+    lines = []
+    for name in tried:
+        run = runs.get(name)
+        if run is None:
+            lines.append(f"- `{name}`: not measured, the hard cases did not come to their end")
+        elif run["failed"]:
+            lines.append(f"- `{name}`, {run['driver']}: **failed** " + ", ".join(run["failed"]))
+        else:
+            lines.append(f"- `{name}`, {run['driver']}: all rows hold")
+    return "Drivers:\n\n" + "\n".join(lines)
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
-    files = sorted(f for f in folder.glob("*.json") if not f.name.endswith(".robustness.json"))
     # The system's driver first.
-    files.sort(key=lambda f: f.stem != "system")
-    runs = [json.loads(f.read_text()) for f in files]
-    print("\n\n".join([HEAD.strip(), primitives_section(runs), rows_section(runs), robustness_section(folder)]))
+    tried = sorted((f.stem for f in folder.glob("*.log")), key=lambda name: (name != "system", name))
+    files = {name: folder / f"{name}.json" for name in tried}
+    runs = {name: json.loads(file.read_text()) for name, file in files.items() if file.exists()}
+    figures = list(runs.values())
+    sections = [HEAD.strip(), drivers_section(runs, tried), primitives_section(figures), rows_section(figures)]
+    print("\n\n".join(sections + [robustness_section(folder)]))
 
 
 main()

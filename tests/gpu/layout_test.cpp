@@ -54,9 +54,11 @@ const Layout kLayouts[] = {
 struct Shader {
   const char* name;
   std::span<const uint32_t> spirv;
+  /// Fewer would say that the module is read wrongly.
+  uint32_t least_float_operation_count;
 };
 
-const Shader kShaders[] = {{"Cast", k_cast_spirv}, {"Render", k_render_spirv}};
+const Shader kShaders[] = {{"Cast", k_cast_spirv, 180}, {"Render", k_render_spirv, 270}};
 
 void PrintTo(const Shader& shader, std::ostream* out) {
   *out << shader.name;
@@ -95,7 +97,7 @@ class ShaderTest : public testing::TestWithParam<Shader> {};
 // A driver may contract and reassociate what is not `precise`: bits and watertightness would depend on its taste.
 TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   const test::SpirvModule module(GetParam().spirv);
-  EXPECT_GT(module.float_operation_count, 150U);
+  EXPECT_GE(module.float_operation_count, GetParam().least_float_operation_count);
   EXPECT_THAT(module.contractible, IsEmpty());
 }
 

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "hard/bouncer.h"
 #include "hard/hard_case.h"
 
 namespace promin::hard {
@@ -20,49 +20,6 @@ using oracle::Vector;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Real kU = kUnitRoundoff;
 
-/// Where a secondary ray of the renderer would start.
-struct Bounce {
-  bool is_hit = false;
-  vec3 origin{0.0F};
-  float lift = 0.0F;
-  vec3 mirrored{0.0F};
-};
-
-/// The renderer's secondary rays in a scene.
-class Bouncer {
- public:
-  Bouncer(const gpu::Device& device, const Scene& scene) : kernel_(device, upload(device, scene), options_for(scene)) {}
-
-  std::vector<Bounce> bounce(std::span<const Ray> rays) {
-    std::vector<layout::RayRecord> requests;
-    for (const Ray& ray : rays) requests.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
-    std::vector<layout::HitRecord> records(rays.size());
-    kernel_.run(requests, records);
-    std::vector<Bounce> bounces;
-    for (const layout::HitRecord& record : records) {
-      const auto number = [](uint32_t bits) { return std::bit_cast<float>(bits); };
-      bounces.push_back({record.b.w != layout::NO_ORDER,
-                         {number(record.a.x), number(record.a.y), number(record.a.z)},
-                         number(record.a.w),
-                         {number(record.b.x), number(record.b.y), number(record.b.z)}});
-    }
-    return bounces;
-  }
-
- private:
-  static std::shared_ptr<const DeviceScene> upload(const gpu::Device& device, const Scene& scene) {
-    return upload_scene(device, pack_scene(scene, "sah"));
-  }
-  static RayKernelOptions options_for(const Scene& scene) {
-    RayKernelOptions options;
-    options.features = features_of(scene);
-    options.spirv = Lab::bounce_kernel();
-    return options;
-  }
-
-  RayKernel kernel_;
-};
-
 double uniform_cosine(Random& random) {
   // As many grazing ones as steep ones.
   return std::pow(10.0, random.uniform(-6.0, 0.0));
@@ -73,14 +30,17 @@ vec3 direction_at(const dvec3& normal, double cosine, Random& random) {
   return vec3(cosine * normal + std::sqrt(1.0 - cosine * cosine) * random.perpendicular(normal));
 }
 
-Mesh make_octahedron(float size) {
+Mesh make_octahedron(const vec3& center, float size) {
   Mesh mesh;
-  mesh.positions = {{size, 0, 0}, {-size, 0, 0}, {0, size, 0}, {0, -size, 0}, {0, 0, size}, {0, 0, -size}};
+  for (const vec3& axis : {vec3(size, 0, 0), vec3(0, size, 0), vec3(0, 0, size)}) {
+    mesh.positions.push_back(center + axis);
+    mesh.positions.push_back(center - axis);
+  }
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   return mesh;
 }
 
-/// Rays from around a convex shape in the origin, then from where they hit it outwards: the second must not meet it.
+/// Rays from around a convex shape, then from where they hit it outwards: the second must not meet it.
 uint64_t count_self_hits(Lab& lab, const Shape& shape, double scale, const dvec3& center, Random& random) {
   const Scene scene = scene_of({shape});
   std::vector<Ray> rays;
@@ -100,7 +60,7 @@ uint64_t count_self_hits(Lab& lab, const Shape& shape, double scale, const dvec3
       next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kInfinity});
     }
   }
-  EXPECT_GT(next.size(), rays.size()) << "most rays meet the shape";
+  EXPECT_GT(next.size(), rays.size()) << "four for each ray that meets the shape: a quarter at least do";
   const std::vector<Hit> again = lab.cast(scene, next);
   return static_cast<uint64_t>(
       std::count_if(again.begin(), again.end(), [](const Hit& hit) { return hit.object >= 0; }));
@@ -115,11 +75,9 @@ void run_self_hits(Lab& lab) {
     const double scale = std::pow(10.0, exponent);
     const auto size = static_cast<float>(scale);
     const auto shapes_at = [&](const vec3& center) {
-      std::vector<Shape> shapes = {Sphere{center, size}, Cylinder{center, axis, size, 0.5F * size},
-                                   Cone{center, axis, size, 0.7F * size, 0.0F},
-                                   Cone{center, axis, size, 0.3F * size, 0.8F * size}};
-      if (center == vec3(0.0F)) shapes.emplace_back(make_octahedron(size));
-      return shapes;
+      return std::vector<Shape>{Sphere{center, size}, Cylinder{center, axis, size, 0.5F * size},
+                                Cone{center, axis, size, 0.7F * size, 0.0F},
+                                Cone{center, axis, size, 0.3F * size, 0.8F * size}, make_octahedron(center, size)};
     };
     for (const Shape& shape : shapes_at(vec3(0.0F))) {
       near_origin += count_self_hits(lab, shape, scale, dvec3(0.0), random);
@@ -170,7 +128,8 @@ void run_plane_lift(Lab& lab) {
       next.push_back({bounces[i].origin, 0.0F, bounces[i].mirrored, kInfinity});
       next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kInfinity});
     }
-    EXPECT_GT(hit_count, rays.size() * 9 / 10);
+    // At 1e6 an ulp is more than the height of a tenth of the starts.
+    EXPECT_GT(hit_count, rays.size() * 3 / 4);
     // A direction that rounding has turned towards the plane may meet it far away: it is no acne.
     const auto is_acne = [&](const Ray& ray, const Hit& hit) {
       const Real slope = glm::dot(Vector(ray.direction), Vector(plane.normal));

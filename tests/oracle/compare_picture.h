@@ -30,9 +30,10 @@ struct PictureBounds {
   /// d = look + (x right - y up) each product, the difference and the sum are rounded; as |x right - y up| <= |d| that
   /// is (1 + 1 + sqrt(2)) u |d|, and so much of S at the hit.
   Real id_margin = kB2 + 3.4L;
+  /// Of all pixels; as many may have the normal from across a crease, which is another answer likewise.
   double id_share = 0.0005;
   Real depth_error = kB1;
-  /// Largest difference of a channel for which a pixel's colour counts as right, and the mean of those that are.
+  /// Largest difference of a channel for which a pixel's colour counts as right, and the mean over all pixels.
   Real color_error = 0.02L;
   Real color_mean = 1e-4L;
   /// Pixels of another colour. What mirrors show moves farther than they do.
@@ -67,7 +68,7 @@ struct PictureReport {
   /// |dN| in units of what is allowed, where it is more: 1e-6 + 16 u S / (r cos) on spheres, cylinders and cones with
   /// the radius r at the hit, 1e-6 on planes and disks, 1e-4 on meshes.
   std::vector<PixelError> normal_errors;
-  /// Those where the ray passes a rim or apex within id_margin: either side's normal is right.
+  /// Those where the ray passes a rim or apex within id_margin: either side's normal is right, in a few pixels.
   std::vector<PixelError> normals_at_creases;
   /// Largest difference of a channel, where it is beyond the bound.
   std::vector<PixelError> color_errors;
@@ -75,7 +76,7 @@ struct PictureReport {
   /// Over all pixels with the same primitive; normals at creases apart.
   Real largest_depth_error = 0;
   Real largest_normal_error = 0;
-  /// Over all channels of the pixels that are not among color_errors.
+  /// Over all channels of the pixels that are finite.
   Real color_mean = 0;
 
   bool passes() const;

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gpu/open_device.h"
+#include "rays/ray.h"
+#include "render/pack_scene.h"
+#include "render/ray_kernel.h"
+#include "scene/scene.h"
+
+namespace promin::hard {
+
+/// Where a secondary ray of the renderer would start.
+struct Bounce {
+  bool is_hit = false;
+  PrimitiveId id;
+  /// `lift` above the surface, on the side that the ray comes from.
+  vec3 origin{0.0F};
+  float lift = 0.0F;
+  vec3 mirrored{0.0F};
+};
+
+/// The renderer's secondary rays in a scene: its own lift and mirror direction, by tests/hard/bounce.comp.
+class Bouncer {
+ public:
+  Bouncer(const gpu::Device& device, const Scene& scene);
+
+  /// One for each ray.
+  std::vector<Bounce> bounce(std::span<const Ray> rays);
+
+ private:
+  Bouncer(const gpu::Device& device, PackedScene packed, FeatureMask features);
+
+  PrimitiveNumbers numbers_;
+  RayKernel kernel_;
+};
+
+}  // namespace promin::hard
