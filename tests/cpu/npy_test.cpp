@@ -96,8 +96,8 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
     EXPECT_THAT(refusal(npy(header, data)), HasSubstr("header is damaged")) << header;
   }
   // What a file says is quoted on one line of harmless characters.
-  const std::string loud = refusal(
-      npy("{'descr': 'a\n\x1B" + std::string(500, 'b') + "', 'fortran_order': False, 'shape': (1, 8)}", data));
+  const std::string loud =
+      refusal(npy("{'descr': 'a\n\x1B" + std::string(500, 'b') + "', 'fortran_order': False, 'shape': (1, 8)}", data));
   EXPECT_THAT(loud, testing::AllOf(HasSubstr("'a??bbb"), HasSubstr("...")));
   EXPECT_LT(loud.size(), 400U);
   EXPECT_THAT(refusal(npy("{'descr': '<f4', 'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)}", data)),
