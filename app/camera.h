@@ -17,7 +17,7 @@ dmat3 make_rotation_y(double beta);
 /// tips to the left, and the picture turns clockwise.
 dmat3 make_rotation_z(double alpha);
 
-/// The thesis' free camera (system.md, "Rays and camera"): a position O and a rotation matrix Q.
+/// The thesis' free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
 ///   M(alpha, beta, gamma) = Mz(alpha) My(beta) Mx(gamma),  Q <- Q M
 ///   look = Q (0, 0, -1),  up = Q (0, 1, 0),  right = look x up
 /// The vectors come from the start vectors every time, never from vectors already turned (erratum 8), and M stands on

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Phong shading (system.md, "Light") of a point that a ray hit.
+// Phong shading (docs/model.md, "Light") of a point that a ray hit.
 
 // Views of one buffer: four storage buffers a stage are all that Vulkan guarantees. Each view starts at a multiple of
 // its own stride (frame.first_index).

@@ -7,7 +7,7 @@
 // The builders behind build_bvh, for the table in builder.cpp alone.
 namespace promin {
 
-/// The thesis' tree (system.md, "Acceleration"): sort the centroids along the longest axis of the node's box, equal
+/// The thesis' tree (docs/model.md, "Acceleration"): sort the centroids along the longest axis of the node's box, equal
 /// ones by index; split at N/2; stop at two objects. The named baseline that better builders are measured against.
 Bvh build_median(std::span<const Bounds> boxes, const BuildOptions& options);
 

@@ -13,7 +13,7 @@ namespace promin {
 /// Throws InputError with every problem found, each with place and cure; warnings lie in Scene::warnings.
 Scene load_scene(const std::filesystem::path& file);
 
-/// Coordinates and sizes beyond this, and sizes under kMinSize, are refused (numerics.md: fp32 would overflow).
+/// Coordinates and sizes beyond this, and sizes under kMinSize, are refused (fp32 would overflow).
 inline constexpr double kMaxCoordinate = 1e15;
 inline constexpr double kMinSize = 1e-22;
 

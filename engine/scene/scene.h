@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// Phong (system.md, "Light"). All factors are linear RGB and not negative; nothing is clamped to 1.
+/// Phong (docs/model.md, "Light"). All factors are linear RGB and not negative; nothing is clamped to 1.
 struct Material {
   std::string name;
   vec3 ambient{0.8F};
@@ -70,7 +70,7 @@ struct Camera {
 
 using Shape = std::variant<NotDrawn, Mesh, Sphere, Plane, Cylinder, Cone>;
 
-/// One numbered scene object (interface.md): its index in Scene::objects is the number that `cast` and `--aov` give.
+/// One numbered scene object: its index in Scene::objects is the number that `cast` and `--aov` give.
 struct Object {
   std::string name;
   Shape shape;

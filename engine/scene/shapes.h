@@ -13,7 +13,7 @@ namespace promin {
 // its struct here, its line in `Shape` (scene.h), its functions in shapes.cpp, its packing in
 // render/pack_primitives.cpp and its shader file in shaders/primitives/.
 
-/// |P - center| = radius. system.md: sphere.
+/// |P - center| = radius.
 struct Sphere {
   vec3 center{0.0F};
   float radius = 0.5F;

@@ -13,7 +13,7 @@ struct Frustum {
 };
 
 // Haines et al., Ray Tracing Gems ch. 7, re-centred twice: around the closest approach to the centre, then on the ray
-// near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays; numerics.md, BK), through
+// near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays; docs/accuracy.md, BK), through
 // apexes and along generators too, and other answers than the exact one come within 0.7 u S of an edge alone (B2).
 Crossing intersect_frustum(Ray ray, Frustum f) {
   Approach near = approach(ray, f.center);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // |P - center| = radius. Solved around the ray's closest approach to the centre, with the discriminant as
-// (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) measured (numerics.md).
+// (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) measured (hard cases 1-9).
 
 Crossing intersect_sphere(Ray ray, Primitive p) {
   Approach near = approach(ray, p.a.xyz);

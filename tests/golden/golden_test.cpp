@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Every scene of scenes/ against its stored picture (numerics.md, tier 2), and pictures that must not pass (tier 3).
+// Every scene of scenes/ against its stored picture, and pictures that must not pass.
 // PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes them instead.
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 const fs::path kScenes = PROMIN_SCENES_DIR;
 const fs::path kGoldens = PROMIN_GOLDENS_DIR;
 
-/// numerics.md, tier 2.
+/// In linear light.
 constexpr float kFail = 0.004F;
 constexpr float kHardFail = 0.012F;
 constexpr double kFailShare = 0.0002;

@@ -52,7 +52,7 @@ std::vector<Ray> make_rays(const Scene& scene, size_t count) {
   return rays;
 }
 
-/// Whether every answer is the oracle's within the bounds of numerics.md; says so, with those that are not.
+/// Whether every answer is the oracle's within the bounds of docs/accuracy.md; says so, with those that are not.
 bool check(const std::string& file, const std::string& builder, size_t count) {
   const Scene scene = load_scene(file);
   const std::vector<Ray> rays = make_rays(scene, count);

@@ -11,7 +11,7 @@
 #include "oracle/picture.h"
 #include "oracle/verdict.h"
 
-/// A device's picture against the oracle's: tier 1 of numerics.md, "Golden images".
+/// A device's picture against the oracle's.
 namespace promin::oracle {
 
 /// What a device says of each pixel's primary ray, row by row: distance from the eye, infinite on a miss; geometric

@@ -22,7 +22,7 @@ bool is_hittable(const Shape& shape, int32_t primitive);
 /// The primitive is hittable, here and below.
 BoundingSphere bounding_sphere(const Shape& shape, int32_t primitive);
 
-/// numerics.md's S = |o - c| + size, the length that bounds B1, B2 and BK are counted in, times kRoundoff.
+/// docs/accuracy.md's S = |o - c| + size, the length that bounds B1, B2 and BK are counted in, times kRoundoff.
 Real scale_of(const Shape& shape, int32_t primitive, const Ray& ray);
 
 /// From a point to the surface. Inside a sphere, cylinder or cone it is negative, so that it is a convex function of

@@ -8,7 +8,7 @@
 #include "oracle/oracle.h"
 #include "render/renderer.h"
 
-/// Whole pictures by brute force: system.md's "Rays and camera" and "Light" in long double.
+/// Whole pictures by brute force: docs/model.md's "Rays and camera" and "Light" in long double.
 namespace promin::oracle {
 
 struct Pixel {
