@@ -6,7 +6,6 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <cctype>
 #include <memory>
 #include <vector>
 
@@ -53,9 +52,7 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
 
 void check_cast_options(const CastOptions& options) {
   check_tracing_options(options.tracing);
-  std::string ending = options.hits.extension();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (ending != ".npy") {
+  if (lower_case_ending(options.hits) != ".npy") {
     throw UsageError(
         {"unknown output ending \"" + options.hits.extension().string() + "\"", options.hits.string(), "use .npy"});
   }

@@ -5,6 +5,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -14,13 +16,25 @@
 namespace promin {
 namespace fs = std::filesystem;
 
-std::vector<std::byte> read_file(const fs::path& file) {
+std::string lower_case_ending(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+fs::file_status find_input(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::none) {
     throw InputError({"cannot reach the file (" + error.message() + ")", file.string(), "check its permissions"});
   }
   if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
+  return status;
+}
+
+std::vector<std::byte> read_file(const fs::path& file) {
+  const fs::file_status status = find_input(file);
   if (fs::is_directory(status)) throw InputError({"is a folder, not a file", file.string(), "name a file in it"});
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   if (!stream) throw InputError({"cannot open the file", file.string(), "check its permissions"});

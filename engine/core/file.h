@@ -11,6 +11,12 @@
 
 namespace promin {
 
+/// The file's ending in lower case, with its dot; empty if it has none.
+std::string lower_case_ending(const std::filesystem::path& file);
+
+/// What a file is, for a reader. Throws InputError if it is missing or cannot be reached.
+std::filesystem::file_status find_input(const std::filesystem::path& file);
+
 /// The whole of a regular file. Throws InputError, with the place and the cure, if it is missing, a folder, not
 /// readable or empty.
 std::vector<std::byte> read_file(const std::filesystem::path& file);

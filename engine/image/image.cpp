@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -22,8 +21,7 @@ namespace {
 
 /// OpenImageIO's name of the format that a file's ending asks for; empty if write_image does not know it.
 std::string format_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case_ending(file);
   if (ending == ".exr") return "openexr";
   if (ending == ".png") return "png";
   return "";

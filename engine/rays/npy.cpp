@@ -138,13 +138,9 @@ std::string make_hit_header(uint64_t count) {
 }  // namespace
 
 RayReader::RayReader(const fs::path& file) : file_(file) {
+  if (!fs::is_regular_file(find_input(file)))
+    throw InputError({"not a regular file", file.string(), "name a .npy file"});
   std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::none) {
-    throw InputError({"cannot reach the file (" + error.message() + ")", file.string(), "check its permissions"});
-  }
-  if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
-  if (!fs::is_regular_file(status)) throw InputError({"not a regular file", file.string(), "name a .npy file"});
   const uint64_t file_bytes = fs::file_size(file, error);
   stream_.open(file, std::ios::binary);
   if (!stream_ || error) throw InputError({"cannot open the file", file.string(), "check its permissions"});

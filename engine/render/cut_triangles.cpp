@@ -113,6 +113,8 @@ CutTriangles::CutTriangles(const Scene& scene) {
 }
 
 std::span<const CutTriangles::Point> CutTriangles::points_inside(const vec3& a, const vec3& b) const {
+  // Of most scenes; every triangle asks.
+  if (line_of_edge_.empty()) return {};
   const Edge edge = edge_of(a, b);
   const auto found = line_of_edge_.find(edge);
   if (found == line_of_edge_.end()) return {};

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <string>
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "render/cut_triangles.h"
 
 namespace promin {
@@ -236,13 +236,11 @@ vec4 center_and_radius(const Bounds& box) {
 PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   Collected collected = Collector(scene).take();
 
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch building;
   const Bvh bvh = build_bvh(builder, collected.boxes);
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-
   PackedScene packed;
+  packed.bvh_ms = building.ms();
   packed.numbers = std::move(collected.numbers);
-  packed.bvh_ms = elapsed.count();
   packed.bvh = measure_bvh(builder, bvh);
   PackedTree tree = pack_tree(bvh);
   packed.nodes = std::move(tree.nodes);

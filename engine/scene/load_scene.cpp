@@ -3,10 +3,10 @@
 #include "scene/load_scene.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "scene/load_gltf.h"
 #include "scene/load_obj.h"
 #include "scene/load_report.h"
@@ -44,9 +44,7 @@ constexpr SceneFormat kFormats[] = {{".gltf", load_gltf}, {".glb", load_gltf}, {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  const std::string ending = lower_case_ending(file);
   std::string known;
   for (const SceneFormat& format : kFormats) {
     if (ending == format.ending) {
