@@ -59,30 +59,32 @@ void check_cast_options(const CastOptions& options) {
   check_outputs({options.tracing.scene, options.rays}, {options.hits}, options.tracing.stats);
 }
 
-/// False if a signal asked for the end.
-bool cast_all(RayReader& reader, HitWriter& writer, Caster& caster, const CastOptions& options, RunStats& stats,
-              const Console& console, const DeferredSignals& signals) {
+/// The file's next rays, at most kChunkRays; none at its end.
+std::vector<Ray> read_chunk(RayReader& reader, uint64_t done) {
+  std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
+  reader.read(rays);
+  return rays;
+}
+
+/// `rays` is the first chunk. False if a signal asked for the end.
+bool cast_all(std::vector<Ray> rays, RayReader& reader, HitWriter& writer, Caster& caster, const CastOptions& options,
+              RunStats& stats, const Console& console, const DeferredSignals& signals) {
   const uint32_t repeats = options.tracing.repeat_count;
   stats.trace_ms.assign(repeats, 0.0);
-  std::vector<Ray> rays;
   std::vector<Hit> hits;
   Progress progress(console.is_quiet());
-  uint64_t done = 0;
-  while (done < reader.count()) {
-    const auto count = static_cast<size_t>(std::min(kChunkRays, reader.count() - done));
-    rays.resize(count);
-    hits.resize(count);
-    reader.read(rays);
+  for (uint64_t done = 0; !rays.empty(); rays = read_chunk(reader, done)) {
+    hits.resize(rays.size());
     for (uint32_t i = 0; i < repeats; ++i) {
       if (signals.is_pending()) return false;
       stats.trace_ms[i] += caster.cast(rays, hits, options.query());
-      const double chunk_share = static_cast<double>(count) * (i + 1) / repeats;
+      const double chunk_share = static_cast<double>(rays.size()) * (i + 1) / repeats;
       progress.update((static_cast<double>(done) + chunk_share) / static_cast<double>(reader.count()));
     }
     const Stopwatch write;
     writer.write(hits);
     stats.write_ms += write.ms();
-    done += count;
+    done += rays.size();
   }
   return true;
 }
@@ -100,14 +102,15 @@ void cast(const CastOptions& options) {
   CasterOptions caster_options;
   caster_options.builder = tracing.builder;
   Caster caster(*device, scene, caster_options);
-  caster.prepare(options.query());
+  std::vector<Ray> rays = read_chunk(reader, 0);
+  caster.prepare(options.query(), rays);
   take_setup(caster.setup_stats(), stats, console);
   (options.is_any ? stats.rays.shadow : stats.rays.primary) = reader.count();
 
   // The hits are written as they come, to a temporary file that a signal must not leave behind.
   const DeferredSignals while_writing;
   HitWriter writer(options.hits, reader.count());
-  if (!cast_all(reader, writer, caster, options, stats, console, while_writing)) return;
+  if (!cast_all(std::move(rays), reader, writer, caster, options, stats, console, while_writing)) return;
   check_validation(*device, stats);
   const Stopwatch commit;
   writer.commit();

@@ -6,6 +6,8 @@
 layout(constant_id = CONSTANT_FEATURES) const uint FEATURES = 0xFFFFFFFFu;
 // Entries that the traversal stack needs: the tree's depth, known when it is built.
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
+// Rays that an invocation traces together (traversal.glsl).
+layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
 
 bool has(uint feature) { return (FEATURES & feature) != 0u; }
 
@@ -27,11 +29,23 @@ layout(std430, set = 0, binding = BINDING_PRIMITIVES) readonly buffer Primitives
 layout(set = 0, binding = BINDING_NODE_TEXELS) uniform usamplerBuffer node_texels;
 layout(set = 0, binding = BINDING_PRIMITIVE_TEXELS) uniform usamplerBuffer primitive_texels;
 
-Node load_node(uint index) {
-  if (FETCHES_TEXELS == 0u) return nodes[index];
+// A node but for its children, which traversal reads on their own.
+struct NodeBoxes {
+  uvec4 frame;
+  uvec4 lo;
+  uvec4 hi;
+};
+
+NodeBoxes load_boxes(uint index) {
+  if (FETCHES_TEXELS == 0u) return NodeBoxes(nodes[index].frame, nodes[index].lo, nodes[index].hi);
   int first = int(4u * index);
-  return Node(texelFetch(node_texels, first), texelFetch(node_texels, first + 1), texelFetch(node_texels, first + 2),
-              texelFetch(node_texels, first + 3));
+  return NodeBoxes(texelFetch(node_texels, first), texelFetch(node_texels, first + 1),
+                   texelFetch(node_texels, first + 2));
+}
+
+uvec4 load_children(uint index) {
+  if (FETCHES_TEXELS == 0u) return nodes[index].children;
+  return texelFetch(node_texels, int(4u * index + 3u));
 }
 
 Primitive load_primitive(uint index) {

@@ -3,6 +3,7 @@
 // Answers rays: the nearest hit, or with ANY_HIT whether there is one.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "layout.h"
 #include "bindings.glsl"
 #include "cast_bindings.glsl"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays in, records out, one lane a ray: the body of cast.comp, which differs from a variant only in what it includes
+// Rays in, records out, a lane for each PACKET_SIZE rays in a row: the body of cast.comp, which differs from a variant only in what it includes
 // before this.
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
@@ -18,11 +18,20 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
 }
 
 void main() {
-  uint index = dispatch.range.x + gl_GlobalInvocationID.x;
-  if (index >= dispatch.range.y) return;
-  RayRecord request = rays[index];
-  Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
-                     request.direction_tmax.w);
+  uint first = dispatch.range.x + PACKET_SIZE * gl_GlobalInvocationID.x;
+  if (first >= dispatch.range.y) return;
+  RayRecord requests[PACKET_SIZE];
+  uint indices[PACKET_SIZE];
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    // What is beyond the end casts the last ray once more.
+    indices[i] = min(first + i, dispatch.range.y - 1u);
+    requests[i] = load_ray(indices[i]);
+    packet[i] = make_ray(requests[i].origin_tmin.xyz, requests[i].direction_tmax.xyz, requests[i].origin_tmin.w,
+                         requests[i].direction_tmax.w);
+  }
   step_counts = uvec2(0u);
-  hits[index] = record_of(request, ray, trace(ray, ANY_HIT != 0u));
+  trace_packet(ANY_HIT != 0u);
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    hits[indices[i]] = record_of(requests[i], packet[i], found[i]);
+  }
 }

@@ -5,7 +5,14 @@
 layout(constant_id = CONSTANT_ANY_HIT) const uint ANY_HIT = 0u;
 
 layout(std430, set = 0, binding = BINDING_RAYS) readonly buffer Rays { RayRecord rays[]; };
+layout(set = 0, binding = BINDING_RAY_TEXELS) uniform usamplerBuffer ray_texels;
 layout(std430, set = 0, binding = BINDING_HITS) buffer Hits {
   Dispatch dispatch;
   HitRecord hits[];
 };
+
+RayRecord load_ray(uint index) {
+  if (FETCHES_TEXELS == 0u) return rays[index];
+  return RayRecord(uintBitsToFloat(texelFetch(ray_texels, int(2u * index))),
+                   uintBitsToFloat(texelFetch(ray_texels, int(2u * index + 1u))));
+}

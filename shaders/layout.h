@@ -57,12 +57,14 @@ LAYOUT_CONSTANT BINDING_RAYS = 5u;
 LAYOUT_CONSTANT BINDING_HITS = 6u;
 LAYOUT_CONSTANT BINDING_NODE_TEXELS = 7u;
 LAYOUT_CONSTANT BINDING_PRIMITIVE_TEXELS = 8u;
+LAYOUT_CONSTANT BINDING_RAY_TEXELS = 9u;
 
 // Specialisation constants.
 LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;
 LAYOUT_CONSTANT CONSTANT_STACK_SIZE = 1u;
 LAYOUT_CONSTANT CONSTANT_ANY_HIT = 2u;
 LAYOUT_CONSTANT CONSTANT_FETCHES_TEXELS = 3u;
+LAYOUT_CONSTANT CONSTANT_PACKET_SIZE = 4u;
 
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
@@ -72,16 +74,17 @@ LAYOUT_CONSTANT BLOCK_SIZE = 8u;
 // A child that is an inner node is its index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below, and its
 // first primitive in the rest.
 struct Node {
-  uvec4 frame;     // bits of the origin; w = exponents of x, y, z, the lowest byte first
+  uvec4 frame;     // bits of the origin; w = exponents of x, y, z, the lowest byte first, then how many children
   uvec4 lo;        // of x, y, z; w = hi of x
   uvec4 hi;        // of y, z; 0, 0
-  uvec4 children;  // CHILD_ABSENT beyond the last
+  uvec4 children;  // 0 beyond the last
 };
 LAYOUT_CONSTANT NODE_WIDTH = 4u;
-LAYOUT_CONSTANT CHILD_ABSENT = 0xFFFFFFFFu;
 LAYOUT_CONSTANT CHILD_IS_LEAF = 0x80000000u;
 LAYOUT_CONSTANT CHILD_COUNT_SHIFT = 27u;
 LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
+// Traversal keeps a node's index in 24 bits (traversal.glsl, "Family").
+LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
 
 // One primitive in leaf order; planes follow after those of the tree.
 //   triangle  a = corner 0, corner 1 x   b = corner 1 yz, corner 2 xy    c.x = bits of corner 2 z

@@ -3,6 +3,7 @@
 // Renders: one lane a pixel, `samples` samples each, mirror bounces in a loop.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;

@@ -183,7 +183,9 @@ Device::Device(const std::optional<std::string>& selection)
              : infos.size() == 1 ? "the only Vulkan device"
                                  : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
   translate_vulkan_errors([&] {
-    limits_ = physical_.getProperties().limits;
+    const vk::PhysicalDeviceProperties properties = physical_.getProperties();
+    limits_ = properties.limits;
+    is_cpu_ = properties.deviceType == vk::PhysicalDeviceType::eCpu;
     memory_ = physical_.getMemoryProperties();
     const uint32_t family = *find_compute_family(physical_);
     if (const uint32_t bits = physical_.getQueueFamilyProperties()[family].timestampValidBits; bits > 0) {

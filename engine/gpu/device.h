@@ -27,6 +27,8 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
   const std::string& choice() const { return choice_; }
+  /// Whether the host's processor does the device's work.
+  bool is_cpu() const { return is_cpu_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
 
   const vk::raii::Device& handle() const { return device_; }
@@ -62,6 +64,7 @@ class Device {
   vk::raii::CommandBuffer commands_{nullptr};
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
+  bool is_cpu_ = false;
   std::string choice_;
 };
 

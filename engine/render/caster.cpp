@@ -7,10 +7,13 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "core/stopwatch.h"
+#include "gpu/device.h"
+#include "rays/ray_order.h"
 #include "render/pack_scene.h"
 #include "render/ray_kernel.h"
 
@@ -23,6 +26,10 @@ using layout::RayRecord;
 /// Features that decide what a ray meets; the others only colour it.
 constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATURE_SPHERES | layout::FEATURE_CYLINDERS |
                                        layout::FEATURE_CONES | layout::FEATURE_PLANES;
+
+/// Rays that a lane of a CPU device traces together where they run side by side: measured best of 1...4
+/// (docs/performance.md).
+constexpr uint32_t kPacketSize = 4;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
@@ -72,14 +79,22 @@ struct Caster::Impl {
     stats.device_bytes = packed.size_bytes();
     stats.features = features_of(the_scene) & kShapeFeatures;
     numbers = std::move(packed.numbers);
+    cube = {vec3(packed.frame.tree_bounds), packed.frame.tree_bounds.w};
   }
 
-  RayKernel& kernel_for(HitQuery query) {
-    std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0];
+  /// What pays on CPU devices only costs on GPUs, whose lanes have few registers and hide latency.
+  enum class Company { kAlone, kPacket };
+  Company company_of(std::span<const Ray> rays) const {
+    return device.is_cpu() && are_side_by_side(rays, cube) ? Company::kPacket : Company::kAlone;
+  }
+
+  RayKernel& kernel_for(HitQuery query, Company company) {
+    std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0][company == Company::kPacket ? 1 : 0];
     if (!kernel) {
       RayKernelOptions options;
       options.features = stats.features;
       options.query = query;
+      options.packet_size = company == Company::kPacket ? kPacketSize : 1;
       if (!spirv.empty()) options.spirv = spirv;
       kernel.emplace(device, scene, options);
       stats.pipeline_ms += kernel->pipeline_ms();
@@ -89,11 +104,21 @@ struct Caster::Impl {
 
   /// At most RayKernel::kMaxRays.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
+    const Company company = company_of(rays);
+    RayKernel& kernel = kernel_for(query, company);
+    const Stopwatch sorting;
+    if (device.is_cpu() && company == Company::kAlone) {
+      order = sort_rays(rays, cube);
+    } else {
+      order.resize(rays.size());
+      std::iota(order.begin(), order.end(), 0U);
+    }
+    double time_ms = sorting.ms();
     requests.resize(rays.size());
     records.resize(rays.size());
-    std::transform(rays.begin(), rays.end(), requests.begin(), record_of);
-    const double time_ms = kernel_for(query).run(requests, records);
-    for (size_t i = 0; i < rays.size(); ++i) hits[i] = hit_of(records[i], rays[i], query, numbers);
+    for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[order[i]]);
+    time_ms += kernel.run(requests, records);
+    for (size_t i = 0; i < rays.size(); ++i) hits[order[i]] = hit_of(records[i], rays[order[i]], query, numbers);
     return time_ms;
   }
 
@@ -102,7 +127,10 @@ struct Caster::Impl {
   std::shared_ptr<const DeviceScene> scene;
   PrimitiveNumbers numbers;
   SetupStats stats;
-  std::array<std::optional<RayKernel>, 2> kernels;
+  SceneCube cube;
+  std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
+  /// Of the rays at hand: the one that is traced i-th, and what is asked and answered for it.
+  std::vector<uint32_t> order;
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;
 };
@@ -113,8 +141,8 @@ Caster::~Caster() = default;
 Caster::Caster(Caster&&) noexcept = default;
 Caster& Caster::operator=(Caster&&) noexcept = default;
 
-void Caster::prepare(HitQuery query) {
-  impl_->kernel_for(query);
+void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
+  impl_->kernel_for(query, impl_->company_of(rays));
 }
 
 double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query,

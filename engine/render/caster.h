@@ -35,12 +35,13 @@ class Caster {
   Caster(Caster&&) noexcept;
   Caster& operator=(Caster&&) noexcept;
 
-  /// Compiles for a kind of query; otherwise its first cast does. The time is in setup_stats().
-  void prepare(HitQuery query);
+  /// Compiles what casting rays like these takes; otherwise their first cast does. The time is in setup_stats().
+  void prepare(HitQuery query, std::span<const Ray> rays);
 
   /// Answers each ray in the hit at the same place; as many hits as rays, any number. The answers do not depend on how
-  /// many rays are cast together. `progress` is called with the fraction done, 0...1. Returns device milliseconds of
-  /// the traversal dispatches alone.
+  /// many rays are cast together, nor on their order: on CPU devices rays that run side by side are traced in packets
+  /// and others are sorted first. `progress` is called with the fraction done, 0...1. Returns milliseconds of the
+  /// traversal dispatches, by the device's clock, and of sorting.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
               const std::function<void(double)>& progress = {});
 

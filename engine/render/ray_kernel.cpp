@@ -16,10 +16,10 @@
 namespace promin {
 namespace {
 
-constexpr uint32_t kGroupRays = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+constexpr uint32_t kGroupLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 /// Keeps the device's cores busy in the first dispatch.
-constexpr double kFirstRays = 64.0 * kGroupRays;
-static_assert(RayKernel::kMaxRays / kGroupRays <= 65535, "Vulkan's guaranteed workgroup count");
+constexpr double kFirstRays = 64.0 * kGroupLanes;
+static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
 
 vk::DeviceSize hits_size(size_t ray_count) {
   return sizeof(layout::Dispatch) + ray_count * sizeof(layout::HitRecord);
@@ -50,8 +50,8 @@ struct RayKernel::Impl {
     const std::array constants{
         gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features},
         gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
-        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS,
-                                    scene->fetches_texels() && !options.avoids_texels ? 1U : 0U},
+        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, fetches_texels() ? 1U : 0U},
+        gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, options.packet_size},
         gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame});
@@ -62,17 +62,26 @@ struct RayKernel::Impl {
     pipeline_ms = compiling.ms();
   }
 
-  std::array<gpu::BoundBuffer, 2> ray_buffers() const {
+  std::array<gpu::BoundBuffer, 3> ray_buffers() const {
     return {{{layout::BINDING_RAYS, vk::DescriptorType::eStorageBuffer, &*rays},
+             {layout::BINDING_RAY_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*rays, &ray_texels},
              {layout::BINDING_HITS, vk::DescriptorType::eStorageBuffer, &*hits}}};
+  }
+
+  bool fetches_texels() const {
+    return scene->fetches_texels() && !options.avoids_texels &&
+           RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.limits().maxTexelBufferElements * gpu::kTexelBytes;
   }
 
   void make_buffers(size_t ray_count) {
     if (ray_count <= capacity) return;
     // Both are there before either is replaced: the pipeline stays bound to buffers that live.
     constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
-    gpu::Buffer new_rays(device, ray_count * sizeof(layout::RayRecord), kStorage);
+    gpu::Buffer new_rays(device, ray_count * sizeof(layout::RayRecord),
+                         kStorage | vk::BufferUsageFlagBits::eUniformTexelBuffer);
+    vk::raii::BufferView new_ray_texels = new_rays.make_texel_view();
     gpu::Buffer new_hits(device, hits_size(ray_count), kStorage);
+    ray_texels = std::move(new_ray_texels);
     rays.emplace(std::move(new_rays));
     hits.emplace(std::move(new_hits));
     capacity = ray_count;
@@ -86,11 +95,12 @@ struct RayKernel::Impl {
     double total_ms = 0.0;
     layout::Dispatch dispatch = scene->dispatch();
     const auto end = static_cast<uint32_t>(input.size());
+    const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
       const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : pacer.units();
       const auto count = static_cast<uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(end - first)));
       dispatch.range = uvec4(first, first + count, 0, 0);
-      const double time_ms = kernel->run(dispatch, *hits, (count + kGroupRays - 1) / kGroupRays);
+      const double time_ms = kernel->run(dispatch, *hits, (count + group_rays - 1) / group_rays);
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;
@@ -105,6 +115,7 @@ struct RayKernel::Impl {
   Pacer pacer;
   std::optional<gpu::Buffer> frame;
   std::optional<gpu::Buffer> rays;
+  vk::raii::BufferView ray_texels{nullptr};
   std::optional<gpu::Buffer> hits;
   size_t capacity = 0;
   std::optional<TracingKernel> kernel;

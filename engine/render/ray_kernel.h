@@ -29,6 +29,8 @@ struct RayKernelOptions {
   std::span<const uint32_t> spirv = cast_spirv();
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;
+  /// Rays in a row that a lane traces together. It changes no answer, but step counts are then of the packet.
+  uint32_t packet_size = 1;
   /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
   bool avoids_texels = false;
   /// A single dispatch is not meant to take longer.

@@ -6,6 +6,7 @@
 // by the renderer's own code.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
@@ -22,7 +23,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 void main() {
   uint index = dispatch.range.x + gl_GlobalInvocationID.x;
   if (index >= dispatch.range.y) return;
-  RayRecord request = rays[index];
+  RayRecord request = load_ray(index);
   Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
                      request.direction_tmax.w);
   Hit hit = trace(ray, ANY_HIT != 0u);

@@ -201,7 +201,7 @@ PackedScene with_infinite_boxes(PackedScene packed) {
   // From -2^127 in 255 steps of 2^120 on every axis.
   const uint32_t origin = std::bit_cast<uint32_t>(-0x1p127F);
   for (layout::Node& node : packed.nodes) {
-    node.frame = uvec4(origin, origin, origin, 0xF7F7F7);
+    node.frame = uvec4(origin, origin, origin, (node.frame.w & 0xFF000000) | 0xF7F7F7);
     node.lo = uvec4(0, 0, 0, 0xFFFFFFFF);
     node.hi = uvec4(0xFFFFFFFF, 0xFFFFFFFF, 0, 0);
   }

@@ -3,6 +3,7 @@
 // cast.comp with the plain methods; the traversal is promin's own.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "layout.h"
 #include "bindings.glsl"
 #include "cast_bindings.glsl"

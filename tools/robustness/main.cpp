@@ -148,8 +148,8 @@ Comparison compare(Caster& robust, Caster& plain, const RaySet& set, uint32_t ru
   std::vector<Hit> plain_hits(set.rays.size());
   std::vector<double> robust_ms;
   std::vector<double> plain_ms;
-  robust.prepare(set.query);
-  plain.prepare(set.query);
+  robust.prepare(set.query, set.rays);
+  plain.prepare(set.query, set.rays);
   for (uint32_t i = 0; i < runs; ++i) {
     robust_ms.push_back(robust.cast(set.rays, robust_hits, set.query));
     plain_ms.push_back(plain.cast(set.rays, plain_hits, set.query));

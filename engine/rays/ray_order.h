@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rays/ray.h"
+
+// In which order rays are best traced. No answer depends on it.
+namespace promin {
+
+/// Where the scene is: a cube around everything that rays may hit, infinite planes aside.
+struct SceneCube {
+  vec3 center{0.0F};
+  /// Half its side; >= 0.
+  float radius = 0.0F;
+};
+
+/// Whether rays next to each other mostly begin and go near each other, as those of a camera in pixel order do; judged
+/// by a sample of the pairs.
+bool are_side_by_side(std::span<const Ray> rays, const SceneCube& cube);
+
+/// The rays' indices, those together that enter the cube near each other in similar directions: along a space-filling
+/// curve through where and whither (Aila & Karras, "Architecture Considerations for Tracing Incoherent Rays", HPG
+/// 2010). Rays that miss the cube, and such as have no direction, come last. At most 2^32 - 1 rays; stable.
+std::vector<uint32_t> sort_rays(std::span<const Ray> rays, const SceneCube& cube);
+
+}  // namespace promin
