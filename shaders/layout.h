@@ -145,6 +145,7 @@ struct Dispatch {
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = 0
+  uvec4 share;     // x = one past the last block; y = blocks that a workgroup takes one after the other; 0, 0
 };
 
 // A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.
@@ -164,7 +165,7 @@ LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
 static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 144);
-static_assert(sizeof(Dispatch) == 64);
+static_assert(sizeof(Dispatch) == 80);
 #undef LAYOUT_CONSTANT
 }  // namespace promin::layout
 #endif

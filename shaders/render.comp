@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Renders: one lane a pixel, `samples` samples each, mirror bounces in a loop.
+// Renders: pixels shared out among lanes, shadow rays and mirror bounces in loops.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -30,32 +30,6 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 #include "shading.glsl"
 #include "camera.glsl"
 
-// Whitted's recursion without refraction is a loop: I = sum of (product of kr so far) * Phong. `first` becomes the
-// primary ray's hit.
-vec3 radiance(Ray ray, inout uvec3 ray_count, out Hit first) {
-  vec3 sum = vec3(0.0);
-  vec3 weight = vec3(1.0);
-  ++ray_count.x;
-  for (uint bounce = 0u;; ++bounce) {
-    Hit hit = trace(ray, false);
-    if (bounce == 0u) first = hit;
-    if (hit.primitive == NO_PRIMITIVE) {
-      precise vec3 total = sum + weight * frame.background.xyz;
-      return total;
-    }
-    ShadingPoint point = make_shading_point(ray, hit);
-    vec3 direction = normalize3(ray.direction);
-    precise vec3 next_sum = sum + weight * shade(point, -direction, ray_count.y);
-    sum = next_sum;
-    if (!has(FEATURE_MIRRORS) || bounce >= dispatch.range.w) return sum;
-    precise vec3 next_weight = weight * point.material.reflection.xyz;
-    weight = next_weight;
-    if (!(max_abs(weight) > 0.0)) return sum;
-    ray = mirror_ray(point, direction);
-    ++ray_count.z;
-  }
-}
-
 // Bits of the normal, as wound or outward, and of the distance from the ray's origin; infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
   if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
@@ -64,28 +38,82 @@ uvec4 normal_and_depth(Ray ray, Hit hit) {
   return floatBitsToUint(vec4(surface.normal, depth));
 }
 
-void main() {
-  uint block = dispatch.range.x + gl_WorkGroupID.x;
-  uvec2 pixel = BLOCK_SIZE * uvec2(block % dispatch.sampling.z, block / dispatch.sampling.z) +
-                pixel_in_block(gl_LocalInvocationIndex);
-  if (any(greaterThanEqual(pixel, dispatch.window.zw))) return;
+// Whitted's recursion without refraction is a loop: I = sum of (product of kr so far) * Phong.
+struct Path {
+  Ray ray;
+  vec3 weight;    // product of kr so far
+  vec3 radiance;  // sum so far
+  uint bounces;
+};
 
-  uint index = pixel.y * dispatch.window.z + pixel.x;
-  uvec4 record = dispatch.range.y == 0u ? uvec4(0u) : pixels[index];
-  vec3 sum = uintBitsToFloat(record.xyz);
+// Adds what is seen at the hit, and turns the path into its mirror ray. False where it ends.
+bool follow(inout Path path, Hit hit, inout uvec3 ray_count) {
+  if (hit.primitive == NO_PRIMITIVE) {
+    precise vec3 total = path.radiance + path.weight * frame.background.xyz;
+    path.radiance = total;
+    return false;
+  }
+  ShadingPoint point = make_shading_point(path.ray, hit);
+  vec3 direction = normalize3(path.ray.direction);
+  precise vec3 radiance = path.radiance + path.weight * shade(point, -direction, ray_count.y);
+  path.radiance = radiance;
+  if (!has(FEATURE_MIRRORS) || path.bounces >= dispatch.range.w) return false;
+  precise vec3 weight = path.weight * point.material.reflection.xyz;
+  path.weight = weight;
+  if (!(max_abs(weight) > 0.0)) return false;
+  path.ray = mirror_ray(point, direction);
+  ++path.bounces;
+  ++ray_count.z;
+  return true;
+}
+
+// A lane takes its pixel of one block after the other and one sample after the other, without waiting for its
+// neighbours' mirror rays: the loop's every turn traces one ray of each lane.
+void main() {
+  uint block = dispatch.range.x + dispatch.share.y * gl_WorkGroupID.x;
+  uint end_block = min(block + dispatch.share.y, dispatch.share.x);
+  uint end_sample = dispatch.range.y + dispatch.range.z;
   uvec3 ray_count = uvec3(0u);
-  for (uint s = dispatch.range.y; s < dispatch.range.y + dispatch.range.z; ++s) {
-    Ray ray = camera_ray(pixel, s);
-    Hit hit;
-    precise vec3 next_sum = sum + radiance(ray, ray_count, hit);
-    sum = next_sum;
+  uvec2 pixel = uvec2(0u);
+  uint index = 0u;
+  uint sample_index = end_sample;
+  vec3 sum = vec3(0.0);  // of the pixel's samples
+  uint order = NO_ORDER;
+  Path path;
+  bool is_underway = false;
+  while (is_underway || sample_index < end_sample || block < end_block) {
+    while (!is_underway && (sample_index < end_sample || block < end_block)) {
+      if (sample_index == end_sample) {
+        pixel = BLOCK_SIZE * uvec2(block % dispatch.sampling.z, block / dispatch.sampling.z) +
+                pixel_in_block(gl_LocalInvocationIndex);
+        ++block;
+        if (any(greaterThanEqual(pixel, dispatch.window.zw))) continue;
+        index = pixel.y * dispatch.window.z + pixel.x;
+        sample_index = dispatch.range.y;
+        uvec4 record = sample_index == 0u ? uvec4(0u, 0u, 0u, NO_ORDER) : pixels[index];
+        sum = uintBitsToFloat(record.xyz);
+        order = record.w;
+      }
+      path = Path(camera_ray(pixel, sample_index), vec3(1.0), vec3(0.0), 0u);
+      ++ray_count.x;
+      is_underway = true;
+    }
+    if (!is_underway) break;
+
+    Hit hit = trace(path.ray, false);
     // Depths and ids have no average: the middle sample stands for the pixel. Of an odd number it is the centre.
-    if (has(FEATURE_AOVS) && s == dispatch.sampling.x / 2u) {
-      record.w = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
-      pixels[dispatch.window.z * dispatch.window.w + index] = normal_and_depth(ray, hit);
+    if (has(FEATURE_AOVS) && path.bounces == 0u && sample_index == dispatch.sampling.x / 2u) {
+      order = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
+      pixels[dispatch.window.z * dispatch.window.w + index] = normal_and_depth(path.ray, hit);
+    }
+    is_underway = follow(path, hit, ray_count);
+    if (!is_underway) {
+      precise vec3 next_sum = sum + path.radiance;
+      sum = next_sum;
+      ++sample_index;
+      if (sample_index == end_sample) pixels[index] = uvec4(floatBitsToUint(sum), order);
     }
   }
-  pixels[index] = uvec4(floatBitsToUint(sum), record.w);
   atomicAdd(ray_counts[gl_LocalInvocationIndex].x, ray_count.x);
   if (ray_count.y > 0u) atomicAdd(ray_counts[gl_LocalInvocationIndex].y, ray_count.y);
   if (ray_count.z > 0u) atomicAdd(ray_counts[gl_LocalInvocationIndex].z, ray_count.z);

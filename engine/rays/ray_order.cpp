@@ -34,13 +34,15 @@ struct KeyedRay {
 
 /// Its largest component is 1 or -1; NaN where there is no direction.
 vec3 scaled_direction(const Ray& ray) {
-  return ray.direction / max_abs_component(ray.direction);
+  const vec3 size = glm::abs(ray.direction);
+  return ray.direction / std::max(std::max(size.x, size.y), size.z);
 }
 
-/// Of x in [-1, 1] the cell, of 2^kLevels.
+/// Of x in [-1, 1] the cell, of 2^kLevels; of any other x, NaN too, one of them.
 uint32_t cell_of(float x) {
   constexpr float kCells = 1U << kLevels;
-  return static_cast<uint32_t>(std::clamp(0.5F * (x + 1.0F) * kCells, 0.0F, kCells - 1.0F));
+  const float cell = 0.5F * (x + 1.0F) * kCells;
+  return static_cast<uint32_t>(cell > 0.0F ? (cell < kCells - 1.0F ? cell : kCells - 1.0F) : 0.0F);
 }
 
 /// Puts bit i at 6 i.
@@ -69,13 +71,12 @@ uint32_t key_of(const Ray& ray, const SceneCube& cube) {
   // Also false where anything is NaN.
   const bool enters =
       entry <= exit && std::isfinite(point.x + point.y + point.z + direction.x + direction.y + direction.z);
-  if (!enters) return kMissKey;
   uint32_t key = 0;
   for (int axis = 0; axis < 3; ++axis) {
     key |= kSpreadBits[cell_of(point[axis])] << axis;
     key |= kSpreadBits[cell_of(direction[axis])] << (axis + 3);
   }
-  return key;
+  return enters ? key : kMissKey;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <thread>
 
 #include "core/stopwatch.h"
 #include "gpu/device.h"
@@ -118,6 +119,7 @@ struct Renderer::Impl {
     one_block.range = uvec4(0, 0, 1, 0);
     one_block.window = uvec4(0, 0, 1, 1);
     one_block.sampling = uvec4(1, 1, 1, 0);
+    one_block.share = uvec4(1, 1, 0, 0);
     set_camera(one_pixel, one_block, Camera(), uvec2(1));
     one_pixel.film_center.z = 0.5F;
     frame_buffer->write(std::as_bytes(std::span(&one_pixel, 1)));
@@ -167,7 +169,9 @@ struct Renderer::Impl {
         const uint32_t count = pick_sample_count(blocks, samples - sample);
         uncollected += most_rays_a_sample * blocks * count;
         range.range = uvec4(first, sample, count, view.max_depth);
-        const double time_ms = kernel->run(range, *film, blocks);
+        const uint32_t blocks_a_group = pick_blocks_a_group(blocks);
+        range.share = uvec4(first + blocks, blocks_a_group, 0, 0);
+        const double time_ms = kernel->run(range, *film, divide_up(blocks, blocks_a_group));
         result.trace_ms += time_ms;
         pacer.learn(static_cast<double>(blocks) * count, time_ms);
         if (uncollected > 2e9) {
@@ -192,6 +196,15 @@ struct Renderer::Impl {
   uint32_t pick_sample_count(uint32_t blocks, uint32_t remaining) const {
     const double wanted = std::max(1.0, pacer.units() / blocks);
     return static_cast<uint32_t>(std::min<double>(wanted, remaining));
+  }
+
+  /// Where a lane has several pixels it does not wait for its neighbours' mirror rays; but the device's cores want
+  /// groups to share, and on a GPU one group waits while others work.
+  uint32_t pick_blocks_a_group(uint32_t blocks) const {
+    constexpr uint32_t kMostBlocks = 16;
+    constexpr uint32_t kGroupsACore = 8;
+    const uint32_t groups = kGroupsACore * std::max(1U, std::thread::hardware_concurrency());
+    return device.is_cpu() ? std::clamp(blocks / groups, 1U, kMostBlocks) : 1;
   }
 
   /// Adds what the film holds of a band to the result, from its pixel `first` on.
