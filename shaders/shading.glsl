@@ -8,6 +8,33 @@ layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { Su
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
+layout(set = 0, binding = BINDING_SHADING_TEXELS) uniform usamplerBuffer shading_texels;
+
+vec4 shading_vector(uint texel) { return uintBitsToFloat(texelFetch(shading_texels, int(texel))); }
+
+SurfaceRecord load_surface(uint index) {
+  if (FETCHES_TEXELS == 0u) return surfaces[index];
+  return SurfaceRecord(texelFetch(shading_texels, int(index)));
+}
+
+MaterialRecord load_material(uint index) {
+  if (FETCHES_TEXELS == 0u) return materials[index];
+  uint first = 5u * index;
+  return MaterialRecord(shading_vector(first), shading_vector(first + 1u), shading_vector(first + 2u),
+                        shading_vector(first + 3u), shading_vector(first + 4u));
+}
+
+LightRecord load_light(uint index) {
+  if (FETCHES_TEXELS == 0u) return lights[index];
+  uint first = 5u * index;
+  return LightRecord(shading_vector(first), shading_vector(first + 1u), shading_vector(first + 2u),
+                     shading_vector(first + 3u), texelFetch(shading_texels, int(first + 4u)));
+}
+
+vec3 load_vertex(uint index) {
+  if (FETCHES_TEXELS == 0u) return vertices[index].xyz;
+  return shading_vector(index).xyz;
+}
 
 // What the light loop and the mirror ray need of a hit.
 struct ShadingPoint {
@@ -20,8 +47,6 @@ struct ShadingPoint {
   MaterialRecord material;
 };
 
-vec3 vertex_vector(uint first, uint index) { return vertices[first + index].xyz; }
-
 // Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4: lifts the point onto the curved surface that the
 // vertex normals suggest, so that its own coarse polygon does not shadow what is shaded as lit.
 vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
@@ -31,9 +56,9 @@ vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
 }
 
 void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, vec3 weights, bool is_flipped) {
-  vec3 n0 = vertex_vector(frame.first_index.z, corners.x);
-  vec3 n1 = vertex_vector(frame.first_index.z, corners.y);
-  vec3 n2 = vertex_vector(frame.first_index.z, corners.z);
+  vec3 n0 = load_vertex(frame.first_index.z + corners.x);
+  vec3 n1 = load_vertex(frame.first_index.z + corners.y);
+  vec3 n2 = load_vertex(frame.first_index.z + corners.z);
   // The interpolated normal faces the ray by the geometric normal's side, so its own sign stays as wound.
   float side = is_flipped ? -1.0 : 1.0;
   precise vec3 interpolated = (weights.x * n0 + weights.y * n1 + weights.z * n2) * side;
@@ -48,7 +73,7 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
 
 ShadingPoint make_shading_point(Ray ray, Hit hit) {
   Primitive p = load_primitive(hit.primitive);
-  SurfaceRecord record = surfaces[hit.primitive];
+  SurfaceRecord record = load_surface(hit.primitive);
   SurfacePoint surface = surface_point(ray, p, hit);
   bool is_flipped = dot3(surface.normal, ray.direction) > 0.0;
   ShadingPoint point;
@@ -58,15 +83,15 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
   point.lift = surface.lift;
   point.shadow_position = surface.position;
   point.color = vec3(1.0);
-  point.material = materials[frame.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK)];
+  point.material = load_material(frame.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK));
   precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
   if (has(FEATURE_SMOOTH_NORMALS) && (record.corners_material.w & SURFACE_IS_SMOOTH) != 0u) {
     apply_vertex_normals(point, p, record.corners_material.xyz, weights, is_flipped);
   }
   if (has(FEATURE_VERTEX_COLORS) && (record.corners_material.w & SURFACE_IS_COLORED) != 0u) {
-    precise vec3 color = weights.x * vertex_vector(frame.first_index.w, record.corners_material.x) +
-                         weights.y * vertex_vector(frame.first_index.w, record.corners_material.y) +
-                         weights.z * vertex_vector(frame.first_index.w, record.corners_material.z);
+    precise vec3 color = weights.x * load_vertex(frame.first_index.w + record.corners_material.x) +
+                         weights.y * load_vertex(frame.first_index.w + record.corners_material.y) +
+                         weights.z * load_vertex(frame.first_index.w + record.corners_material.z);
     point.color = color;
   }
   return point;
@@ -106,7 +131,7 @@ vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
   precise vec3 sum = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
   if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS)) {
     for (uint i = 0u; i < dispatch.counts.z; ++i) {
-      sum += shade_light(point, to_eye, lights[frame.first_index.y + i], shadow_rays);
+      sum += shade_light(point, to_eye, load_light(frame.first_index.y + i), shadow_rays);
     }
   }
   return sum;

@@ -25,12 +25,13 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed)
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)), kStorageOrTexels)),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
-      shading_(upload(device, packed.shading, kStorage)),
+      shading_(upload(device, packed.shading, kStorageOrTexels)),
+      shading_texels_(shading_.make_texel_view()),
       frame_(packed.frame),
       dispatch_(packed.dispatch),
       // In steps, so that scenes of about the same depth share pipelines.
       stack_size_((packed.stack_size + 7) / 8 * 8),
-      fetches_texels_(std::max(nodes_.size_bytes(), primitives_.size_bytes()) <=
+      fetches_texels_(std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_.size_bytes()}) <=
                       device.limits().maxTexelBufferElements * gpu::kTexelBytes) {}
 
 std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {
@@ -41,8 +42,9 @@ std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {
       {layout::BINDING_PRIMITIVE_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &primitives_, &primitive_texels_}};
 }
 
-gpu::BoundBuffer DeviceScene::shading() const {
-  return {layout::BINDING_SHADING, vk::DescriptorType::eStorageBuffer, &shading_};
+std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
+  return {{layout::BINDING_SHADING, vk::DescriptorType::eStorageBuffer, &shading_},
+          {layout::BINDING_SHADING_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &shading_, &shading_texels_}};
 }
 
 }  // namespace promin

@@ -26,7 +26,8 @@ class DeviceScene {
   std::vector<gpu::BoundBuffer> geometry() const;
   /// Whether the device's texel buffers hold all of it: CONSTANT_FETCHES_TEXELS.
   bool fetches_texels() const { return fetches_texels_; }
-  gpu::BoundBuffer shading() const;
+  /// What shading reads, likewise.
+  std::vector<gpu::BoundBuffer> shading() const;
 
  private:
   gpu::Buffer nodes_;
@@ -34,6 +35,7 @@ class DeviceScene {
   vk::raii::BufferView node_texels_;
   vk::raii::BufferView primitive_texels_;
   gpu::Buffer shading_;
+  vk::raii::BufferView shading_texels_;
   layout::Frame frame_;
   layout::Dispatch dispatch_;
   uint32_t stack_size_;

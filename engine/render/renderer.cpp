@@ -106,7 +106,7 @@ struct Renderer::Impl {
         gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
         gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene->fetches_texels() ? 1U : 0U}};
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
-    buffers.push_back(scene->shading());
+    for (const gpu::BoundBuffer& buffer : scene->shading()) buffers.push_back(buffer);
     buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame_buffer});
     buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*film});
     kernel.emplace(device, k_render_spirv, constants, buffers);
