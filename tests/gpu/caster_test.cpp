@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <random>
 
 #include "core/error.h"
 #include "gpu/device_fixture.h"
@@ -64,6 +67,73 @@ TEST_F(CasterTest, AnswersAsTheOracle) {
     ASSERT_NEAR(hits[i].v, verdict.exact.v, 1e-4L) << "ray " << i;
   }
   EXPECT_GT(hit_count, rays.size() / 2);
+}
+
+/// A camera's in pixel order: towards the scene of everything, in rows of 64.
+std::vector<Ray> make_rows(uint32_t rows) {
+  std::vector<Ray> rays;
+  for (uint32_t y = 0; y < rows; ++y) {
+    for (uint32_t x = 0; x < 64; ++x) {
+      const vec3 direction(0.02F * (static_cast<float>(x) - 31.5F), 0.02F * (31.5F - static_cast<float>(y)), -1.0F);
+      rays.push_back({vec3(0.5F, 1.5F, 8.0F), 0.0F, direction, kInfinity});
+    }
+  }
+  return rays;
+}
+
+// Rays in rows are traced in packets on a CPU device, the same ones shuffled are sorted and traced alone.
+TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
+  const Scene scene = test::make_scene_of_everything();
+  // No multiple of a packet's size; some without direction, some empty.
+  std::vector<Ray> rays = make_rows(63);
+  rays.pop_back();
+  rays[77].direction = vec3(0.0F);
+  rays[78].tmax = 0.0F;
+  rays[500].direction.y = -rays[500].direction.y;
+  rays[501].origin.x = std::numeric_limits<float>::quiet_NaN();
+  std::vector<size_t> order(rays.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937(5));
+  std::vector<Ray> shuffled(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) shuffled[i] = rays[order[i]];
+  for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
+    const std::vector<Hit> expected = cast(scene, rays, query);
+    const std::vector<Hit> hits = cast(scene, shuffled, query);
+    std::vector<Hit> restored(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) restored[order[i]] = hits[i];
+    EXPECT_TRUE(has_same_bits(restored, expected));
+    EXPECT_GT(std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.t < kInfinity; }), 1000);
+  }
+}
+
+// Rays of a packet are of several octants, and some of them are done before others.
+TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
+  const Scene scene = test::make_scene_of_everything();
+  const PackedScene packed = pack_scene(scene, "sah");
+  const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), packed);
+  std::vector<layout::RayRecord> rays;
+  for (const Ray& ray : make_rays(1001)) rays.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
+  for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
+    std::vector<layout::HitRecord> expected;
+    for (const uint32_t size : {1U, 2U, 4U}) {
+      RayKernelOptions options;
+      options.features = features_of(scene);
+      options.query = query;
+      options.packet_size = size;
+      std::vector<layout::HitRecord> records(rays.size());
+      RayKernel(device(), device_scene, options).run(rays, records);
+      if (expected.empty()) expected = records;
+      // Of any hits only whether there is one is told: which one it is may depend on the packet.
+      size_t differences = 0;
+      for (size_t i = 0; i < rays.size(); ++i) {
+        const bool is_same = query == HitQuery::kAny
+                                 ? (records[i].a.y == layout::NO_ORDER) == (expected[i].a.y == layout::NO_ORDER)
+                                 : std::memcmp(&records[i], &expected[i], sizeof(layout::HitRecord)) == 0;
+        differences += is_same ? 0 : 1;
+      }
+      EXPECT_EQ(differences, 0U) << "packets of " << size;
+    }
+  }
 }
 
 TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {

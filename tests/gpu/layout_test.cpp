@@ -46,7 +46,8 @@ const Layout kLayouts[] = {
      {OFFSET(Frame, eye), OFFSET(Frame, look), OFFSET(Frame, right), OFFSET(Frame, up), OFFSET(Frame, ambient),
       OFFSET(Frame, background), OFFSET(Frame, tree_bounds), OFFSET(Frame, film_center), OFFSET(Frame, first_index)}},
     {"Dispatch",
-     {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts)}},
+     {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts),
+      OFFSET(Dispatch, share)}},
     {"RayRecord", {OFFSET(RayRecord, origin_tmin), OFFSET(RayRecord, direction_tmax)}},
     {"HitRecord", {OFFSET(HitRecord, a), OFFSET(HitRecord, b)}},
 };
@@ -86,7 +87,8 @@ INSTANTIATE_TEST_SUITE_P(Structs, LayoutTest, testing::ValuesIn(kLayouts),
 TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
   std::map<std::string, uint32_t> expected = {{"FEATURES", layout::CONSTANT_FEATURES},
                                               {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},
-                                              {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS}};
+                                              {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
+                                              {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE}};
   EXPECT_EQ(test::SpirvModule(k_render_spirv).spec_ids, expected);
   expected["ANY_HIT"] = layout::CONSTANT_ANY_HIT;
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
