@@ -56,7 +56,9 @@ void check_cast_options(const CastOptions& options) {
     throw UsageError(
         {"unknown output ending \"" + options.hits.extension().string() + "\"", options.hits.string(), "use .npy"});
   }
-  check_outputs({options.tracing.scene, options.rays}, {options.hits}, options.tracing.stats);
+  std::vector<std::filesystem::path> inputs = input_files(options.tracing);
+  inputs.push_back(options.rays);
+  check_outputs(inputs, {options.hits}, options.tracing.stats);
 }
 
 /// False if a signal asked for the end.
@@ -98,7 +100,7 @@ void cast(const CastOptions& options) {
   const Scene scene = load_for(tracing, stats, console);
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   CasterOptions caster_options;
-  caster_options.builder = tracing.builder;
+  choose_tree(tracing, caster_options);
   Caster caster(*device, scene, caster_options);
   caster.prepare(options.query());
   take_setup(caster.setup_stats(), stats, console);

@@ -137,7 +137,7 @@ TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
 }
 
 TEST_F(CasterTest, UnknownBuildersAreRefused) {
-  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), CasterOptions{"shah", {}}), UsageError);
+  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), CasterOptions{.builder = "shah"}), UsageError);
 }
 
 // AOVs are what a cast of the pixel's ray tells, and leave the picture's bits alone.
