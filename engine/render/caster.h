@@ -25,7 +25,7 @@ struct CasterOptions {
   std::optional<std::filesystem::path> bvh = std::nullopt;
   /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; empty for
   /// promin's own.
-  std::span<const uint32_t> spirv;
+  std::span<const uint32_t> spirv = {};
 };
 
 /// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with. Keeps

@@ -97,10 +97,11 @@ class CliTest : public testing::Test {
 };
 
 /// One line of the form that every failure has.
-inline void expect_failure(const ProcessResult& result, int exit_code, const std::string& part) {
+inline void expect_failure(const ProcessResult& result, int exit_code, const std::string& part,
+                           const std::string& program = "promin") {
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
   EXPECT_THAT(result.out, testing::IsEmpty());
-  const size_t start = result.err.find("promin: error: ");
+  const size_t start = result.err.find(program + ": error: ");
   ASSERT_NE(start, std::string::npos) << result.err;
   const std::string line = result.err.substr(start);
   EXPECT_THAT(line, testing::HasSubstr(part));
