@@ -126,13 +126,7 @@ TEST_F(BvhCliTest, PicturesAndHitsTakeTheFile) {
   EXPECT_EQ(stats.at("bvh").at("sah_cost"), 2.0);
   EXPECT_GT(stats.at("times_ms").at("bvh"), 0.0);
 
-  std::string rays("\x93NUMPY\x01\0", 8);
-  const std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8), }\n";
-  rays += static_cast<char>(header.size());
-  rays += '\0' + header;
-  const std::array ray = {0.5F, 0.25F, 4.0F, 0.0F, 0.0F, 0.0F, -1.0F, 10.0F};
-  rays.append(reinterpret_cast<const char*>(ray.data()), sizeof(ray));
-  std::ofstream(folder() / "rays.npy", std::ios::binary) << rays;
+  write_rays("rays.npy", {{vec3(0.5F, 0.25F, 4), 0, vec3(0, 0, -1), 10}});
   ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "a.npy", "--bvh", "a.pbvh"}).exit_code, 0);
   ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "b.npy"}).exit_code, 0);
   EXPECT_TRUE(read("a.npy") == read("b.npy"));

@@ -14,6 +14,7 @@
 
 #include "image/image.h"
 #include "process.h"
+#include "rays/ray.h"
 
 namespace promin {
 
@@ -67,6 +68,17 @@ class CliTest : public testing::Test {
   const std::filesystem::path& folder() const { return options_.folder; }
 
   void write(const std::string& file, const std::string& text) const { std::ofstream(folder() / file) << text; }
+
+  void write_rays(const std::string& file, const std::vector<Ray>& rays) const {
+    const std::string header =
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(rays.size()) + ", 8), }\n";
+    std::string bytes("\x93NUMPY\x01\0", 8);
+    bytes += static_cast<char>(header.size());
+    bytes += '\0';
+    bytes += header;
+    bytes.append(reinterpret_cast<const char*>(rays.data()), rays.size() * sizeof(Ray));
+    std::ofstream(folder() / file, std::ios::binary) << bytes;
+  }
 
   std::string read(const std::string& file) const {
     std::ifstream stream(folder() / file, std::ios::binary);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -34,21 +33,10 @@ class BvhFileOnDevice : public test::DeviceTest {
   std::filesystem::path file_ = folder_ / "tree.pbvh";
 };
 
-std::vector<Ray> make_rays() {
-  std::vector<Ray> rays;
-  for (int i = 0; i < 20000; ++i) {
-    const auto x = static_cast<float>(i);
-    const vec3 eye(8.0F * std::cos(x), 3.0F + 2.0F * std::sin(7.0F * x), 8.0F * std::sin(x));
-    const vec3 target(3.0F * std::sin(11.0F * x), 1.5F + 1.5F * std::cos(5.0F * x), 2.0F * std::sin(3.0F * x));
-    rays.push_back({eye, 0.0F, target - eye, std::numeric_limits<float>::infinity()});
-  }
-  return rays;
-}
-
 TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
   const Scene scene = test::make_scene_of_everything(500);
   const View view = test::make_view(uvec2(120, 80));
-  const std::vector<Ray> rays = make_rays();
+  const std::vector<Ray> rays = test::make_rays(20000);
   for (const std::string_view name : builder_names()) {
     const std::string builder(name);
     SCOPED_TRACE(builder);
