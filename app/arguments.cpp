@@ -131,7 +131,8 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
 void add_common_options(CLI::App& app) {
   app.allow_extras();
   app.set_help_flag("-h,--help", "Print this help and exit");
-  app.set_version_flag("--version", std::string("promin ") + PROMIN_VERSION, "Print the version and exit");
+  const CLI::App& program = app.get_parent() == nullptr ? app : *app.get_parent();
+  app.set_version_flag("--version", program.get_name() + " " + PROMIN_VERSION, "Print the version and exit");
 }
 
 bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {

@@ -56,7 +56,9 @@ void check_cast_options(const CastOptions& options) {
     throw UsageError(
         {"unknown output ending \"" + options.hits.extension().string() + "\"", options.hits.string(), "use .npy"});
   }
-  check_outputs({options.tracing.scene, options.rays}, {options.hits}, options.tracing.stats);
+  std::vector<std::filesystem::path> inputs = input_files(options.tracing);
+  inputs.push_back(options.rays);
+  check_outputs(inputs, {options.hits}, options.tracing.stats);
 }
 
 /// The file's next rays, at most kChunkRays; none at its end.
@@ -100,7 +102,7 @@ void cast(const CastOptions& options) {
   const Scene scene = load_for(tracing, stats, console);
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   CasterOptions caster_options;
-  caster_options.builder = tracing.builder;
+  choose_tree(tracing, caster_options);
   Caster caster(*device, scene, caster_options);
   std::vector<Ray> rays = read_chunk(reader, 0);
   caster.prepare(options.query(), rays);

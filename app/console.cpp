@@ -6,11 +6,21 @@
 
 #include <cstdio>
 
+#include "core/error.h"
+
 namespace promin::app {
+
+Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
+  if (is_quiet && is_verbose) {
+    throw UsageError({"--quiet and --verbose contradict each other", "on the command line", "leave one out"});
+  }
+  if (is_quiet) return Verbosity::kQuiet;
+  return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+}
 
 void Console::print(const std::string& text, Verbosity least) const {
   // fmt::print would throw where the stream is closed, and that is no reason to fail.
-  if (verbosity_ >= least) std::fputs(fmt::format("promin: {}\n", text).c_str(), stderr);
+  if (verbosity_ >= least) std::fputs(fmt::format("{}: {}\n", program_, text).c_str(), stderr);
 }
 
 }  // namespace promin::app

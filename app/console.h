@@ -8,10 +8,14 @@ namespace promin::app {
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
+/// Of the flags --quiet and --verbose. Throws UsageError where both are set.
+Verbosity verbosity_of(bool is_quiet, bool is_verbose);
+
 /// What a command says beside its result: on the standard error stream, a line each, nothing when quiet.
 class Console {
  public:
-  explicit Console(Verbosity verbosity) : verbosity_(verbosity) {}
+  explicit Console(Verbosity verbosity, std::string program = "promin")
+      : verbosity_(verbosity), program_(std::move(program)) {}
 
   /// What was assumed where the scene or the user did not say.
   void note(const std::string& text) const { print("note: " + text, Verbosity::kNormal); }
@@ -25,6 +29,7 @@ class Console {
   void print(const std::string& text, Verbosity least) const;
 
   Verbosity verbosity_;
+  std::string program_;
 };
 
 }  // namespace promin::app

@@ -11,6 +11,7 @@
 
 #include "console.h"
 #include "render/pack_scene.h"
+#include "rows.h"
 #include "scene/features.h"
 #include "scene/load_scene.h"
 #include "scene_counts.h"
@@ -18,15 +19,6 @@
 
 namespace promin::app {
 namespace {
-
-void print_row(const std::string& name, const std::string& value) {
-  fmt::print("{:<12}{}\n", name, value);
-}
-
-/// One row a line of `values`, the name before the first.
-void print_rows(const std::string& name, const std::vector<std::string>& values) {
-  for (size_t i = 0; i < values.size(); ++i) print_row(i == 0 ? name : "", values[i]);
-}
 
 std::string describe_objects(const SceneCounts& counts, size_t object_count) {
   std::vector<std::string> kinds;

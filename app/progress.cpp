@@ -25,7 +25,8 @@ std::string format_time(double seconds) {
 
 }  // namespace
 
-Progress::Progress(bool is_quiet) : is_quiet_(is_quiet), is_terminal_(isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool is_quiet, std::string program)
+    : is_quiet_(is_quiet), program_(std::move(program)), is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (has_bar_) std::fputs("\r\033[K", stderr);
@@ -50,7 +51,7 @@ void Progress::update(double fraction) {
   const auto tenth = static_cast<int>(10.0 * fraction);
   if (tenth == last_tenth_) return;
   last_tenth_ = tenth;
-  std::fputs(fmt::format("promin: {:.0f} %, {} left\n", std::floor(100.0 * fraction), left).c_str(), stderr);
+  std::fputs(fmt::format("{}: {:.0f} %, {} left\n", program_, std::floor(100.0 * fraction), left).c_str(), stderr);
 }
 
 }  // namespace promin::app

@@ -12,7 +12,7 @@ namespace promin::app {
 class Progress {
  public:
   /// A quiet one shows nothing at all.
-  explicit Progress(bool is_quiet);
+  explicit Progress(bool is_quiet, std::string program = "promin");
   /// Removes the bar.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -25,6 +25,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   bool is_quiet_;
+  std::string program_;
   bool is_terminal_;
   bool has_bar_ = false;
   Clock::time_point start_ = Clock::now();

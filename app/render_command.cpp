@@ -29,7 +29,7 @@ namespace {
 RenderResult trace(const gpu::Device& device, const Scene& scene, const RenderOptions& options, RunStats& stats,
                    const Console& console) {
   RendererOptions renderer_options;
-  renderer_options.builder = options.tracing.builder;
+  choose_tree(options.tracing, renderer_options);
   renderer_options.force_all_features = options.has_all_features;
   renderer_options.with_aovs = options.aovs.any();
   Renderer renderer(device, scene, renderer_options);
@@ -100,7 +100,7 @@ void render(const RenderOptions& options) {
   const TracingOptions& tracing = options.tracing;
   check_render_options(options);
   check_pictures(options.pictures);
-  check_outputs({tracing.scene}, options.pictures, tracing.stats);
+  check_outputs(input_files(tracing), options.pictures, tracing.stats);
   const Console console(tracing.verbosity());
 
   RunStats stats;

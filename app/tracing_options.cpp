@@ -14,11 +14,6 @@ constexpr uint32_t kMaxRepeats = 10000;
 
 }  // namespace
 
-Verbosity TracingOptions::verbosity() const {
-  if (is_quiet) return Verbosity::kQuiet;
-  return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
-}
-
 void add_scene_argument(OptionTable& table, TracingOptions& options) {
   table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj", [&](const Words& w) { options.scene = w.text(); });
 }
@@ -26,8 +21,11 @@ void add_scene_argument(OptionTable& table, TracingOptions& options) {
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   table.add("--device", "NAME|INDEX", "Vulkan device by a part of its name or its index in `promin devices`",
             [&](const Words& w) { options.device = w.text(); });
-  table.add("--builder", "NAME", fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), options.builder),
+  table.add("--builder", "NAME",
+            fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),
             [&](const Words& w) { options.builder = w.choice(builder_names()); });
+  table.add("--bvh", "FILE.pbvh", "Take the BVH from a file of promin-bvh build",
+            [&](const Words& w) { options.bvh = w.text(); });
   table.add("--repeat", "N", "Trace N times and report the median time [1]",
             [&](const Words& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
   table.add("--stats", "FILE.json", "Write counts and times as JSON",
@@ -37,9 +35,16 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
 }
 
 void check_tracing_options(const TracingOptions& options) {
-  if (options.is_quiet && options.is_verbose) {
-    throw UsageError({"--quiet and --verbose contradict each other", "on the command line", "leave one out"});
+  options.verbosity();
+  if (options.bvh && options.builder) {
+    throw UsageError({"--bvh and --builder contradict each other", "on the command line", "leave one out"});
   }
+}
+
+std::vector<std::filesystem::path> input_files(const TracingOptions& options) {
+  std::vector<std::filesystem::path> files = {options.scene};
+  if (options.bvh) files.push_back(*options.bvh);
+  return files;
 }
 
 }  // namespace promin::app

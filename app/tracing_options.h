@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "console.h"
 #include "render/renderer.h"
@@ -20,12 +21,13 @@ struct TracingOptions {
   std::optional<std::filesystem::path> stats;
   /// Name or index of a device.
   std::optional<std::string> device;
-  std::string builder = RendererOptions{}.builder;
+  std::optional<std::string> builder;
+  std::optional<std::filesystem::path> bvh;
   uint32_t repeat_count = 1;
   bool is_quiet = false;
   bool is_verbose = false;
 
-  Verbosity verbosity() const;
+  Verbosity verbosity() const { return verbosity_of(is_quiet, is_verbose); }
 };
 
 /// The row of SCENE, which comes first on the command line; and those of the others. `options` must outlive the
@@ -35,5 +37,15 @@ void add_tracing_options(OptionTable& table, TracingOptions& options);
 
 /// Throws UsageError for what no single option shows: two that contradict each other.
 void check_tracing_options(const TracingOptions& options);
+
+/// Files that are read: none may be an output.
+std::vector<std::filesystem::path> input_files(const TracingOptions& options);
+
+/// Hands the choice of the tree on, to RendererOptions or CasterOptions.
+template <typename Options>
+void choose_tree(const TracingOptions& from, Options& to) {
+  if (from.builder) to.builder = *from.builder;
+  to.bvh = from.bvh;
+}
 
 }  // namespace promin::app

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/shared_progress.h"
 
 namespace promin {
 
@@ -55,6 +56,8 @@ inline constexpr double kTestCost = 1.0;
 struct BuildOptions {
   /// 0: one per core. The tree is the same, to the bit, for any number.
   unsigned thread_count = 0;
+  /// Called by any of the build's threads, one call at a time.
+  ProgressCallback progress = {};
 };
 
 /// Names of the builders, the default first.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "bvh/builders.h"
@@ -18,7 +19,7 @@ int longest_axis(const Bounds& bounds) {
 
 }  // namespace
 
-Bvh build_median(std::span<const Bounds> boxes, const BuildOptions& /*options*/) {
+Bvh build_median(std::span<const Bounds> boxes, const BuildOptions& options) {
   struct Range {
     uint32_t begin;
     uint32_t end;
@@ -28,10 +29,13 @@ Bvh build_median(std::span<const Bounds> boxes, const BuildOptions& /*options*/)
   bvh.references.resize(boxes.size());
   std::iota(bvh.references.begin(), bvh.references.end(), 0U);
   bvh.nodes.resize(1);
+  // Each level of the tree goes through all boxes.
+  SharedProgress progress(options.progress, static_cast<double>(boxes.size()) * std::log2(1.0 + boxes.size()));
   std::vector<Range> open = {{0, static_cast<uint32_t>(boxes.size()), 0}};
   while (!open.empty()) {
     const Range range = open.back();
     open.pop_back();
+    progress.add(range.end - range.begin);
     const auto first = bvh.references.begin() + range.begin;
     const auto last = bvh.references.begin() + range.end;
     Bounds bounds;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -170,9 +171,10 @@ void Halving::scatter(Chunk& chunk, const Record* from, Record* to) const {
 
 class SahBuild {
  public:
-  SahBuild(std::span<const Bounds> boxes, unsigned thread_count)
+  SahBuild(std::span<const Bounds> boxes, const BuildOptions& options)
       : boxes_(boxes),
-        thread_count_(thread_count),
+        thread_count_(options.thread_count),
+        progress_(options.progress, count_levels(boxes.size())),
         records_(std::make_unique_for_overwrite<Record[]>(boxes.size())),
         scattered_(std::make_unique_for_overwrite<Record[]>(boxes.size())) {}
 
@@ -190,6 +192,9 @@ class SahBuild {
   std::vector<Range> split_level(const std::vector<Range>& level);
   void build_subtrees();
 
+  /// Of `count` records, where each level halves them.
+  static double count_levels(size_t count) { return static_cast<double>(count) * std::log2(1.0 + count); }
+
   /// Large ranges are split with the next level, small or deep ones become subtrees.
   void add_range(const Range& range, Record* records, std::vector<Range>& level) {
     if (range.count() > kSubtreeSize && range.depth < kMaxSahDepth) {
@@ -201,6 +206,8 @@ class SahBuild {
 
   std::span<const Bounds> boxes_;
   unsigned thread_count_;
+  /// In records times levels.
+  SharedProgress progress_;
   /// The records of the current level, and where its chunks scatter them to.
   std::unique_ptr<Record[]> records_;
   std::unique_ptr<Record[]> scattered_;
@@ -256,6 +263,7 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
     const auto [lower, upper] = make_children(halving.range, halving.middle, below, above, bvh_.nodes);
     add_range(lower, scattered_.get(), next_level);
     add_range(upper, scattered_.get(), next_level);
+    progress_.add(halving.range.count());
   }
   std::swap(records_, scattered_);
   return next_level;
@@ -268,6 +276,7 @@ void SahBuild::build_subtrees() {
     const auto& [range, records] = subtrees_[i];
     built[i] = build_subtree(range, records);
     for (uint32_t k = range.begin; k < range.end; ++k) bvh_.references[k] = records[k].index();
+    progress_.add(count_levels(range.count()));
   });
   size_t node_count = bvh_.nodes.size();
   for (const std::vector<BvhNode>& nodes : built) node_count += nodes.size() - 1;
@@ -286,7 +295,7 @@ void SahBuild::build_subtrees() {
 }  // namespace
 
 Bvh build_sah(std::span<const Bounds> boxes, const BuildOptions& options) {
-  return SahBuild(boxes, options.thread_count).run();
+  return SahBuild(boxes, options).run();
 }
 
 }  // namespace promin

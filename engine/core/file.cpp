@@ -91,10 +91,12 @@ void AtomicFile::commit() {
   committed_ = true;
 }
 
-void write_file(const fs::path& file, std::span<const std::byte> bytes) {
+void write_file(const fs::path& file, std::initializer_list<std::span<const std::byte>> parts) {
   AtomicFile output(file);
   std::ofstream stream(output.temporary(), std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  for (const std::span<const std::byte> part : parts) {
+    stream.write(reinterpret_cast<const char*>(part.data()), static_cast<std::streamsize>(part.size()));
+  }
   stream.close();
   if (!stream) {
     throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", file.string(),
@@ -104,7 +106,7 @@ void write_file(const fs::path& file, std::span<const std::byte> bytes) {
 }
 
 void write_text_file(const fs::path& file, std::string_view text) {
-  write_file(file, std::as_bytes(std::span(text)));
+  write_file(file, {std::as_bytes(std::span(text))});
 }
 
 }  // namespace promin

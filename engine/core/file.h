@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,8 +45,8 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes a whole file atomically. Throws RunError.
-void write_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
+/// Writes a whole file atomically, part after part. Throws RunError.
+void write_file(const std::filesystem::path& file, std::initializer_list<std::span<const std::byte>> parts);
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace promin

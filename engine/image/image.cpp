@@ -130,7 +130,7 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
     throw RunError({"cannot encode the picture (" + first_line(writer ? writer->geterror() : OIIO::geterror()) + ")",
                     file.string(), "try the other format, .exr or .png"});
   }
-  write_file(file, std::as_bytes(std::span(encoded.buffer())));
+  write_file(file, {std::as_bytes(std::span(encoded.buffer()))});
 }
 
 Image read_image(const fs::path& file) {

@@ -70,7 +70,8 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const Primit
 struct Caster::Impl {
   Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options)
       : device(the_device), spirv(options.spirv) {
-    PackedScene packed = pack_scene(the_scene, options.builder);
+    PackedScene packed =
+        options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
     stats.upload_ms = uploading.ms();

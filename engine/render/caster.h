@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,17 +21,19 @@ class Device;
 
 struct CasterOptions {
   std::string builder = "sah";
+  /// A BVH file (render/bvh_file.h) to take the tree from instead of building one.
+  std::optional<std::filesystem::path> bvh = std::nullopt;
   /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; empty for
   /// promin's own.
-  std::span<const uint32_t> spirv;
+  std::span<const uint32_t> spirv = {};
 };
 
 /// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with. Keeps
 /// no reference to the Scene. One Caster serves one thread.
 class Caster {
  public:
-  /// Builds the BVH and uploads. Throws UsageError for an unknown builder, RunError where memory does not suffice or a
-  /// device limit is passed.
+  /// Builds the BVH and uploads. Throws UsageError for an unknown builder, InputError for a BVH file that is bad or not
+  /// the scene's, RunError where memory does not suffice or a device limit is passed.
   Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options = {});
   ~Caster();
   Caster(Caster&&) noexcept;

@@ -21,7 +21,7 @@ gpu::Buffer upload(const gpu::Device& device, std::span<const std::byte> bytes, 
 }  // namespace
 
 DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed)
-    : nodes_(upload(device, std::as_bytes(std::span(packed.nodes)), kStorageOrTexels)),
+    : nodes_(upload(device, std::as_bytes(packed.tree().nodes), kStorageOrTexels)),
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)), kStorageOrTexels)),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),

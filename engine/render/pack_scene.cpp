@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/stopwatch.h"
 #include "render/cut_triangles.h"
 
@@ -231,26 +232,26 @@ vec4 center_and_radius(const Bounds& box) {
   return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
 }
 
-}  // namespace
+/// Without what tells which object a primitive is of.
+uint64_t hash_geometry(const std::vector<Primitive>& solids) {
+  Hash64 hash;
+  hash.add(solids.size());
+  for (const Primitive& p : solids) {
+    const std::array words = {p.a, p.b};
+    hash.add(std::as_bytes(std::span(words)));
+    hash.add(p.c.x | uint64_t{p.c.z} << 32);
+  }
+  return hash.value();
+}
 
-PackedScene pack_scene(const Scene& scene, std::string_view builder) {
-  Collected collected = Collector(scene).take();
-
-  const Stopwatch building;
-  const Bvh bvh = build_bvh(builder, collected.boxes);
-  PackedScene packed;
-  packed.bvh_ms = building.ms();
+/// What a scene is packed to beside its tree, whose references are there.
+void pack_contents(PackedScene& packed, const Scene& scene, Collected& collected) {
   packed.numbers = std::move(collected.numbers);
-  packed.bvh = measure_bvh(builder, bvh);
-  PackedTree tree = pack_tree(bvh);
-  packed.nodes = std::move(tree.nodes);
-  packed.stack_size = tree.stack_size;
-  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
-
+  packed.solid_count = static_cast<uint32_t>(collected.solids.size());
   std::vector<SurfaceRecord> surfaces;
-  packed.primitives.reserve(bvh.references.size() + collected.planes.size());
+  packed.primitives.reserve(packed.references.size() + collected.planes.size());
   surfaces.reserve(packed.primitives.capacity());
-  for (const uint32_t reference : sort_leaves_by_kind(bvh, collected.solids)) {
+  for (const uint32_t reference : packed.references) {
     packed.primitives.push_back(collected.solids[reference]);
     surfaces.push_back(collected.solid_surfaces[reference]);
   }
@@ -270,6 +271,47 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
   packed.frame.tree_bounds = center_and_radius(tree_bounds);
+}
+
+}  // namespace
+
+TreeView PackedScene::tree() const {
+  if (file) return file->tree();
+  return {nodes, references, solid_count, stack_size, geometry_hash, bvh};
+}
+
+PackedScene pack_scene(const Scene& scene, std::string_view builder, const BuildOptions& options) {
+  Collected collected = Collector(scene).take();
+
+  const Stopwatch building;
+  const Bvh bvh = build_bvh(builder, collected.boxes, options);
+  PackedScene packed;
+  packed.bvh_ms = building.ms();
+  packed.bvh = measure_bvh(builder, bvh);
+  PackedTree tree = pack_tree(bvh);
+  packed.nodes = std::move(tree.nodes);
+  packed.stack_size = tree.stack_size;
+  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
+  packed.references = sort_leaves_by_kind(bvh, collected.solids);
+  packed.geometry_hash = hash_geometry(collected.solids);
+  pack_contents(packed, scene, collected);
+  return packed;
+}
+
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const Scene& scene) {
+  Collected collected = Collector(scene).take();
+
+  const Stopwatch reading;
+  PackedScene packed;
+  packed.file = std::make_shared<const BvhFile>(bvh_file);
+  packed.geometry_hash = hash_geometry(collected.solids);
+  packed.file->check_scene(packed.geometry_hash, collected.solids.size());
+  packed.bvh_ms = reading.ms();
+  const TreeView& tree = packed.file->tree();
+  packed.bvh = tree.stats;
+  packed.stack_size = tree.stack_size;
+  packed.references.assign(tree.references.begin(), tree.references.end());
+  pack_contents(packed, scene, collected);
   return packed;
 }
 

@@ -4,12 +4,15 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "bvh/builder.h"
 #include "layout.h"
+#include "render/bvh_file.h"
 #include "scene/scene.h"
 
 namespace promin {
@@ -33,8 +36,12 @@ struct PrimitiveNumbers {
 
 /// A scene in the layout of shaders/layout.h, ready to be copied to the device. Vulkan-free.
 struct PackedScene {
-  /// At least one.
+  /// At least one; none where a file has them.
   std::vector<layout::Node> nodes;
+  /// Null where the tree was built.
+  std::shared_ptr<const BvhFile> file;
+  /// As TreeView::references.
+  std::vector<uint32_t> references;
   /// Those of the tree in leaf order, then the planes; at least one.
   std::vector<layout::Primitive> primitives;
   /// Surfaces, materials, lights, vertex normals and vertex colours.
@@ -45,18 +52,28 @@ struct PackedScene {
   PrimitiveNumbers numbers;
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
+  /// What the tree is over: everything but planes and degenerate triangles.
+  uint32_t solid_count = 0;
+  /// Of the solids' shapes in their order, all that the tree depends on.
+  uint64_t geometry_hash = 0;
   BvhStats bvh;
-  /// Time of the builder alone.
+  /// Time of the builder alone, or of reading and checking the file.
   double bvh_ms = 0.0;
 
+  /// The tree, wherever its nodes lie; lives as long as this.
+  TreeView tree() const;
   uint64_t size_bytes() const {
-    return std::as_bytes(std::span(nodes)).size() + std::as_bytes(std::span(primitives)).size() + shading.size();
+    return tree().nodes.size_bytes() + std::as_bytes(std::span(primitives)).size() + shading.size();
   }
 };
 
 /// Packs a checked scene. Throws UsageError for an unknown builder and RunError where counts pass what the layout can
 /// hold (2^27 primitives).
-PackedScene pack_scene(const Scene& scene, std::string_view builder);
+PackedScene pack_scene(const Scene& scene, std::string_view builder, const BuildOptions& options = {});
+
+/// Packs a checked scene with the tree of a file. Throws InputError for a file that is bad or not the scene's, and
+/// RunError as above.
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const Scene& scene);
 
 /// What a primitive's number stands for.
 struct PrimitiveId {

@@ -69,7 +69,8 @@ void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& 
 struct Renderer::Impl {
   Impl(const gpu::Device& the_device, const Scene& the_scene, const RendererOptions& the_options)
       : device(the_device), options(the_options), pacer(options.target_dispatch_ms, kMinBlocks) {
-    PackedScene packed = pack_scene(the_scene, options.builder);
+    PackedScene packed =
+        options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = packed.size_bytes();

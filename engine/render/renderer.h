@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -70,6 +71,8 @@ struct RenderResult {
 
 struct RendererOptions {
   std::string builder = "sah";
+  /// A BVH file (render/bvh_file.h) to take the tree from instead of building one.
+  std::optional<std::filesystem::path> bvh = std::nullopt;
   /// Compile every feature in, whether the scene uses it or not: for measuring what specialisation brings.
   bool force_all_features = false;
   /// Features to leave out although the scene uses them, e.g. FEATURE_SHADOWS: then nothing throws a shadow.
@@ -86,7 +89,8 @@ struct RendererOptions {
 /// One Renderer serves one thread.
 class Renderer {
  public:
-  /// Builds the BVH, uploads, compiles. Throws RunError where memory does not suffice or a device limit is passed.
+  /// Builds the BVH, uploads, compiles. Throws UsageError for an unknown builder, InputError for a BVH file that is bad
+  /// or not the scene's, RunError where memory does not suffice or a device limit is passed.
   Renderer(const gpu::Device& device, const Scene& scene, const RendererOptions& options = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;

@@ -11,6 +11,7 @@ namespace promin {
 
 /// What setting a scene up on a device cost and made.
 struct SetupStats {
+  /// Building the tree, or reading and checking its file.
   double bvh_ms = 0.0;
   double upload_ms = 0.0;
   /// Pipeline creation and the first, compiling, dispatch.

@@ -276,6 +276,20 @@ INSTANTIATE_TEST_SUITE_P(Builders, BvhTest,
                                           testing::ValuesIn(kBoxSets)),
                          name_of);
 
+TEST(BvhBuilders, TellTheirProgress) {
+  const Boxes boxes = make_random(100'000, 1.0F);
+  for (const std::string_view builder : builder_names()) {
+    for (const unsigned thread_count : {1U, 3U}) {
+      std::vector<double> told = {0.0};
+      build_bvh(builder, boxes, {thread_count, [&](double fraction) { told.push_back(fraction); }});
+      EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+      EXPECT_GT(told.size(), 5U) << builder;
+      EXPECT_GT(told.back(), 0.7) << builder;
+      EXPECT_LE(told.back(), 1.0) << builder;
+    }
+  }
+}
+
 TEST(BvhBuilders, NoBoxesMakeNoNodes) {
   for (const std::string_view builder : builder_names()) {
     const Bvh bvh = build_bvh(builder, {});

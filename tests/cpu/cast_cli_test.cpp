@@ -25,17 +25,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class CastTest : public CliTest {
  protected:
-  void write_rays(const std::string& file, const std::vector<Ray>& rays) const {
-    const std::string header =
-        "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(rays.size()) + ", 8), }\n";
-    std::string bytes("\x93NUMPY\x01\0", 8);
-    bytes += static_cast<char>(header.size());
-    bytes += '\0';
-    bytes += header;
-    bytes.append(reinterpret_cast<const char*>(rays.data()), rays.size() * sizeof(Ray));
-    std::ofstream(folder() / file, std::ios::binary) << bytes;
-  }
-
   std::vector<Hit> read_hits(const std::string& file) const {
     const std::string bytes = read(file);
     const size_t header = bytes.find('\n') + 1;

@@ -14,6 +14,7 @@
 
 #include "image/image.h"
 #include "process.h"
+#include "rays/ray.h"
 
 namespace promin {
 
@@ -68,6 +69,17 @@ class CliTest : public testing::Test {
 
   void write(const std::string& file, const std::string& text) const { std::ofstream(folder() / file) << text; }
 
+  void write_rays(const std::string& file, const std::vector<Ray>& rays) const {
+    const std::string header =
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(rays.size()) + ", 8), }\n";
+    std::string bytes("\x93NUMPY\x01\0", 8);
+    bytes += static_cast<char>(header.size());
+    bytes += '\0';
+    bytes += header;
+    bytes.append(reinterpret_cast<const char*>(rays.data()), rays.size() * sizeof(Ray));
+    std::ofstream(folder() / file, std::ios::binary) << bytes;
+  }
+
   std::string read(const std::string& file) const {
     std::ifstream stream(folder() / file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -97,10 +109,11 @@ class CliTest : public testing::Test {
 };
 
 /// One line of the form that every failure has.
-inline void expect_failure(const ProcessResult& result, int exit_code, const std::string& part) {
+inline void expect_failure(const ProcessResult& result, int exit_code, const std::string& part,
+                           const std::string& program = "promin") {
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
   EXPECT_THAT(result.out, testing::IsEmpty());
-  const size_t start = result.err.find("promin: error: ");
+  const size_t start = result.err.find(program + ": error: ");
   ASSERT_NE(start, std::string::npos) << result.err;
   const std::string line = result.err.substr(start);
   EXPECT_THAT(line, testing::HasSubstr(part));

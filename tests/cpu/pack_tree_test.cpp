@@ -3,39 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <random>
 
 #include "render/pack_scene.h"
+#include "render/read_node.h"
 
 namespace promin {
 namespace {
 
 using layout::Node;
-using Real = long double;
-
-struct Box {
-  Real lo[3];
-  Real hi[3];
-};
-
-uint32_t byte_of(uint32_t word, int child) {
-  return (word >> (8 * child)) & 0xFF;
-}
-
-/// A child's box as the layout defines it, without rounding.
-Box decode(const Node& node, int child) {
-  const uint32_t hi_words[3] = {node.lo.w, node.hi.x, node.hi.y};
-  Box box{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const Real origin = std::bit_cast<float>(node.frame[axis]);
-    const Real step = std::ldexp(Real(1), static_cast<int>(byte_of(node.frame.w, axis)) - 127);
-    box.lo[axis] = origin + step * byte_of(node.lo[axis], child);
-    box.hi[axis] = origin + step * byte_of(hi_words[axis], child);
-  }
-  return box;
-}
 
 std::vector<Bounds> random_boxes(size_t count, double spread, double size, uint32_t seed) {
   std::mt19937 generator(seed);
@@ -72,28 +48,26 @@ class Walk {
   Bounds visit(uint32_t index, uint32_t entries) {
     ++visited_;
     const Node& node = tree_.nodes.at(index);
-    const uint32_t child_count = byte_of(node.frame.w, 3);
-    EXPECT_LE(child_count, layout::NODE_WIDTH);
+    const uint32_t count = child_count(node);
+    EXPECT_LE(count, layout::NODE_WIDTH);
     most_entries_ = std::max(most_entries_, entries);
     Bounds all;
-    for (uint32_t i = 0; i < child_count; ++i) {
-      const uint32_t child = node.children[static_cast<int>(i)];
-      const Bounds held = (child & layout::CHILD_IS_LEAF) != 0 ? visit_leaf(child) : visit(child, entries + 1);
-      const Box box = decode(node, static_cast<int>(i));
+    for (uint32_t i = 0; i < count; ++i) {
+      const NodeChild child = child_of(node, i);
+      const Bounds held = child.kind == ChildKind::kLeaf ? visit_leaf(child) : visit(child.first, entries + 1);
+      const Box box = child_box(node, i);
       for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_LE(box.lo[axis], Real(held.lo[axis])) << "node " << index << ", child " << i;
-        EXPECT_GE(box.hi[axis], Real(held.hi[axis])) << "node " << index << ", child " << i;
+        EXPECT_LE(box.lo[axis], static_cast<double>(held.lo[axis])) << "node " << index << ", child " << i;
+        EXPECT_GE(box.hi[axis], static_cast<double>(held.hi[axis])) << "node " << index << ", child " << i;
       }
       all.extend(held);
     }
     return all;
   }
 
-  Bounds visit_leaf(uint32_t child) {
-    const uint32_t first = child & layout::CHILD_FIRST_MASK;
-    const uint32_t count = ((child >> layout::CHILD_COUNT_SHIFT) & 15U) + 1;
+  Bounds visit_leaf(const NodeChild& leaf) {
     Bounds all;
-    for (uint32_t i = first; i < first + count; ++i) {
+    for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
       ++seen_.at(bvh_.references.at(i));
       all.extend(boxes_[bvh_.references[i]]);
     }
@@ -136,7 +110,7 @@ TEST(PackTree, NodesAreFilled) {
 TEST(PackTree, NoPrimitivesAreANodeWithoutChildren) {
   const PackedTree tree = pack_tree(Bvh());
   ASSERT_EQ(tree.nodes.size(), 1U);
-  EXPECT_EQ(byte_of(tree.nodes[0].frame.w, 3), 0U);
+  EXPECT_EQ(child_count(tree.nodes[0]), 0U);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <map>
 #include <variant>
 
+#include "cpu/scene_files.h"
 #include "process.h"
 #include "scene/load_scene.h"
 
@@ -57,20 +58,17 @@ TEST_F(ScenesTest, GeneratorWritesWhatIsCheckedIn) {
 }
 
 TEST_F(ScenesTest, EverySceneLoadsWithoutWarning) {
-  size_t count = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(PROMIN_SCENES_DIR)) {
-    const fs::path ending = entry.path().extension();
-    if (ending != ".gltf" && ending != ".obj") continue;
-    SCOPED_TRACE(entry.path());
-    const Scene scene = load_scene(entry.path());
+  const std::vector<fs::path> files = scene_files(PROMIN_SCENES_DIR);
+  EXPECT_GE(files.size(), 22U);
+  for (const fs::path& file : files) {
+    SCOPED_TRACE(file);
+    const Scene scene = load_scene(file);
     EXPECT_THAT(scene.warnings, testing::IsEmpty());
-    if (ending == ".gltf") {
+    if (file.extension() == ".gltf") {
       EXPECT_THAT(scene.cameras, testing::Not(testing::IsEmpty()));
       EXPECT_THAT(scene.lights, testing::Not(testing::IsEmpty()));
     }
-    ++count;
   }
-  EXPECT_GE(count, 22U);
 }
 
 TEST_F(ScenesTest, SphereflakeHasNineSpheresOnEachSphere) {

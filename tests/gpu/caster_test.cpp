@@ -23,18 +23,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Towards the scene of everything from all around it.
-std::vector<Ray> make_rays(size_t count) {
-  std::vector<Ray> rays;
-  for (size_t i = 0; i < count; ++i) {
-    const auto x = static_cast<float>(i);
-    const vec3 eye(8.0F * std::cos(x), 3.0F + 2.0F * std::sin(7.0F * x), 8.0F * std::sin(x));
-    const vec3 target(3.0F * std::sin(11.0F * x), 1.5F + 1.5F * std::cos(5.0F * x), 2.0F * std::sin(3.0F * x));
-    rays.push_back({eye, 0.0F, target - eye, kInfinity});
-  }
-  return rays;
-}
-
 class CasterTest : public test::DeviceTest {
  protected:
   static std::vector<Hit> cast(const Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) {
@@ -50,7 +38,7 @@ bool has_same_bits(std::span<const Hit> a, std::span<const Hit> b) {
 
 TEST_F(CasterTest, AnswersAsTheOracle) {
   const Scene scene = test::make_scene_of_everything();
-  const std::vector<Ray> rays = make_rays(20000);
+  const std::vector<Ray> rays = test::make_rays(20000);
   const std::vector<Hit> hits = cast(scene, rays);
   const std::vector<Hit> any = cast(scene, rays, HitQuery::kAny);
   size_t hit_count = 0;
@@ -138,7 +126,7 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
 
 TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
   const Scene scene = test::make_scene_of_everything();
-  const std::vector<Ray> rays = make_rays(3000);
+  const std::vector<Ray> rays = test::make_rays(3000);
   Caster caster(device(), scene);
   std::vector<Hit> together(rays.size());
   caster.cast(rays, together);
@@ -194,7 +182,7 @@ TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
   const PackedScene packed = pack_scene(test::make_scene_of_everything(2000), "sah");
   const std::shared_ptr<const DeviceScene> scene = upload_scene(device(), packed);
   std::vector<layout::RayRecord> requests;
-  for (const Ray& ray : make_rays(20000)) {
+  for (const Ray& ray : test::make_rays(20000)) {
     requests.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
   }
   std::vector<layout::HitRecord> by_texels(requests.size());
@@ -207,7 +195,7 @@ TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
 }
 
 TEST_F(CasterTest, UnknownBuildersAreRefused) {
-  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), CasterOptions{"shah", {}}), UsageError);
+  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), CasterOptions{.builder = "shah"}), UsageError);
 }
 
 // AOVs are what a cast of the pixel's ray tells, and leave the picture's bits alone.

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/test_scenes.h"
 
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 
 namespace promin::test {
@@ -82,6 +84,17 @@ View make_view(uvec2 size) {
   view.camera.up = glm::normalize(vec3(0, 1, -0.2F));
   view.camera.yfov = 0.7F;
   return view;
+}
+
+std::vector<Ray> make_rays(size_t count) {
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i) {
+    const auto x = static_cast<float>(i);
+    const vec3 eye(8.0F * std::cos(x), 3.0F + 2.0F * std::sin(7.0F * x), 8.0F * std::sin(x));
+    const vec3 target(3.0F * std::sin(11.0F * x), 1.5F + 1.5F * std::cos(5.0F * x), 2.0F * std::sin(3.0F * x));
+    rays.push_back({eye, 0.0F, target - eye, std::numeric_limits<float>::infinity()});
+  }
+  return rays;
 }
 
 bool has_same_bits(const Image& a, const Image& b) {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
+#include "rays/ray.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 
@@ -13,6 +16,9 @@ Scene make_scene_of_everything(uint32_t sphere_count = 200);
 
 /// A view of that scene.
 View make_view(uvec2 size);
+
+/// Rays towards that scene from all around it.
+std::vector<Ray> make_rays(size_t count);
 
 /// Sum of absolute differences over bits: 0 only if the pictures are bit for bit the same.
 bool has_same_bits(const Image& a, const Image& b);

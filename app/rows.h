@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+namespace promin::app {
+
+/// A line of what an info command prints on the standard output.
+inline void print_row(const std::string& name, const std::string& value) {
+  fmt::print("{:<12}{}\n", name, value);
+}
+
+/// One row a line of `values`, the name before the first.
+inline void print_rows(const std::string& name, const std::vector<std::string>& values) {
+  for (size_t i = 0; i < values.size(); ++i) print_row(i == 0 ? name : "", values[i]);
+}
+
+}  // namespace promin::app

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include "arguments.h"
+
+namespace promin::app {
+
+/// What main() of a program of commands does: reads the command line, runs the command and returns the exit code. A
+/// failure is one line on the standard error stream, "NAME: error: WHAT, WHERE; what to do".
+int run_program(const std::string& name, const std::string& help,
+                std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv);
+
+}  // namespace promin::app

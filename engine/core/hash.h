@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+namespace promin {
+
+/// A 64-bit checksum over words of 8 bytes: each is mixed in by xor, a multiplication by an odd number and a shift.
+/// Each step is one to one, so data that differ in one word alone never have the same value. Not against forgers.
+class Hash64 {
+ public:
+  void add(uint64_t word) {
+    state_ = (state_ ^ word) * kMultiplier;
+    state_ ^= state_ >> 32;
+  }
+  /// A last word that is not full is filled with zeros.
+  void add(std::span<const std::byte> bytes) {
+    for (size_t i = 0; i < bytes.size(); i += sizeof(uint64_t)) {
+      uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + i, bytes.size() - i < sizeof(word) ? bytes.size() - i : sizeof(word));
+      add(word);
+    }
+  }
+  uint64_t value() const { return state_; }
+
+ private:
+  /// 2^64 over the golden ratio: bits without a pattern.
+  static constexpr uint64_t kMultiplier = 0x9E3779B97F4A7C15;
+
+  uint64_t state_ = kMultiplier;
+};
+
+}  // namespace promin

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mapped_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "core/file.h"
+
+namespace promin {
+
+MappedFile::MappedFile(const std::filesystem::path& file) {
+  // Before it is opened: that of a pipe would wait for a writer.
+  if (!std::filesystem::is_regular_file(find_input(file))) {
+    throw InputError({"not a regular file", file.string(), "name a regular file"});
+  }
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (descriptor < 0 || fstat(descriptor, &status) != 0) {
+    if (descriptor >= 0) close(descriptor);
+    throw InputError({"cannot open the file", file.string(), "check its permissions"});
+  }
+  const auto size = static_cast<size_t>(status.st_size);
+  void* memory = size > 0 ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
+  close(descriptor);
+  if (size == 0) throw InputError({"the file is empty", file.string(), "make it again"});
+  if (memory == MAP_FAILED) throw InputError({"cannot read the file", file.string(), "check the disk"});
+  bytes_ = {static_cast<const std::byte*>(memory), size};
+}
+
+MappedFile::~MappedFile() {
+  munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+}  // namespace promin

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace promin {
+
+/// A regular file as memory that is read only. The file must not be changed in place while it is mapped; one that is
+/// replaced by another (AtomicFile) stays as it was.
+class MappedFile {
+ public:
+  /// Throws InputError, with the place and the cure, if it is missing, not a regular file, not readable or empty.
+  explicit MappedFile(const std::filesystem::path& file);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  /// Begins at a page.
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace promin

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/read_node.h"
+
+#include <bit>
+
+namespace promin {
+namespace {
+
+uint32_t byte_of(uint32_t word, uint32_t index) {
+  return (word >> (8 * index)) & 0xFF;
+}
+
+}  // namespace
+
+uint32_t child_count(const layout::Node& node) {
+  return byte_of(node.frame.w, 3);
+}
+
+NodeChild child_of(const layout::Node& node, uint32_t child) {
+  if (child >= child_count(node)) return {};
+  const uint32_t word = node.children[static_cast<int>(child)];
+  if ((word & layout::CHILD_IS_LEAF) == 0) return {ChildKind::kNode, word, 0};
+  return {ChildKind::kLeaf, word & layout::CHILD_FIRST_MASK, ((word >> layout::CHILD_COUNT_SHIFT) & 15) + 1};
+}
+
+Box child_box(const layout::Node& node, uint32_t child) {
+  const uvec3 hi_words(node.lo.w, node.hi.x, node.hi.y);
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double origin = std::bit_cast<float>(node.frame[axis]);
+    const double step = std::bit_cast<float>(byte_of(node.frame.w, static_cast<uint32_t>(axis)) << 23);
+    box.lo[axis] = origin + step * byte_of(node.lo[axis], child);
+    box.hi[axis] = origin + step * byte_of(hi_words[axis], child);
+  }
+  return box;
+}
+
+}  // namespace promin

@@ -1,0 +1,430 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/bvh_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <random>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/hash.h"
+#include "cpu/scene_files.h"
+#include "cpu/temp_folder.h"
+#include "gpu/test_scenes.h"
+#include "render/pack_scene.h"
+#include "render/read_node.h"
+#include "scene/load_scene.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using layout::Node;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// Places in the header (docs/bvh_file.md).
+constexpr size_t kByteOrderPlace = 8;
+constexpr size_t kVersionPlace = 12;
+constexpr size_t kChecksumPlace = 16;
+constexpr size_t kLayoutHashPlace = 24;
+constexpr size_t kNodeCountPlace = 40;
+constexpr size_t kReferenceCountPlace = 44;
+constexpr size_t kPrimitiveCountPlace = 48;
+constexpr size_t kBuilderPlace = 88;
+constexpr size_t kHeaderSize = 128;
+
+using Bytes = std::vector<std::byte>;
+
+template <typename T>
+Bytes with(Bytes bytes, size_t place, const T& value) {
+  std::memcpy(bytes.data() + place, &value, sizeof(T));
+  return bytes;
+}
+
+/// With the checksum that its content asks for.
+Bytes sealed(Bytes bytes) {
+  bytes = with(std::move(bytes), kChecksumPlace, uint64_t{0});
+  Hash64 hash;
+  hash.add(bytes);
+  return with(std::move(bytes), kChecksumPlace, hash.value());
+}
+
+/// A tree that owns what it shows, to put faults into.
+struct Tree {
+  std::vector<Node> nodes;
+  std::vector<uint32_t> references;
+  TreeView view;
+
+  explicit Tree(const TreeView& source)
+      : nodes(source.nodes.begin(), source.nodes.end()),
+        references(source.references.begin(), source.references.end()),
+        view(source) {}
+
+  TreeView show() {
+    view.nodes = nodes;
+    view.references = references;
+    return view;
+  }
+};
+
+uint32_t leaf_of(uint32_t first, uint32_t count) {
+  return layout::CHILD_IS_LEAF | ((count - 1) << layout::CHILD_COUNT_SHIFT) | first;
+}
+
+void set_child_count(Node& node, uint32_t count) {
+  node.frame.w = (node.frame.w & 0x00FFFFFF) | (count << 24);
+}
+
+/// What a device does to the worst: visits all that the nodes lead to. Fails the test if it would leave a buffer or its
+/// stack.
+void expect_traversable(const TreeView& tree) {
+  struct Open {
+    uint32_t node;
+    uint32_t nodes_above;
+  };
+  std::vector<Open> open = {{0, 0}};
+  for (size_t steps = 0; !open.empty(); ++steps) {
+    ASSERT_LE(steps, tree.nodes.size()) << "runs in a circle";
+    const auto [index, nodes_above] = open.back();
+    open.pop_back();
+    ASSERT_LT(index, tree.nodes.size());
+    ASSERT_LE(nodes_above, tree.stack_size);
+    for (uint32_t i = 0; i < layout::NODE_WIDTH; ++i) {
+      const NodeChild child = child_of(tree.nodes[index], i);
+      if (child.kind == ChildKind::kNode) open.push_back({child.first, nodes_above + 1});
+      if (child.kind != ChildKind::kLeaf) continue;
+      for (uint32_t slot = child.first; slot < child.first + child.count; ++slot) {
+        ASSERT_LT(slot, tree.references.size());
+        ASSERT_LT(tree.references[slot], tree.primitive_count);
+      }
+    }
+  }
+}
+
+class BvhFileTest : public TempFolder {
+ protected:
+  BvhFileTest() { write_bvh_file(file_, packed_.tree()); }
+
+  std::string refusal() const {
+    return message_of([&] { const BvhFile file(file_); });
+  }
+  std::string refusal(const Bytes& bytes) const {
+    // A new file each time: truncating an old one makes some file systems flush.
+    fs::remove(file_);
+    std::ofstream(file_, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return refusal();
+  }
+  std::string refusal(Tree& tree) const {
+    write_bvh_file(file_, tree.show());
+    return refusal();
+  }
+
+  fs::path file_ = folder_ / "tree.pbvh";
+  Scene scene_ = test::make_scene_of_everything(30);
+  PackedScene packed_ = pack_scene(scene_, "median");
+};
+
+template <typename T>
+bool has_same_bytes(std::span<const T> a, std::span<const T> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+void expect_same(const PackedScene& a, const PackedScene& b) {
+  EXPECT_TRUE(has_same_bytes(a.tree().nodes, b.tree().nodes));
+  EXPECT_TRUE(has_same_bytes<layout::Primitive>(a.primitives, b.primitives));
+  EXPECT_EQ(a.references, b.references);
+  EXPECT_EQ(a.shading, b.shading);
+  EXPECT_EQ(a.stack_size, b.stack_size);
+  EXPECT_EQ(a.size_bytes(), b.size_bytes());
+  EXPECT_EQ(a.bvh.builder, b.bvh.builder);
+  EXPECT_EQ(a.bvh.nodes, b.bvh.nodes);
+  EXPECT_EQ(a.bvh.leaves, b.bvh.leaves);
+  EXPECT_EQ(a.bvh.depth, b.bvh.depth);
+  EXPECT_EQ(a.bvh.max_leaf_size, b.bvh.max_leaf_size);
+  EXPECT_EQ(a.bvh.sah_cost, b.bvh.sah_cost);
+  EXPECT_EQ(a.bvh.bytes, b.bvh.bytes);
+}
+
+TEST_F(BvhFileTest, HoldsWhatWasBuilt) {
+  const std::vector<fs::path> files = scene_files(PROMIN_SCENES_DIR);
+  EXPECT_GT(files.size(), 10U);
+  for (const fs::path& scene_file : files) {
+    const Scene scene = load_scene(scene_file);
+    for (const std::string_view builder : builder_names()) {
+      SCOPED_TRACE(scene_file.string() + " " + std::string(builder));
+      const PackedScene built = pack_scene(scene, builder);
+      write_bvh_file(file_, built.tree());
+      expect_same(pack_scene_with(file_, scene), built);
+    }
+  }
+}
+
+TEST_F(BvhFileTest, ATreeOfNothingIsATree) {
+  Scene planes;
+  planes.materials.resize(1);
+  planes.objects = {{"", Plane{}, 0}};
+  const PackedScene built = pack_scene(planes, "sah");
+  write_bvh_file(file_, built.tree());
+  expect_same(pack_scene_with(file_, planes), built);
+}
+
+TEST_F(BvhFileTest, EveryFlippedBitIsRefused) {
+  const Bytes bytes = read_file(file_);
+  ASSERT_LT(bytes.size(), 4000U);
+  for (size_t i = 0; i < 8 * bytes.size(); ++i) {
+    Bytes flipped = bytes;
+    flipped[i / 8] ^= std::byte{1} << (i % 8);
+    ASSERT_NE(refusal(flipped), "") << "bit " << i % 8 << " of byte " << i / 8;
+  }
+}
+
+TEST_F(BvhFileTest, EveryOtherLengthIsRefused) {
+  Bytes bytes = read_file(file_);
+  bytes.push_back(std::byte{0});
+  EXPECT_THAT(refusal(bytes), HasSubstr("bytes where its header tells of"));
+  bytes.pop_back();
+  while (!bytes.empty()) {
+    bytes.pop_back();
+    ASSERT_NE(refusal(bytes), "") << "length " << bytes.size();
+  }
+}
+
+TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
+  const Bytes good = read_file(file_);
+  const std::string cure = ", " + file_.string() + "; build it again with promin-bvh build";
+  EXPECT_EQ(refusal(with(good, 0, 'P')),
+            "not a BVH file, " + file_.string() + "; name a file that promin-bvh build has written");
+  EXPECT_EQ(refusal(sealed(with(good, kByteOrderPlace, 0x04030201))), "the BVH file is of another byte order" + cure);
+  EXPECT_EQ(refusal(sealed(with(good, kVersionPlace, 7))),
+            "the BVH file is of version 7 and this promin reads version 1" + cure);
+  EXPECT_EQ(refusal(sealed(with(good, kLayoutHashPlace, uint64_t{5}))),
+            "the BVH file has nodes of another layout than this promin's" + cure);
+  EXPECT_EQ(refusal(with(good, kHeaderSize + 3, '!')), "the BVH file is damaged: its checksum does not match" + cure);
+  EXPECT_EQ(refusal(Bytes(good.begin(), good.begin() + 100)), "the BVH file ends within its header" + cure);
+  EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, '\x1B'))), "the BVH file does not name its builder" + cure);
+  EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, std::array<uint64_t, 5>{~0U, ~0U, ~0U, ~0U, ~0U}))),
+            "the BVH file does not name its builder" + cure);
+  EXPECT_THAT(refusal(Bytes()), HasSubstr("the file is empty"));
+  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasSubstr("not found"));
+}
+
+TEST_F(BvhFileTest, CountsBeyondTheFileAreRefused) {
+  const Bytes good = read_file(file_);
+  for (const size_t place : {kNodeCountPlace, kReferenceCountPlace, kPrimitiveCountPlace}) {
+    for (const uint32_t count : {0U, 1U, 0x02000000U, 0x7FFFFFFFU, 0xFFFFFFFFU}) {
+      EXPECT_NE(refusal(sealed(with(good, place, count))), "") << place << " " << count;
+    }
+  }
+}
+
+/// A fault in a tree, and the sentence that a file with it, and with the right checksum, gets.
+struct HostileTree {
+  const char* name;
+  void (*spoil)(Tree& tree);
+  const char* sentence;
+};
+
+std::ostream& operator<<(std::ostream& out, const HostileTree& tree) {
+  return out << tree.name;
+}
+
+/// The first child of the root that is of a kind.
+uint32_t& child_word(Tree& tree, ChildKind kind) {
+  uint32_t i = 0;
+  while (child_of(tree.nodes[0], i).kind != kind) ++i;
+  return tree.nodes[0].children[static_cast<int>(i)];
+}
+
+/// Nodes of two children, a leaf and the next node, down to two leaves.
+void make_chain(Tree& tree, uint32_t length) {
+  tree.nodes.assign(length, tree.nodes[0]);
+  tree.references.clear();
+  for (uint32_t i = 0; i < length; ++i) {
+    const uint32_t next = i + 1 < length ? i + 1 : leaf_of(length, 1);
+    tree.nodes[i].children = uvec4(leaf_of(i, 1), next, 0, 0);
+    set_child_count(tree.nodes[i], 2);
+    tree.references.push_back(i);
+  }
+  tree.references.push_back(length);
+  tree.view.primitive_count = length + 1;
+  tree.view.stack_size = length - 1;
+}
+
+const HostileTree kHostileTrees[] = {
+    {"a_cycle", [](Tree& t) { t.nodes.back().children.x = 0; }, "has a child out of range"},
+    {"a_node_is_its_own_child", [](Tree& t) { t.nodes.back().children.x = static_cast<uint32_t>(t.nodes.size() - 1); },
+     "has a child out of range"},
+    {"child_beyond_the_nodes", [](Tree& t) { child_word(t, ChildKind::kNode) = static_cast<uint32_t>(t.nodes.size()); },
+     "node 0 has a child out of range"},
+    {"child_far_beyond", [](Tree& t) { child_word(t, ChildKind::kNode) = 0x7FFFFFFF; },
+     "node 0 has a child out of range"},
+    {"two_parents",
+     [](Tree& t) {
+       const uint32_t child = child_word(t, ChildKind::kNode);
+       t.nodes[0].children = uvec4(child, child, 0, 0);
+       set_child_count(t.nodes[0], 2);
+     },
+     "has two parents"},
+    {"no_parent", [](Tree& t) { t.nodes.push_back(t.nodes.back()); }, "has no parent before it"},
+    {"no_children", [](Tree& t) { set_child_count(t.nodes.back(), 0); }, "has no children"},
+    {"too_many_children", [](Tree& t) { set_child_count(t.nodes.back(), 5); }, "tells of 5 children"},
+    {"leaf_beyond_the_references",
+     [](Tree& t) { t.nodes.back().children.x = leaf_of(static_cast<uint32_t>(t.references.size()) - 1, 16); },
+     "has a leaf out of range"},
+    {"leaf_far_beyond", [](Tree& t) { t.nodes.back().children.x = leaf_of(layout::CHILD_FIRST_MASK - 1, 16); },
+     "has a leaf out of range"},
+    {"one_leaf_twice", [](Tree& t) { t.nodes.back().children.x = t.nodes.back().children.y; },
+     "shares a reference with another leaf"},
+    {"a_reference_in_no_leaf", [](Tree& t) { t.references.push_back(0); }, "has references in no leaf"},
+    {"reference_beyond_the_primitives", [](Tree& t) { t.references[3] = t.view.primitive_count; },
+     "refers to primitive "},
+    {"reference_far_beyond", [](Tree& t) { t.references[3] = 0xFFFFFFFF; }, "refers to primitive 4294967295"},
+    {"missing_primitive", [](Tree& t) { t.references[4] = t.references[3]; }, "'s tree lacks primitive "},
+    {"more_primitives_than_references", [](Tree& t) { t.view.primitive_count = 0xFFFFFFFF; },
+     "has fewer references than primitives"},
+    {"stack_too_small", [](Tree& t) { --t.view.stack_size; }, "and claims "},
+    {"stack_too_large", [](Tree& t) { ++t.view.stack_size; }, "and claims "},
+    {"stack_of_nothing", [](Tree& t) { t.view.stack_size = 0; }, "and claims 0"},
+    {"deep_chain", [](Tree& t) { make_chain(t, 100'000); }, "lies deeper than any builder goes"},
+    {"no_nodes",
+     [](Tree& t) {
+       t.nodes.clear();
+       t.references.clear();
+       t.view.primitive_count = 0;
+     },
+     "has no nodes"},
+};
+
+class HostileBvhFile : public BvhFileTest, public testing::WithParamInterface<HostileTree> {};
+
+TEST_P(HostileBvhFile, IsRefusedThoughItsChecksumIsRight) {
+  Tree tree(packed_.tree());
+  ASSERT_GT(tree.nodes.size(), 3U);
+  ASSERT_EQ(refusal(tree), "");
+  GetParam().spoil(tree);
+  EXPECT_THAT(refusal(tree), testing::AllOf(StartsWith("the BVH file"), HasSubstr(GetParam().sentence),
+                                            HasSubstr("; build it again with promin-bvh build")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Trees, HostileBvhFile, testing::ValuesIn(kHostileTrees),
+                         [](const auto& param_info) { return std::string(param_info.param.name); });
+
+TEST_F(BvhFileTest, ADeepTreeIsTaken) {
+  Tree tree(packed_.tree());
+  make_chain(tree, kMaxBvhDepth);
+  EXPECT_EQ(refusal(tree), "");
+}
+
+/// Whatever stands in a file with a right checksum: it is refused, or a traversal stays in its buffers.
+TEST_F(BvhFileTest, RandomFaultsAreRefusedOrHarmless) {
+  const Bytes good = read_file(file_);
+  std::mt19937 random(1);
+  size_t taken = 0;
+  for (int run = 0; run < 8000; ++run) {
+    Bytes bytes = good;
+    // Mostly in the words that lead on: counts, children, references.
+    const size_t place = run % 4 == 0 ? random() % bytes.size()
+                         : run % 4 == 1
+                             ? 40 + random() % 16
+                             : kHeaderSize + sizeof(Node) * (random() % packed_.nodes.size()) + 48 + random() % 16;
+    bytes[place] = run % 3 == 0 ? static_cast<std::byte>(random()) : bytes[place] ^ (std::byte{1} << (random() % 8));
+    bytes = sealed(std::move(bytes));
+    if (!refusal(bytes).empty()) continue;
+    ++taken;
+    expect_traversable(BvhFile(file_).tree());
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(taken, 100U);
+  EXPECT_LT(taken, 6000U);
+}
+
+TEST_F(BvhFileTest, OtherGeometryMakesItStale) {
+  const auto refusal_for = [&](const Scene& scene) { return message_of([&] { pack_scene_with(file_, scene); }); };
+  EXPECT_EQ(refusal_for(scene_), "");
+
+  const std::string stale = "the BVH file is stale: it was built over other geometry than the scene's, " +
+                            file_.string() + "; build it again with promin-bvh build";
+  for (size_t vertex = 0; vertex < 6; ++vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Scene moved = scene_;
+      std::get<Mesh>(moved.objects[5].shape).positions[vertex][axis] += 1e-6F;
+      EXPECT_EQ(refusal_for(moved), stale) << "vertex " << vertex << ", axis " << axis;
+    }
+  }
+  Scene turned = scene_;
+  std::get<Cylinder>(turned.objects[2].shape).axis.x += 1e-6F;
+  EXPECT_EQ(refusal_for(turned), stale);
+  Scene smaller = scene_;
+  std::get<Cone>(smaller.objects[4].shape).radius_top *= 0.99F;
+  EXPECT_EQ(refusal_for(smaller), stale);
+  Scene swapped = scene_;
+  std::swap(swapped.objects[10], swapped.objects[11]);
+  EXPECT_EQ(refusal_for(swapped), stale);
+  Scene fewer = scene_;
+  fewer.objects.pop_back();
+  EXPECT_EQ(refusal_for(fewer), stale);
+}
+
+TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
+  Scene other = scene_;
+  other.file = "renamed.gltf";
+  other.materials[1].diffuse = vec3(0.5F);
+  other.lights.clear();
+  other.ambient = vec3(1.0F);
+  other.objects[1].name = "renamed";
+  other.objects[1].material = 2;
+  // A plane is in no tree, and a degenerate triangle only takes a number.
+  other.objects.insert(other.objects.begin(), {"", Plane{vec3(0, -1, 0), vec3(0, 1, 0)}, 0});
+  std::get<Mesh>(other.objects[6].shape)
+      .triangles.insert(std::get<Mesh>(other.objects[6].shape).triangles.begin(), uvec3(0, 0, 1));
+  expect_same(pack_scene_with(file_, other), pack_scene(other, "median"));
+}
+
+/// The scene's hash can be read from any good file of it, so a forger has it.
+TEST_F(BvhFileTest, MorePrimitivesThanTheSceneAreRefused) {
+  Tree tree(packed_.tree());
+  make_chain(tree, 90);
+  ASSERT_GT(tree.references.size(), packed_.references.size());
+  write_bvh_file(file_, tree.show());
+  EXPECT_THAT(message_of([&] { pack_scene_with(file_, scene_); }), HasSubstr("stale"));
+}
+
+TEST_F(BvhFileTest, AWriteThatFailsLeavesTheOldFile) {
+  const Bytes old = read_file(file_);
+  fs::create_directory(folder_ / "folder.pbvh");
+  EXPECT_THROW(write_bvh_file(folder_ / "none" / "tree.pbvh", packed_.tree()), RunError);
+  EXPECT_THROW(write_bvh_file(folder_ / "folder.pbvh", packed_.tree()), RunError);
+  EXPECT_EQ(read_file(file_), old);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+}
+
+TEST_F(BvhFileTest, AReplacedFileStaysAsItWas) {
+  const BvhFile file(file_);
+  const Bytes before(std::as_bytes(file.tree().nodes).begin(), std::as_bytes(file.tree().nodes).end());
+  write_bvh_file(file_, pack_scene(test::make_scene_of_everything(2), "sah").tree());
+  EXPECT_TRUE(has_same_bytes<std::byte>(std::as_bytes(file.tree().nodes), before));
+}
+
+TEST(Hash64, EveryBitCounts) {
+  const Bytes bytes(21, std::byte{0x5A});
+  const auto hash_of = [](const Bytes& data) {
+    Hash64 hash;
+    hash.add(data);
+    return hash.value();
+  };
+  for (size_t i = 0; i < 8 * bytes.size(); ++i) {
+    Bytes flipped = bytes;
+    flipped[i / 8] ^= std::byte{1} << (i % 8);
+    EXPECT_NE(hash_of(flipped), hash_of(bytes)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/bvh_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "core/error.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "render/caster.h"
+#include "render/pack_scene.h"
+#include "render/renderer.h"
+
+namespace promin {
+namespace {
+
+/// A device and a folder.
+class BvhFileOnDevice : public test::DeviceTest {
+ protected:
+  void SetUp() override {
+    DeviceTest::SetUp();
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override {
+    std::filesystem::remove_all(folder_);
+    DeviceTest::TearDown();
+  }
+
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "promin_bvh_file_on_device";
+  std::filesystem::path file_ = folder_ / "tree.pbvh";
+};
+
+TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
+  const Scene scene = test::make_scene_of_everything(500);
+  const View view = test::make_view(uvec2(120, 80));
+  const std::vector<Ray> rays = test::make_rays(20000);
+  for (const std::string_view name : builder_names()) {
+    const std::string builder(name);
+    SCOPED_TRACE(builder);
+    write_bvh_file(file_, pack_scene(scene, builder).tree());
+
+    Renderer built(device(), scene, {.builder = builder});
+    Renderer read(device(), scene, {.builder = "", .bvh = file_});
+    EXPECT_TRUE(test::has_same_bits(built.render(view).image, read.render(view).image));
+    EXPECT_EQ(read.setup_stats().bvh.builder, builder);
+    EXPECT_EQ(read.setup_stats().bvh.sah_cost, built.setup_stats().bvh.sah_cost);
+    EXPECT_EQ(read.setup_stats().device_bytes, built.setup_stats().device_bytes);
+
+    std::vector<Hit> hits(rays.size());
+    std::vector<Hit> expected(rays.size());
+    Caster(device(), scene, {.builder = builder}).cast(rays, expected);
+    Caster(device(), scene, {.builder = "", .bvh = file_}).cast(rays, hits);
+    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), rays.size() * sizeof(Hit)), 0);
+  }
+}
+
+TEST_F(BvhFileOnDevice, AFileOfAnotherSceneIsRefused) {
+  write_bvh_file(file_, pack_scene(test::make_scene_of_everything(3), "sah").tree());
+  const Scene scene = test::make_scene_of_everything(4);
+  EXPECT_THROW(Renderer(device(), scene, {.bvh = file_}), InputError);
+  EXPECT_THROW(Caster(device(), scene, {.bvh = file_}), InputError);
+  EXPECT_THROW(Caster(device(), scene, {.bvh = folder_ / "none.pbvh"}), InputError);
+}
+
+}  // namespace
+}  // namespace promin
