@@ -52,16 +52,16 @@ def quartiles(values):
 
 
 class Peer:
-    """Another renderer of the sphereflake: its name and version, and how long a picture's tracing takes."""
+    """Another renderer of the sphereflake. The pattern finds the seconds of its tracing in what it says."""
 
-    def __init__(self, name, command, picture, seconds_pattern, version_pattern):
+    def __init__(self, name, command, picture, seconds):
         self.name, self.picture = name, picture
-        self._command, self._seconds, self._version = command, re.compile(seconds_pattern), re.compile(version_pattern)
+        self._command, self._seconds = command.split(), re.compile(seconds)
         self.trace_ms, self.version = [], ""
 
     def render(self, folder):
         output, _ = run(*self._command, folder=folder)
-        self.version = self._version.search(output).group(0)
+        self.version = self.name + " " + re.search(r"Version ([\d.]*\d)", output).group(1)
         return 1e3 * float(self._seconds.search(output).group(1))
 
 
@@ -72,16 +72,11 @@ def find_peers(folder, scene):
     if shutil.which("tachyon"):
         (folder / "flake.dat").write_text(write_tachyon(scene, "0", _MAX_DEPTH), encoding="utf-8")
         command = f"tachyon flake.dat -fullshade -shade_phong -format PPM48 -numthreads {threads} -o tachyon.ppm"
-        peers.append(
-            Peer("Tachyon", command.split(), "tachyon.ppm", r"Ray Tracing Time:\s*([\d.]+)", r"Tachyon.*Version \S+")
-        )
+        peers.append(Peer("Tachyon", command, "tachyon.ppm", r"Ray Tracing Time:\s*([\d.]+)"))
     if shutil.which("povray"):
         (folder / "flake.pov").write_text(write_pov(scene, "0", _MAX_DEPTH), encoding="utf-8")
         command = f"povray +Iflake.pov +Opovray.exr +FE -A -D +W{_SIDE} +H{_SIDE} +WT{threads}"
-        pattern = r"Trace Time:.*\(([\d.]+) seconds\)"
-        peers.append(
-            Peer("POV-Ray", command.split(), "povray.exr", pattern, r"POV-Ray [\d.]+\S*|Persistence of Vision")
-        )
+        peers.append(Peer("POV-Ray", command, "povray.exr", r"Trace Time:.*\(([\d.]+) seconds\)"))
     return peers
 
 
@@ -136,9 +131,9 @@ def measure_frames(programs, folder, runs):
     return figures
 
 
-def measure_rates(programs, folder, scenes, runs, name):
+def measure_rates(programs, folder, scenes, runs, side, name):
     file = f"{name}.rates.json"
-    output, _ = run(programs / "promin-bench", *scenes, "--runs", runs, "-o", file, folder=folder)
+    output, _ = run(programs / "promin-bench", *scenes, "--runs", runs, "--side", side, "-o", file, folder=folder)
     print(output, file=sys.stderr)
     return json.loads((folder / file).read_text(encoding="utf-8"))
 
@@ -180,8 +175,8 @@ def main():
     runs = 3 if arguments.quick or is_slow else 9
     try:
         figures = {"name": arguments.name, "runs": runs}
-        scenes = arguments.scenes[:1] if is_slow else arguments.scenes
-        figures.update(measure_rates(programs, work, scenes, runs, arguments.name))
+        scenes, side = (arguments.scenes[:1], 512) if is_slow else (arguments.scenes, _SIDE)
+        figures.update(measure_rates(programs, work, scenes, runs, side, arguments.name))
         if not is_slow:
             figures["sphereflake"] = measure_frames(programs, work, runs)
         if arguments.name == "system":

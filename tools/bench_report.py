@@ -147,7 +147,7 @@ def report(bench):
         )
         + ".\n"
     )
-    yield "Rays, Mrays/s; the ratio is promin's rate over that of Embree's single rays:\n"
+    yield "Rays, Mrays/s; the ratio is promin's rate over that of Embree's single rays in the same turn:\n"
     head = [
         "driver",
         "scene",

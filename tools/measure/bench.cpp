@@ -49,7 +49,9 @@ Scene open_scene(const std::string& word) {
   if (error != std::errc() || rest != end || count < 16 || count > 50'000'000) {
     throw UsageError({"no number of triangles from 16 to 50000000", word, "write " + kind + ":100000"});
   }
-  return kind == "wavy" ? make_wavy_sphere(count) : make_needles(count);
+  Scene scene = kind == "wavy" ? make_wavy_sphere(count) : make_needles(count);
+  scene.file = word;
+  return scene;
 }
 
 Json json_of(const Quartiles& q) {
