@@ -103,7 +103,7 @@ class Bench {
     fmt::print("{}, {} primitives, {:.1f} bytes a primitive, builder {}\n", scene_.file.filename().string(), primitives,
                json["device_bytes_per_primitive"].get<double>(), options_.builder);
 
-    const std::unique_ptr<EmbreeCaster> embree = make_embree_caster(scene_);
+    const std::unique_ptr<EmbreeCaster> embree = options_.runs > 0 ? make_embree_caster(scene_) : nullptr;
     if (options_.runs > 0) json["build"] = measure_build(embree.get());
     const StepCounter counter(device_, scene_, options_.builder);
     fmt::print("  {:<7}{:>9}{:>8}{:>9}{:>9}{:>9}{:>15}{:>9}{:>8}{:>8}\n", "rays", "count", "promin", "Embree",
