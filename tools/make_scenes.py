@@ -24,6 +24,7 @@ def write_all(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sphereflake", type=int, metavar="LEVEL", help="1 + 9 + ... + 9^LEVEL spheres (4: 7381)")
+    parser.add_argument("--endless-ground", action="store_true", help="a plane under the sphereflake, no square")
     parser.add_argument(
         "-o",
         "--output",
@@ -36,7 +37,7 @@ def main():
     elif arguments.output is None or not 0 <= arguments.sphereflake <= 7:
         parser.error("--sphereflake takes a level of 0 to 7 and needs -o FILE.gltf")
     else:
-        sphereflake(arguments.sphereflake).write(arguments.output)
+        sphereflake(arguments.sphereflake, arguments.endless_ground).write(arguments.output)
 
 
 if __name__ == "__main__":

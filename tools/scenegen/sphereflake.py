@@ -42,11 +42,13 @@ def _y_up(x, y, z):
     return (x, z, -y)
 
 
-def sphereflake(level):
+def sphereflake(level, has_endless_ground=False):
+    """On the database's square, or on an endless plane in its place."""
     g = Gltf()
     g.sky((0.078, 0.361, 0.753), (0.0, 0.0, 0.0))
     ground = g.material("ground", (0.8, 0.6, 0.264))
-    g.node("ground", mesh=g.mesh("ground", meshes.rectangle(24.0, 24.0), ground), translation=(0.0, -0.5, 0.0))
+    mesh = g.plane("ground", ground) if has_endless_ground else g.mesh("ground", meshes.rectangle(24.0, 24.0), ground)
+    g.node("ground", mesh=mesh, translation=(0.0, -0.5, 0.0))
     mirror = g.material("mirror", (0.5, 0.45, 0.35), specular=0.5, shininess=3.0827, reflection=0.5)
     ball = g.sphere("ball", 1.0, mirror)
     for i, (center, radius) in enumerate(spheres(level)):

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// Holds whole pictures against those of POV-Ray and Tachyon: other renderers, by other people, that shade by the same
+// formulas.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+#include <limits>
+
+#include "cpu/process.h"
+#include "image/compare.h"
+#include "image/image.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+constexpr const char* kSize = "1024";
+/// Bounces, as promin counts them.
+constexpr const char* kMaxDepth = "6";
+
+/// POV-Ray's EXR has half floats and Tachyon's picture 16 bits, and edges may fall to either side of a pixel's centre.
+constexpr CompareOptions kTolerance = {
+    .fail = 0.02F, .fail_percent = 0.5, .hard_fail = std::numeric_limits<float>::infinity()};
+constexpr double kMeanTolerance = 0.002;
+
+/// Another renderer: how a scene gets into its language, and that to a picture.
+struct Peer {
+  std::string name;
+  /// Empty where it was not installed when this was configured.
+  fs::path program;
+  std::string converter;
+  std::string scene;
+  Words arguments;
+  std::string picture;
+};
+
+Peer povray() {
+  const std::string size(kSize);
+  return {"POV-Ray",
+          PROMIN_POVRAY,
+          "scene_to_pov.py",
+          "scene.pov",
+          {"+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA", "+W" + size, "+H" + size},
+          "povray.exr"};
+}
+
+Peer tachyon() {
+  return {"Tachyon",
+          PROMIN_TACHYON,
+          "scene_to_tachyon.py",
+          "scene.dat",
+          {"scene.dat", "-fullshade", "-shade_phong", "-format", "PPM48", "-res", kSize, kSize, "-o", "tachyon.ppm"},
+          "tachyon.ppm"};
+}
+
+/// What a picture of few bits can show.
+Image clamp(Image image) {
+  for (vec3& pixel : image.pixels) pixel = glm::clamp(pixel, 0.0F, 1.0F);
+  return image;
+}
+
+class PeerPictureTest : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void run(const fs::path& program, const Words& arguments) const {
+    ProcessOptions options;
+    options.folder = folder_;
+    const ProcessResult result = Process(program, arguments, options).wait();
+    ASSERT_EQ(result.exit_code, 0) << program << "\n" << result.err;
+  }
+
+  void run_tool(const std::string& name, Words arguments) const {
+    arguments.insert(arguments.begin(), std::string(PROMIN_TOOLS_DIR) + "/" + name);
+    run(PROMIN_PYTHON, arguments);
+  }
+
+  void expect_same_picture(const Peer& peer, const fs::path& scene) const {
+    if (peer.program.empty()) GTEST_SKIP() << peer.name << " was not installed when this was configured";
+    ASSERT_NO_FATAL_FAILURE(run_tool(peer.converter, {scene, "-o", peer.scene, "--max-depth", kMaxDepth}));
+    ASSERT_NO_FATAL_FAILURE(run(peer.program, peer.arguments));
+    ASSERT_NO_FATAL_FAILURE(run(PROMIN_EXECUTABLE, {"render", scene, "-o", "promin.exr", "--size", kSize, kSize,
+                                                    "--max-depth", kMaxDepth, "--quiet"}));
+    const ImageDifference difference = compare_images(clamp(read_image(folder_ / "promin.exr")),
+                                                      clamp(read_image(folder_ / peer.picture)), kTolerance);
+    std::cout << difference.summary() << '\n';
+    EXPECT_TRUE(difference.is_equal);
+    EXPECT_LE(difference.mean_absolute, kMeanTolerance);
+  }
+
+  fs::path make_sphereflake() const {
+    run_tool("make_scenes.py", {"--sphereflake", "4", "--endless-ground", "-o", "sphereflake.gltf"});
+    return folder_ / "sphereflake.gltf";
+  }
+
+  const fs::path scenes_ = PROMIN_SCENES_DIR;
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("promin_peers_" + std::to_string(getpid()));
+};
+
+TEST_F(PeerPictureTest, PovrayAllPrimitives) {
+  expect_same_picture(povray(), scenes_ / "all_primitives.gltf");
+}
+
+TEST_F(PeerPictureTest, PovraySphereflake) {
+  expect_same_picture(povray(), make_sphereflake());
+}
+
+TEST_F(PeerPictureTest, TachyonTriangles) {
+  expect_same_picture(tachyon(), scenes_ / "triangles_sharp.gltf");
+}
+
+TEST_F(PeerPictureTest, TachyonSphereflake) {
+  expect_same_picture(tachyon(), make_sphereflake());
+}
+
+}  // namespace
+}  // namespace promin

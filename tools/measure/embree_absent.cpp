@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Stands in for embree.cpp where there is no Embree.
+#include "measure/embree.h"
+
+namespace promin::measure {
+
+std::string embree_version() {
+  return {};
+}
+
+std::unique_ptr<EmbreeCaster> make_embree_caster(const Scene&) {
+  return nullptr;
+}
+
+}  // namespace promin::measure

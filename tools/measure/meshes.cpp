@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "measure/meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace promin::measure {
+namespace {
+
+Scene scene_of(const char* name, Mesh mesh) {
+  Scene scene;
+  scene.file = name;
+  scene.materials.resize(1);
+  scene.objects = {{"", std::move(mesh), 0}};
+  return scene;
+}
+
+}  // namespace
+
+Scene make_wavy_sphere(uint32_t triangle_count) {
+  const auto rings = std::max(2U, static_cast<uint32_t>(std::lround(0.5 * std::sqrt(triangle_count))));
+  const uint32_t columns = 2 * rings;
+  Mesh mesh;
+  mesh.positions.emplace_back(0.0F, 1.0F, 0.0F);
+  for (uint32_t i = 1; i < rings; ++i) {
+    for (uint32_t j = 0; j < columns; ++j) {
+      const double polar = 3.141592653589793 * i / rings;
+      const double azimuth = 6.283185307179586 * j / columns;
+      const double radius = 1.0 + 0.1 * std::sin(9.0 * polar) * std::sin(7.0 * azimuth);
+      mesh.positions.emplace_back(
+          radius * dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)));
+    }
+  }
+  mesh.positions.emplace_back(0.0F, -1.0F, 0.0F);
+  const auto last = static_cast<uint32_t>(mesh.positions.size()) - 1;
+  for (uint32_t j = 0; j < columns; ++j) {
+    const uint32_t next = (j + 1) % columns;
+    mesh.triangles.emplace_back(0, 1 + next, 1 + j);
+    for (uint32_t i = 0; i + 2 < rings; ++i) {
+      const uint32_t row = 1 + i * columns;
+      mesh.triangles.emplace_back(row + j, row + next, row + columns + j);
+      mesh.triangles.emplace_back(row + next, row + columns + next, row + columns + j);
+    }
+    mesh.triangles.emplace_back(last, last - columns + j, last - columns + next);
+  }
+  return scene_of("wavy sphere", std::move(mesh));
+}
+
+Scene make_needles(uint32_t triangle_count) {
+  std::mt19937 generator(3);
+  const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
+  const auto in_ball = [&] {
+    dvec3 v;
+    do {
+      const double x = uniform();
+      const double y = uniform();
+      v = dvec3(x, y, uniform());
+    } while (glm::dot(v, v) > 1.0 || glm::dot(v, v) < 1e-6);
+    return v;
+  };
+  Mesh mesh;
+  for (uint32_t i = 0; i < triangle_count; ++i) {
+    const dvec3 start = in_ball();
+    const dvec3 along = 0.2 * glm::normalize(in_ball());
+    const dvec3 across = 0.02 * glm::length(along) * glm::normalize(glm::cross(along, in_ball()));
+    for (const dvec3& corner : {start, start + along, start + across}) mesh.positions.emplace_back(corner);
+    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return scene_of("needles", std::move(mesh));
+}
+
+}  // namespace promin::measure

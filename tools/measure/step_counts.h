@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "gpu/open_device.h"
+#include "measure/ray_sets.h"
+#include "scene/features.h"
+
+namespace promin {
+
+class DeviceScene;
+
+namespace measure {
+
+/// What a set of rays takes in all.
+struct StepCounts {
+  uint64_t rays = 0;
+  uint64_t hits = 0;
+  uint64_t node_steps = 0;
+  uint64_t primitive_tests = 0;
+
+  bool operator==(const StepCounts&) const = default;
+};
+
+/// Counts what `promin cast` does for any set of rays through one scene. Counts are whole and the device's arithmetic
+/// is exact to the bit, so they do not depend on the driver.
+class StepCounter {
+ public:
+  /// Throws UsageError for an unknown builder, RunError.
+  StepCounter(const gpu::Device& device, const Scene& scene, std::string_view builder);
+
+  StepCounts count(const RaySet& set) const;
+
+ private:
+  const gpu::Device& device_;
+  FeatureMask features_;
+  std::shared_ptr<const DeviceScene> scene_;
+};
+
+}  // namespace measure
+}  // namespace promin
