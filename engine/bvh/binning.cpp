@@ -45,6 +45,15 @@ void Bins::add(const Bins& bins, const BinGrid& grid) {
   }
 }
 
+double Bins::overlap_of(const Split& split, const BinGrid& grid) const {
+  if (!split.exists()) return std::numeric_limits<double>::infinity();
+  LaneBox below;
+  LaneBox above;
+  for (uint32_t bin = 0; bin < split.bin; ++bin) below.extend(boxes[split.axis][bin]);
+  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) above.extend(boxes[split.axis][bin]);
+  return LaneBox{max(below.lo, above.lo), min(below.hi, above.hi)}.bounds().half_area();
+}
+
 Split find_best_split(const BinGrid& grid, const Bins& bins) {
   Split best;
   for (int axis = 0; axis < 3; ++axis) {

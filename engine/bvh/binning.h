@@ -47,6 +47,7 @@ struct LaneBox {
     const double z = static_cast<double>(hi[2]) - static_cast<double>(lo[2]);
     return x * y + (y + x) * z;
   }
+  bool is_empty() const { return bounds().is_empty(); }
   Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
@@ -61,6 +62,7 @@ struct Record {
       : lo{bounds.lo.x, bounds.lo.y, bounds.lo.z, std::bit_cast<float>(index)},
         hi{bounds.hi.x, bounds.hi.y, bounds.hi.z, 0.0F} {}
 
+  Bounds bounds() const { return LaneBox{lo, hi}.bounds(); }
   uint32_t index() const { return std::bit_cast<uint32_t>(static_cast<float>(lo[3])); }
   /// Halved before the sum, which could overflow. Read as floats most indices are subnormal, and arithmetic on those
   /// is slow.
@@ -125,6 +127,8 @@ struct Bins {
   uint32_t count_below(const Split& split) const {
     return std::accumulate(counts[split.axis], counts[split.axis] + split.bin, 0U);
   }
+  /// Half the area of what the boxes of both sides have in common; infinite without a split.
+  double overlap_of(const Split& split, const BinGrid& grid) const;
 };
 
 /// The cheapest plane; of equal ones the first by axis, then by bin.

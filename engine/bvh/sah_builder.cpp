@@ -18,9 +18,6 @@ namespace {
 constexpr uint32_t kChunkSize = 8192;
 constexpr uint32_t kSubtreeSize = 16384;
 
-/// From here on ranges are halved by index: 2^32 references halved 32 times fit into leaves.
-constexpr uint32_t kMaxSahDepth = kMaxBvhDepth - 32;
-
 /// Records [begin, end), still to become node `node` in depth `depth` (the root's is 1).
 struct Range {
   uint32_t begin = 0;
@@ -285,8 +282,8 @@ void SahBuild::build_subtrees() {
 
 }  // namespace
 
-Bvh build_sah(std::span<const Bounds> boxes, const BuildOptions& options) {
-  return SahBuild(boxes, options.thread_count).run();
+Bvh build_sah(const BuildInput& input, const BuildOptions& options) {
+  return SahBuild(input.boxes, options.thread_count).run();
 }
 
 }  // namespace promin

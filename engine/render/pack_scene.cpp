@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 
+#include "bvh/clip_triangle.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "render/cut_triangles.h"
@@ -60,12 +61,18 @@ struct Collected {
   uint32_t order = 0;
 };
 
+void check_count(const Scene& scene, size_t count) {
+  if (count <= CHILD_FIRST_MASK) return;
+  throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
+                  "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
+}
+
 class Collector {
  public:
   explicit Collector(const Scene& scene) : scene_(scene), cut_triangles_(scene) {
     size_t count = 0;
     for (const Object& object : scene.objects) count += primitive_count(object.shape);
-    check_count(count);
+    check_count(scene, count);
     result_.solids.reserve(count);
     result_.solid_surfaces.reserve(count);
     result_.boxes.reserve(count);
@@ -80,12 +87,6 @@ class Collector {
   Collected take() { return std::move(result_); }
 
  private:
-  void check_count(size_t count) const {
-    if (count <= CHILD_FIRST_MASK) return;
-    throw RunError({"the scene has " + std::to_string(count) + " primitives", scene_.file.string(),
-                    "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
-  }
-
   void add(const NotDrawn&) {}
 
   void add(const Plane& plane) {
@@ -161,7 +162,7 @@ class Collector {
   }
 
   void add_solid(Primitive primitive, const Bounds& box, const uvec4& surface) {
-    check_count(result_.solids.size() + 1);
+    check_count(scene_, result_.solids.size() + 1);
     primitive.c.y = result_.order++;
     result_.solids.push_back(primitive);
     result_.solid_surfaces.push_back({surface});
@@ -213,10 +214,17 @@ auto pack_all(const std::vector<Host>& hosts) {
   return records;
 }
 
+/// What builders that split primitives see of them: triangles exactly, other shapes by their boxes.
+Bounds clip(const Primitive& p, const Bounds& window) {
+  if (p.c.z != KIND_TRIANGLE) return window;
+  return clip_triangle({vec3(p.a), vec3(p.a.w, p.b.x, p.b.y), vec3(p.b.z, p.b.w, std::bit_cast<float>(p.c.x))}, window);
+}
+
 /// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
 std::vector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, const std::vector<Primitive>& solids) {
   std::vector<uint32_t> references = bvh.references;
   for (const BvhNode& node : bvh.nodes) {
+    if (node.count == 0) continue;
     const auto first = references.begin() + node.first;
     std::stable_sort(first, first + node.count, [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; });
   }
@@ -237,7 +245,11 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   Collected collected = Collector(scene).take();
 
   const Stopwatch building;
-  const Bvh bvh = build_bvh(builder, collected.boxes);
+  const Bvh bvh = build_bvh(builder, {collected.boxes, [&](uint32_t primitive, const Bounds& window) {
+                                        return clip(collected.solids[primitive], window);
+                                      }});
+  // As often as leaves hold them.
+  check_count(scene, bvh.references.size());
   PackedScene packed;
   packed.bvh_ms = building.ms();
   packed.numbers = std::move(collected.numbers);
