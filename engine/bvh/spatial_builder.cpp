@@ -376,7 +376,10 @@ void SpatialBuild::append(const Bvh& subtree, uint32_t root, Bvh& bvh) {
 }  // namespace
 
 Bvh build_spatial(const BuildInput& input, const BuildOptions& options) {
-  return SpatialBuild(input, options.thread_count).run();
+  Bvh cut = SpatialBuild(input, options.thread_count).run();
+  // Greed does not always pay: in a few scenes the tree without cuts is the better one as a whole.
+  Bvh whole = build_sah(input, options);
+  return measure_bvh("", whole).sah_cost < measure_bvh("", cut).sah_cost ? whole : cut;
 }
 
 }  // namespace promin
