@@ -21,8 +21,8 @@ Bvh build_sah(const BuildInput& input, const BuildOptions& options);
 /// The surface area heuristic with spatial splits (Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume
 /// Hierarchies", HPG 2009): a plane may also cut primitives in two, whose parts get boxes of their own. The references
 /// that cutting may add are shared out from the root down, by number (Fuetterling et al., "Parallel Spatial Splits in
-/// Bounding Volume Hierarchies", EGPGV 2016), so that subtrees do not depend on each other. Where build_sah's tree costs
-/// less, it is that one. On all cores.
+/// Bounding Volume Hierarchies", EGPGV 2016), so that subtrees do not depend on each other. Where build_sah's tree
+/// costs less, it is that one. On all cores.
 Bvh build_spatial(const BuildInput& input, const BuildOptions& options);
 
 }  // namespace promin
