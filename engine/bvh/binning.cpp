@@ -19,65 +19,75 @@ BinGrid::BinGrid(const LaneBox& centers, uint32_t count) : bin_count_(std::min(k
 }
 
 Bins::Bins(const BinGrid& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::fill_n(boxes[axis], grid.bin_count(), LaneBox{});
-    std::fill_n(counts[axis], grid.bin_count(), 0U);
-  }
+  std::fill_n(&boxes[0][0], 3 * grid.bin_count(), LaneBox{});
+  std::fill_n(&counts[0][0], 3 * grid.bin_count(), 0U);
 }
 
 void Bins::add(const BinGrid& grid, std::span<const Record> records) {
   for (const Record& record : records) {
-    const Lanes center = record.center();
+    const IntLanes bins = grid.bins_of(record.center());
     for (int axis = 0; axis < 3; ++axis) {
-      const uint32_t bin = grid.bin_of(center, axis);
-      boxes[axis][bin].extend(record.lo, record.hi);
-      counts[axis][bin] += 1;
+      boxes[bins[axis]][axis].extend(record.lo, record.hi);
+      counts[bins[axis]][axis] += 1;
     }
   }
 }
 
 void Bins::add(const Bins& bins, const BinGrid& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (uint32_t bin = 0; bin < grid.bin_count(); ++bin) {
-      boxes[axis][bin].extend(bins.boxes[axis][bin]);
-      counts[axis][bin] += bins.counts[axis][bin];
+  for (uint32_t bin = 0; bin < grid.bin_count(); ++bin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[bin][axis].extend(bins.boxes[bin][axis]);
+      counts[bin][axis] += bins.counts[bin][axis];
     }
   }
+}
+
+uint32_t Bins::count_below(const Split& split) const {
+  uint32_t count = 0;
+  for (uint32_t bin = 0; bin < split.bin; ++bin) count += counts[bin][split.axis];
+  return count;
 }
 
 double Bins::overlap_of(const Split& split, const BinGrid& grid) const {
   if (!split.exists()) return std::numeric_limits<double>::infinity();
   LaneBox below;
   LaneBox above;
-  for (uint32_t bin = 0; bin < split.bin; ++bin) below.extend(boxes[split.axis][bin]);
-  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) above.extend(boxes[split.axis][bin]);
+  for (uint32_t bin = 0; bin < split.bin; ++bin) below.extend(boxes[bin][split.axis]);
+  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) above.extend(boxes[bin][split.axis]);
   return LaneBox{max(below.lo, above.lo), min(below.hi, above.hi)}.bounds().half_area();
 }
 
 Split find_best_split(const BinGrid& grid, const Bins& bins) {
-  Split best;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!grid.is_divided(axis)) continue;
-    // Cost of everything from bin b on, then of everything below b: both sides of the plane below b.
-    double cost_above[BinGrid::kMaxBins];
-    LaneBox box;
-    uint32_t count = 0;
-    for (uint32_t bin = grid.bin_count() - 1; bin > 0; --bin) {
-      box.extend(bins.boxes[axis][bin]);
-      count += bins.counts[axis][bin];
-      cost_above[bin] = count > 0 ? box.half_area() * count : std::numeric_limits<double>::infinity();
-    }
-    box = {};
-    count = 0;
-    for (uint32_t bin = 1; bin < grid.bin_count(); ++bin) {
-      box.extend(bins.boxes[axis][bin - 1]);
-      count += bins.counts[axis][bin - 1];
-      if (count == 0) continue;
-      const double cost = box.half_area() * count + cost_above[bin];
-      if (cost < best.cost) best = {axis, bin, cost};
+  // Cost of everything from bin b on, then of everything below b: both sides of the plane below b. A bin without
+  // records has no plane of its own.
+  double costs_above[BinGrid::kMaxBins][3];
+  LaneBox boxes[3];
+  uint32_t counts[3] = {};
+  double costs[3];
+  std::fill_n(costs, 3, std::numeric_limits<double>::infinity());
+  for (uint32_t bin = grid.bin_count() - 1; bin > 0; --bin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (bins.counts[bin][axis] > 0) {
+        boxes[axis].extend(bins.boxes[bin][axis]);
+        counts[axis] += bins.counts[bin][axis];
+        costs[axis] = boxes[axis].half_area() * counts[axis];
+      }
+      costs_above[bin][axis] = costs[axis];
     }
   }
-  return best;
+  Split best[3];
+  std::fill_n(boxes, 3, LaneBox());
+  std::fill_n(counts, 3, 0U);
+  for (uint32_t bin = 1; bin < grid.bin_count(); ++bin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (bins.counts[bin - 1][axis] == 0) continue;
+      boxes[axis].extend(bins.boxes[bin - 1][axis]);
+      counts[axis] += bins.counts[bin - 1][axis];
+      const double cost = boxes[axis].half_area() * counts[axis] + costs_above[bin][axis];
+      if (cost < best[axis].cost) best[axis] = {axis, bin, cost};
+    }
+  }
+  return *std::min_element(best, best + 3, [](const Split& a, const Split& b) { return a.cost < b.cost; });
 }
 
 }  // namespace promin

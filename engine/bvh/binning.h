@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
 
 #include "core/math.h"
@@ -15,6 +14,7 @@ namespace promin {
 
 /// Four floats in one register (GCC's and Clang's vector extension): x, y, z and a lane that is not looked at.
 using Lanes = float __attribute__((vector_size(16)));
+using IntLanes = int32_t __attribute__((vector_size(16)));
 
 inline Lanes min(Lanes a, Lanes b) {
   return a < b ? a : b;
@@ -26,8 +26,7 @@ inline Lanes fill_lanes(float x) {
   return Lanes{x, x, x, x};
 }
 inline Lanes clear_spare_lane(Lanes a) {
-  using Bits = int32_t __attribute__((vector_size(16)));
-  return std::bit_cast<Lanes>(std::bit_cast<Bits>(a) & Bits{-1, -1, -1, 0});
+  return std::bit_cast<Lanes>(std::bit_cast<IntLanes>(a) & IntLanes{-1, -1, -1, 0});
 }
 
 /// Bounds in registers. Empty by default.
@@ -96,9 +95,8 @@ class BinGrid {
   uint32_t bin_count() const { return bin_count_; }
   /// False where the centres coincide (or are too near or far apart for a float): everything falls into bin 0.
   bool is_divided(int axis) const { return scale_[axis] > 0.0F; }
-  uint32_t bin_of(Lanes center, int axis) const {
-    return static_cast<uint32_t>(static_cast<int32_t>((center[axis] - origin_[axis]) * scale_[axis]));
-  }
+  /// On each axis; the spare lane is not one.
+  IntLanes bins_of(Lanes center) const { return __builtin_convertvector((center - origin_) * scale_, IntLanes); }
 
  private:
   Lanes origin_{};
@@ -116,17 +114,19 @@ struct Split {
   bool exists() const { return axis >= 0; }
 };
 
-/// Boxes and numbers of the records in every bin of a grid.
+inline bool is_below(const Record& record, const BinGrid& grid, const Split& split) {
+  return static_cast<uint32_t>(grid.bins_of(record.center())[split.axis]) < split.bin;
+}
+
+/// Boxes and numbers of the records in every bin of a grid, by bin and axis.
 struct Bins {
-  LaneBox boxes[3][BinGrid::kMaxBins];
-  uint32_t counts[3][BinGrid::kMaxBins];
+  LaneBox boxes[BinGrid::kMaxBins][3];
+  uint32_t counts[BinGrid::kMaxBins][3];
 
   explicit Bins(const BinGrid& grid);
   void add(const BinGrid& grid, std::span<const Record> records);
   void add(const Bins& bins, const BinGrid& grid);
-  uint32_t count_below(const Split& split) const {
-    return std::accumulate(counts[split.axis], counts[split.axis] + split.bin, 0U);
-  }
+  uint32_t count_below(const Split& split) const;
   /// Half the area of what the boxes of both sides have in common; infinite without a split.
   double overlap_of(const Split& split, const BinGrid& grid) const;
 };

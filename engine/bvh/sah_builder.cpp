@@ -46,7 +46,7 @@ uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const
   size_t left = 0;
   size_t right = records.size();
   while (left < right) {
-    if (grid.bin_of(records[left].center(), split.axis) < split.bin) {
+    if (is_below(records[left], grid, split)) {
       below.extend(records[left++]);
     } else {
       above.extend(records[left]);
@@ -155,7 +155,7 @@ void Halving::scatter(Chunk& chunk, const Record* from, Record* to) const {
   uint32_t below = chunk.first_below;
   uint32_t above = chunk.first_above;
   for (uint32_t i = chunk.begin; i < chunk.end; ++i) {
-    if (grid.bin_of(from[i].center(), split.axis) < split.bin) {
+    if (is_below(from[i], grid, split)) {
       to[below++] = from[i];
       chunk.below.extend(from[i]);
     } else {

@@ -323,8 +323,7 @@ std::optional<Sides> SpatialBuild::split(const Task& task, unsigned thread_count
   }
   if (!split.exists()) return halve(side);
   return distribute([&](const Record& record, Sides& result) {
-    const bool is_below = bin_grid.bin_of(record.center(), split.axis) < split.bin;
-    (is_below ? result.below : result.above).add(record);
+    (is_below(record, bin_grid, split) ? result.below : result.above).add(record);
   });
 }
 
