@@ -3,19 +3,17 @@
 #include "bvh/binning.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace promin {
 
 BinGrid::BinGrid(const LaneBox& centers, uint32_t count) : bin_count_(std::min(kMaxBins, 4 + count / 8)) {
   // The last centre must fall into the last bin, not beyond it: two roundings of 2^-24 each are less than 2^-20.
   const float slabs = static_cast<float>(bin_count_) * (1.0F - 0x1p-20F);
-  for (int axis = 0; axis < 3; ++axis) {
-    const float scale = slabs / (centers.hi[axis] - centers.lo[axis]);
-    if (!std::isnormal(scale)) continue;
-    origin_[axis] = centers.lo[axis];
-    scale_[axis] = scale;
-  }
+  const Lanes scale = fill_lanes(slabs) / (centers.hi - centers.lo);
+  const IntLanes is_normal = (scale >= fill_lanes(std::numeric_limits<float>::min())) &
+                             (scale <= fill_lanes(std::numeric_limits<float>::max()));
+  origin_ = std::bit_cast<Lanes>(std::bit_cast<IntLanes>(centers.lo) & is_normal);
+  scale_ = std::bit_cast<Lanes>(std::bit_cast<IntLanes>(scale) & is_normal);
 }
 
 Bins::Bins(const BinGrid& grid) {
@@ -88,6 +86,14 @@ Split find_best_split(const BinGrid& grid, const Bins& bins) {
     }
   }
   return *std::min_element(best, best + 3, [](const Split& a, const Split& b) { return a.cost < b.cost; });
+}
+
+Split find_best_split(const BinGrid& grid, const Record& a, const Record& b) {
+  // Wherever their centres differ they are in the first bin and the last.
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.is_divided(axis)) return {axis, 1, LaneBox{a.lo, a.hi}.half_area() + LaneBox{b.lo, b.hi}.half_area()};
+  }
+  return {};
 }
 
 }  // namespace promin

@@ -15,6 +15,7 @@ namespace promin {
 /// Four floats in one register (GCC's and Clang's vector extension): x, y, z and a lane that is not looked at.
 using Lanes = float __attribute__((vector_size(16)));
 using IntLanes = int32_t __attribute__((vector_size(16)));
+using DoubleLanes = double __attribute__((vector_size(32)));
 
 inline Lanes min(Lanes a, Lanes b) {
   return a < b ? a : b;
@@ -41,10 +42,10 @@ struct LaneBox {
   void extend(const LaneBox& box) { extend(box.lo, box.hi); }
   /// In double: fp32 would overflow from coordinates of 1e19 on. Of a box that is not empty.
   double half_area() const {
-    const double x = static_cast<double>(hi[0]) - static_cast<double>(lo[0]);
-    const double y = static_cast<double>(hi[1]) - static_cast<double>(lo[1]);
-    const double z = static_cast<double>(hi[2]) - static_cast<double>(lo[2]);
-    return x * y + (y + x) * z;
+    // Indices in the spare lane are slow to convert: most are subnormal.
+    const DoubleLanes size = __builtin_convertvector(clear_spare_lane(hi), DoubleLanes) -
+                             __builtin_convertvector(clear_spare_lane(lo), DoubleLanes);
+    return size[0] * size[1] + (size[1] + size[0]) * size[2];
   }
   bool is_empty() const { return bounds().is_empty(); }
   Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
@@ -130,6 +131,9 @@ struct Bins {
   /// Half the area of what the boxes of both sides have in common; infinite without a split.
   double overlap_of(const Split& split, const BinGrid& grid) const;
 };
+
+/// As find_best_split says of the bins of two records.
+Split find_best_split(const BinGrid& grid, const Record& a, const Record& b);
 
 /// The cheapest plane; of equal ones the first by axis, then by bin.
 Split find_best_split(const BinGrid& grid, const Bins& bins);

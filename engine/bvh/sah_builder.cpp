@@ -68,7 +68,9 @@ std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
     const std::span<Record> members(records + range.begin, range.count());
     const BinGrid grid(range.extent.centers, range.count());
     Split split;
-    if (range.depth < kMaxSahDepth && range.count() > 1) {
+    if (range.depth < kMaxSahDepth && range.count() == 2) {
+      split = find_best_split(grid, members[0], members[1]);
+    } else if (range.depth < kMaxSahDepth && range.count() > 2) {
       Bins bins(grid);
       bins.add(grid, members);
       split = find_best_split(grid, bins);
