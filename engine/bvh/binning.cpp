@@ -46,46 +46,43 @@ uint32_t Bins::count_below(const Split& split) const {
   return count;
 }
 
-double Bins::overlap_of(const Split& split, const BinGrid& grid) const {
-  if (!split.exists()) return std::numeric_limits<double>::infinity();
-  LaneBox below;
-  LaneBox above;
-  for (uint32_t bin = 0; bin < split.bin; ++bin) below.extend(boxes[bin][split.axis]);
-  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) above.extend(boxes[bin][split.axis]);
-  return LaneBox{max(below.lo, above.lo), min(below.hi, above.hi)}.bounds().half_area();
+std::pair<LaneBox, LaneBox> Bins::boxes_of(const Split& split, const BinGrid& grid) const {
+  std::pair<LaneBox, LaneBox> sides;
+  if (!split.exists()) return sides;
+  for (uint32_t bin = 0; bin < split.bin; ++bin) sides.first.extend(boxes[bin][split.axis]);
+  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) sides.second.extend(boxes[bin][split.axis]);
+  return sides;
 }
 
 Split find_best_split(const BinGrid& grid, const Bins& bins) {
-  // Cost of everything from bin b on, then of everything below b: both sides of the plane below b. A bin without
-  // records has no plane of its own.
+  // Cost of everything from bin b on, then of everything below b: both sides of the plane below b. A side without
+  // records has the cost infinity times 0, which is not less than anything: branches would often be mispredicted.
   double costs_above[BinGrid::kMaxBins][3];
   LaneBox boxes[3];
   uint32_t counts[3] = {};
-  double costs[3];
-  std::fill_n(costs, 3, std::numeric_limits<double>::infinity());
   for (uint32_t bin = grid.bin_count() - 1; bin > 0; --bin) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (bins.counts[bin][axis] > 0) {
-        boxes[axis].extend(bins.boxes[bin][axis]);
-        counts[axis] += bins.counts[bin][axis];
-        costs[axis] = boxes[axis].half_area() * counts[axis];
-      }
-      costs_above[bin][axis] = costs[axis];
+      boxes[axis].extend(bins.boxes[bin][axis]);
+      counts[axis] += bins.counts[bin][axis];
+      costs_above[bin][axis] = boxes[axis].half_area() * counts[axis];
     }
   }
-  Split best[3];
   std::fill_n(boxes, 3, LaneBox());
   std::fill_n(counts, 3, 0U);
+  double least[3];
+  uint32_t best_bins[3] = {};
+  std::fill_n(least, 3, std::numeric_limits<double>::infinity());
   for (uint32_t bin = 1; bin < grid.bin_count(); ++bin) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (bins.counts[bin - 1][axis] == 0) continue;
       boxes[axis].extend(bins.boxes[bin - 1][axis]);
       counts[axis] += bins.counts[bin - 1][axis];
       const double cost = boxes[axis].half_area() * counts[axis] + costs_above[bin][axis];
-      if (cost < best[axis].cost) best[axis] = {axis, bin, cost};
+      best_bins[axis] = cost < least[axis] ? bin : best_bins[axis];
+      least[axis] = cost < least[axis] ? cost : least[axis];
     }
   }
-  return *std::min_element(best, best + 3, [](const Split& a, const Split& b) { return a.cost < b.cost; });
+  const auto axis = static_cast<int>(std::min_element(least, least + 3) - least);
+  return best_bins[axis] > 0 ? Split{axis, best_bins[axis], least[axis]} : Split();
 }
 
 Split find_best_split(const BinGrid& grid, const Record& a, const Record& b) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "core/math.h"
 
@@ -115,8 +116,8 @@ struct Split {
   bool exists() const { return axis >= 0; }
 };
 
-inline bool is_below(const Record& record, const BinGrid& grid, const Split& split) {
-  return static_cast<uint32_t>(grid.bins_of(record.center())[split.axis]) < split.bin;
+inline bool is_below(Lanes center, const BinGrid& grid, const Split& split) {
+  return static_cast<uint32_t>(grid.bins_of(center)[split.axis]) < split.bin;
 }
 
 /// Boxes and numbers of the records in every bin of a grid, by bin and axis.
@@ -128,8 +129,8 @@ struct Bins {
   void add(const BinGrid& grid, std::span<const Record> records);
   void add(const Bins& bins, const BinGrid& grid);
   uint32_t count_below(const Split& split) const;
-  /// Half the area of what the boxes of both sides have in common; infinite without a split.
-  double overlap_of(const Split& split, const BinGrid& grid) const;
+  /// Of what is below the plane, and above; empty without a plane.
+  std::pair<LaneBox, LaneBox> boxes_of(const Split& split, const BinGrid& grid) const;
 };
 
 /// As find_best_split says of the bins of two records.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/unset_vector.h"
 
 namespace promin {
 
@@ -24,10 +25,10 @@ struct BvhNode {
 
 /// What a builder makes. Node 0 is the root; a tree of no primitives has no nodes.
 struct Bvh {
-  std::vector<BvhNode> nodes;
+  UnsetVector<BvhNode> nodes;
   /// Indices of primitives in leaf order, each at least once. A primitive that a builder has split is in several
   /// leaves, whose boxes hold it together.
-  std::vector<uint32_t> references;
+  UnsetVector<uint32_t> references;
 };
 
 struct BvhStats {

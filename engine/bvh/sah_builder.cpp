@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "bvh/binning.h"
@@ -32,7 +33,7 @@ struct Range {
 /// Makes one node of a range: a leaf, or an inner node whose children's ranges it returns, the lower one first.
 /// `middle` is where the upper child begins.
 std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const Extent& below, const Extent& above,
-                                      std::vector<BvhNode>& nodes) {
+                                      UnsetVector<BvhNode>& nodes) {
   const auto child = static_cast<uint32_t>(nodes.size());
   nodes[range.node] = {range.extent.box.bounds(), child, 0};
   nodes.resize(nodes.size() + 2);
@@ -40,25 +41,32 @@ std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const
           Range{middle, range.end, child + 1, range.depth + 1, above}};
 }
 
-/// Moves the records below the plane to the front and returns how many there are.
-uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, Extent& below,
-                           Extent& above) {
+/// Moves the records below the plane to the front and returns how many there are. The boxes of both sides' centres come
+/// along.
+uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, LaneBox& centers_below,
+                           LaneBox& centers_above) {
+  LaneBox below;
+  LaneBox above;
   size_t left = 0;
   size_t right = records.size();
   while (left < right) {
-    if (is_below(records[left], grid, split)) {
-      below.extend(records[left++]);
+    const Lanes center = records[left].center();
+    if (is_below(center, grid, split)) {
+      below.extend(center, center);
+      ++left;
     } else {
-      above.extend(records[left]);
+      above.extend(center, center);
       std::swap(records[left], records[--right]);
     }
   }
+  centers_below = below;
+  centers_above = above;
   return static_cast<uint32_t>(left);
 }
 
 /// Builds the subtree of a range on one thread; its root is node 0.
-std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
-  std::vector<BvhNode> nodes(1);
+UnsetVector<BvhNode> build_subtree(const Range& root, Record* records) {
+  UnsetVector<BvhNode> nodes(1);
   nodes.reserve(root.count());
   std::vector<Range> open = {root};
   open.back().node = 0;
@@ -68,12 +76,15 @@ std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
     const std::span<Record> members(records + range.begin, range.count());
     const BinGrid grid(range.extent.centers, range.count());
     Split split;
+    Extent below;
+    Extent above;
     if (range.depth < kMaxSahDepth && range.count() == 2) {
       split = find_best_split(grid, members[0], members[1]);
     } else if (range.depth < kMaxSahDepth && range.count() > 2) {
       Bins bins(grid);
       bins.add(grid, members);
       split = find_best_split(grid, bins);
+      std::tie(below.box, above.box) = bins.boxes_of(split, grid);
     }
     const double area = range.extent.box.half_area();
     const bool pays = kNodeCost * area + kTestCost * split.cost < kTestCost * area * range.count();
@@ -81,12 +92,11 @@ std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
       nodes[range.node] = {range.extent.box.bounds(), range.begin, range.count()};
       continue;
     }
-    Extent below;
-    Extent above;
     uint32_t middle = range.begin + range.count() / 2;
-    if (split.exists()) {
-      middle = range.begin + partition_records(members, grid, split, below, above);
+    if (split.exists() && range.count() > 2) {
+      middle = range.begin + partition_records(members, grid, split, below.centers, above.centers);
     } else {
+      if (split.exists() && !is_below(members[0].center(), grid, split)) std::swap(members[0], members[1]);
       for (uint32_t i = range.begin; i < middle; ++i) below.extend(records[i]);
       for (uint32_t i = middle; i < range.end; ++i) above.extend(records[i]);
     }
@@ -157,7 +167,7 @@ void Halving::scatter(Chunk& chunk, const Record* from, Record* to) const {
   uint32_t below = chunk.first_below;
   uint32_t above = chunk.first_above;
   for (uint32_t i = chunk.begin; i < chunk.end; ++i) {
-    if (is_below(from[i], grid, split)) {
+    if (is_below(from[i].center(), grid, split)) {
       to[below++] = from[i];
       chunk.below.extend(from[i]);
     } else {
@@ -262,24 +272,24 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
 
 void SahBuild::build_subtrees() {
   bvh_.references.resize(boxes_.size());
-  std::vector<std::vector<BvhNode>> built(subtrees_.size());
+  std::vector<UnsetVector<BvhNode>> built(subtrees_.size());
   for_each_index(subtrees_.size(), thread_count_, [&](size_t i) {
     const auto& [range, records] = subtrees_[i];
     built[i] = build_subtree(range, records);
     for (uint32_t k = range.begin; k < range.end; ++k) bvh_.references[k] = records[k].index();
   });
-  size_t node_count = bvh_.nodes.size();
-  for (const std::vector<BvhNode>& nodes : built) node_count += nodes.size() - 1;
-  bvh_.nodes.reserve(node_count);
-  for (size_t i = 0; i < subtrees_.size(); ++i) {
-    // The subtree's root takes its place in the top; the others follow what there is.
-    const auto shift = static_cast<uint32_t>(bvh_.nodes.size()) - 1;
+  // A subtree's root takes its place in the top; its others follow what there is.
+  std::vector<size_t> starts = {bvh_.nodes.size()};
+  for (const UnsetVector<BvhNode>& nodes : built) starts.push_back(starts.back() + nodes.size() - 1);
+  bvh_.nodes.resize(starts.back());
+  for_each_index(subtrees_.size(), thread_count_, [&](size_t i) {
+    const auto shift = static_cast<uint32_t>(starts[i]) - 1;
     for (BvhNode& node : built[i]) {
       if (node.count == 0) node.first += shift;
     }
     bvh_.nodes[subtrees_[i].range.node] = built[i].front();
-    bvh_.nodes.insert(bvh_.nodes.end(), built[i].begin() + 1, built[i].end());
-  }
+    std::copy(built[i].begin() + 1, built[i].end(), bvh_.nodes.begin() + static_cast<std::ptrdiff_t>(starts[i]));
+  });
 }
 
 }  // namespace

@@ -161,6 +161,11 @@ Cut find_best_cut(const PlaneGrid& grid, const Slabs& slabs, size_t max_count) {
   return best;
 }
 
+/// Half the area of what two boxes have in common.
+double overlap_of(const LaneBox& a, const LaneBox& b) {
+  return LaneBox{max(a.lo, b.lo), min(a.hi, b.hi)}.bounds().half_area();
+}
+
 LaneBox unite(LaneBox a, const LaneBox& b) {
   a.extend(b);
   return a;
@@ -293,7 +298,8 @@ std::optional<Sides> SpatialBuild::split(const Task& task, unsigned thread_count
       bins.add(part, bin_grid);
     }
     split = find_best_split(bin_grid, bins);
-    if (input_.clip && bins.overlap_of(split, bin_grid) >= kLeastOverlap * root_area_) {
+    const auto [below, above] = bins.boxes_of(split, bin_grid);
+    if (input_.clip && (!split.exists() || overlap_of(below, above) >= kLeastOverlap * root_area_)) {
       const PlaneGrid grid(box, count);
       Slabs slabs;
       for (const Slabs& part : for_each_chunk(side.records, thread_count, Slabs(),
@@ -323,7 +329,7 @@ std::optional<Sides> SpatialBuild::split(const Task& task, unsigned thread_count
   }
   if (!split.exists()) return halve(side);
   return distribute([&](const Record& record, Sides& result) {
-    (is_below(record, bin_grid, split) ? result.below : result.above).add(record);
+    (is_below(record.center(), bin_grid, split) ? result.below : result.above).add(record);
   });
 }
 

@@ -273,8 +273,8 @@ Bounds clip(const Primitive& p, const Bounds& window) {
 }
 
 /// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
-std::vector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> solids) {
-  std::vector<uint32_t> references = bvh.references;
+UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> solids) {
+  UnsetVector<uint32_t> references = bvh.references;
   const auto is_before = [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; };
   for_each_chunk(bvh.nodes.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
     for (const BvhNode& node : std::span(bvh.nodes).subspan(begin, end - begin)) {
@@ -314,7 +314,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   packed.stack_size = tree.stack_size;
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
 
-  const std::vector<uint32_t> references = sort_leaves_by_kind(bvh, collected.solids);
+  const UnsetVector<uint32_t> references = sort_leaves_by_kind(bvh, collected.solids);
   UnsetVector<SurfaceRecord> surfaces(references.size());
   packed.primitives.resize(references.size());
   for_each_chunk(references.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
@@ -326,7 +326,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder) {
   packed.dispatch.counts = uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), 0);
   packed.primitives.insert(packed.primitives.end(), collected.planes.begin(), collected.planes.end());
   surfaces.insert(surfaces.end(), collected.plane_surfaces.begin(), collected.plane_surfaces.end());
-  if (packed.primitives.empty()) packed.primitives.emplace_back();
+  if (packed.primitives.empty()) packed.primitives.push_back({});
 
   append_records(packed.shading, surfaces);
   packed.frame.first_index.x = append_records(packed.shading, pack_all(scene.materials));
