@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -180,15 +179,12 @@ void Halving::scatter(Chunk& chunk, const Record* from, Record* to) const {
 class SahBuild {
  public:
   SahBuild(std::span<const Bounds> boxes, unsigned thread_count)
-      : boxes_(boxes),
-        thread_count_(thread_count),
-        records_(std::make_unique_for_overwrite<Record[]>(boxes.size())),
-        scattered_(std::make_unique_for_overwrite<Record[]>(boxes.size())) {}
+      : boxes_(boxes), thread_count_(thread_count), records_(boxes.size()), scattered_(boxes.size()) {}
 
   Bvh run() {
     bvh_.nodes.resize(1);
     std::vector<Range> level;
-    add_range(make_root(), records_.get(), level);
+    add_range(make_root(), records_.data(), level);
     while (!level.empty()) level = split_level(level);
     build_subtrees();
     return std::move(bvh_);
@@ -211,8 +207,8 @@ class SahBuild {
   std::span<const Bounds> boxes_;
   unsigned thread_count_;
   /// The records of the current level, and where its chunks scatter them to.
-  std::unique_ptr<Record[]> records_;
-  std::unique_ptr<Record[]> scattered_;
+  UnsetVector<Record> records_;
+  UnsetVector<Record> scattered_;
   std::vector<Subtree> subtrees_;
   Bvh bvh_;
 };
@@ -243,17 +239,17 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
   }
   for_each_index(work.size(), thread_count_, [&](size_t i) {
     const auto [halving, chunk] = work[i];
-    chunk->bins.add(halving->grid, {records_.get() + chunk->begin, records_.get() + chunk->end});
+    chunk->bins.add(halving->grid, {records_.data() + chunk->begin, records_.data() + chunk->end});
   });
   for (Halving& halving : halvings) halving.choose_split();
   for_each_index(work.size(), thread_count_, [&](size_t i) {
     const auto [halving, chunk] = work[i];
-    if (halving->split.exists()) halving->scatter(*chunk, records_.get(), scattered_.get());
+    if (halving->split.exists()) halving->scatter(*chunk, records_.data(), scattered_.data());
   });
   std::vector<Range> next_level;
   for (const Halving& halving : halvings) {
     if (!halving.split.exists()) {
-      subtrees_.push_back({halving.range, records_.get()});
+      subtrees_.push_back({halving.range, records_.data()});
       continue;
     }
     Extent below;
@@ -263,8 +259,8 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
       above.extend(chunk.above);
     }
     const auto [lower, upper] = make_children(halving.range, halving.middle, below, above, bvh_.nodes);
-    add_range(lower, scattered_.get(), next_level);
-    add_range(upper, scattered_.get(), next_level);
+    add_range(lower, scattered_.data(), next_level);
+    add_range(upper, scattered_.data(), next_level);
   }
   std::swap(records_, scattered_);
   return next_level;
