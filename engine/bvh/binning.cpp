@@ -3,72 +3,94 @@
 #include "bvh/binning.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace promin {
 
 BinGrid::BinGrid(const LaneBox& centers, uint32_t count) : bin_count_(std::min(kMaxBins, 4 + count / 8)) {
   // The last centre must fall into the last bin, not beyond it: two roundings of 2^-24 each are less than 2^-20.
   const float slabs = static_cast<float>(bin_count_) * (1.0F - 0x1p-20F);
-  for (int axis = 0; axis < 3; ++axis) {
-    const float scale = slabs / (centers.hi[axis] - centers.lo[axis]);
-    if (!std::isnormal(scale)) continue;
-    origin_[axis] = centers.lo[axis];
-    scale_[axis] = scale;
-  }
+  const Lanes scale = fill_lanes(slabs) / (centers.hi - centers.lo);
+  const IntLanes is_normal = (scale >= fill_lanes(std::numeric_limits<float>::min())) &
+                             (scale <= fill_lanes(std::numeric_limits<float>::max()));
+  origin_ = std::bit_cast<Lanes>(std::bit_cast<IntLanes>(centers.lo) & is_normal);
+  scale_ = std::bit_cast<Lanes>(std::bit_cast<IntLanes>(scale) & is_normal);
 }
 
 Bins::Bins(const BinGrid& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::fill_n(boxes[axis], grid.bin_count(), LaneBox{});
-    std::fill_n(counts[axis], grid.bin_count(), 0U);
-  }
+  std::fill_n(&boxes[0][0], 3 * grid.bin_count(), LaneBox{});
+  std::fill_n(&counts[0][0], 3 * grid.bin_count(), 0U);
 }
 
 void Bins::add(const BinGrid& grid, std::span<const Record> records) {
   for (const Record& record : records) {
-    const Lanes center = record.center();
+    const IntLanes bins = grid.bins_of(record.center());
     for (int axis = 0; axis < 3; ++axis) {
-      const uint32_t bin = grid.bin_of(center, axis);
-      boxes[axis][bin].extend(record.lo, record.hi);
-      counts[axis][bin] += 1;
+      boxes[bins[axis]][axis].extend(record.lo, record.hi);
+      counts[bins[axis]][axis] += 1;
     }
   }
 }
 
 void Bins::add(const Bins& bins, const BinGrid& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (uint32_t bin = 0; bin < grid.bin_count(); ++bin) {
-      boxes[axis][bin].extend(bins.boxes[axis][bin]);
-      counts[axis][bin] += bins.counts[axis][bin];
+  for (uint32_t bin = 0; bin < grid.bin_count(); ++bin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[bin][axis].extend(bins.boxes[bin][axis]);
+      counts[bin][axis] += bins.counts[bin][axis];
     }
   }
 }
 
+uint32_t Bins::count_below(const Split& split) const {
+  uint32_t count = 0;
+  for (uint32_t bin = 0; bin < split.bin; ++bin) count += counts[bin][split.axis];
+  return count;
+}
+
+std::pair<LaneBox, LaneBox> Bins::boxes_of(const Split& split, const BinGrid& grid) const {
+  std::pair<LaneBox, LaneBox> sides;
+  if (!split.exists()) return sides;
+  for (uint32_t bin = 0; bin < split.bin; ++bin) sides.first.extend(boxes[bin][split.axis]);
+  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) sides.second.extend(boxes[bin][split.axis]);
+  return sides;
+}
+
 Split find_best_split(const BinGrid& grid, const Bins& bins) {
-  Split best;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!grid.is_divided(axis)) continue;
-    // Cost of everything from bin b on, then of everything below b: both sides of the plane below b.
-    double cost_above[BinGrid::kMaxBins];
-    LaneBox box;
-    uint32_t count = 0;
-    for (uint32_t bin = grid.bin_count() - 1; bin > 0; --bin) {
-      box.extend(bins.boxes[axis][bin]);
-      count += bins.counts[axis][bin];
-      cost_above[bin] = count > 0 ? box.half_area() * count : std::numeric_limits<double>::infinity();
-    }
-    box = {};
-    count = 0;
-    for (uint32_t bin = 1; bin < grid.bin_count(); ++bin) {
-      box.extend(bins.boxes[axis][bin - 1]);
-      count += bins.counts[axis][bin - 1];
-      if (count == 0) continue;
-      const double cost = box.half_area() * count + cost_above[bin];
-      if (cost < best.cost) best = {axis, bin, cost};
+  // Cost of everything from bin b on, then of everything below b: both sides of the plane below b. A side without
+  // records has the cost infinity times 0, which is not less than anything: branches would often be mispredicted.
+  double costs_above[BinGrid::kMaxBins][3];
+  LaneBox boxes[3];
+  uint32_t counts[3] = {};
+  for (uint32_t bin = grid.bin_count() - 1; bin > 0; --bin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[axis].extend(bins.boxes[bin][axis]);
+      counts[axis] += bins.counts[bin][axis];
+      costs_above[bin][axis] = boxes[axis].half_area() * counts[axis];
     }
   }
-  return best;
+  std::fill_n(boxes, 3, LaneBox());
+  std::fill_n(counts, 3, 0U);
+  double least[3];
+  uint32_t best_bins[3] = {};
+  std::fill_n(least, 3, std::numeric_limits<double>::infinity());
+  for (uint32_t bin = 1; bin < grid.bin_count(); ++bin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[axis].extend(bins.boxes[bin - 1][axis]);
+      counts[axis] += bins.counts[bin - 1][axis];
+      const double cost = boxes[axis].half_area() * counts[axis] + costs_above[bin][axis];
+      best_bins[axis] = cost < least[axis] ? bin : best_bins[axis];
+      least[axis] = cost < least[axis] ? cost : least[axis];
+    }
+  }
+  const auto axis = static_cast<int>(std::min_element(least, least + 3) - least);
+  return best_bins[axis] > 0 ? Split{axis, best_bins[axis], least[axis]} : Split();
+}
+
+Split find_best_split(const BinGrid& grid, const Record& a, const Record& b) {
+  // Wherever their centres differ they are in the first bin and the last.
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.is_divided(axis)) return {axis, 1, LaneBox{a.lo, a.hi}.half_area() + LaneBox{b.lo, b.hi}.half_area()};
+  }
+  return {};
 }
 
 }  // namespace promin

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
+#include <utility>
 
 #include "core/math.h"
 
@@ -15,6 +15,8 @@ namespace promin {
 
 /// Four floats in one register (GCC's and Clang's vector extension): x, y, z and a lane that is not looked at.
 using Lanes = float __attribute__((vector_size(16)));
+using IntLanes = int32_t __attribute__((vector_size(16)));
+using DoubleLanes = double __attribute__((vector_size(32)));
 
 inline Lanes min(Lanes a, Lanes b) {
   return a < b ? a : b;
@@ -26,8 +28,7 @@ inline Lanes fill_lanes(float x) {
   return Lanes{x, x, x, x};
 }
 inline Lanes clear_spare_lane(Lanes a) {
-  using Bits = int32_t __attribute__((vector_size(16)));
-  return std::bit_cast<Lanes>(std::bit_cast<Bits>(a) & Bits{-1, -1, -1, 0});
+  return std::bit_cast<Lanes>(std::bit_cast<IntLanes>(a) & IntLanes{-1, -1, -1, 0});
 }
 
 /// Bounds in registers. Empty by default.
@@ -42,11 +43,12 @@ struct LaneBox {
   void extend(const LaneBox& box) { extend(box.lo, box.hi); }
   /// In double: fp32 would overflow from coordinates of 1e19 on. Of a box that is not empty.
   double half_area() const {
-    const double x = static_cast<double>(hi[0]) - static_cast<double>(lo[0]);
-    const double y = static_cast<double>(hi[1]) - static_cast<double>(lo[1]);
-    const double z = static_cast<double>(hi[2]) - static_cast<double>(lo[2]);
-    return x * y + (y + x) * z;
+    // Indices in the spare lane are slow to convert: most are subnormal.
+    const DoubleLanes size = __builtin_convertvector(clear_spare_lane(hi), DoubleLanes) -
+                             __builtin_convertvector(clear_spare_lane(lo), DoubleLanes);
+    return size[0] * size[1] + (size[1] + size[0]) * size[2];
   }
+  bool is_empty() const { return bounds().is_empty(); }
   Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
@@ -61,6 +63,7 @@ struct Record {
       : lo{bounds.lo.x, bounds.lo.y, bounds.lo.z, std::bit_cast<float>(index)},
         hi{bounds.hi.x, bounds.hi.y, bounds.hi.z, 0.0F} {}
 
+  Bounds bounds() const { return LaneBox{lo, hi}.bounds(); }
   uint32_t index() const { return std::bit_cast<uint32_t>(static_cast<float>(lo[3])); }
   /// Halved before the sum, which could overflow. Read as floats most indices are subnormal, and arithmetic on those
   /// is slow.
@@ -94,9 +97,8 @@ class BinGrid {
   uint32_t bin_count() const { return bin_count_; }
   /// False where the centres coincide (or are too near or far apart for a float): everything falls into bin 0.
   bool is_divided(int axis) const { return scale_[axis] > 0.0F; }
-  uint32_t bin_of(Lanes center, int axis) const {
-    return static_cast<uint32_t>(static_cast<int32_t>((center[axis] - origin_[axis]) * scale_[axis]));
-  }
+  /// On each axis; the spare lane is not one.
+  IntLanes bins_of(Lanes center) const { return __builtin_convertvector((center - origin_) * scale_, IntLanes); }
 
  private:
   Lanes origin_{};
@@ -114,18 +116,25 @@ struct Split {
   bool exists() const { return axis >= 0; }
 };
 
-/// Boxes and numbers of the records in every bin of a grid.
+inline bool is_below(Lanes center, const BinGrid& grid, const Split& split) {
+  return static_cast<uint32_t>(grid.bins_of(center)[split.axis]) < split.bin;
+}
+
+/// Boxes and numbers of the records in every bin of a grid, by bin and axis.
 struct Bins {
-  LaneBox boxes[3][BinGrid::kMaxBins];
-  uint32_t counts[3][BinGrid::kMaxBins];
+  LaneBox boxes[BinGrid::kMaxBins][3];
+  uint32_t counts[BinGrid::kMaxBins][3];
 
   explicit Bins(const BinGrid& grid);
   void add(const BinGrid& grid, std::span<const Record> records);
   void add(const Bins& bins, const BinGrid& grid);
-  uint32_t count_below(const Split& split) const {
-    return std::accumulate(counts[split.axis], counts[split.axis] + split.bin, 0U);
-  }
+  uint32_t count_below(const Split& split) const;
+  /// Of what is below the plane, and above; empty without a plane.
+  std::pair<LaneBox, LaneBox> boxes_of(const Split& split, const BinGrid& grid) const;
 };
+
+/// As find_best_split says of the bins of two records.
+Split find_best_split(const BinGrid& grid, const Record& a, const Record& b);
 
 /// The cheapest plane; of equal ones the first by axis, then by bin.
 Split find_best_split(const BinGrid& grid, const Bins& bins);

@@ -15,11 +15,12 @@ namespace {
 
 struct Builder {
   std::string_view name;
-  Bvh (*build)(std::span<const Bounds>, const BuildOptions&);
+  Bvh (*build)(const BuildInput&, const BuildOptions&);
 };
 
 // A new builder is a row here; the first is the default.
-constexpr std::array kBuilders = {Builder{"sah", build_sah}, Builder{"median", build_median}};
+constexpr std::array kBuilders = {Builder{"sah", build_sah}, Builder{"median", build_median},
+                                  Builder{"spatial", build_spatial}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kBuilders.size()> names;
@@ -33,17 +34,17 @@ std::span<const std::string_view> builder_names() {
   return kNames;
 }
 
-Bvh build_bvh(std::string_view builder, std::span<const Bounds> boxes, const BuildOptions& options) {
+Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOptions& options) {
   const auto found = std::find_if(kBuilders.begin(), kBuilders.end(),
                                   [builder](const Builder& entry) { return entry.name == builder; });
   if (found == kBuilders.end()) {
     throw UsageError({"unknown BVH builder \"" + std::string(builder) + "\"", "", suggest_name(builder, kNames)});
   }
-  if (boxes.size() > std::numeric_limits<uint32_t>::max() / 2) {
-    throw InputError({"too many primitives for one BVH: " + std::to_string(boxes.size()), "", "split the scene"});
+  if (input.boxes.size() > std::numeric_limits<uint32_t>::max() / kMaxReferencesPerPrimitive) {
+    throw InputError({"too many primitives for one BVH: " + std::to_string(input.boxes.size()), "", "split the scene"});
   }
-  if (boxes.empty()) return {};
-  return found->build(boxes, options);
+  if (input.boxes.empty()) return {};
+  return found->build(input, options);
 }
 
 BvhStats measure_bvh(std::string_view builder, const Bvh& bvh) {

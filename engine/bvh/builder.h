@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "core/math.h"
 #include "core/shared_progress.h"
+#include "core/unset_vector.h"
 
 namespace promin {
 
@@ -24,9 +26,10 @@ struct BvhNode {
 
 /// What a builder makes. Node 0 is the root; a tree of no primitives has no nodes.
 struct Bvh {
-  std::vector<BvhNode> nodes;
-  /// Indices into the span of bounds that the builder was given, in leaf order.
-  std::vector<uint32_t> references;
+  UnsetVector<BvhNode> nodes;
+  /// Indices of primitives in leaf order, each at least once. A primitive that a builder has split is in several
+  /// leaves, whose boxes hold it together.
+  UnsetVector<uint32_t> references;
 };
 
 struct BvhStats {
@@ -48,10 +51,23 @@ struct BvhStats {
 inline constexpr uint32_t kMaxLeafSize = 16;
 inline constexpr uint32_t kMaxBvhDepth = 96;
 
+/// No builder makes more references than this times the primitives.
+inline constexpr uint32_t kMaxReferencesPerPrimitive = 2;
+
 /// Units of the SAH: a visit of an inner node, which tests two boxes, against the test of one primitive. Both are some
 /// forty operations on 48...64 bytes (two slab tests; a sheared triangle), hence equal weights.
 inline constexpr double kNodeCost = 1.0;
 inline constexpr double kTestCost = 1.0;
+
+/// What a tree is built over.
+struct BuildInput {
+  /// Of each primitive; not empty, finite.
+  std::span<const Bounds> boxes;
+  /// Gives a box inside `window` that no point of the primitive's part in there is outside of; empty only where there
+  /// is no such point. `window` lies inside the primitive's box. For builders that split primitives; without it none is
+  /// split. Must bear calls from several threads.
+  std::function<Bounds(uint32_t primitive, const Bounds& window)> clip = {};
+};
 
 struct BuildOptions {
   /// 0: one per core. The tree is the same, to the bit, for any number.
@@ -63,9 +79,8 @@ struct BuildOptions {
 /// Names of the builders, the default first.
 std::span<const std::string_view> builder_names();
 
-/// Builds a tree over boxes that are not empty and finite. The tree depends on the boxes alone; a node comes after its
-/// parent. Throws UsageError for an unknown name.
-Bvh build_bvh(std::string_view builder, std::span<const Bounds> boxes, const BuildOptions& options = {});
+/// A tree depends on the input alone; a node comes after its parent. Throws UsageError for an unknown name.
+Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOptions& options = {});
 
 BvhStats measure_bvh(std::string_view builder, const Bvh& bvh);
 

@@ -7,12 +7,22 @@
 // The builders behind build_bvh, for the table in builder.cpp alone.
 namespace promin {
 
+/// From here on ranges are halved by number, whatever lies where: 2^32 references halved 32 times fit into leaves.
+inline constexpr uint32_t kMaxSahDepth = kMaxBvhDepth - 32;
+
 /// The thesis' tree (docs/model.md, "Acceleration"): sort the centroids along the longest axis of the node's box, equal
 /// ones by index; split at N/2; stop at two objects. The named baseline that better builders are measured against.
-Bvh build_median(std::span<const Bounds> boxes, const BuildOptions& options);
+Bvh build_median(const BuildInput& input, const BuildOptions& options);
 
 /// Binned surface area heuristic on all three axes (Wald, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies", 2007), on all cores.
-Bvh build_sah(std::span<const Bounds> boxes, const BuildOptions& options);
+Bvh build_sah(const BuildInput& input, const BuildOptions& options);
+
+/// The surface area heuristic with spatial splits (Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume
+/// Hierarchies", HPG 2009): a plane may also cut primitives in two, whose parts get boxes of their own. The references
+/// that cutting may add are shared out from the root down, by number (Fuetterling et al., "Parallel Spatial Splits in
+/// Bounding Volume Hierarchies", EGPGV 2016), so that subtrees do not depend on each other. Where build_sah's tree
+/// costs less, it is that one. On all cores.
+Bvh build_spatial(const BuildInput& input, const BuildOptions& options);
 
 }  // namespace promin

@@ -19,7 +19,8 @@ int longest_axis(const Bounds& bounds) {
 
 }  // namespace
 
-Bvh build_median(std::span<const Bounds> boxes, const BuildOptions& options) {
+Bvh build_median(const BuildInput& input, const BuildOptions& options) {
+  const std::span<const Bounds> boxes = input.boxes;
   struct Range {
     uint32_t begin;
     uint32_t end;

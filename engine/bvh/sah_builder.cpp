@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <tuple>
 #include <utility>
 
 #include "bvh/binning.h"
@@ -19,9 +19,6 @@ namespace {
 constexpr uint32_t kChunkSize = 8192;
 constexpr uint32_t kSubtreeSize = 16384;
 
-/// From here on ranges are halved by index: 2^32 references halved 32 times fit into leaves.
-constexpr uint32_t kMaxSahDepth = kMaxBvhDepth - 32;
-
 /// Records [begin, end), still to become node `node` in depth `depth` (the root's is 1).
 struct Range {
   uint32_t begin = 0;
@@ -36,7 +33,7 @@ struct Range {
 /// Makes one node of a range: a leaf, or an inner node whose children's ranges it returns, the lower one first.
 /// `middle` is where the upper child begins.
 std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const Extent& below, const Extent& above,
-                                      std::vector<BvhNode>& nodes) {
+                                      UnsetVector<BvhNode>& nodes) {
   const auto child = static_cast<uint32_t>(nodes.size());
   nodes[range.node] = {range.extent.box.bounds(), child, 0};
   nodes.resize(nodes.size() + 2);
@@ -44,25 +41,32 @@ std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const
           Range{middle, range.end, child + 1, range.depth + 1, above}};
 }
 
-/// Moves the records below the plane to the front and returns how many there are.
-uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, Extent& below,
-                           Extent& above) {
+/// Moves the records below the plane to the front and returns how many there are. The boxes of both sides' centres come
+/// along.
+uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, LaneBox& centers_below,
+                           LaneBox& centers_above) {
+  LaneBox below;
+  LaneBox above;
   size_t left = 0;
   size_t right = records.size();
   while (left < right) {
-    if (grid.bin_of(records[left].center(), split.axis) < split.bin) {
-      below.extend(records[left++]);
+    const Lanes center = records[left].center();
+    if (is_below(center, grid, split)) {
+      below.extend(center, center);
+      ++left;
     } else {
-      above.extend(records[left]);
+      above.extend(center, center);
       std::swap(records[left], records[--right]);
     }
   }
+  centers_below = below;
+  centers_above = above;
   return static_cast<uint32_t>(left);
 }
 
 /// Builds the subtree of a range on one thread; its root is node 0.
-std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
-  std::vector<BvhNode> nodes(1);
+UnsetVector<BvhNode> build_subtree(const Range& root, Record* records) {
+  UnsetVector<BvhNode> nodes(1);
   nodes.reserve(root.count());
   std::vector<Range> open = {root};
   open.back().node = 0;
@@ -72,10 +76,15 @@ std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
     const std::span<Record> members(records + range.begin, range.count());
     const BinGrid grid(range.extent.centers, range.count());
     Split split;
-    if (range.depth < kMaxSahDepth && range.count() > 1) {
+    Extent below;
+    Extent above;
+    if (range.depth < kMaxSahDepth && range.count() == 2) {
+      split = find_best_split(grid, members[0], members[1]);
+    } else if (range.depth < kMaxSahDepth && range.count() > 2) {
       Bins bins(grid);
       bins.add(grid, members);
       split = find_best_split(grid, bins);
+      std::tie(below.box, above.box) = bins.boxes_of(split, grid);
     }
     const double area = range.extent.box.half_area();
     const bool pays = kNodeCost * area + kTestCost * split.cost < kTestCost * area * range.count();
@@ -83,12 +92,11 @@ std::vector<BvhNode> build_subtree(const Range& root, Record* records) {
       nodes[range.node] = {range.extent.box.bounds(), range.begin, range.count()};
       continue;
     }
-    Extent below;
-    Extent above;
     uint32_t middle = range.begin + range.count() / 2;
-    if (split.exists()) {
-      middle = range.begin + partition_records(members, grid, split, below, above);
+    if (split.exists() && range.count() > 2) {
+      middle = range.begin + partition_records(members, grid, split, below.centers, above.centers);
     } else {
+      if (split.exists() && !is_below(members[0].center(), grid, split)) std::swap(members[0], members[1]);
       for (uint32_t i = range.begin; i < middle; ++i) below.extend(records[i]);
       for (uint32_t i = middle; i < range.end; ++i) above.extend(records[i]);
     }
@@ -159,7 +167,7 @@ void Halving::scatter(Chunk& chunk, const Record* from, Record* to) const {
   uint32_t below = chunk.first_below;
   uint32_t above = chunk.first_above;
   for (uint32_t i = chunk.begin; i < chunk.end; ++i) {
-    if (grid.bin_of(from[i].center(), split.axis) < split.bin) {
+    if (is_below(from[i].center(), grid, split)) {
       to[below++] = from[i];
       chunk.below.extend(from[i]);
     } else {
@@ -175,13 +183,13 @@ class SahBuild {
       : boxes_(boxes),
         thread_count_(options.thread_count),
         progress_(options.progress, count_levels(boxes.size())),
-        records_(std::make_unique_for_overwrite<Record[]>(boxes.size())),
-        scattered_(std::make_unique_for_overwrite<Record[]>(boxes.size())) {}
+        records_(boxes.size()),
+        scattered_(boxes.size()) {}
 
   Bvh run() {
     bvh_.nodes.resize(1);
     std::vector<Range> level;
-    add_range(make_root(), records_.get(), level);
+    add_range(make_root(), records_.data(), level);
     while (!level.empty()) level = split_level(level);
     build_subtrees();
     return std::move(bvh_);
@@ -209,8 +217,8 @@ class SahBuild {
   /// In records times levels.
   SharedProgress progress_;
   /// The records of the current level, and where its chunks scatter them to.
-  std::unique_ptr<Record[]> records_;
-  std::unique_ptr<Record[]> scattered_;
+  UnsetVector<Record> records_;
+  UnsetVector<Record> scattered_;
   std::vector<Subtree> subtrees_;
   Bvh bvh_;
 };
@@ -241,17 +249,17 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
   }
   for_each_index(work.size(), thread_count_, [&](size_t i) {
     const auto [halving, chunk] = work[i];
-    chunk->bins.add(halving->grid, {records_.get() + chunk->begin, records_.get() + chunk->end});
+    chunk->bins.add(halving->grid, {records_.data() + chunk->begin, records_.data() + chunk->end});
   });
   for (Halving& halving : halvings) halving.choose_split();
   for_each_index(work.size(), thread_count_, [&](size_t i) {
     const auto [halving, chunk] = work[i];
-    if (halving->split.exists()) halving->scatter(*chunk, records_.get(), scattered_.get());
+    if (halving->split.exists()) halving->scatter(*chunk, records_.data(), scattered_.data());
   });
   std::vector<Range> next_level;
   for (const Halving& halving : halvings) {
     if (!halving.split.exists()) {
-      subtrees_.push_back({halving.range, records_.get()});
+      subtrees_.push_back({halving.range, records_.data()});
       continue;
     }
     Extent below;
@@ -261,8 +269,8 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
       above.extend(chunk.above);
     }
     const auto [lower, upper] = make_children(halving.range, halving.middle, below, above, bvh_.nodes);
-    add_range(lower, scattered_.get(), next_level);
-    add_range(upper, scattered_.get(), next_level);
+    add_range(lower, scattered_.data(), next_level);
+    add_range(upper, scattered_.data(), next_level);
     progress_.add(halving.range.count());
   }
   std::swap(records_, scattered_);
@@ -271,31 +279,31 @@ std::vector<Range> SahBuild::split_level(const std::vector<Range>& level) {
 
 void SahBuild::build_subtrees() {
   bvh_.references.resize(boxes_.size());
-  std::vector<std::vector<BvhNode>> built(subtrees_.size());
+  std::vector<UnsetVector<BvhNode>> built(subtrees_.size());
   for_each_index(subtrees_.size(), thread_count_, [&](size_t i) {
     const auto& [range, records] = subtrees_[i];
     built[i] = build_subtree(range, records);
     for (uint32_t k = range.begin; k < range.end; ++k) bvh_.references[k] = records[k].index();
     progress_.add(count_levels(range.count()));
   });
-  size_t node_count = bvh_.nodes.size();
-  for (const std::vector<BvhNode>& nodes : built) node_count += nodes.size() - 1;
-  bvh_.nodes.reserve(node_count);
-  for (size_t i = 0; i < subtrees_.size(); ++i) {
-    // The subtree's root takes its place in the top; the others follow what there is.
-    const auto shift = static_cast<uint32_t>(bvh_.nodes.size()) - 1;
+  // A subtree's root takes its place in the top; its others follow what there is.
+  std::vector<size_t> starts = {bvh_.nodes.size()};
+  for (const UnsetVector<BvhNode>& nodes : built) starts.push_back(starts.back() + nodes.size() - 1);
+  bvh_.nodes.resize(starts.back());
+  for_each_index(subtrees_.size(), thread_count_, [&](size_t i) {
+    const auto shift = static_cast<uint32_t>(starts[i]) - 1;
     for (BvhNode& node : built[i]) {
       if (node.count == 0) node.first += shift;
     }
     bvh_.nodes[subtrees_[i].range.node] = built[i].front();
-    bvh_.nodes.insert(bvh_.nodes.end(), built[i].begin() + 1, built[i].end());
-  }
+    std::copy(built[i].begin() + 1, built[i].end(), bvh_.nodes.begin() + static_cast<std::ptrdiff_t>(starts[i]));
+  });
 }
 
 }  // namespace
 
-Bvh build_sah(std::span<const Bounds> boxes, const BuildOptions& options) {
-  return SahBuild(boxes, options).run();
+Bvh build_sah(const BuildInput& input, const BuildOptions& options) {
+  return SahBuild(input.boxes, options).run();
 }
 
 }  // namespace promin

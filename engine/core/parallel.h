@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 
@@ -11,5 +12,12 @@ namespace promin {
 /// threads (0: as many as the machine has cores) and start in the order of i. After an exception no further call
 /// starts, and the first one is rethrown here.
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task);
+
+/// As much for ranges: calls task(begin, end) for [0, count) in pieces of `size`, the last one what is left.
+template <typename Task>
+void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task& task) {
+  for_each_index((count + size - 1) / size, thread_count,
+                 [&](size_t i) { task(i * size, std::min(count, (i + 1) * size)); });
+}
 
 }  // namespace promin

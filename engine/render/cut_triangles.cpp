@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/parallel.h"
+
 namespace promin {
 namespace {
+
+constexpr size_t kChunkSize = 16384;
 
 using Point = std::array<float, 3>;
 
@@ -81,15 +85,33 @@ class Groups {
   std::vector<uint32_t> parent_;
 };
 
+std::vector<uint32_t> find_degenerate(const Mesh& mesh) {
+  std::vector<std::vector<uint32_t>> found((mesh.triangles.size() + kChunkSize - 1) / kChunkSize);
+  for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto triangle = static_cast<uint32_t>(i);
+      if (is_degenerate(mesh, triangle)) found[begin / kChunkSize].push_back(triangle);
+    }
+  });
+  std::vector<uint32_t> all;
+  for (const std::vector<uint32_t>& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 }  // namespace
+
+TrianglePart whole_triangle(const Mesh& mesh, uint32_t triangle) {
+  const uvec3& corners = mesh.triangles[triangle];
+  return {PartCorner{mesh.positions[corners.x], dvec2(0, 0)}, PartCorner{mesh.positions[corners.y], dvec2(1, 0)},
+          PartCorner{mesh.positions[corners.z], dvec2(0, 1)}};
+}
 
 CutTriangles::CutTriangles(const Scene& scene) {
   Groups groups;
   for (const Object& object : scene.objects) {
     const Mesh* mesh = std::get_if<Mesh>(&object.shape);
-    if (mesh == nullptr) continue;
-    for (uint32_t i = 0; i < mesh->triangles.size(); ++i) {
-      if (!is_degenerate(*mesh, i)) continue;
+    degenerate_.push_back(mesh == nullptr ? std::vector<uint32_t>() : find_degenerate(*mesh));
+    for (const uint32_t i : degenerate_.back()) {
       const uvec3& corners = mesh->triangles[i];
       const std::array p{mesh->positions[corners.x], mesh->positions[corners.y], mesh->positions[corners.z]};
       // With two corners in one place, its neighbours share a whole edge.
@@ -113,8 +135,6 @@ CutTriangles::CutTriangles(const Scene& scene) {
 }
 
 std::span<const CutTriangles::Point> CutTriangles::points_inside(const vec3& a, const vec3& b) const {
-  // Of most scenes; every triangle asks.
-  if (line_of_edge_.empty()) return {};
   const Edge edge = edge_of(a, b);
   const auto found = line_of_edge_.find(edge);
   if (found == line_of_edge_.end()) return {};
@@ -124,10 +144,7 @@ std::span<const CutTriangles::Point> CutTriangles::points_inside(const vec3& a, 
 }
 
 void CutTriangles::cut(const Mesh& mesh, uint32_t triangle, std::vector<TrianglePart>& parts) const {
-  const uvec3& corners = mesh.triangles[triangle];
-  const TrianglePart whole{PartCorner{mesh.positions[corners.x], dvec2(0, 0)},
-                           PartCorner{mesh.positions[corners.y], dvec2(1, 0)},
-                           PartCorner{mesh.positions[corners.z], dvec2(0, 1)}};
+  const TrianglePart whole = whole_triangle(mesh, triangle);
   const std::array inside{points_inside(whole[0].position, whole[1].position),
                           points_inside(whole[1].position, whole[2].position),
                           points_inside(whole[2].position, whole[0].position)};

@@ -9,15 +9,21 @@
 #include <cstring>
 #include <string>
 
+#include "bvh/clip_triangle.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "core/unset_vector.h"
 #include "render/cut_triangles.h"
 
 namespace promin {
 namespace {
 
 using namespace layout;
+
+/// Triangles or references that a thread takes at a time.
+constexpr size_t kChunkSize = 16384;
 
 uint32_t bits_of(float value) {
   return std::bit_cast<uint32_t>(value);
@@ -50,9 +56,9 @@ Bounds bounds_of(const TrianglePart& part) {
 
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
 struct Collected {
-  std::vector<Primitive> solids;
-  std::vector<SurfaceRecord> solid_surfaces;
-  std::vector<Bounds> boxes;
+  UnsetVector<Primitive> solids;
+  UnsetVector<SurfaceRecord> solid_surfaces;
+  UnsetVector<Bounds> boxes;
   std::vector<Primitive> planes;
   std::vector<SurfaceRecord> plane_surfaces;
   std::vector<vec4> normals;
@@ -61,16 +67,23 @@ struct Collected {
   uint32_t order = 0;
 };
 
+void check_count(const Scene& scene, size_t count) {
+  if (count <= CHILD_FIRST_MASK) return;
+  throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
+                  "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
+}
+
 class Collector {
  public:
   explicit Collector(const Scene& scene) : scene_(scene), cut_triangles_(scene) {
     size_t count = 0;
     for (const Object& object : scene.objects) count += primitive_count(object.shape);
-    check_count(count);
+    check_count(scene, count);
     result_.solids.reserve(count);
     result_.solid_surfaces.reserve(count);
     result_.boxes.reserve(count);
     for (const Object& object : scene.objects) {
+      object_ = static_cast<size_t>(&object - scene.objects.data());
       material_ = object.material;
       result_.numbers.first_order.push_back(result_.order);
       std::visit([this](const auto& shape) { add(shape); }, object.shape);
@@ -81,12 +94,6 @@ class Collector {
   Collected take() { return std::move(result_); }
 
  private:
-  void check_count(size_t count) const {
-    if (count <= CHILD_FIRST_MASK) return;
-    throw RunError({"the scene has " + std::to_string(count) + " primitives", scene_.file.string(),
-                    "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
-  }
-
   void add(const NotDrawn&) {}
 
   void add(const Plane& plane) {
@@ -114,12 +121,56 @@ class Collector {
       result_.colors.resize(first_vertex_);
       result_.colors.insert(result_.colors.end(), mesh.colors.begin(), mesh.colors.end());
     }
+    if (cut_triangles_.cut_any()) {
+      add_cut(mesh, flags);
+    } else {
+      add_whole(mesh, flags);
+    }
+  }
+
+  uint32_t material_of(const Mesh& mesh, uint32_t triangle) const {
+    return mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[triangle];
+  }
+
+  /// The triangles of a mesh, none of which is in parts: each has its place.
+  void add_whole(const Mesh& mesh, uint32_t flags) {
+    const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
+    const size_t first = result_.solids.size();
+    const size_t count = mesh.triangles.size() - degenerate.size();
+    result_.solids.resize(first + count);
+    result_.solid_surfaces.resize(first + count);
+    result_.boxes.resize(first + count);
+    for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+      auto skipped = std::lower_bound(degenerate.begin(), degenerate.end(), begin);
+      for (size_t i = begin; i < end; ++i) {
+        if (skipped != degenerate.end() && *skipped == i) {
+          ++skipped;
+          continue;
+        }
+        const auto triangle = static_cast<uint32_t>(i);
+        const uvec3& corners = mesh.triangles[i];
+        const TrianglePart whole = whole_triangle(mesh, triangle);
+        const size_t place = first + i - static_cast<size_t>(skipped - degenerate.begin());
+        Primitive primitive = pack(whole);
+        primitive.c.y = result_.order + triangle;
+        result_.solids[place] = primitive;
+        result_.solid_surfaces[place] = {
+            uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0), material_of(mesh, triangle) | flags)};
+        result_.boxes[place] = bounds_of(whole);
+      }
+    });
+    result_.order += static_cast<uint32_t>(mesh.triangles.size());
+  }
+
+  /// The triangles of a mesh, some of which may be in parts.
+  void add_cut(const Mesh& mesh, uint32_t flags) {
+    auto skipped = cut_triangles_.degenerate_triangles(object_).begin();
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-      if (is_degenerate(mesh, i)) {
+      if (skipped != cut_triangles_.degenerate_triangles(object_).end() && *skipped == i) {
+        ++skipped;
         ++result_.order;
         continue;
       }
-      const uint32_t material = mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[i];
       cut_triangles_.cut(mesh, i, parts_);
       for (const TrianglePart& part : parts_) {
         uvec3 vertices(0);
@@ -127,7 +178,7 @@ class Collector {
           vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
         }
         if (parts_.size() > 1) add_part(part, &part == parts_.data());
-        add_solid(pack(part), bounds_of(part), uvec4(vertices, material | flags));
+        add_solid(pack(part), bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
       }
     }
   }
@@ -162,7 +213,7 @@ class Collector {
   }
 
   void add_solid(Primitive primitive, const Bounds& box, const uvec4& surface) {
-    check_count(result_.solids.size() + 1);
+    check_count(scene_, result_.solids.size() + 1);
     primitive.c.y = result_.order++;
     result_.solids.push_back(primitive);
     result_.solid_surfaces.push_back({surface});
@@ -172,6 +223,7 @@ class Collector {
   const Scene& scene_;
   CutTriangles cut_triangles_;
   Collected result_;
+  size_t object_ = 0;
   uint32_t material_ = 0;
   /// Of the mesh at hand.
   uint32_t first_vertex_ = 0;
@@ -196,8 +248,9 @@ LightRecord pack(const Light& light) {
 }
 
 /// Appends records at the next multiple of their stride; returns their first index in that stride.
-template <typename Record>
-uint32_t append_records(std::vector<std::byte>& bytes, const std::vector<Record>& records) {
+template <typename Records>
+uint32_t append_records(std::vector<std::byte>& bytes, const Records& records) {
+  using Record = typename Records::value_type;
   const size_t first = (bytes.size() + sizeof(Record) - 1) / sizeof(Record);
   bytes.resize((first + records.size()) * sizeof(Record));
   if (!records.empty()) {
@@ -214,13 +267,23 @@ auto pack_all(const std::vector<Host>& hosts) {
   return records;
 }
 
+/// What builders that split primitives see of them: triangles exactly, other shapes by their boxes.
+Bounds clip(const Primitive& p, const Bounds& window) {
+  if (p.c.z != KIND_TRIANGLE) return window;
+  return clip_triangle({vec3(p.a), vec3(p.a.w, p.b.x, p.b.y), vec3(p.b.z, p.b.w, std::bit_cast<float>(p.c.x))}, window);
+}
+
 /// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
-std::vector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, const std::vector<Primitive>& solids) {
-  std::vector<uint32_t> references = bvh.references;
-  for (const BvhNode& node : bvh.nodes) {
-    const auto first = references.begin() + node.first;
-    std::stable_sort(first, first + node.count, [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; });
-  }
+UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> solids) {
+  UnsetVector<uint32_t> references = bvh.references;
+  const auto is_before = [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; };
+  for_each_chunk(bvh.nodes.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+    for (const BvhNode& node : std::span(bvh.nodes).subspan(begin, end - begin)) {
+      if (node.count == 0) continue;
+      const auto first = references.begin() + node.first;
+      if (!std::is_sorted(first, first + node.count, is_before)) std::stable_sort(first, first + node.count, is_before);
+    }
+  });
   return references;
 }
 
@@ -233,7 +296,7 @@ vec4 center_and_radius(const Bounds& box) {
 }
 
 /// Without what tells which object a primitive is of.
-uint64_t hash_geometry(const std::vector<Primitive>& solids) {
+uint64_t hash_geometry(std::span<const Primitive> solids) {
   Hash64 hash;
   hash.add(solids.size());
   for (const Primitive& p : solids) {
@@ -248,17 +311,19 @@ uint64_t hash_geometry(const std::vector<Primitive>& solids) {
 void pack_contents(PackedScene& packed, const Scene& scene, Collected& collected) {
   packed.numbers = std::move(collected.numbers);
   packed.solid_count = static_cast<uint32_t>(collected.solids.size());
-  std::vector<SurfaceRecord> surfaces;
-  packed.primitives.reserve(packed.references.size() + collected.planes.size());
-  surfaces.reserve(packed.primitives.capacity());
-  for (const uint32_t reference : packed.references) {
-    packed.primitives.push_back(collected.solids[reference]);
-    surfaces.push_back(collected.solid_surfaces[reference]);
-  }
+  const std::span<const uint32_t> references = packed.references;
+  UnsetVector<SurfaceRecord> surfaces(references.size());
+  packed.primitives.resize(references.size());
+  for_each_chunk(references.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      packed.primitives[i] = collected.solids[references[i]];
+      surfaces[i] = collected.solid_surfaces[references[i]];
+    }
+  });
   packed.dispatch.counts = uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), 0);
   packed.primitives.insert(packed.primitives.end(), collected.planes.begin(), collected.planes.end());
   surfaces.insert(surfaces.end(), collected.plane_surfaces.begin(), collected.plane_surfaces.end());
-  if (packed.primitives.empty()) packed.primitives.emplace_back();
+  if (packed.primitives.empty()) packed.primitives.push_back({});
 
   append_records(packed.shading, surfaces);
   packed.frame.first_index.x = append_records(packed.shading, pack_all(scene.materials));
@@ -284,7 +349,13 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder, const Build
   Collected collected = Collector(scene).take();
 
   const Stopwatch building;
-  const Bvh bvh = build_bvh(builder, collected.boxes, options);
+  const Bvh bvh =
+      build_bvh(builder,
+                {collected.boxes,
+                 [&](uint32_t primitive, const Bounds& window) { return clip(collected.solids[primitive], window); }},
+                options);
+  // As often as leaves hold them.
+  check_count(scene, bvh.references.size());
   PackedScene packed;
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);

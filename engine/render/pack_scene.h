@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bvh/builder.h"
+#include "core/unset_vector.h"
 #include "layout.h"
 #include "render/bvh_file.h"
 #include "scene/scene.h"
@@ -37,13 +38,13 @@ struct PrimitiveNumbers {
 /// A scene in the layout of shaders/layout.h, ready to be copied to the device. Vulkan-free.
 struct PackedScene {
   /// At least one; none where a file has them.
-  std::vector<layout::Node> nodes;
+  UnsetVector<layout::Node> nodes;
   /// Null where the tree was built.
   std::shared_ptr<const BvhFile> file;
   /// As TreeView::references.
-  std::vector<uint32_t> references;
+  UnsetVector<uint32_t> references;
   /// Those of the tree in leaf order, then the planes; at least one.
-  std::vector<layout::Primitive> primitives;
+  UnsetVector<layout::Primitive> primitives;
   /// Surfaces, materials, lights, vertex normals and vertex colours.
   std::vector<std::byte> shading;
   /// What a picture's constants take from the scene; the camera's and the picture's parts are left at zero.
@@ -88,7 +89,7 @@ vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const 
 /// The device's form of a binary tree: nodes of up to four children whose boxes, in bytes, hold those of the binary
 /// tree; and the entries that the stack of a traversal takes at most.
 struct PackedTree {
-  std::vector<layout::Node> nodes;
+  UnsetVector<layout::Node> nodes;
   uint32_t stack_size = 1;
 };
 PackedTree pack_tree(const Bvh& bvh);

@@ -7,12 +7,16 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
 #include "render/pack_scene.h"
 
 namespace promin {
 namespace {
 
 using layout::Node;
+
+/// At least this many subtrees of a large tree, so that threads which finish early find another.
+constexpr size_t kSubtrees = 256;
 
 /// Indices of binary nodes.
 struct Children {
@@ -26,8 +30,17 @@ struct Children {
 class Collapse {
  public:
   explicit Collapse(const Bvh& bvh) : bvh_(bvh), plans_(bvh.nodes.size()) {
-    // Nodes come after their parents.
-    for (size_t i = bvh.nodes.size(); i-- > 0;) plans_[i] = plan(bvh.nodes[i]);
+    // Those of the top, level by level, until there are enough subtrees for all threads.
+    std::vector<uint32_t> top = {0};
+    size_t planned = 0;
+    for (; planned < top.size() && top.size() - planned < kSubtrees; ++planned) push_children(top[planned], top);
+    const std::span<const uint32_t> subtrees = std::span(top).subspan(planned);
+    for_each_index(subtrees.size(), 0, [&](size_t i) {
+      std::vector<uint32_t> below = {subtrees[i]};
+      for (size_t k = 0; k < below.size(); ++k) push_children(below[k], below);
+      plan_upwards(below);
+    });
+    plan_upwards(std::span(top).first(planned));
   }
 
   /// Of the wide node that an inner node becomes.
@@ -38,15 +51,25 @@ class Collapse {
   }
 
  private:
+  void push_children(uint32_t node, std::vector<uint32_t>& nodes) const {
+    const uint32_t first = bvh_.nodes[node].first;
+    if (bvh_.nodes[node].count == 0) nodes.insert(nodes.end(), {first, first + 1});
+  }
+
+  /// Of nodes that come after their parents.
+  void plan_upwards(std::span<const uint32_t> nodes) {
+    for (size_t i = nodes.size(); i-- > 0;) plans_[nodes[i]] = plan(bvh_.nodes[nodes[i]]);
+  }
+
   /// What a subtree costs in 1...NODE_WIDTH slots (at index slots - 1), and how many of them its first child then
   /// takes; 0: it does not use the last slot.
   struct Plan {
-    std::array<float, layout::NODE_WIDTH> cost{};
-    std::array<uint8_t, layout::NODE_WIDTH> first_slots{};
+    std::array<float, layout::NODE_WIDTH> cost;
+    std::array<uint8_t, layout::NODE_WIDTH> first_slots;
   };
 
   Plan plan(const BvhNode& node) const {
-    Plan result;
+    Plan result = {};
     const double area = node.bounds.half_area();
     if (node.count > 0) {
       result.cost.fill(static_cast<float>(kTestCost * area * node.count));
@@ -87,7 +110,7 @@ class Collapse {
   }
 
   const Bvh& bvh_;
-  std::vector<Plan> plans_;
+  UnsetVector<Plan> plans_;
 };
 
 /// An axis of the node's grid: planes at origin + byte * 2^(exponent - 127).
@@ -95,12 +118,16 @@ struct Axis {
   float origin = 0.0F;
   uint32_t exponent = 1;
 
-  double step() const { return std::ldexp(1.0, static_cast<int>(exponent) - 127); }
-  uint32_t byte_below(float plane) const {
-    return static_cast<uint32_t>(std::floor((static_cast<double>(plane) - static_cast<double>(origin)) / step()));
-  }
+  uint32_t byte_below(float plane) const { return static_cast<uint32_t>(steps_to(plane)); }
   uint32_t byte_above(float plane) const {
-    return static_cast<uint32_t>(std::ceil((static_cast<double>(plane) - static_cast<double>(origin)) / step()));
+    const double steps = steps_to(plane);
+    const auto whole = static_cast<uint32_t>(steps);
+    return whole + (whole < steps ? 1 : 0);
+  }
+  /// Exact, as the step is a power of two; not negative for planes from the origin on.
+  double steps_to(float plane) const {
+    const auto inverse_step = std::bit_cast<double>(uint64_t{1023 + 127 - exponent} << 52);
+    return (static_cast<double>(plane) - static_cast<double>(origin)) * inverse_step;
   }
 };
 
@@ -139,66 +166,93 @@ Node make_node(std::span<const Bounds> boxes) {
   return node;
 }
 
-class Packer {
- public:
-  explicit Packer(const Bvh& bvh) : bvh_(bvh), collapse_(bvh) {}
-
-  PackedTree pack() {
-    tree_.nodes.emplace_back();
-    if (!bvh_.nodes.empty() && bvh_.nodes[0].count > 0) {
-      // A root must be an inner node: an only leaf becomes its child.
-      tree_.nodes[0] = make_node(std::array{bvh_.nodes[0].bounds});
-      tree_.nodes[0].children.x = leaf_reference(bvh_.nodes[0]);
-    } else if (!bvh_.nodes.empty()) {
-      open_.push_back({0, 0, 0});
-    }
-    while (!open_.empty()) {
-      const Open next = open_.back();
-      open_.pop_back();
-      pack_node(next);
-    }
-    return std::move(tree_);
-  }
-
- private:
-  /// An inner node of the binary tree that gets a node of the device's.
-  struct Open {
-    uint32_t source = 0;
-    uint32_t target = 0;
-    /// Most families on the traversal stack when a ray leaves this node: one for each node above.
-    uint32_t stack_entries = 0;
-  };
-
-  void pack_node(const Open& open) {
-    const Children children = collapse_.children_of(open.source);
-    std::array<Bounds, layout::NODE_WIDTH> boxes;
-    for (uint32_t i = 0; i < children.count; ++i) boxes[i] = bvh_.nodes[children.nodes[i]].bounds;
-    Node node = make_node(std::span(boxes).first(children.count));
-    tree_.stack_size = std::max(tree_.stack_size, open.stack_entries);
-    for (uint32_t i = 0; i < children.count; ++i) {
-      const BvhNode& child = bvh_.nodes[children.nodes[i]];
-      if (child.count > 0) {
-        node.children[static_cast<int>(i)] = leaf_reference(child);
-        continue;
-      }
-      const auto target = static_cast<uint32_t>(tree_.nodes.size());
-      tree_.nodes.emplace_back();
-      node.children[static_cast<int>(i)] = target;
-      open_.push_back({children.nodes[i], target, open.stack_entries + 1});
-    }
-    tree_.nodes[open.target] = node;
-  }
-
-  const Bvh& bvh_;
-  Collapse collapse_;
-  PackedTree tree_;
-  std::vector<Open> open_;
+/// An inner node of the binary tree that gets a node of the device's.
+struct Open {
+  uint32_t source = 0;
+  uint32_t target = 0;
+  /// Most families on the traversal stack when a ray leaves this node: one for each node above.
+  uint32_t stack_entries = 0;
 };
+
+/// Makes the node of `open`, and room for those of its children, which are put on `open_children`.
+void pack_node(const Bvh& bvh, const Collapse& collapse, const Open& open, PackedTree& tree,
+               std::vector<Open>& open_children) {
+  const Children children = collapse.children_of(open.source);
+  std::array<Bounds, layout::NODE_WIDTH> boxes;
+  for (uint32_t i = 0; i < children.count; ++i) boxes[i] = bvh.nodes[children.nodes[i]].bounds;
+  Node node = make_node(std::span(boxes).first(children.count));
+  tree.stack_size = std::max(tree.stack_size, open.stack_entries);
+  for (uint32_t i = 0; i < children.count; ++i) {
+    const BvhNode& child = bvh.nodes[children.nodes[i]];
+    if (child.count > 0) {
+      node.children[static_cast<int>(i)] = leaf_reference(child);
+      continue;
+    }
+    const auto target = static_cast<uint32_t>(tree.nodes.size());
+    tree.nodes.emplace_back();
+    node.children[static_cast<int>(i)] = target;
+    open_children.push_back({children.nodes[i], target, open.stack_entries + 1});
+  }
+  tree.nodes[open.target] = node;
+}
+
+/// The nodes below one, which becomes node 0.
+PackedTree pack_subtree(const Bvh& bvh, const Collapse& collapse, Open root) {
+  root.target = 0;
+  PackedTree tree;
+  tree.nodes.emplace_back();
+  std::vector<Open> open = {root};
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    pack_node(bvh, collapse, next, tree, open);
+  }
+  return tree;
+}
+
+/// Puts a subtree's root at node `root`, the others from node `first` on.
+void place_subtree(PackedTree& subtree, uint32_t root, size_t first, PackedTree& tree) {
+  for (Node& node : subtree.nodes) {
+    for (int i = 0; i < static_cast<int>(node.frame.w >> 24); ++i) {
+      if ((node.children[i] & layout::CHILD_IS_LEAF) == 0) node.children[i] += static_cast<uint32_t>(first) - 1;
+    }
+  }
+  tree.nodes[root] = subtree.nodes.front();
+  std::copy(subtree.nodes.begin() + 1, subtree.nodes.end(), tree.nodes.begin() + static_cast<std::ptrdiff_t>(first));
+}
 
 }  // namespace
 
+// The top is packed level by level until there are enough subtrees for all threads; they follow it in their order, so
+// the nodes do not depend on how many threads there are.
 PackedTree pack_tree(const Bvh& bvh) {
-  return Packer(bvh).pack();
+  PackedTree tree;
+  tree.nodes.emplace_back();
+  tree.nodes[0] = {};
+  if (bvh.nodes.empty()) return tree;
+  if (bvh.nodes[0].count > 0) {
+    // A root must be an inner node: an only leaf becomes its child.
+    tree.nodes[0] = make_node(std::array{bvh.nodes[0].bounds});
+    tree.nodes[0].children.x = leaf_reference(bvh.nodes[0]);
+    return tree;
+  }
+  const Collapse collapse(bvh);
+  std::vector<Open> open = {Open()};
+  while (!open.empty() && open.size() < kSubtrees) {
+    std::vector<Open> next_level;
+    for (const Open& node : open) pack_node(bvh, collapse, node, tree, next_level);
+    open = std::move(next_level);
+  }
+  std::vector<PackedTree> subtrees(open.size());
+  for_each_index(open.size(), 0, [&](size_t i) { subtrees[i] = pack_subtree(bvh, collapse, open[i]); });
+  std::vector<size_t> starts = {tree.nodes.size()};
+  for (const PackedTree& subtree : subtrees) {
+    starts.push_back(starts.back() + subtree.nodes.size() - 1);
+    tree.stack_size = std::max(tree.stack_size, subtree.stack_size);
+  }
+  tree.nodes.resize(starts.back());
+  for_each_index(open.size(), 0, [&](size_t i) { place_subtree(subtrees[i], open[i].target, starts[i], tree); });
+  return tree;
 }
 
 }  // namespace promin

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bvh/builder.h"
+#include "cpu/pipes.h"
 #include "gpu/test_scenes.h"
 #include "hard/hard_case.h"
 
@@ -126,6 +127,7 @@ void run_trees(Lab& lab) {
       TreeScene{"strewn", make_strewn(dvec3(0.0), 1.0, 80, random), dvec3(0.0), 1.0},
       TreeScene{"strewn at 1e5", make_strewn(far_away, 10.0, 80, random), far_away, 10.0},
       TreeScene{"ties", make_ties(), dvec3(3.5, 0, 3.5), 4.5},
+      TreeScene{"pipes", scene_of({test::make_pipes(60)}), dvec3(0.5), 0.9},
   };
   for (const TreeScene& in : scenes) {
     std::vector<Ray> rays;

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace promin {
+
+/// Memory that is aligned to 64 bytes; from 4 MiB on in huge pages where the system has such, as touching millions of
+/// elements for the first time costs as much as computing them otherwise. Throws std::bad_alloc.
+void* allocate_pages(size_t bytes);
+void free_pages(void* memory, size_t bytes);
+
+/// Leaves elements that are made without a value as the memory is.
+template <typename T>
+struct UnsetAllocator {
+  static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= 64);
+  using value_type = T;
+
+  UnsetAllocator() = default;
+  template <typename U>
+  UnsetAllocator(const UnsetAllocator<U>&) noexcept {}
+  T* allocate(size_t count) { return static_cast<T*>(allocate_pages(count * sizeof(T))); }
+  void deallocate(T* elements, size_t count) { free_pages(elements, count * sizeof(T)); }
+  template <typename U>
+  void construct(U*) noexcept {}
+  template <typename U, typename... Args>
+  void construct(U* place, Args&&... args) {
+    std::construct_at(place, std::forward<Args>(args)...);
+  }
+  bool operator==(const UnsetAllocator&) const = default;
+};
+
+/// For millions of elements that several threads fill: resize() does not touch the memory, so the pages of each part
+/// come to the thread that writes it.
+template <typename T>
+using UnsetVector = std::vector<T, UnsetAllocator<T>>;
+
+}  // namespace promin
