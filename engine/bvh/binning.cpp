@@ -17,7 +17,8 @@ BinGrid::BinGrid(const LaneBox& centers, uint32_t count) : bin_count_(std::min(k
 }
 
 Bins::Bins(const BinGrid& grid) {
-  std::fill_n(&boxes[0][0], 3 * grid.bin_count(), LaneBox{});
+  std::fill_n(&lo[0][0], 3 * grid.bin_count(), LaneBox().lo);
+  std::fill_n(&hi[0][0], 3 * grid.bin_count(), LaneBox().hi);
   std::fill_n(&counts[0][0], 3 * grid.bin_count(), 0U);
 }
 
@@ -25,8 +26,10 @@ void Bins::add(const BinGrid& grid, std::span<const Record> records) {
   for (const Record& record : records) {
     const IntLanes bins = grid.bins_of(record.center());
     for (int axis = 0; axis < 3; ++axis) {
-      boxes[bins[axis]][axis].extend(record.lo, record.hi);
-      counts[bins[axis]][axis] += 1;
+      const int32_t bin = bins[axis];
+      lo[bin][axis] = min(record.lo, lo[bin][axis]);
+      hi[bin][axis] = max(record.hi, hi[bin][axis]);
+      counts[bin][axis] += 1;
     }
   }
 }
@@ -34,7 +37,8 @@ void Bins::add(const BinGrid& grid, std::span<const Record> records) {
 void Bins::add(const Bins& bins, const BinGrid& grid) {
   for (uint32_t bin = 0; bin < grid.bin_count(); ++bin) {
     for (int axis = 0; axis < 3; ++axis) {
-      boxes[bin][axis].extend(bins.boxes[bin][axis]);
+      lo[bin][axis] = min(bins.lo[bin][axis], lo[bin][axis]);
+      hi[bin][axis] = max(bins.hi[bin][axis], hi[bin][axis]);
       counts[bin][axis] += bins.counts[bin][axis];
     }
   }
@@ -49,8 +53,9 @@ uint32_t Bins::count_below(const Split& split) const {
 std::pair<LaneBox, LaneBox> Bins::boxes_of(const Split& split, const BinGrid& grid) const {
   std::pair<LaneBox, LaneBox> sides;
   if (!split.exists()) return sides;
-  for (uint32_t bin = 0; bin < split.bin; ++bin) sides.first.extend(boxes[bin][split.axis]);
-  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin) sides.second.extend(boxes[bin][split.axis]);
+  for (uint32_t bin = 0; bin < split.bin; ++bin) sides.first.extend(lo[bin][split.axis], hi[bin][split.axis]);
+  for (uint32_t bin = split.bin; bin < grid.bin_count(); ++bin)
+    sides.second.extend(lo[bin][split.axis], hi[bin][split.axis]);
   return sides;
 }
 
@@ -62,7 +67,7 @@ Split find_best_split(const BinGrid& grid, const Bins& bins) {
   uint32_t counts[3] = {};
   for (uint32_t bin = grid.bin_count() - 1; bin > 0; --bin) {
     for (int axis = 0; axis < 3; ++axis) {
-      boxes[axis].extend(bins.boxes[bin][axis]);
+      boxes[axis].extend(bins.lo[bin][axis], bins.hi[bin][axis]);
       counts[axis] += bins.counts[bin][axis];
       costs_above[bin][axis] = boxes[axis].half_area() * counts[axis];
     }
@@ -74,7 +79,7 @@ Split find_best_split(const BinGrid& grid, const Bins& bins) {
   std::fill_n(least, 3, std::numeric_limits<double>::infinity());
   for (uint32_t bin = 1; bin < grid.bin_count(); ++bin) {
     for (int axis = 0; axis < 3; ++axis) {
-      boxes[axis].extend(bins.boxes[bin - 1][axis]);
+      boxes[axis].extend(bins.lo[bin - 1][axis], bins.hi[bin - 1][axis]);
       counts[axis] += bins.counts[bin - 1][axis];
       const double cost = boxes[axis].half_area() * counts[axis] + costs_above[bin][axis];
       best_bins[axis] = cost < least[axis] ? bin : best_bins[axis];

@@ -122,7 +122,9 @@ inline bool is_below(Lanes center, const BinGrid& grid, const Split& split) {
 
 /// Boxes and numbers of the records in every bin of a grid, by bin and axis.
 struct Bins {
-  LaneBox boxes[BinGrid::kMaxBins][3];
+  // Not boxes, which would all be made empty.
+  Lanes lo[BinGrid::kMaxBins][3];
+  Lanes hi[BinGrid::kMaxBins][3];
   uint32_t counts[BinGrid::kMaxBins][3];
 
   explicit Bins(const BinGrid& grid);
