@@ -248,9 +248,9 @@ class SpatialBuild {
     for_each_index(subtrees.size(), thread_count_, [&](size_t i) {
       Task task = std::move(subtrees[i]);
       subtrees[i].node = std::exchange(task.node, 0);
-      const size_t count = task.count();
+      const auto records = static_cast<double>(task.count());
       build(std::move(task), 1, built[i], nullptr);
-      progress.add(static_cast<double>(count));
+      progress.add(records);
     });
     for (size_t i = 0; i < subtrees.size(); ++i) append(built[i], subtrees[i].node, top);
     return top;
