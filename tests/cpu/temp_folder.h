@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -17,7 +18,8 @@ class TempFolder : public testing::Test {
  protected:
   TempFolder() {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string("promin_") + test->test_suite_name() + "_" + test->name();
+    std::string name =
+        std::string("promin_") + test->test_suite_name() + "_" + test->name() + "_" + std::to_string(getpid());
     std::replace(name.begin(), name.end(), '/', '_');
     folder_ = std::filesystem::path(testing::TempDir()) / name;
     std::filesystem::remove_all(folder_);

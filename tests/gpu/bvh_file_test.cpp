@@ -3,6 +3,7 @@
 #include "render/bvh_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -29,7 +30,8 @@ class BvhFileOnDevice : public test::DeviceTest {
     DeviceTest::TearDown();
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "promin_bvh_file_on_device";
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("promin_bvh_file_on_device_" + std::to_string(getpid()));
   std::filesystem::path file_ = folder_ / "tree.pbvh";
 };
 
