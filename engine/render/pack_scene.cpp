@@ -360,6 +360,10 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder, const Build
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);
   PackedTree tree = pack_tree(bvh);
+  if (tree.nodes.size() > MAX_NODES) {
+    throw RunError({"the scene's tree has " + std::to_string(tree.nodes.size()) + " nodes", scene.file.string(),
+                    "promin holds at most " + std::to_string(MAX_NODES)});
+  }
   packed.nodes = std::move(tree.nodes);
   packed.stack_size = tree.stack_size;
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);

@@ -69,7 +69,7 @@ struct PackedScene {
 };
 
 /// Packs a checked scene. Throws UsageError for an unknown builder and RunError where counts pass what the layout can
-/// hold (2^27 primitives).
+/// hold (2^27 primitives, 2^24 - 1 nodes).
 PackedScene pack_scene(const Scene& scene, std::string_view builder, const BuildOptions& options = {});
 
 /// Packs a checked scene with the tree of a file. Throws InputError for a file that is bad or not the scene's, and
