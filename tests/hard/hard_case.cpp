@@ -159,6 +159,8 @@ std::vector<layout::HitRecord> Lab::cast_packed(const PackedScene& packed, Featu
   RayKernelOptions options;
   options.spirv = cast_kernel();
   options.features = features;
+  // Without boxes a ray takes so long that dispatches of the usual length would hold few, and mostly wait.
+  options.target_dispatch_ms = 250.0;
   RayKernel kernel(device_, upload_scene(device_, packed), options);
   std::vector<layout::RayRecord> requests;
   requests.reserve(rays.size());
