@@ -99,8 +99,9 @@ void run_box_edges(Lab& lab) {
         rays.push_back(ray_at_block(blocks.blocks[i % blocks.blocks.size()], distance, random, i));
       }
       const PackedScene packed = pack_scene(blocks.scene, builder_names().front());
-      const auto in_boxes = lab.cast_packed(packed, rays);
-      const auto unboxed = lab.cast_packed(with_infinite_boxes(packed), rays);
+      const FeatureMask features = features_of(blocks.scene);
+      const auto in_boxes = lab.cast_packed(packed, features, rays);
+      const auto unboxed = lab.cast_packed(with_infinite_boxes(packed), features, rays);
       const std::string where = label(", offset", offset) + label(", distance", distance);
       const uint64_t differences = count_differences(in_boxes, unboxed);
       lab.expect_at_most("hits hidden by a box" + where, 0.0, static_cast<double>(differences));

@@ -154,11 +154,13 @@ void Lab::credit(const std::string& primitive, const Tally& tally, uint64_t leak
   entry.leaks += leaks;
 }
 
-std::vector<layout::HitRecord> Lab::cast_packed(const PackedScene& packed, std::span<const Ray> rays, FeatureMask extra,
-                                                double* time_ms) const {
+std::vector<layout::HitRecord> Lab::cast_packed(const PackedScene& packed, FeatureMask features,
+                                                std::span<const Ray> rays, double* time_ms) const {
   RayKernelOptions options;
   options.spirv = cast_kernel();
-  options.features = all_features() | extra;
+  options.features = features;
+  // Without boxes a ray takes so long that dispatches of the usual length would hold few, and mostly wait.
+  options.target_dispatch_ms = 250.0;
   RayKernel kernel(device_, upload_scene(device_, packed), options);
   std::vector<layout::RayRecord> requests;
   requests.reserve(rays.size());

@@ -112,10 +112,10 @@ class Lab {
   /// Adds to the table of primitives, from scenes of this kind of shape alone: every ray cast in any row.
   static void credit(const std::string& primitive, const Tally& tally, uint64_t leaks = 0);
 
-  /// The device's own records of a packed scene, which a test may have edited; with FEATURE_STEP_COUNTS in `extra` the
-  /// steps too. At most RayKernel::kMaxRays. `time_ms` takes the device's time.
-  std::vector<layout::HitRecord> cast_packed(const PackedScene& packed, std::span<const Ray> rays,
-                                             FeatureMask extra = 0, double* time_ms = nullptr) const;
+  /// The device's own records of a packed scene, which a test may have edited. `features` are the scene's; with
+  /// FEATURE_STEP_COUNTS the steps too. At most RayKernel::kMaxRays. `time_ms` takes the device's time.
+  std::vector<layout::HitRecord> cast_packed(const PackedScene& packed, FeatureMask features, std::span<const Ray> rays,
+                                             double* time_ms = nullptr) const;
 
   /// SPIR-V of shaders/cast.comp, or the one of PROMIN_TEST_KERNELS.
   static std::span<const uint32_t> cast_kernel();

@@ -89,8 +89,9 @@ void run_invalid_rays(Lab& lab) {
   const PackedScene packed = pack_scene(scene, builder_names().front());
   double finite_ms = 0.0;
   double invalid_ms = 0.0;
-  const auto finite_records = lab.cast_packed(packed, finite, layout::FEATURE_STEP_COUNTS, &finite_ms);
-  const auto invalid_records = lab.cast_packed(packed, invalid, layout::FEATURE_STEP_COUNTS, &invalid_ms);
+  const FeatureMask features = features_of(scene) | layout::FEATURE_STEP_COUNTS;
+  const auto finite_records = lab.cast_packed(packed, features, finite, &finite_ms);
+  const auto invalid_records = lab.cast_packed(packed, features, invalid, &invalid_ms);
   uint64_t hit_count = 0;
   for (const layout::HitRecord& record : invalid_records) hit_count += record.a.y != layout::NO_ORDER ? 1 : 0;
   lab.expect_at_most("node steps of such a ray over a finite one's", 2.5,

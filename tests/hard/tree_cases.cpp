@@ -91,12 +91,13 @@ Ray ray_through(const TreeScene& in, Random& random, size_t index) {
 
 /// Every builder's boxes against none.
 void expect_as_brute_force(Lab& lab, const std::string& name, const Scene& scene, std::span<const Ray> rays) {
+  const FeatureMask features = features_of(scene);
   std::vector<layout::HitRecord> expected;
   for (const std::string_view builder : builder_names()) {
     const PackedScene packed = pack_scene(scene, builder);
-    if (expected.empty()) expected = lab.cast_packed(with_infinite_boxes(packed), rays);
+    if (expected.empty()) expected = lab.cast_packed(with_infinite_boxes(packed), features, rays);
     lab.expect_at_most("other id or bits of t than brute force, " + std::string(builder) + ", " + name, 0.0,
-                       static_cast<double>(count_differences(expected, lab.cast_packed(packed, rays))));
+                       static_cast<double>(count_differences(expected, lab.cast_packed(packed, features, rays))));
   }
 }
 
