@@ -4,7 +4,7 @@
 // head, before it includes the rest.
 
 layout(constant_id = CONSTANT_FEATURES) const uint FEATURES = 0xFFFFFFFFu;
-// Entries that the traversal stack needs: the tree's depth, known when it is built.
+// Entries that the traversal stack needs: one for each node above the deepest, known when the tree is built.
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
 // Rays that an invocation traces together (traversal.glsl).
 layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;

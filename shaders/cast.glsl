@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays in, records out, a lane for each PACKET_SIZE rays in a row: the body of cast.comp, which differs from a variant only in what it includes
-// before this.
+// Rays in, records out, a lane for each PACKET_SIZE rays in a row: the body of cast.comp, which differs from a variant
+// only in what it includes before this.
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 

@@ -84,7 +84,7 @@ LAYOUT_CONSTANT NODE_WIDTH = 4u;
 LAYOUT_CONSTANT CHILD_IS_LEAF = 0x80000000u;
 LAYOUT_CONSTANT CHILD_COUNT_SHIFT = 27u;
 LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
-// Traversal keeps a node's index in 24 bits (traversal.glsl, "Family").
+// Traversal keeps a node's index in 24 bits (traversal.glsl, NO_FAMILY).
 LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
 
 // One primitive in leaf order; planes follow after those of the tree.
@@ -138,8 +138,8 @@ struct Frame {
   uvec4 first_index;  // of x = materials, y = lights, z = normals, w = colours in their views of the shading buffer
 };
 
-// What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform buffer,
-// because lavapipe compiles the shader anew for each value of those that control flow depends on.
+// What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform
+// buffer, because lavapipe compiles the shader anew for each value of those that control flow depends on.
 struct Dispatch {
   uvec4 range;     // x = first block, y = first sample, z = samples to take; w = mirror bounces
                    // casting: x = first ray, y = one past the last

@@ -35,7 +35,8 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);
   // t * direction is kept, so t grows by what the direction loses.
   float unscale = power_of_two_inverse(scale);
-  precise float scaled_tmin = max(tmin, 0.0) * unscale;
+  // Of -0 too: traversal sorts by the bits of what is no less.
+  precise float scaled_tmin = (tmin > 0.0 ? tmin : 0.0) * unscale;
   precise float scaled_tmax = tmax * unscale;
   ray.tmin = is_valid ? scaled_tmin : 1.0;
   ray.tmax = is_valid ? scaled_tmax : 0.0;

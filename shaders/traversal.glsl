@@ -108,8 +108,9 @@ uvec4 sorted(uvec4 k) {
 
 vec4 unpack_bytes(uint word) { return vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu); }
 
-// Of each pair the greater and the lesser; the second where the first is a NaN, which comes of 0 * infinity in scenes
-// beyond 10^18: such a plane bounds nothing. GLSL's max and min take three instructions each on lavapipe, these one.
+// Of each pair the greater and the lesser; the second where either is a NaN, which comes of 0 * infinity in scenes
+// beyond 10^18: what a NaN should bound is then bounded by tmin or the hit so far alone. GLSL's max and min take three
+// instructions each on lavapipe, these one.
 vec4 greater(vec4 a, vec4 b) {
   precise vec4 result =
       vec4(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z, a.w > b.w ? a.w : b.w);

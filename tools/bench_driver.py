@@ -61,8 +61,12 @@ class Peer:
 
     def render(self, folder):
         output, _ = run(*self._command, folder=folder)
-        self.version = self.name + " " + re.search(r"Version ([\d.]*\d)", output).group(1)
-        return 1e3 * float(self._seconds.search(output).group(1))
+        version = re.search(r"Version ([\d.]*\d)", output)
+        seconds = self._seconds.search(output)
+        if not version or not seconds:
+            raise RuntimeError(f"{self.name} tells of no version or no time: {output[-300:]}")
+        self.version = self.name + " " + version.group(1)
+        return 1e3 * float(seconds.group(1))
 
 
 def find_peers(folder, scene):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -148,6 +149,7 @@ class TreeCheck {
                         std::to_string(tree_.stack_size));
     }
     if (slots_taken_ != tree_.references.size()) refuse(file_, "the BVH file has references in no leaf");
+    check_stats();
     for (const uint32_t primitive : tree_.references) {
       if (primitive >= tree_.primitive_count) {
         refuse(file_, "the BVH file refers to primitive " + std::to_string(primitive) + " of " +
@@ -192,6 +194,16 @@ class TreeCheck {
     }
   }
 
+  /// What is told of the tree: it is printed, and goes to --stats.
+  void check_stats() const {
+    const BvhStats& stats = tree_.stats;
+    const uint64_t binary_nodes = leaf_count_ > 0 ? 2 * leaf_count_ - 1 : 0;
+    const bool is_so = stats.leaves == leaf_count_ && stats.max_leaf_size == max_leaf_size_ &&
+                       stats.nodes == binary_nodes && stats.depth <= kMaxBvhDepth && stats.sah_cost >= 0.0 &&
+                       std::isfinite(stats.sah_cost);
+    if (!is_so) refuse(file_, "the BVH file tells of another tree than it holds");
+  }
+
   void take_slots(uint32_t index, const NodeChild& leaf) {
     if (uint64_t{leaf.first} + leaf.count > is_slot_taken_.size()) refuse_node(index, "has a leaf out of range");
     for (uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
@@ -199,6 +211,8 @@ class TreeCheck {
       is_slot_taken_[slot] = true;
     }
     slots_taken_ += leaf.count;
+    ++leaf_count_;
+    max_leaf_size_ = std::max(max_leaf_size_, leaf.count);
   }
 
   const TreeView& tree_;
@@ -208,6 +222,8 @@ class TreeCheck {
   uint32_t most_entries_ = 1;
   std::vector<bool> is_slot_taken_;
   size_t slots_taken_ = 0;
+  uint64_t leaf_count_ = 0;
+  uint32_t max_leaf_size_ = 0;
   std::vector<bool> is_referred_to_;
 };
 

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -69,7 +68,7 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const Primit
 
 struct Caster::Impl {
   Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options)
-      : device(the_device), spirv(options.spirv) {
+      : device(the_device), spirv(options.spirv.begin(), options.spirv.end()) {
     PackedScene packed =
         options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
     const Stopwatch uploading;
@@ -108,29 +107,30 @@ struct Caster::Impl {
     const Company company = company_of(rays);
     RayKernel& kernel = kernel_for(query, company);
     const Stopwatch sorting;
-    if (device.is_cpu() && company == Company::kAlone) {
-      order = sort_rays(rays, cube);
-    } else {
-      order.resize(rays.size());
-      std::iota(order.begin(), order.end(), 0U);
-    }
-    double time_ms = sorting.ms();
+    const bool is_sorted = device.is_cpu() && company == Company::kAlone;
+    if (is_sorted) order = sort_rays(rays, cube);
+    double time_ms = is_sorted ? sorting.ms() : 0.0;
+    const auto place_of = [&](size_t i) { return is_sorted ? order[i] : i; };
     requests.resize(rays.size());
     records.resize(rays.size());
-    for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[order[i]]);
+    for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
     time_ms += kernel.run(requests, records);
-    for (size_t i = 0; i < rays.size(); ++i) hits[order[i]] = hit_of(records[i], rays[order[i]], query, numbers);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const size_t place = place_of(i);
+      hits[place] = hit_of(records[i], rays[place], query, numbers);
+    }
     return time_ms;
   }
 
   const gpu::Device& device;
-  std::span<const uint32_t> spirv;
+  /// A copy: kernels are compiled as they are needed.
+  std::vector<uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
   PrimitiveNumbers numbers;
   SetupStats stats;
   SceneCube cube;
   std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
-  /// Of the rays at hand: the one that is traced i-th, and what is asked and answered for it.
+  /// Of the rays at hand: the one that is traced i-th where they are sorted, and what is asked and answered for it.
   std::vector<uint32_t> order;
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;

@@ -354,8 +354,11 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder, const Build
                 {collected.boxes,
                  [&](uint32_t primitive, const Bounds& window) { return clip(collected.solids[primitive], window); }},
                 options);
-  // As often as leaves hold them.
-  check_count(scene, bvh.references.size());
+  if (bvh.references.size() > CHILD_FIRST_MASK) {
+    throw RunError({"the tree refers to " + std::to_string(bvh.references.size()) + " parts of primitives",
+                    scene.file.string(),
+                    "promin holds at most " + std::to_string(CHILD_FIRST_MASK) + "; take --builder sah"});
+  }
   PackedScene packed;
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);

@@ -29,7 +29,8 @@ struct Children {
 /// Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1; the leaves stay as the builder made them).
 class Collapse {
  public:
-  explicit Collapse(const Bvh& bvh) : bvh_(bvh), plans_(bvh.nodes.size()) {
+  explicit Collapse(const Bvh& bvh) : bvh_(bvh), root_area_(bvh.nodes[0].bounds.half_area()), plans_(bvh.nodes.size()) {
+    if (!(root_area_ > 0.0)) root_area_ = 1.0;
     // Those of the top, level by level, until there are enough subtrees for all threads.
     std::vector<uint32_t> top = {0};
     size_t planned = 0;
@@ -70,7 +71,7 @@ class Collapse {
 
   Plan plan(const BvhNode& node) const {
     Plan result = {};
-    const double area = node.bounds.half_area();
+    const double area = node.bounds.half_area() / root_area_;
     if (node.count > 0) {
       result.cost.fill(static_cast<float>(kTestCost * area * node.count));
       return result;
@@ -90,7 +91,8 @@ class Collapse {
     // In one slot it is a wide node of its own.
     result.cost[0] = static_cast<float>(kNodeCost * area) + result.cost[layout::NODE_WIDTH - 1];
     for (uint32_t slots = 2; slots < layout::NODE_WIDTH; ++slots) {
-      if (result.cost[slots - 2] > result.cost[slots - 1]) continue;
+      // Of equal ones the fuller node: where all areas are 0 too.
+      if (result.cost[slots - 2] >= result.cost[slots - 1]) continue;
       result.cost[slots - 1] = result.cost[slots - 2];
       result.first_slots[slots - 1] = 0;
     }
@@ -110,6 +112,8 @@ class Collapse {
   }
 
   const Bvh& bvh_;
+  /// So that costs are of the size of counts, whatever that of the scene.
+  double root_area_;
   UnsetVector<Plan> plans_;
 };
 

@@ -255,6 +255,9 @@ void make_chain(Tree& tree, uint32_t length) {
   tree.references.push_back(length);
   tree.view.primitive_count = length + 1;
   tree.view.stack_size = length - 1;
+  tree.view.stats.leaves = length + 1;
+  tree.view.stats.nodes = 2 * length + 1;
+  tree.view.stats.max_leaf_size = 1;
 }
 
 const HostileTree kHostileTrees[] = {
@@ -291,6 +294,11 @@ const HostileTree kHostileTrees[] = {
      "has fewer references than primitives"},
     {"stack_too_small", [](Tree& t) { --t.view.stack_size; }, "and claims "},
     {"stack_too_large", [](Tree& t) { ++t.view.stack_size; }, "and claims "},
+    {"another_leaf_count", [](Tree& t) { ++t.view.stats.leaves; }, "tells of another tree"},
+    {"another_node_count", [](Tree& t) { t.view.stats.nodes = 0; }, "tells of another tree"},
+    {"another_leaf_size", [](Tree& t) { ++t.view.stats.max_leaf_size; }, "tells of another tree"},
+    {"too_deep", [](Tree& t) { t.view.stats.depth = kMaxBvhDepth + 1; }, "tells of another tree"},
+    {"cost_is_no_number", [](Tree& t) { t.view.stats.sah_cost = std::nan(""); }, "tells of another tree"},
     {"stack_of_nothing", [](Tree& t) { t.view.stack_size = 0; }, "and claims 0"},
     {"deep_chain", [](Tree& t) { make_chain(t, 100'000); }, "lies deeper than any builder goes"},
     {"no_nodes",

@@ -126,8 +126,11 @@ TEST(PackTree, EveryBoxHoldsWhatIsBelowIt) {
   }
 }
 
-TEST(PackTree, NodesAreFilled) {
-  const std::vector<Bounds> boxes = random_boxes(4000, 1.0, 0.01, 7);
+class PackTreeFilled : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(PackTreeFilled, NodesAreFilled) {
+  const auto& [spread, size] = GetParam();
+  const std::vector<Bounds> boxes = random_boxes(4000, spread, size, 7);
   const Bvh bvh = build_bvh("sah", {boxes});
   const PackedTree tree = pack_tree(bvh);
   const auto leaves = static_cast<size_t>(
@@ -135,6 +138,11 @@ TEST(PackTree, NodesAreFilled) {
   // Full nodes would take a third of the leaves.
   EXPECT_LT(tree.nodes.size(), leaves / 2);
 }
+
+// Areas that fp32 does not hold, and such as are all 0.
+INSTANTIATE_TEST_SUITE_P(Sizes, PackTreeFilled,
+                         testing::Values(std::pair(1.0, 0.01), std::pair(1e25, 1e23), std::pair(1e-25, 1e-27),
+                                         std::pair(1.0, 0.0)));
 
 TEST(PackTree, NoPrimitivesAreANodeWithoutChildren) {
   const PackedTree tree = pack_tree(Bvh());

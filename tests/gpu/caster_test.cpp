@@ -100,7 +100,8 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
   const PackedScene packed = pack_scene(scene, "sah");
   const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), packed);
   std::vector<layout::RayRecord> rays;
-  for (const Ray& ray : test::make_rays(1001)) rays.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
+  for (const Ray& ray : test::make_rays(1001))
+    rays.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
   for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
     std::vector<layout::HitRecord> expected;
     for (const uint32_t size : {1U, 2U, 4U}) {

@@ -25,8 +25,9 @@ struct StepCounts {
   bool operator==(const StepCounts&) const = default;
 };
 
-/// Counts what `promin cast` does for any set of rays through one scene. Counts are whole and the device's arithmetic
-/// is exact to the bit, so they do not depend on the driver.
+/// Counts node steps and primitive tests of rays, each traced alone and in its order (`promin cast` does so on GPUs; on
+/// CPU devices it traces packets). Counts are whole and the device's arithmetic is exact to the bit, so they do not
+/// depend on the driver.
 class StepCounter {
  public:
   /// Throws UsageError for an unknown builder, RunError.
