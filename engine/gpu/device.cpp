@@ -66,6 +66,13 @@ std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::Physic
   return "driver " + version_text(properties.driverVersion);
 }
 
+/// Every lavapipe is of Vulkan 1.2 or later.
+bool is_lavapipe(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
+  if (properties.apiVersion < VK_API_VERSION_1_2) return false;
+  const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+  return chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
+}
+
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index) {
   const vk::PhysicalDeviceProperties properties = device.getProperties();
   DeviceInfo info;
@@ -186,6 +193,7 @@ Device::Device(const std::optional<std::string>& selection)
     const vk::PhysicalDeviceProperties properties = physical_.getProperties();
     limits_ = properties.limits;
     is_cpu_ = properties.deviceType == vk::PhysicalDeviceType::eCpu;
+    is_lavapipe_ = promin::gpu::is_lavapipe(physical_, properties);
     memory_ = physical_.getMemoryProperties();
     const uint32_t family = *find_compute_family(physical_);
     if (const uint32_t bits = physical_.getQueueFamilyProperties()[family].timestampValidBits; bits > 0) {

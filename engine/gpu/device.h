@@ -29,6 +29,9 @@ class Device {
   const std::string& choice() const { return choice_; }
   /// Whether the host's processor does the device's work.
   bool is_cpu() const { return is_cpu_; }
+  /// Whether it is Mesa's llvmpipe, which compiles large kernels in a fraction of a second where SwiftShader takes
+  /// minutes.
+  bool is_lavapipe() const { return is_lavapipe_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
 
   const vk::raii::Device& handle() const { return device_; }
@@ -65,6 +68,7 @@ class Device {
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
   bool is_cpu_ = false;
+  bool is_lavapipe_ = false;
   std::string choice_;
 };
 

@@ -26,7 +26,7 @@ using layout::RayRecord;
 constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATURE_SPHERES | layout::FEATURE_CYLINDERS |
                                        layout::FEATURE_CONES | layout::FEATURE_PLANES;
 
-/// Rays that a lane of a CPU device traces together where they run side by side: measured best of 1...4
+/// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...4
 /// (docs/performance.md).
 constexpr uint32_t kPacketSize = 4;
 
@@ -82,10 +82,11 @@ struct Caster::Impl {
     cube = {vec3(packed.frame.tree_bounds), packed.frame.tree_bounds.w};
   }
 
-  /// What pays on CPU devices only costs on GPUs, whose lanes have few registers and hide latency.
+  /// What pays on lavapipe only costs on GPUs, whose lanes have few registers and hide latency, and on SwiftShader,
+  /// which takes minutes to compile it.
   enum class Company { kAlone, kPacket };
   Company company_of(std::span<const Ray> rays) const {
-    return device.is_cpu() && are_side_by_side(rays, cube) ? Company::kPacket : Company::kAlone;
+    return device.is_lavapipe() && are_side_by_side(rays, cube) ? Company::kPacket : Company::kAlone;
   }
 
   RayKernel& kernel_for(HitQuery query, Company company) {
@@ -107,7 +108,7 @@ struct Caster::Impl {
     const Company company = company_of(rays);
     RayKernel& kernel = kernel_for(query, company);
     const Stopwatch sorting;
-    const bool is_sorted = device.is_cpu() && company == Company::kAlone;
+    const bool is_sorted = device.is_cpu() && !are_side_by_side(rays, cube);
     if (is_sorted) order = sort_rays(rays, cube);
     double time_ms = is_sorted ? sorting.ms() : 0.0;
     const auto place_of = [&](size_t i) { return is_sorted ? order[i] : i; };

@@ -26,7 +26,7 @@ struct StepCounts {
 };
 
 /// Counts node steps and primitive tests of rays, each traced alone and in its order (`promin cast` does so on GPUs; on
-/// CPU devices it traces packets). Counts are whole and the device's arithmetic is exact to the bit, so they do not
+/// lavapipe it traces packets). Counts are whole and the device's arithmetic is exact to the bit, so they do not
 /// depend on the driver.
 class StepCounter {
  public:
