@@ -27,9 +27,9 @@ void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool 
 }
 
 // Each ray against the primitive `p` at index `i`.
-#define INTERSECT_PACKET(INTERSECT)                                                                               \
-  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {                                                       \
-    keep_nearest(ray, INTERSECT(packet[ray], p), i, p.c.y, any_hit);                                               \
+#define INTERSECT_PACKET(INTERSECT)                                  \
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {         \
+    keep_nearest(ray, INTERSECT(packet[ray], p), i, p.c.y, any_hit); \
   }
 
 // The primitives of one kind at the head of [i, end): leaves hold them sorted by kind.

@@ -54,23 +54,23 @@ bool has_device_extension(const vk::raii::PhysicalDevice& device, std::string_vi
                      [&](const auto& e) { return name == e.extensionName.data(); });
 }
 
-std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
-  if (properties.apiVersion >= VK_API_VERSION_1_2 ||
-      has_device_extension(device, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
-    const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
-    const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
-    const std::string name = driver.driverName.data();
-    const std::string version = driver.driverInfo.data();
-    return version.empty() ? name : name + " " + version;
+/// None where the driver does not tell.
+std::optional<vk::PhysicalDeviceDriverProperties> driver_properties(const vk::raii::PhysicalDevice& device,
+                                                                    const vk::PhysicalDeviceProperties& properties) {
+  if (properties.apiVersion < VK_API_VERSION_1_2 &&
+      !has_device_extension(device, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
+    return std::nullopt;
   }
-  return "driver " + version_text(properties.driverVersion);
+  const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+  return chain.get<vk::PhysicalDeviceDriverProperties>();
 }
 
-/// Every lavapipe is of Vulkan 1.2 or later.
-bool is_lavapipe(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
-  if (properties.apiVersion < VK_API_VERSION_1_2) return false;
-  const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
-  return chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
+std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
+  const auto driver = driver_properties(device, properties);
+  if (!driver) return "driver " + version_text(properties.driverVersion);
+  const std::string name = driver->driverName.data();
+  const std::string version = driver->driverInfo.data();
+  return version.empty() ? name : name + " " + version;
 }
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index) {
@@ -193,7 +193,8 @@ Device::Device(const std::optional<std::string>& selection)
     const vk::PhysicalDeviceProperties properties = physical_.getProperties();
     limits_ = properties.limits;
     is_cpu_ = properties.deviceType == vk::PhysicalDeviceType::eCpu;
-    is_lavapipe_ = promin::gpu::is_lavapipe(physical_, properties);
+    const auto driver = driver_properties(physical_, properties);
+    is_lavapipe_ = driver && driver->driverID == vk::DriverId::eMesaLlvmpipe;
     memory_ = physical_.getMemoryProperties();
     const uint32_t family = *find_compute_family(physical_);
     if (const uint32_t bits = physical_.getQueueFamilyProperties()[family].timestampValidBits; bits > 0) {

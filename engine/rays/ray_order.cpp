@@ -99,11 +99,8 @@ bool are_side_by_side(std::span<const Ray> rays, const SceneCube& cube) {
 
 std::vector<uint32_t> sort_rays(std::span<const Ray> rays, const SceneCube& cube) {
   std::vector<KeyedRay> sorted(rays.size());
-  for_each_index((rays.size() + kChunkRays - 1) / kChunkRays, 0, [&](size_t chunk) {
-    const size_t end = std::min(rays.size(), (chunk + 1) * kChunkRays);
-    for (size_t i = chunk * kChunkRays; i < end; ++i) {
-      sorted[i] = {key_of(rays[i], cube), static_cast<uint32_t>(i)};
-    }
+  for_each_chunk(rays.size(), kChunkRays, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) sorted[i] = {key_of(rays[i], cube), static_cast<uint32_t>(i)};
   });
 
   // A stable counting sort for each digit, the lowest first.

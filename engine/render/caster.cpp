@@ -82,20 +82,23 @@ struct Caster::Impl {
     cube = {vec3(packed.frame.tree_bounds), packed.frame.tree_bounds.w};
   }
 
-  /// What pays on lavapipe only costs on GPUs, whose lanes have few registers and hide latency, and on SwiftShader,
-  /// which takes minutes to compile it.
-  enum class Company { kAlone, kPacket };
-  Company company_of(std::span<const Ray> rays) const {
-    return device.is_lavapipe() && are_side_by_side(rays, cube) ? Company::kPacket : Company::kAlone;
+  /// GPUs take rays as they come: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes
+  /// minutes to compile packets.
+  enum class Order { kAsGiven, kInPackets, kSorted };
+  Order order_of(std::span<const Ray> rays) const {
+    if (!device.is_cpu()) return Order::kAsGiven;
+    if (!are_side_by_side(rays, cube)) return Order::kSorted;
+    return device.is_lavapipe() ? Order::kInPackets : Order::kAsGiven;
   }
 
-  RayKernel& kernel_for(HitQuery query, Company company) {
-    std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0][company == Company::kPacket ? 1 : 0];
+  RayKernel& kernel_for(HitQuery query, Order order) {
+    const bool is_packet = order == Order::kInPackets;
+    std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0][is_packet ? 1 : 0];
     if (!kernel) {
       RayKernelOptions options;
       options.features = stats.features;
       options.query = query;
-      options.packet_size = company == Company::kPacket ? kPacketSize : 1;
+      options.packet_size = is_packet ? kPacketSize : 1;
       if (!spirv.empty()) options.spirv = spirv;
       kernel.emplace(device, scene, options);
       stats.pipeline_ms += kernel->pipeline_ms();
@@ -105,13 +108,13 @@ struct Caster::Impl {
 
   /// At most RayKernel::kMaxRays.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
-    const Company company = company_of(rays);
-    RayKernel& kernel = kernel_for(query, company);
+    const Order order = order_of(rays);
+    RayKernel& kernel = kernel_for(query, order);
+    const bool is_sorted = order == Order::kSorted;
     const Stopwatch sorting;
-    const bool is_sorted = device.is_cpu() && !are_side_by_side(rays, cube);
-    if (is_sorted) order = sort_rays(rays, cube);
+    if (is_sorted) permutation = sort_rays(rays, cube);
     double time_ms = is_sorted ? sorting.ms() : 0.0;
-    const auto place_of = [&](size_t i) { return is_sorted ? order[i] : i; };
+    const auto place_of = [&](size_t i) { return is_sorted ? permutation[i] : i; };
     requests.resize(rays.size());
     records.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
@@ -132,7 +135,7 @@ struct Caster::Impl {
   SceneCube cube;
   std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
   /// Of the rays at hand: the one that is traced i-th where they are sorted, and what is asked and answered for it.
-  std::vector<uint32_t> order;
+  std::vector<uint32_t> permutation;
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;
 };
@@ -144,7 +147,7 @@ Caster::Caster(Caster&&) noexcept = default;
 Caster& Caster::operator=(Caster&&) noexcept = default;
 
 void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
-  impl_->kernel_for(query, impl_->company_of(rays));
+  impl_->kernel_for(query, impl_->order_of(rays));
 }
 
 double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query,

@@ -27,6 +27,8 @@ bool is_beyond(double coordinate, double plane, Side side) {
   return side == Side::kBelow ? coordinate < plane : coordinate > plane;
 }
 
+// Apart from bvh/clip_triangle on purpose: what cuts for builders must not check itself.
+
 /// Something cut at a plane; either part may be missing.
 template <typename Piece>
 struct Cut {
@@ -103,12 +105,8 @@ bool is_covered(const Piece& piece, std::span<const Box> boxes, double tolerance
   return pieces.empty();
 }
 
-std::array<vec3, 3> corners_of(const Primitive& p) {
-  return {vec3(p.a), {p.a.w, p.b.x, p.b.y}, {p.b.z, p.b.w, std::bit_cast<float>(p.c.x)}};
-}
-
 Polygon polygon_of(const Primitive& p) {
-  const std::array corners = corners_of(p);
+  const std::array corners = triangle_corners(p);
   return {corners.begin(), corners.end()};
 }
 
@@ -124,7 +122,7 @@ Bounds bounds_of(const Primitive& p) {
       return bounds_of(Cone{center, axis, p.b.w, p.a.w, std::bit_cast<float>(p.c.x)});
     default: {
       Bounds bounds;
-      for (const vec3& corner : corners_of(p)) bounds.extend(corner);
+      for (const vec3& corner : triangle_corners(p)) bounds.extend(corner);
       return bounds;
     }
   }

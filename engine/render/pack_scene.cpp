@@ -16,6 +16,7 @@
 #include "core/stopwatch.h"
 #include "core/unset_vector.h"
 #include "render/cut_triangles.h"
+#include "render/read_node.h"
 
 namespace promin {
 namespace {
@@ -67,10 +68,16 @@ struct Collected {
   uint32_t order = 0;
 };
 
+/// Throws RunError for "`who` `count` `what`" beyond `most`.
+void check_at_most(uint32_t most, size_t count, const Scene& scene, const char* who, const char* what,
+                   const char* cure = "") {
+  if (count <= most) return;
+  throw RunError({who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
+                  "promin holds at most " + std::to_string(most) + cure});
+}
+
 void check_count(const Scene& scene, size_t count) {
-  if (count <= CHILD_FIRST_MASK) return;
-  throw RunError({"the scene has " + std::to_string(count) + " primitives", scene.file.string(),
-                  "promin holds at most " + std::to_string(CHILD_FIRST_MASK)});
+  check_at_most(CHILD_FIRST_MASK, count, scene, "the scene has", "primitives");
 }
 
 class Collector {
@@ -270,7 +277,7 @@ auto pack_all(const std::vector<Host>& hosts) {
 /// What builders that split primitives see of them: triangles exactly, other shapes by their boxes.
 Bounds clip(const Primitive& p, const Bounds& window) {
   if (p.c.z != KIND_TRIANGLE) return window;
-  return clip_triangle({vec3(p.a), vec3(p.a.w, p.b.x, p.b.y), vec3(p.b.z, p.b.w, std::bit_cast<float>(p.c.x))}, window);
+  return clip_triangle(triangle_corners(p), window);
 }
 
 /// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
@@ -354,19 +361,13 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder, const Build
                 {collected.boxes,
                  [&](uint32_t primitive, const Bounds& window) { return clip(collected.solids[primitive], window); }},
                 options);
-  if (bvh.references.size() > CHILD_FIRST_MASK) {
-    throw RunError({"the tree refers to " + std::to_string(bvh.references.size()) + " parts of primitives",
-                    scene.file.string(),
-                    "promin holds at most " + std::to_string(CHILD_FIRST_MASK) + "; take --builder sah"});
-  }
+  check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
+                "; take --builder sah");
   PackedScene packed;
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);
   PackedTree tree = pack_tree(bvh);
-  if (tree.nodes.size() > MAX_NODES) {
-    throw RunError({"the scene's tree has " + std::to_string(tree.nodes.size()) + " nodes", scene.file.string(),
-                    "promin holds at most " + std::to_string(MAX_NODES)});
-  }
+  check_at_most(MAX_NODES, tree.nodes.size(), scene, "the scene's tree has", "nodes");
   packed.nodes = std::move(tree.nodes);
   packed.stack_size = tree.stack_size;
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);

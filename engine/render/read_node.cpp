@@ -36,4 +36,8 @@ Box child_box(const layout::Node& node, uint32_t child) {
   return box;
 }
 
+std::array<vec3, 3> triangle_corners(const layout::Primitive& p) {
+  return {vec3(p.a), {p.a.w, p.b.x, p.b.y}, {p.b.z, p.b.w, std::bit_cast<float>(p.c.x)}};
+}
+
 }  // namespace promin

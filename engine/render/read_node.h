@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/math.h"
 #include "layout.h"
 
-// Reads on the host what pack_tree writes, as shaders/traversal.glsl reads it: for checks and tests.
+// Reads on the host what pack_tree and pack_scene write, as the shaders read it: for checks, tests and builders.
 namespace promin {
 
 /// A box in double. Everything by default: what nothing confines.
@@ -34,5 +35,8 @@ NodeChild child_of(const layout::Node& node, uint32_t child);
 
 /// The box of a child that is there. Bits that are no box (NaN, infinity) come as they are.
 Box child_box(const layout::Node& node, uint32_t child);
+
+/// Of a KIND_TRIANGLE.
+std::array<vec3, 3> triangle_corners(const layout::Primitive& primitive);
 
 }  // namespace promin
