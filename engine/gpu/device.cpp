@@ -209,7 +209,6 @@ Device::Device(const std::optional<std::string>& selection)
       extensions.push_back("VK_KHR_portability_subset");
     }
     device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions));
-    pipeline_cache_ = vk::raii::PipelineCache(device_, vk::PipelineCacheCreateInfo());
     queue_ = vk::raii::Queue(device_, family, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));

@@ -10,6 +10,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include "gpu/device_info.h"
+#include "gpu/pipeline.h"
 
 namespace promin::gpu {
 
@@ -35,8 +36,7 @@ class Device {
   uint64_t validation_message_count() const { return *validation_messages_; }
 
   const vk::raii::Device& handle() const { return device_; }
-  /// Of this device's life: what was compiled once is not compiled again.
-  const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
+  CompiledPipelines& compiled_pipelines() const { return compiled_pipelines_; }
   const vk::PhysicalDeviceLimits& limits() const { return limits_; }
   /// Nanoseconds a timestamp tick; 0 where the queue has no timestamps.
   double timestamp_period_ns() const { return timestamp_period_ns_; }
@@ -61,7 +61,7 @@ class Device {
   double timestamp_period_ns_ = 0.0;
   uint64_t timestamp_mask_ = 0;
   vk::raii::Device device_{nullptr};
-  vk::raii::PipelineCache pipeline_cache_{nullptr};
+  mutable CompiledPipelines compiled_pipelines_;
   vk::raii::Queue queue_{nullptr};
   vk::raii::CommandPool pool_{nullptr};
   vk::raii::CommandBuffer commands_{nullptr};

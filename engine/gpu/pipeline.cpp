@@ -3,10 +3,8 @@
 #include "gpu/pipeline.h"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "gpu/buffer.h"
 #include "gpu/device.h"
@@ -27,27 +25,17 @@ bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
   return false;
 }
 
-ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
-                                 std::span<const SpecializationConstant> constants,
-                                 std::span<const BoundBuffer> buffers)
-    : device_(&device) {
-  const vk::raii::Device& handle = device.handle();
-
-  std::vector<vk::DescriptorSetLayoutBinding> bindings;
-  std::map<vk::DescriptorType, uint32_t> type_counts;
-  for (const BoundBuffer& buffer : buffers) {
-    bindings.emplace_back(buffer.binding, buffer.type, 1, vk::ShaderStageFlagBits::eCompute);
-    ++type_counts[buffer.type];
+const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
+                                               std::span<const SpecializationConstant> constants,
+                                               std::span<const vk::DescriptorSetLayoutBinding> bindings) {
+  std::vector<uint32_t> key;
+  for (const vk::DescriptorSetLayoutBinding& binding : bindings) {
+    key.insert(key.end(), {binding.binding, static_cast<uint32_t>(binding.descriptorType)});
   }
-  std::vector<vk::DescriptorPoolSize> pool_sizes;
-  for (const auto& [type, count] : type_counts) pool_sizes.emplace_back(type, count);
-  set_layout_ = vk::raii::DescriptorSetLayout(handle, vk::DescriptorSetLayoutCreateInfo({}, bindings));
-  pool_ = vk::raii::DescriptorPool(
-      handle, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_sizes));
-  set_ = std::move(vk::raii::DescriptorSets(handle, vk::DescriptorSetAllocateInfo(*pool_, *set_layout_)).front());
-  for (const BoundBuffer& buffer : buffers) bind(buffer);
-
-  layout_ = vk::raii::PipelineLayout(handle, vk::PipelineLayoutCreateInfo({}, *set_layout_));
+  for (const SpecializationConstant& constant : constants) key.insert(key.end(), {constant.id, constant.value});
+  key.insert(key.end(), {static_cast<uint32_t>(bindings.size()), static_cast<uint32_t>(constants.size())});
+  key.insert(key.end(), spirv.begin(), spirv.end());
+  if (const auto found = compiled_.find(key); found != compiled_.end()) return found->second;
 
   std::vector<vk::SpecializationMapEntry> entries;
   std::vector<uint32_t> values;
@@ -60,10 +48,36 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
   }
   const vk::SpecializationInfo specialization(static_cast<uint32_t>(entries.size()), entries.data(),
                                               values.size() * sizeof(uint32_t), values.data());
-  const vk::raii::ShaderModule module(handle, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+  const vk::raii::ShaderModule module(device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                 &specialization);
-  pipeline_ = vk::raii::Pipeline(handle, device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
+  CompiledPipeline made;
+  made.set_layout = vk::raii::DescriptorSetLayout(
+      device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));
+  made.layout = vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo({}, *made.set_layout));
+  made.pipeline = vk::raii::Pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *made.layout));
+  return compiled_.emplace(std::move(key), std::move(made)).first->second;
+}
+
+ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
+                                 std::span<const SpecializationConstant> constants,
+                                 std::span<const BoundBuffer> buffers)
+    : device_(&device) {
+  std::vector<vk::DescriptorSetLayoutBinding> bindings;
+  std::map<vk::DescriptorType, uint32_t> type_counts;
+  for (const BoundBuffer& buffer : buffers) {
+    bindings.emplace_back(buffer.binding, buffer.type, 1, vk::ShaderStageFlagBits::eCompute);
+    ++type_counts[buffer.type];
+  }
+  compiled_ = &device.compiled_pipelines().get(device.handle(), spirv, constants, bindings);
+  std::vector<vk::DescriptorPoolSize> pool_sizes;
+  for (const auto& [type, count] : type_counts) pool_sizes.emplace_back(type, count);
+  pool_ = vk::raii::DescriptorPool(
+      device.handle(),
+      vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_sizes));
+  const vk::DescriptorSetAllocateInfo allocation(*pool_, *compiled_->set_layout);
+  set_ = std::move(vk::raii::DescriptorSets(device.handle(), allocation).front());
+  for (const BoundBuffer& buffer : buffers) bind(buffer);
 }
 
 void ComputePipeline::bind(const BoundBuffer& buffer) {
@@ -83,8 +97,8 @@ void ComputePipeline::bind(const BoundBuffer& buffer) {
 }
 
 void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, uint32_t group_count) const {
-  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
-  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, {});
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *compiled_->pipeline);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *compiled_->layout, 0, *set_, {});
   commands.dispatch(group_count, 1, 1);
 }
 

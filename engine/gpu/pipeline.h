@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
 namespace promin::gpu {
@@ -29,10 +32,33 @@ struct BoundBuffer {
 /// Whether a SPIR-V module declares a specialisation constant with this SpecId.
 bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 
-/// A compute pipeline with entry point "main" and one descriptor set.
+/// A compiled compute shader with entry point "main" and one descriptor set, apart from what is bound to it.
+struct CompiledPipeline {
+  vk::raii::DescriptorSetLayout set_layout{nullptr};
+  vk::raii::PipelineLayout layout{nullptr};
+  vk::raii::Pipeline pipeline{nullptr};
+};
+
+/// What a device has compiled: the same shader with the same constants and bindings is compiled once. VkPipelineCache
+/// does not see to that: lavapipe's is empty, and SwiftShader's takes pipelines of two layout objects for different.
+class CompiledPipelines {
+ public:
+  /// Compiles where needed. The pipeline lives as long as this. Throws vk::SystemError, and std::logic_error if the
+  /// module lacks a constant: a driver would ignore it in silence.
+  const CompiledPipeline& get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
+                              std::span<const SpecializationConstant> constants,
+                              std::span<const vk::DescriptorSetLayoutBinding> bindings);
+  size_t size() const { return compiled_.size(); }
+
+ private:
+  /// By all words that `get` was told.
+  std::map<std::vector<uint32_t>, CompiledPipeline> compiled_;
+};
+
+/// A compiled pipeline and the buffers bound to it.
 class ComputePipeline {
  public:
-  /// Throws vk::SystemError, and std::logic_error if the module lacks a constant: a driver would ignore it in silence.
+  /// Throws as CompiledPipelines::get does.
   ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
                   std::span<const SpecializationConstant> constants, std::span<const BoundBuffer> buffers);
 
@@ -44,11 +70,9 @@ class ComputePipeline {
 
  private:
   const Device* device_;
-  vk::raii::DescriptorSetLayout set_layout_{nullptr};
-  vk::raii::PipelineLayout layout_{nullptr};
+  const CompiledPipeline* compiled_;
   vk::raii::DescriptorPool pool_{nullptr};
   vk::raii::DescriptorSet set_{nullptr};
-  vk::raii::Pipeline pipeline_{nullptr};
 };
 
 }  // namespace promin::gpu

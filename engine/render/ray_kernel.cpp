@@ -97,8 +97,10 @@ struct RayKernel::Impl {
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
-      const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : pacer.units();
-      const auto count = static_cast<uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(end - first)));
+      // A workgroup takes as long with fewer rays; on a busy machine the pacer would come down to one.
+      const double paced = std::max<double>(pacer.units(), group_rays);
+      const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : paced;
+      const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
       dispatch.range = uvec4(first, first + count, 0, 0);
       const double time_ms = kernel->run(dispatch, *hits, (count + group_rays - 1) / group_rays);
       pacer.learn(count, time_ms);

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "gpu/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "oracle/verdict.h"
@@ -123,6 +124,22 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
       EXPECT_EQ(differences, 0U) << "packets of " << size;
     }
   }
+}
+
+TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
+  RayKernelOptions options;
+  // Of no other test here.
+  options.features = layout::FEATURE_SPHERES | layout::FEATURE_STEP_COUNTS;
+  const auto compile = [&](uint32_t sphere_count) {
+    const PackedScene packed = pack_scene(test::make_scene_of_everything(sphere_count), "sah");
+    const RayKernel kernel(device(), upload_scene(device(), packed), options);
+    return device().compiled_pipelines().size();
+  };
+  const size_t before = device().compiled_pipelines().size();
+  EXPECT_EQ(compile(200), before + 1);
+  EXPECT_EQ(compile(201), before + 1);
+  options.query = HitQuery::kAny;
+  EXPECT_EQ(compile(200), before + 2);
 }
 
 TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
