@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "image/image.h"
+#include "render/ray_counts.h"
 #include "render/setup_stats.h"
+#include "render/view.h"
 #include "scene/scene.h"
 
 namespace promin {
@@ -18,31 +20,6 @@ namespace promin {
 namespace gpu {
 class Device;
 }
-
-/// A window of pixels, half-open: x0 <= x < x1.
-struct PixelWindow {
-  uvec2 lo{0};
-  uvec2 hi{0};
-};
-
-/// One picture of the loaded scene.
-struct View {
-  Camera camera;
-  uvec2 size{1280, 720};
-  /// Pixels to trace; the whole picture where empty. A crop has the bits of the same pixels of the whole.
-  std::optional<PixelWindow> crop;
-  /// Samples a pixel, at fixed well-distributed points; 1 is the centre. 1...kMaxSamplesPerPixel (render/sampling.h).
-  uint32_t samples_per_pixel = 1;
-  /// Mirror bounces; 0 traces no mirror rays. 0...1000.
-  uint32_t max_depth = 5;
-};
-
-struct RayCounts {
-  uint64_t primary = 0;
-  uint64_t shadow = 0;
-  uint64_t reflection = 0;
-  uint64_t total() const { return primary + shadow + reflection; }
-};
 
 /// What each pixel's middle sample shows, that of index samples / 2: with an odd number of samples the pixel's centre.
 /// Row by row, as the image.
