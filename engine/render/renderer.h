@@ -42,6 +42,12 @@ struct RayCounts {
   uint64_t shadow = 0;
   uint64_t reflection = 0;
   uint64_t total() const { return primary + shadow + reflection; }
+  RayCounts& operator+=(const RayCounts& more) {
+    primary += more.primary;
+    shadow += more.shadow;
+    reflection += more.reflection;
+    return *this;
+  }
 };
 
 /// What each pixel's middle sample shows, that of index samples / 2: with an odd number of samples the pixel's centre.
