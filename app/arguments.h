@@ -36,6 +36,9 @@ class Words {
   /// One of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
 
+  /// Parts of the words, to be read as words of the same option.
+  Words with(std::vector<std::string> words) const { return {command_, option_, std::move(words)}; }
+
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:

@@ -21,6 +21,7 @@ constexpr uint32_t kMaxDepth = 1000;
 /// The limits 0 and 180 themselves show nothing.
 constexpr double kMinFovDeg = 1e-3;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
+constexpr uint32_t kMaxFrame = 9999999;
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 constexpr std::array<std::string_view, 4> kAovNames = {"depth", "normal", "object", "primitive"};
 
@@ -48,6 +49,16 @@ PixelWindow read_window(const Words& words) {
     words.refuse("--crop is empty: it takes X0 < X1 and Y0 < Y1");
   }
   return window;
+}
+
+/// "3-7", or "3" alone.
+FrameRange read_frames(const Words& words) {
+  const std::string& text = words.text();
+  const size_t dash = text.find('-');
+  const Words ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
+  const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
+  if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
+  return range;
 }
 
 }  // namespace
@@ -84,6 +95,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
             [&](const Words& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
 
+  table.add("--path", "FILE.json", "Render the frames of a camera path, each to -o with its number in place of ####",
+            [&](const Words& w) { options.path = w.text(); });
+  table.add("--frames", "A-B", "Of the path, the frames A to B, both included; the first is 0 [all]",
+            [&](const Words& w) { options.frames = read_frames(w); });
+
   table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(kAovNames, ",")),
             [&](const Words& w) { options.aovs = read_aovs(w); });
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
@@ -93,6 +109,13 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
 void check_render_options(const RenderOptions& options) {
   check_tracing_options(options.tracing);
+  if (options.path && (options.view.camera || options.view.pose.any())) {
+    throw UsageError({"--path and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
+                      "on the command line", "leave one out"});
+  }
+  if (options.frames && !options.path) {
+    throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});
+  }
   const auto& pictures = options.pictures;
   if (options.aovs.any() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {
     throw UsageError({"--aov has no picture to go to", "on the command line", "give -o with the ending .exr as well"});

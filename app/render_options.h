@@ -29,6 +29,8 @@ struct PoseOptions {
   /// Vertical, degrees in (0, 180).
   std::optional<double> fov_deg;
   std::optional<double> near;
+
+  bool any() const { return eye || look || up || fov_deg || near; }
 };
 
 /// What of the scene is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
@@ -39,6 +41,8 @@ struct ViewOptions {
   uint32_t max_depth = View{}.max_depth;
   /// Name or number of a camera.
   std::optional<std::string> camera;
+  /// Takes the place of the scene's cameras.
+  std::optional<Camera> given_camera;
   PoseOptions pose;
 };
 
@@ -52,12 +56,21 @@ struct AovChoice {
   bool any() const { return depth || normal || object || primitive; }
 };
 
+/// Numbers of frames from 0, both included.
+struct FrameRange {
+  uint32_t first = 0;
+  uint32_t last = 0;
+};
+
 struct RenderOptions {
   TracingOptions tracing;
   std::vector<std::filesystem::path> pictures;
   ViewOptions view;
   /// Channels that an EXR carries beside R, G and B.
   AovChoice aovs;
+  /// A camera path, and which of its frames; all where empty.
+  std::optional<std::filesystem::path> path;
+  std::optional<FrameRange> frames;
   bool has_all_features = false;
 };
 

@@ -44,6 +44,7 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
 }
 
 Camera choose_camera(const Scene& scene, const ViewOptions& options, const Console& console) {
+  if (options.given_camera) return *options.given_camera;
   if (options.camera) return find_camera(scene, *options.camera);
   if (!scene.cameras.empty()) return scene.cameras.front();
   if (!options.pose.eye || !options.pose.look) {
@@ -98,9 +99,9 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   return view;
 }
 
-void light_up(Scene& scene, const Camera& camera, const Console& console) {
+void light_up(Scene& scene, const Console& console) {
   if (!scene.lights.empty()) return;
-  scene.lights.push_back(make_headlight(camera));
+  scene.lights.push_back(make_headlight());
   if (scene.ambient != vec3(0.0F)) {
     console.note("the scene has no lights; a headlight along the view is used");
     return;

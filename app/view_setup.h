@@ -13,7 +13,8 @@ namespace promin::app {
 /// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 
-/// Gives a scene without lights a headlight along the view, and ambient light where it has none, and a note says so.
-void light_up(Scene& scene, const Camera& camera, const Console& console);
+/// Gives a scene without lights a headlight, which follows the camera of each view, and ambient light where it has
+/// none, and a note says so.
+void light_up(Scene& scene, const Console& console);
 
 }  // namespace promin::app

@@ -32,7 +32,8 @@ LAYOUT_CONSTANT FEATURE_SPECULAR = 1u << 10;
 LAYOUT_CONSTANT FEATURE_MIRRORS = 1u << 11;
 LAYOUT_CONSTANT FEATURE_SMOOTH_NORMALS = 1u << 12;
 LAYOUT_CONSTANT FEATURE_VERTEX_COLORS = 1u << 13;
-LAYOUT_CONSTANT FEATURE_COUNT = 14u;
+LAYOUT_CONSTANT FEATURE_HEADLIGHT = 1u << 14;
+LAYOUT_CONSTANT FEATURE_COUNT = 15u;
 // What a caller may ask of a pipeline whatever the scene.
 LAYOUT_CONSTANT FEATURE_AOVS = 1u << 30;         // depth, normal and id of each pixel
 LAYOUT_CONSTANT FEATURE_STEP_COUNTS = 1u << 31;  // node steps and primitive tests of each ray
@@ -46,6 +47,7 @@ LAYOUT_CONSTANT KIND_PLANE = 4u;
 LAYOUT_CONSTANT LIGHT_POINT = 0u;
 LAYOUT_CONSTANT LIGHT_DIRECTIONAL = 1u;
 LAYOUT_CONSTANT LIGHT_SPOT = 2u;
+LAYOUT_CONSTANT LIGHT_HEADLIGHT = 3u;
 
 // Descriptor bindings; Vulkan's required minimum is four storage buffers a stage.
 LAYOUT_CONSTANT BINDING_FRAME = 0u;
@@ -127,7 +129,7 @@ struct LightRecord {
 
 // A picture's constants (uniform buffer). None of them decides a branch or a loop: see Dispatch.
 struct Frame {
-  vec4 eye;   // w = near: distance of the viewport plane
+  vec4 eye;  // w = near: distance of the viewport plane
   vec4 look;
   vec4 right;  // from one pixel to the next on the projection plane at distance 1 (orthographic: in the world)
   vec4 up;

@@ -129,7 +129,7 @@ vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint 
 
 vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
   precise vec3 sum = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
-  if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS)) {
+  if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_HEADLIGHT)) {
     for (uint i = 0u; i < dispatch.counts.z; ++i) {
       sum += shade_light(point, to_eye, load_light(frame.first_index.y + i), shadow_rays);
     }

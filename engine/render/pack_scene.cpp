@@ -243,15 +243,27 @@ MaterialRecord pack(const Material& m) {
           vec4(m.emissive, 0.0F)};
 }
 
+uint32_t kind_of(const Light& light) {
+  switch (light.kind) {
+    case LightKind::kPoint:
+      return LIGHT_POINT;
+    case LightKind::kDirectional:
+      return LIGHT_DIRECTIONAL;
+    case LightKind::kSpot:
+      return LIGHT_SPOT;
+    case LightKind::kHeadlight:
+      return LIGHT_HEADLIGHT;
+  }
+  return LIGHT_POINT;
+}
+
 LightRecord pack(const Light& light) {
   const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
   const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
-  const auto kind = light.kind == LightKind::kPoint         ? LIGHT_POINT
-                    : light.kind == LightKind::kDirectional ? LIGHT_DIRECTIONAL
-                                                            : LIGHT_SPOT;
   return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
           vec4(light.diffuse, static_cast<float>(1.0 / std::max(0.001, cos_inner - cos_outer))),
-          vec4(light.specular, 0.0F), uvec4(kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
+          vec4(light.specular, 0.0F),
+          uvec4(kind_of(light), light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
 }
 
 /// Appends records at the next multiple of their stride; returns their first index in that stride.

@@ -111,7 +111,7 @@ TEST_F(RendererTest, TheInsideOfASphereIsDark) {
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {{"", Sphere{vec3(0.0F), 1.0F}, 0}};
-  scene.lights = {make_headlight(Camera())};
+  scene.lights = {make_headlight()};
   View view;
   view.size = uvec2(16, 16);
   for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(0.0F));
@@ -121,7 +121,7 @@ TEST_F(RendererTest, CountsRays) {
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {{"", Sphere{vec3(0, 0, -3), 1.0F}, 0}, {"", Sphere{vec3(0, 0, 100), 1.0F}, 0}};
-  scene.lights = {make_headlight(Camera())};
+  scene.lights = {make_headlight()};
   View view;
   view.size = uvec2(64, 64);
   view.samples_per_pixel = 4;
