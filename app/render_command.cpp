@@ -71,14 +71,8 @@ std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
 }
 
 Metadata make_metadata(const RunStats& stats, const PlannedFrame& planned, const TracedFrame& traced) {
-  Metadata metadata = {{"promin:version", PROMIN_VERSION},
-                       {"promin:scene", stats.scene_file},
-                       {"promin:device", stats.device.name},
-                       {"promin:driver", stats.device.driver},
-                       {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
-                       {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
-                       {"promin:max_depth", std::to_string(stats.view->max_depth)},
-                       {"promin:trace_ms", fmt::format("{:.3f}", median(traced.trace_ms))}};
+  Metadata metadata = describe_picture(stats);
+  metadata.emplace_back("promin:trace_ms", fmt::format("{:.3f}", median(traced.trace_ms)));
   if (planned.number) metadata.emplace_back("promin:frame", std::to_string(*planned.number));
   return metadata;
 }

@@ -63,17 +63,8 @@ FrameRange read_frames(const Words& words) {
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderOptions& options) {
-  ViewOptions& view = options.view;
+void add_view_options(OptionTable& table, ViewOptions& view) {
   PoseOptions& pose = view.pose;
-  OptionTable table(command);
-
-  add_scene_argument(table, options.tracing);
-  table.add_required_repeated("-o,--output", "FILE",
-                              "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
-                              [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
-  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
-            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
             [&](const Words& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--max-depth", "N",
@@ -81,9 +72,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const Words& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const Words& w) { view.camera = w.text(); });
-  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
-            [&](const Words& w) { view.crop = read_window(w); });
-
   table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",
             [&](const Words& w) { pose.eye = w.vector(kMaxCoordinate); });
   table.add("--look", "X Y Z", "Direction of view, instead of the camera's",
@@ -94,6 +82,21 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const Words& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
   table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
             [&](const Words& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  ViewOptions& view = options.view;
+  OptionTable table(command);
+
+  add_scene_argument(table, options.tracing);
+  table.add_required_repeated("-o,--output", "FILE",
+                              "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
+                              [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
+            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  add_view_options(table, view);
+  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
+            [&](const Words& w) { view.crop = read_window(w); });
 
   table.add("--path", "FILE.json", "Render the frames of a camera path, each to -o with its number in place of ####",
             [&](const Words& w) { options.path = w.text(); });
@@ -105,6 +108,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
             [&](const Words& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
+  add_measuring_options(table, options.tracing);
 }
 
 void check_render_options(const RenderOptions& options) {

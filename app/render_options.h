@@ -74,6 +74,10 @@ struct RenderOptions {
   bool has_all_features = false;
 };
 
+/// The rows of what a window takes as well: the picture's size, mirror bounces and the camera. `view` must outlive the
+/// parsing.
+void add_view_options(OptionTable& table, ViewOptions& view);
+
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);
 

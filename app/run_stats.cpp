@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_stats.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -60,6 +62,16 @@ double RunStats::median_trace_ms() const {
 double RunStats::mrays_per_s() const {
   const double ms = frames.empty() ? median_trace_ms() : std::accumulate(trace_ms.begin(), trace_ms.end(), 0.0);
   return ms > 0.0 ? static_cast<double>(rays.total()) / (1e3 * ms) : 0.0;
+}
+
+Metadata describe_picture(const RunStats& stats) {
+  return {{"promin:version", PROMIN_VERSION},
+          {"promin:scene", stats.scene_file},
+          {"promin:device", stats.device.name},
+          {"promin:driver", stats.device.driver},
+          {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
+          {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
+          {"promin:max_depth", std::to_string(stats.view->max_depth)}};
 }
 
 std::string to_json(const RunStats& stats) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/device_info.h"
+#include "image/image.h"
 #include "render/renderer.h"
 #include "scene_counts.h"
 
@@ -40,6 +41,9 @@ struct RunStats {
   /// All rays over the median trace time, or over that of all frames; 0 where that was too short to measure.
   double mrays_per_s() const;
 };
+
+/// What an EXR of the run's view says of it.
+Metadata describe_picture(const RunStats& stats);
 
 /// As a JSON object, indented.
 std::string to_json(const RunStats& stats);

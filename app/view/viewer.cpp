@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/viewer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/error.h"
+#include "view/describe_command.h"
+
+namespace promin::app {
+namespace {
+
+/// While there is something to do but no frame is free.
+constexpr double kShortWait = 1e-3;
+/// While there is nothing to do, in seconds; the scene's file is looked at as often.
+constexpr double kLongWait = 0.1;
+/// What a frame spends on tracing at least, of its target.
+constexpr double kLeastTraceShare = 0.5;
+/// ImGui settles its windows within so many frames.
+constexpr int kSettlingFrames = 3;
+
+/// Crosses the scene in some seconds.
+double speed_for(const Scene& scene) {
+  const Bounds bounds = bounds_of(scene);
+  constexpr double kSeconds = 8.0;
+  const double size = bounds.is_empty() ? 0.0 : glm::length(dvec3(bounds.extent()));
+  return size > 0.0 ? size / kSeconds : 1.0;
+}
+
+}  // namespace
+
+Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats)
+    : window_(window),
+      device_(device),
+      console_(console),
+      file_(start.file),
+      stats_(std::move(stats)),
+      target_ms_(start.target_ms.value_or(device.is_cpu() ? ViewerStart::kCpuTargetMs : window.refresh_interval_ms())),
+      scene_(start.scene.scene),
+      asked_choice_(start.choice),
+      loader_(start.file),
+      control_(start.replay ? start.replay->front().camera : start.view.camera, speed_for(*scene_)),
+      stays_open_(start.stays_open),
+      record_file_(start.record),
+      swapchain_(device, start.present_mode),
+      display_(device, swapchain_),
+      frames_(device, swapchain_),
+      screenshot_(device) {
+  if (start.replay) replay_.emplace(std::move(*start.replay));
+  switches_.scene = start.choice;
+  switches_.max_depth = start.view.max_depth;
+  show_scene(start.scene);
+  fit_window();
+  imgui_ = std::make_unique<ImguiRenderer>(device, window, swapchain_);
+}
+
+Viewer::~Viewer() {
+  device_.handle().waitIdle();
+}
+
+void Viewer::run() {
+  while (!is_quitting_ && !window_.should_close()) {
+    window_.poll();
+    frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
+    handle_input();
+    update_scene();
+    update_replay();
+    if (!fit_window() || !has_work()) {
+      window_.wait(frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() ? kLongWait : kShortWait);
+      continue;
+    }
+    Frame* frame = frames_.begin();
+    if (frame == nullptr) {
+      window_.wait(kShortWait);
+      continue;
+    }
+    record(*frame);
+    frames_.submit(*frame);
+  }
+  finish_frames();
+  if (record_file_ && !recorder_.path().empty()) write_camera_path(*record_file_, recorder_.path());
+  while (screenshot_.is_busy()) {
+    if (const auto text = screenshot_.take()) report(*text);
+  }
+}
+
+void Viewer::handle_input() {
+  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
+  for (const Press press : window_.take_presses()) handle_press(press);
+  if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
+  if (window_.take_activity()) frames_to_draw_ = kSettlingFrames;
+}
+
+void Viewer::handle_press(Press press) {
+  switch (press) {
+    case Press::kHelp:
+      has_help_ = !has_help_;
+      return;
+    case Press::kOverlay:
+      has_overlay_ = !has_overlay_;
+      return;
+    case Press::kFullscreen:
+      return window_.toggle_fullscreen();
+    case Press::kReset:
+      return control_.reset();
+    case Press::kPause:
+      switches_.is_paused = !switches_.is_paused;
+      return;
+    case Press::kOrbit: {
+      const Bounds bounds = bounds_of(*scene_);
+      if (control_.is_orbiting()) return control_.fly();
+      if (!bounds.is_empty()) control_.orbit(bounds.center());
+      return;
+    }
+    case Press::kBookmark:
+      bookmarks_.push_back(control_.camera());
+      bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
+      return;
+    case Press::kPrintCommand:
+      fmt::print("{}\n", describe_command(file_, reproducible_view()));
+      std::fflush(stdout);
+      return;
+    case Press::kScreenshot:
+      wants_screenshot_ = true;
+      return;
+    case Press::kQuit:
+      is_quitting_ = true;
+      return;
+    default:
+      break;
+  }
+  const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
+  if (index < scene_->cameras.size()) control_.place(scene_->cameras[index]);
+}
+
+void Viewer::move_camera() {
+  const Motion motion = window_.take_motion();
+  if (is_replaying()) {
+    if (!replay_->is_done() && !switches_.is_paused) control_.place(replay_->next_camera());
+  } else if (!wants_screenshot_) {
+    // While a screenshot waits the camera holds still.
+    control_.apply(motion, window_.framebuffer_size().y);
+  }
+  if (record_file_) recorder_.add(Window::now(), control_.camera());
+}
+
+void Viewer::update_replay() {
+  if (!replay_) return;
+  if (!has_replay_started_) {
+    has_replay_started_ = picture_->is_complete();
+  } else if (replay_->is_done() && frames_.is_idle()) {
+    fmt::print("{}\n", replay_->summarize());
+    std::fflush(stdout);
+    replay_.reset();
+    is_quitting_ = is_quitting_ || !stays_open_;
+  }
+}
+
+void Viewer::update_scene() {
+  if (loader_.is_busy()) {
+    try {
+      if (const std::optional<LoadedScene> loaded = loader_.take()) {
+        finish_frames();
+        show_scene(*loaded);
+        swapchain_.expire();
+      }
+    } catch (const Error& error) {
+      report_failure(error.what());
+    }
+    return;
+  }
+  if (asked_choice_ != switches_.scene) {
+    asked_choice_ = switches_.scene;
+    return loader_.pack(scene_, asked_choice_);
+  }
+  if (Window::now() < next_file_check_) return;
+  next_file_check_ = Window::now() + kLongWait;
+  if (loader_.has_file_changed()) loader_.load(asked_choice_);
+}
+
+void Viewer::show_scene(const LoadedScene& loaded) {
+  const bool is_new = scene_ != loaded.scene;
+  gpu::translate_vulkan_errors([&] {
+    const auto on_device = std::make_shared<const DeviceScene>(device_, loaded.packed);
+    picture_.emplace(device_, on_device, loaded.features, target_ms_);
+  });
+  scene_ = loaded.scene;
+  if (is_new) report("read " + file_.filename().string());
+}
+
+bool Viewer::fit_window() {
+  const uvec2 size = window_.framebuffer_size();
+  if (size.x == 0 || size.y == 0) return false;
+  if (!swapchain_.is_out_of_date() && swapchain_.size() == size) return true;
+  finish_frames();
+  swapchain_.recreate(size);
+  if (swapchain_.is_out_of_date()) return false;
+  picture_->resize(swapchain_.size());
+  for (size_t i = 0; i < kFilmCount; ++i) display_.bind(i, picture_->film(i));
+  frames_to_draw_ = kSettlingFrames;
+  return true;
+}
+
+void Viewer::finish_frames() {
+  frames_.finish([&](const FinishedFrame& finished) { take_finished(finished); });
+}
+
+void Viewer::take_finished(const FinishedFrame& finished) {
+  statistics_.add(finished);
+  if (is_replaying()) replay_->add(finished);
+  if (finished.units == 0.0) return;
+  const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
+  picture_->learn(finished.units, trace_ms);
+  picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
+}
+
+bool Viewer::has_work() const {
+  if (is_replaying()) return !replay_->is_done();
+  return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
+}
+
+void Viewer::record(Frame& frame) {
+  move_camera();
+  if (const auto text = screenshot_.take()) report(*text);
+  build_overlay();
+  picture_->fix_scale(switches_.scale);
+  picture_->pause(switches_.is_paused && !wants_screenshot_);
+  picture_->want(current_view());
+  record_tracing(frame);
+  record_display(frame);
+  if (frames_to_draw_ > 0) --frames_to_draw_;
+}
+
+void Viewer::record_tracing(Frame& frame) {
+  using Access = vk::AccessFlagBits;
+  using Stage = vk::PipelineStageFlagBits;
+  // The film that is traced now was shown by the frame before.
+  frame.commands.pipelineBarrier(Stage::eFragmentShader | Stage::eTransfer, Stage::eComputeShader | Stage::eTransfer,
+                                 {}, {}, {}, {});
+  frame.units = picture_->record(frame.commands);
+  if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
+  if (wants_screenshot_ && picture_->is_complete() && !screenshot_.is_busy()) {
+    View view = picture_->wanted();
+    view.samples_per_pixel = picture_->shown()->samples_per_pixel;
+    screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
+    frame.on_finished = [this, view] {
+      stats_.view = view;
+      screenshot_.write(describe_picture(stats_));
+    };
+    wants_screenshot_ = false;
+  }
+  const vk::MemoryBarrier traced(Access::eShaderWrite, Access::eShaderRead);
+  frame.commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, traced, {}, {});
+  frame.mark(FrameMark::kTraced);
+}
+
+void Viewer::record_display(const Frame& frame) {
+  swapchain_.begin_drawing(frame.commands, frame.image);
+  if (picture_->shown()) display_.record(frame.commands, *picture_->shown(), swapchain_.size());
+  frame.mark(FrameMark::kDisplayed);
+  imgui_->record(frame.commands);
+  frame.commands.endRenderPass();
+}
+
+void Viewer::build_overlay() {
+  imgui_->begin_frame();
+  if (has_overlay_) {
+    OverlayContent content;
+    content.statistics = &statistics_;
+    content.picture = &*picture_;
+    content.scene = scene_.get();
+    content.device = fmt::format("{} ({})", device_.info().name, device_.info().type);
+    content.speed = control_.speed();
+    content.is_orbiting = control_.is_orbiting();
+    content.is_loading = loader_.is_busy();
+    content.message = message_;
+    content.is_failure = is_failure_;
+    content.bookmarks = bookmarks_;
+    if (const std::optional<Camera> picked = show_overlay(content, switches_)) control_.place(*picked);
+  }
+  if (has_help_) show_help();
+  imgui_->end_frame();
+}
+
+void Viewer::report(const std::string& text) {
+  message_ = text;
+  is_failure_ = false;
+  console_.note(text);
+  frames_to_draw_ = kSettlingFrames;
+}
+
+void Viewer::report_failure(const std::string& text) {
+  message_ = text;
+  is_failure_ = true;
+  console_.warn(text);
+  frames_to_draw_ = kSettlingFrames;
+}
+
+View Viewer::current_view() const {
+  View view;
+  view.camera = control_.camera();
+  view.size = picture_->full_size();
+  view.max_depth = switches_.effective_depth();
+  return view;
+}
+
+View Viewer::reproducible_view() const {
+  View view = current_view();
+  if (picture_->is_complete() && shows_same(view, picture_->wanted())) {
+    view.samples_per_pixel = picture_->shown()->samples_per_pixel;
+  }
+  return view;
+}
+
+}  // namespace promin::app
