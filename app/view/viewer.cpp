@@ -67,6 +67,7 @@ void Viewer::run() {
     frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
     handle_input();
     update_scene();
+    update_screenshot();
     update_replay();
     if (!fit_window() || !has_work()) {
       window_.wait(frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() ? kLongWait : kShortWait);
@@ -82,9 +83,7 @@ void Viewer::run() {
   }
   finish_frames();
   if (record_file_ && !recorder_.path().empty()) write_camera_path(*record_file_, recorder_.path());
-  while (screenshot_.is_busy()) {
-    if (const auto text = screenshot_.take()) report(*text);
-  }
+  while (screenshot_.is_busy()) update_screenshot();
 }
 
 void Viewer::handle_input() {
@@ -159,6 +158,14 @@ void Viewer::update_replay() {
   }
 }
 
+void Viewer::update_screenshot() {
+  try {
+    if (const std::optional<std::string> text = screenshot_.take()) report(*text);
+  } catch (const Error& error) {
+    report_failure(error.what());
+  }
+}
+
 void Viewer::update_scene() {
   if (loader_.is_busy()) {
     try {
@@ -224,7 +231,6 @@ bool Viewer::has_work() const {
 
 void Viewer::record(Frame& frame) {
   move_camera();
-  if (const auto text = screenshot_.take()) report(*text);
   build_overlay();
   picture_->fix_scale(switches_.scale);
   picture_->pause(switches_.is_paused && !wants_screenshot_);

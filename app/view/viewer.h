@@ -56,6 +56,8 @@ class Viewer {
   bool is_replaying() const { return replay_ && has_replay_started_; }
   /// Begins the replay when its first camera is shown, and ends it.
   void update_replay();
+  /// Says what has become of screenshots.
+  void update_screenshot();
   /// Starts what changed switches ask for, takes in what has been loaded.
   void update_scene();
   void show_scene(const LoadedScene& loaded);

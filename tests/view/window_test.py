@@ -202,7 +202,7 @@ def main():
     name, bin_folder, scenes = sys.argv[1:]
     with tempfile.TemporaryDirectory(prefix="promin_view_") as folder:
         try:
-            globals()[name](pathlib.Path(bin_folder), pathlib.Path(scenes), pathlib.Path(folder))
+            globals()[name](pathlib.Path(bin_folder).resolve(), pathlib.Path(scenes).resolve(), pathlib.Path(folder))
         except Failure as failure:
             sys.exit(f"{name}: {failure}")
 
