@@ -258,8 +258,8 @@ void Viewer::record_tracing(Frame& frame) {
     };
     wants_screenshot_ = false;
   }
-  const vk::MemoryBarrier traced(Access::eShaderWrite, Access::eShaderRead);
-  frame.commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, traced, {}, {});
+  const vk::MemoryBarrier traced(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead);
+  frame.commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eFragmentShader, {}, traced, {}, {});
   frame.mark(FrameMark::kTraced);
 }
 
