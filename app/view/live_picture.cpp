@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace promin::app {
 namespace {
@@ -11,10 +12,16 @@ namespace {
 constexpr uint32_t kSampleStep = 4;
 /// The coarsest first picture, of the window's pixels on a side.
 constexpr double kMinScale = 1.0 / 16.0;
-constexpr double kBlockPixels = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+/// How near below the affordable it comes.
+constexpr double kScaleStep = 0.98;
 
 uvec2 scale_size(const uvec2& size, double scale) {
   return glm::max(uvec2(1), uvec2(glm::round(dvec2(size) * scale)));
+}
+
+double count_blocks(const uvec2& size) {
+  const uvec2 blocks = (size + layout::BLOCK_SIZE - 1U) / layout::BLOCK_SIZE;
+  return static_cast<double>(blocks.x) * blocks.y;
 }
 
 }  // namespace
@@ -72,9 +79,14 @@ std::optional<View> LivePicture::next_view() const {
 
 uvec2 LivePicture::first_size() const {
   if (fixed_scale_) return scale_size(full_size_, *fixed_scale_);
-  const double affordable = pacer_.units() * kBlockPixels;
-  const double full = static_cast<double>(full_size_.x) * full_size_.y;
-  return scale_size(full_size_, std::clamp(std::sqrt(affordable / full), kMinScale, 1.0));
+  // Blocks at the right and lower edge are not full: a picture of fewer pixels may have as many.
+  const double affordable = std::max<double>(pacer_.units(), PicturePieces::kMinBlocks);
+  double scale = 1.0;
+  while (scale > kMinScale && count_blocks(scale_size(full_size_, scale)) > affordable) {
+    scale =
+        std::max(kMinScale, kScaleStep * scale * std::sqrt(affordable / count_blocks(scale_size(full_size_, scale))));
+  }
+  return scale_size(full_size_, scale);
 }
 
 void LivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {

@@ -149,7 +149,10 @@ void Viewer::move_camera() {
 void Viewer::update_replay() {
   if (!replay_) return;
   if (!has_replay_started_) {
-    has_replay_started_ = picture_->is_complete();
+    if (!picture_->is_complete()) return;
+    // Frames that began before do not count.
+    finish_frames();
+    has_replay_started_ = true;
   } else if (replay_->is_done() && frames_.is_idle()) {
     fmt::print("{}\n", replay_->summarize());
     std::fflush(stdout);
