@@ -51,6 +51,12 @@ PixelWindow read_window(const Words& words) {
   return window;
 }
 
+Shading read_shading(const Words& words) {
+  const std::span<const std::string_view> names = shading_names();
+  const auto place = std::find(names.begin(), names.end(), words.choice(names));
+  return static_cast<Shading>(place - names.begin());
+}
+
 /// "3-7", or "3" alone.
 FrameRange read_frames(const Words& words) {
   const std::string& text = words.text();
@@ -61,6 +67,21 @@ FrameRange read_frames(const Words& words) {
   return range;
 }
 
+void check_explain_options(const RenderOptions& options) {
+  const std::pair<bool, std::string_view> others[] = {{!options.pictures.empty(), "--output"},
+                                                      {options.path.has_value(), "--path"},
+                                                      {options.aovs.any(), "--aov"},
+                                                      {options.view.crop.has_value(), "--crop"},
+                                                      {options.view.shading != Shading::kFull, "--shading"},
+                                                      {options.tracing.stats.has_value(), "--stats"},
+                                                      {options.tracing.repeat_count > 1, "--repeat"}};
+  for (const auto& [is_given, name] : others) {
+    if (!is_given) continue;
+    throw UsageError(
+        {fmt::format("--explain and {} contradict each other", name), "on the command line", "leave one out"});
+  }
+}
+
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
@@ -69,9 +90,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   OptionTable table(command);
 
   add_scene_argument(table, options.tracing);
-  table.add_required_repeated("-o,--output", "FILE",
-                              "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
-                              [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add_repeated("-o,--output", "FILE", "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
+                     [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
+            [&](const Words& w) { options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide)); });
   table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
             [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
@@ -79,6 +101,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add("--max-depth", "N",
             fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
             [&](const Words& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
+  table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(shading_names(), ", ")),
+            [&](const Words& w) { view.shading = read_shading(w); });
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const Words& w) { view.camera = w.text(); });
   table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
@@ -112,6 +136,11 @@ void check_render_options(const RenderOptions& options) {
   if (options.path && (options.view.camera || options.view.pose.any())) {
     throw UsageError({"--path and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
                       "on the command line", "leave one out"});
+  }
+  if (options.explained_pixel) {
+    check_explain_options(options);
+  } else if (options.pictures.empty()) {
+    throw UsageError({"--output is required", "on the command line", "see promin render --help"});
   }
   if (options.frames && !options.path) {
     throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});

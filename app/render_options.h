@@ -39,6 +39,7 @@ struct ViewOptions {
   std::optional<PixelWindow> crop;
   uint32_t samples_per_pixel = View{}.samples_per_pixel;
   uint32_t max_depth = View{}.max_depth;
+  Shading shading = Shading::kFull;
   /// Name or number of a camera.
   std::optional<std::string> camera;
   /// Takes the place of the scene's cameras.
@@ -71,6 +72,8 @@ struct RenderOptions {
   /// A camera path, and which of its frames; all where empty.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
+  /// A pixel to explain instead of writing a picture.
+  std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 };
 

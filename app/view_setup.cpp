@@ -96,6 +96,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   }
   view.samples_per_pixel = options.samples_per_pixel;
   view.max_depth = options.max_depth;
+  view.shading = options.shading;
   return view;
 }
 
