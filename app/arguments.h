@@ -58,7 +58,8 @@ class OptionTable {
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// What the command cannot do without.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
-  /// A required option of one word that may be given several times; the setter gets all.
+  /// An option of one word that may be given several times; the setter gets all.
+  void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);
   void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
                              Setter set);
   void add_flag(const std::string& names, const std::string& help, bool& value);

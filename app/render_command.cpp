@@ -15,8 +15,10 @@
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
+#include "explanation.h"
 #include "frame_plan.h"
 #include "image/image.h"
+#include "layout.h"
 #include "outputs.h"
 #include "progress.h"
 #include "render_options.h"
@@ -31,6 +33,7 @@ RendererOptions make_renderer_options(const RenderOptions& options) {
   choose_tree(options.tracing, result);
   result.force_all_features = options.has_all_features;
   result.with_aovs = options.aovs.any();
+  if (options.view.has_no_shadows) result.left_out_features = layout::FEATURE_SHADOWS;
   return result;
 }
 
@@ -148,6 +151,12 @@ std::vector<std::filesystem::path> pictures_of(const std::vector<PlannedFrame>& 
   return files;
 }
 
+void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
+  if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
+  throw UsageError({fmt::format("--explain is beyond the picture of {}x{}", size.x, size.y), "on the command line",
+                    "stay within it or give a larger --size"});
+}
+
 void render(const RenderOptions& options) {
   const Stopwatch total;
   const TracingOptions& tracing = options.tracing;
@@ -162,12 +171,20 @@ void render(const RenderOptions& options) {
   ViewOptions view = options.view;
   view.given_camera = frames.front().camera;
   stats.view = make_view(scene, view, console);
+  check_explained_pixel(options, stats.view->size);
   light_up(scene, console);
+  leave_out_lights(scene, options.view.lights_off);
   stats.light_count = scene.lights.size();
 
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   Renderer renderer(*device, scene, make_renderer_options(options));
   take_setup(renderer.setup_stats(), stats, console);
+  if (options.explained_pixel) {
+    const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
+    check_validation(*device, stats);
+    fmt::print("{}", explain_json(explanation, scene));
+    return;
+  }
   render_frames(frames, options, *device, renderer, stats, console);
 
   const DeferredSignals while_writing;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <sstream>
 
 #include "arguments.h"
@@ -51,6 +52,12 @@ PixelWindow read_window(const Words& words) {
   return window;
 }
 
+Shading read_shading(const Words& words) {
+  const std::span<const std::string_view> names = shading_names();
+  const auto place = std::find(names.begin(), names.end(), words.choice(names));
+  return static_cast<Shading>(place - names.begin());
+}
+
 /// "3-7", or "3" alone.
 FrameRange read_frames(const Words& words) {
   const std::string& text = words.text();
@@ -59,6 +66,37 @@ FrameRange read_frames(const Words& words) {
   const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
   if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
   return range;
+}
+
+/// Numbers between commas.
+std::vector<uint32_t> read_numbers(const Words& words) {
+  std::vector<uint32_t> numbers;
+  std::istringstream list(words.text() + ",");
+  for (std::string number; std::getline(list, number, ',');) {
+    uint32_t value = 0;
+    const char* end = number.data() + number.size();
+    const auto parsed = std::from_chars(number.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end) {
+      words.refuse(fmt::format("--lights-off takes numbers from 0 with commas between, not \"{}\"", words.text()));
+    }
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+void check_explain_options(const RenderOptions& options) {
+  const std::pair<bool, std::string_view> others[] = {{!options.pictures.empty(), "--output"},
+                                                      {options.path.has_value(), "--path"},
+                                                      {options.aovs.any(), "--aov"},
+                                                      {options.view.crop.has_value(), "--crop"},
+                                                      {options.view.shading != Shading::kFull, "--shading"},
+                                                      {options.tracing.stats.has_value(), "--stats"},
+                                                      {options.tracing.repeat_count > 1, "--repeat"}};
+  for (const auto& [is_given, name] : others) {
+    if (!is_given) continue;
+    throw UsageError(
+        {fmt::format("--explain and {} contradict each other", name), "on the command line", "leave one out"});
+  }
 }
 
 }  // namespace
@@ -70,6 +108,11 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--max-depth", "N",
             fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
             [&](const Words& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
+  table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(shading_names(), ", ")),
+            [&](const Words& w) { view.shading = read_shading(w); });
+  table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
+  table.add("--lights-off", "INDICES", "Sources to leave out, by their numbers from 0 with commas between",
+            [&](const Words& w) { view.lights_off = read_numbers(w); });
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const Words& w) { view.camera = w.text(); });
   table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",
@@ -89,9 +132,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   OptionTable table(command);
 
   add_scene_argument(table, options.tracing);
-  table.add_required_repeated("-o,--output", "FILE",
-                              "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
-                              [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add_repeated("-o,--output", "FILE", "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
+                     [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
+            [&](const Words& w) { options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide)); });
   table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
             [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   add_view_options(table, view);
@@ -116,6 +160,11 @@ void check_render_options(const RenderOptions& options) {
   if (options.path && (options.view.camera || options.view.pose.any())) {
     throw UsageError({"--path and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
                       "on the command line", "leave one out"});
+  }
+  if (options.explained_pixel) {
+    check_explain_options(options);
+  } else if (options.pictures.empty()) {
+    throw UsageError({"--output is required", "on the command line", "see promin render --help"});
   }
   if (options.frames && !options.path) {
     throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});

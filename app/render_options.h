@@ -39,6 +39,10 @@ struct ViewOptions {
   std::optional<PixelWindow> crop;
   uint32_t samples_per_pixel = View{}.samples_per_pixel;
   uint32_t max_depth = View{}.max_depth;
+  Shading shading = Shading::kFull;
+  bool has_no_shadows = false;
+  /// Indices of the scene's lights.
+  std::vector<uint32_t> lights_off;
   /// Name or number of a camera.
   std::optional<std::string> camera;
   /// Takes the place of the scene's cameras.
@@ -71,10 +75,12 @@ struct RenderOptions {
   /// A camera path, and which of its frames; all where empty.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
+  /// A pixel to explain instead of writing a picture.
+  std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 };
 
-/// The rows of what a window takes as well: the picture's size, mirror bounces and the camera. `view` must outlive the
+/// The rows of what a window takes as well: what of the scene is shown, and the camera. `view` must outlive the
 /// parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 

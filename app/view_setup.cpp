@@ -96,6 +96,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   }
   view.samples_per_pixel = options.samples_per_pixel;
   view.max_depth = options.max_depth;
+  view.shading = options.shading;
   return view;
 }
 
@@ -109,6 +110,19 @@ void light_up(Scene& scene, const Console& console) {
   scene.ambient = vec3(kDefaultAmbient);
   console.note(fmt::format("the scene has no lights; a headlight along the view and ambient light of {} are used",
                            kDefaultAmbient));
+}
+
+void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices) {
+  std::vector<bool> is_left_out(scene.lights.size());
+  for (const uint32_t index : indices) {
+    if (index >= scene.lights.size()) {
+      throw UsageError({fmt::format("no light {} to leave out", index), scene.file.string(),
+                        fmt::format("it has {} lights, the first is 0", scene.lights.size())});
+    }
+    is_left_out[index] = true;
+  }
+  size_t index = 0;
+  std::erase_if(scene.lights, [&](const Light&) { return is_left_out[index++]; });
 }
 
 }  // namespace promin::app

@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/scene_loader.h"
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "console.h"
-#include "layout.h"
 #include "scene/load_scene.h"
 #include "view_setup.h"
 
 namespace promin::app {
+
+bool SceneChoice::is_lit_by(uint32_t light) const {
+  return std::find(lights_off.begin(), lights_off.end(), light) == lights_off.end();
+}
 
 LoadedScene load_chosen_scene(const std::filesystem::path& file, const SceneChoice& choice) {
   const auto scene = std::make_shared<Scene>(load_scene(file));
@@ -19,13 +24,12 @@ LoadedScene load_chosen_scene(const std::filesystem::path& file, const SceneChoi
 
 LoadedScene pack_chosen_scene(std::shared_ptr<const Scene> scene, const SceneChoice& choice) {
   Scene shown = *scene;
-  shown.lights.clear();
-  for (size_t i = 0; i < scene->lights.size(); ++i) {
-    if (choice.is_lit_by(i)) shown.lights.push_back(scene->lights[i]);
-  }
+  std::vector<uint32_t> lights_off = choice.lights_off;
+  std::erase_if(lights_off, [&](uint32_t light) { return light >= shown.lights.size(); });
+  leave_out_lights(shown, lights_off);
   LoadedScene loaded;
   loaded.packed = choice.bvh ? pack_scene_with(*choice.bvh, shown) : pack_scene(shown, choice.builder);
-  loaded.features = features_of(shown) & ~(choice.has_shadows ? 0 : layout::FEATURE_SHADOWS);
+  loaded.features = features_of(shown);
   loaded.scene = std::move(scene);
   return loaded;
 }

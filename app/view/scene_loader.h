@@ -19,12 +19,11 @@ namespace promin::app {
 struct SceneChoice {
   std::string builder;
   std::optional<std::filesystem::path> bvh;
-  bool has_shadows = true;
-  /// Of the scene's lights by their index, those that are off.
-  std::vector<bool> lights_off;
+  /// Indices of the scene's lights, in their order; those that a scene does not have are passed over.
+  std::vector<uint32_t> lights_off;
 
   bool operator==(const SceneChoice&) const = default;
-  bool is_lit_by(size_t light) const { return light >= lights_off.size() || !lights_off[light]; }
+  bool is_lit_by(uint32_t light) const;
 };
 
 /// A scene that is ready to be copied to the device.

@@ -19,7 +19,8 @@ namespace promin {
 /// (shaders/render.comp). A picture is begun, then all of its pieces run; nothing of that waits unless it says so.
 class Film {
  public:
-  /// Compiles unless the device has compiled the same already. `features` of the scene, and FEATURE_AOVS.
+  /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
+  /// (render/shading.h), and FEATURE_AOVS.
   Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features);
 
   /// Makes room for so many pixels; the device is idle with respect to the film.

@@ -9,6 +9,7 @@
 #include "core/stopwatch.h"
 #include "gpu/device.h"
 #include "layout.h"
+#include "render/explain_pixel.h"
 #include "render/film.h"
 #include "render/pack_scene.h"
 #include "render/sampling.h"
@@ -38,13 +39,18 @@ struct Renderer::Impl {
     numbers = std::move(packed.numbers);
 
     const Stopwatch uploading;
-    const auto scene = std::make_shared<const DeviceScene>(device, packed);
+    scene = std::make_shared<const DeviceScene>(device, packed);
     stats.upload_ms = uploading.ms();
 
     const Stopwatch compiling;
-    film.emplace(device, scene, stats.features | (options.with_aovs ? layout::FEATURE_AOVS : 0));
-    film->warm_up();
+    make_film(Shading::kFull);
     stats.pipeline_ms = compiling.ms();
+  }
+
+  void make_film(Shading of) {
+    film.emplace(device, scene, stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0));
+    film->warm_up();
+    shading = of;
   }
 
   /// Traces one band: `window` of the picture, on a film of its size.
@@ -99,7 +105,10 @@ struct Renderer::Impl {
   Pacer pacer;
   SetupStats stats;
   PrimitiveNumbers numbers;
+  std::shared_ptr<const DeviceScene> scene;
   std::optional<Film> film;
+  /// The film's.
+  Shading shading = Shading::kFull;
   std::vector<uvec4> film_records;
 };
 
@@ -112,6 +121,15 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 const SetupStats& Renderer::setup_stats() const {
   return impl_->stats;
+}
+
+Explanation Renderer::explain(const View& view, const uvec2& pixel) {
+  assert(pixel.x < view.size.x && pixel.y < view.size.y);
+  Explanation explanation;
+  gpu::translate_vulkan_errors([&] {
+    explanation = explain_pixel(impl_->device, *impl_->scene, impl_->numbers, impl_->stats.features, view, pixel);
+  });
+  return explanation;
 }
 
 RenderResult Renderer::render(const View& view, const std::function<void(double)>& progress) {
@@ -129,6 +147,9 @@ RenderResult Renderer::render(const View& view, const std::function<void(double)
     result.aovs = {std::vector<float>(pixel_count), std::vector<vec3>(pixel_count),
                    std::vector<uint32_t>(pixel_count, Aovs::kNoId), std::vector<uint32_t>(pixel_count, Aovs::kNoId)};
   }
+  gpu::translate_vulkan_errors([&] {
+    if (view.shading != impl_->shading) impl_->make_film(view.shading);
+  });
   const uint32_t film_rows = kMaxFilmRecords / impl_->film->records_per_pixel() / width;
   const uint32_t band_rows = std::max(layout::BLOCK_SIZE, film_rows / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
   for (uint32_t y = window.lo.y; y < window.hi.y; y += band_rows) {

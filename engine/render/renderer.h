@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "render/explain.h"
 #include "render/ray_counts.h"
 #include "render/setup_stats.h"
 #include "render/view.h"
@@ -73,8 +74,13 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Traces one picture. `progress` is called after each dispatch with the fraction done, 0...1.
+  /// Traces one picture, and compiles first where its shading is another than the last one's. `progress` is called
+  /// after each dispatch with the fraction done, 0...1.
   RenderResult render(const View& view, const std::function<void(double)>& progress = {});
+
+  /// Traces the pixel at these coordinates of the whole picture as `render` does, and tells each ray and source; of
+  /// Shading::kFull whatever the view has. Throws RunError where that would be too much for the device.
+  Explanation explain(const View& view, const uvec2& pixel);
 
   const SetupStats& setup_stats() const;
 

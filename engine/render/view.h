@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/math.h"
+#include "render/shading.h"
 #include "scene/scene.h"
 
 namespace promin {
@@ -25,6 +26,8 @@ struct View {
   uint32_t samples_per_pixel = 1;
   /// Mirror bounces; 0 traces no mirror rays. 0...1000.
   uint32_t max_depth = 5;
+  /// Each has a pipeline of its own.
+  Shading shading = Shading::kFull;
 };
 
 }  // namespace promin

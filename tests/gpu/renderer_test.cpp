@@ -117,6 +117,20 @@ TEST_F(RendererTest, TheInsideOfASphereIsDark) {
   for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(0.0F));
 }
 
+TEST_F(RendererTest, TheHeadlightFollowsTheCameraOfEachView) {
+  Scene scene = make_scene_of_everything();
+  scene.lights = {make_headlight()};
+  Renderer renderer(device(), scene);
+  View view = test::make_view(kSize);
+  for (const vec3& look : {vec3(0, 0, -1), vec3(0.28F, 0, -0.96F), vec3(-0.6F, 0, -0.8F)}) {
+    view.camera.look = look;
+    view.camera.up = vec3(0, 1, 0);
+    scene.lights[0].kind = LightKind::kDirectional;
+    scene.lights[0].direction = look;
+    EXPECT_TRUE(has_same_bits(renderer.render(view).image, render(scene, view).image));
+  }
+}
+
 TEST_F(RendererTest, CountsRays) {
   Scene scene;
   scene.materials.resize(1);
