@@ -173,6 +173,7 @@ void render(const RenderOptions& options) {
   stats.view = make_view(scene, view, console);
   check_explained_pixel(options, stats.view->size);
   light_up(scene, console);
+  check_lights(scene, options.view.lights_off);
   leave_out_lights(scene, options.view.lights_off);
   stats.light_count = scene.lights.size();
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -112,17 +113,20 @@ void light_up(Scene& scene, const Console& console) {
                            kDefaultAmbient));
 }
 
-void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices) {
-  std::vector<bool> is_left_out(scene.lights.size());
+void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
   for (const uint32_t index : indices) {
-    if (index >= scene.lights.size()) {
-      throw UsageError({fmt::format("no light {} to leave out", index), scene.file.string(),
-                        fmt::format("it has {} lights, the first is 0", scene.lights.size())});
-    }
-    is_left_out[index] = true;
+    if (index < scene.lights.size()) continue;
+    throw UsageError({fmt::format("no light {} to leave out", index), scene.file.string(),
+                      fmt::format("it has {}, and the first is 0", scene.lights.size())});
   }
-  size_t index = 0;
-  std::erase_if(scene.lights, [&](const Light&) { return is_left_out[index++]; });
+}
+
+void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices) {
+  std::vector<Light> kept;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+    if (std::find(indices.begin(), indices.end(), i) == indices.end()) kept.push_back(scene.lights[i]);
+  }
+  scene.lights = std::move(kept);
 }
 
 }  // namespace promin::app

@@ -17,7 +17,10 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
 /// none, and a note says so.
 void light_up(Scene& scene, const Console& console);
 
-/// Removes lights by their indices, after light_up. Throws UsageError where the scene has none of that number.
+/// Throws UsageError where the scene, lit up, has no light of such an index.
+void check_lights(const Scene& scene, const std::vector<uint32_t>& indices);
+
+/// Removes lights by their indices, which are checked.
 void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices);
 
 }  // namespace promin::app

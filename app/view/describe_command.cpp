@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/describe_command.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace promin::app {
 namespace {
@@ -20,12 +20,17 @@ std::string quote(const std::string& word) {
 
 }  // namespace
 
-std::string describe_command(const std::filesystem::path& scene, const View& view, std::optional<size_t> camera_index) {
+std::string describe_command(const DescribedScene& scene, const View& view) {
   const Camera& camera = view.camera;
   std::string command =
-      fmt::format("promin render {} -o view.exr --size {} {} --spp {} --max-depth {}", quote(scene.string()),
+      fmt::format("promin render {} -o view.exr --size {} {} --spp {} --max-depth {}", quote(scene.file.string()),
                   view.size.x, view.size.y, view.samples_per_pixel, view.max_depth);
-  if (camera_index) command += fmt::format(" --camera {}", *camera_index);
+  if (view.shading != Shading::kFull) {
+    command += fmt::format(" --shading {}", shading_names()[static_cast<size_t>(view.shading)]);
+  }
+  if (!scene.has_shadows) command += " --no-shadows";
+  if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
+  if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
   command +=
       fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));
   if (camera.projection == Projection::kPerspective) {

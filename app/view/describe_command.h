@@ -5,14 +5,22 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "render/view.h"
 
 namespace promin::app {
 
-/// The `promin render` command that gives the picture of a view, to the bit, for a shell. `camera_index` is that of
-/// the scene's camera whose half height an orthographic view has.
-std::string describe_command(const std::filesystem::path& scene, const View& view,
-                             std::optional<size_t> camera_index = std::nullopt);
+/// What of a scene a command leaves out, and where an orthographic view has its size from.
+struct DescribedScene {
+  std::filesystem::path file;
+  bool has_shadows = true;
+  std::vector<uint32_t> lights_off;
+  /// Of the scene's camera with the view's half height.
+  std::optional<size_t> camera_index;
+};
+
+/// The `promin render` command that gives the picture of a view, to the bit, for a shell.
+std::string describe_command(const DescribedScene& scene, const View& view);
 
 }  // namespace promin::app

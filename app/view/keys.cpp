@@ -13,6 +13,10 @@ constexpr Press camera(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstCamera) + number - 1);
 }
 
+constexpr Press shading(int number) {
+  return static_cast<Press>(static_cast<int>(Press::kFirstShading) + number - 1);
+}
+
 // A row without an effect shares its neighbour's.
 constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_W, "W", "ahead; nearer when orbiting", Hold::kAhead},
@@ -39,7 +43,14 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_8, "", "", {}, camera(8)},
     KeyBinding{GLFW_KEY_9, "", "", {}, camera(9)},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
-    KeyBinding{GLFW_KEY_P, "P", "pause refining", {}, Press::kPause},
+    KeyBinding{GLFW_KEY_F1, "F1...F7", "light, normals, uv, objects, primitives, depth, steps", {}, shading(1)},
+    KeyBinding{GLFW_KEY_F2, "", "", {}, shading(2)},
+    KeyBinding{GLFW_KEY_F3, "", "", {}, shading(3)},
+    KeyBinding{GLFW_KEY_F4, "", "", {}, shading(4)},
+    KeyBinding{GLFW_KEY_F5, "", "", {}, shading(5)},
+    KeyBinding{GLFW_KEY_F6, "", "", {}, shading(6)},
+    KeyBinding{GLFW_KEY_F7, "", "", {}, shading(7)},
+    KeyBinding{GLFW_KEY_P, "P", "pause refining, or a replay", {}, Press::kPause},
     KeyBinding{GLFW_KEY_C, "C", "print the command that renders this view", {}, Press::kPrintCommand},
     KeyBinding{GLFW_KEY_F12, "F12", "write promin-NNNN.exr and .png", {}, Press::kScreenshot},
     KeyBinding{GLFW_KEY_F, "F", "full screen", {}, Press::kFullscreen},
@@ -50,6 +61,7 @@ constexpr std::array kKeys = {
 
 constexpr std::array kPointer = {
     PointerBinding{"left drag", "look around"},
+    PointerBinding{"left click", "explain the pixel: its rays, sources, contributions"},
     PointerBinding{"right click", "look around without a button; again to stop"},
     PointerBinding{"wheel", "faster or slower"},
 };

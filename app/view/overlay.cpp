@@ -65,31 +65,44 @@ void choose_builder(SceneChoice& choice) {
   ImGui::EndCombo();
 }
 
-void choose_lights(const Scene& scene, SceneChoice& choice) {
-  for (size_t i = 0; i < scene.lights.size(); ++i) {
+void choose_lights(const Scene& scene, std::vector<uint32_t>& lights_off) {
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const std::string& name = scene.lights[i].name;
-    bool is_on = choice.is_lit_by(i);
-    if (!ImGui::Checkbox(fmt::format("{}##light{}", name.empty() ? fmt::format("light {}", i) : name, i).c_str(),
-                         &is_on)) {
-      continue;
+    const auto off = std::find(lights_off.begin(), lights_off.end(), i);
+    bool is_on = off == lights_off.end();
+    const std::string label = fmt::format("{} {}##light{}", i, name.empty() ? "light" : name, i);
+    if (!ImGui::Checkbox(label.c_str(), &is_on)) continue;
+    if (is_on) {
+      lights_off.erase(off);
+    } else {
+      lights_off.insert(std::upper_bound(lights_off.begin(), lights_off.end(), i), i);
     }
-    choice.lights_off.resize(scene.lights.size());
-    choice.lights_off[i] = !is_on;
   }
 }
 
+void choose_shading(Shading& shading) {
+  const auto names = shading_names();
+  if (!ImGui::BeginCombo("shading", std::string(names[static_cast<size_t>(shading)]).c_str())) return;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const auto candidate = static_cast<Shading>(i);
+    if (ImGui::Selectable(std::string(names[i]).c_str(), candidate == shading)) shading = candidate;
+  }
+  ImGui::EndCombo();
+}
+
 void show_switches(const Scene& scene, Switches& switches) {
-  ImGui::Checkbox("shadows", &switches.scene.has_shadows);
+  ImGui::Checkbox("shadows", &switches.has_shadows);
   ImGui::SameLine();
   ImGui::Checkbox("mirrors", &switches.has_mirrors);
   ImGui::SameLine();
   ImGui::Checkbox("pause", &switches.is_paused);
   auto depth = static_cast<int>(switches.max_depth);
   if (ImGui::SliderInt("depth", &depth, 0, 20)) switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
+  choose_shading(switches.shading);
   choose_scale(switches.scale);
   choose_builder(switches.scene);
   if (ImGui::TreeNode("sources")) {
-    choose_lights(scene, switches.scene);
+    choose_lights(scene, switches.scene.lights_off);
     ImGui::TreePop();
   }
 }
@@ -161,6 +174,19 @@ void show_help() {
   }
   for (const PointerBinding& binding : pointer_bindings()) show_text("{:<12}{}", binding.name, binding.effect);
   ImGui::End();
+}
+
+bool show_explanation(const std::string& title, const std::string& text) {
+  bool is_open = true;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(size.x - kMargin, size.y - kMargin), ImGuiCond_FirstUseEver, ImVec2(1.0F, 1.0F));
+  ImGui::SetNextWindowSize(ImVec2(0.55F * size.x, 0.5F * size.y), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowBgAlpha(0.85F);
+  ImGui::Begin((title + "###explanation").c_str(), &is_open,
+               ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::End();
+  return is_open;
 }
 
 }  // namespace promin::app

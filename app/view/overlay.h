@@ -37,6 +37,8 @@ struct Switches {
   SceneChoice scene;
   uint32_t max_depth = View{}.max_depth;
   bool has_mirrors = true;
+  bool has_shadows = true;
+  Shading shading = Shading::kFull;
   /// As LivePicture::fix_scale.
   std::optional<double> scale;
   bool is_paused = false;
@@ -65,5 +67,8 @@ std::optional<Camera> show_overlay(const OverlayContent& content, Switches& swit
 
 /// Shows what keys and pointer do.
 void show_help();
+
+/// Shows a text under a title, to scroll through; false when the user has closed it.
+bool show_explanation(const std::string& title, const std::string& text);
 
 }  // namespace promin::app

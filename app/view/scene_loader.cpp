@@ -23,13 +23,17 @@ LoadedScene load_chosen_scene(const std::filesystem::path& file, const SceneChoi
 }
 
 LoadedScene pack_chosen_scene(std::shared_ptr<const Scene> scene, const SceneChoice& choice) {
-  Scene shown = *scene;
   std::vector<uint32_t> lights_off = choice.lights_off;
-  std::erase_if(lights_off, [&](uint32_t light) { return light >= shown.lights.size(); });
-  leave_out_lights(shown, lights_off);
+  std::erase_if(lights_off, [&](uint32_t light) { return light >= scene->lights.size(); });
   LoadedScene loaded;
-  loaded.packed = choice.bvh ? pack_scene_with(*choice.bvh, shown) : pack_scene(shown, choice.builder);
-  loaded.features = features_of(shown);
+  loaded.shown = scene;
+  if (!lights_off.empty()) {
+    const auto shown = std::make_shared<Scene>(*scene);
+    leave_out_lights(*shown, lights_off);
+    loaded.shown = shown;
+  }
+  loaded.packed = choice.bvh ? pack_scene_with(*choice.bvh, *loaded.shown) : pack_scene(*loaded.shown, choice.builder);
+  loaded.features = features_of(*loaded.shown);
   loaded.scene = std::move(scene);
   return loaded;
 }

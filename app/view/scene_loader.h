@@ -30,6 +30,8 @@ struct SceneChoice {
 struct LoadedScene {
   /// As the file has it, lit up.
   std::shared_ptr<const Scene> scene;
+  /// What is chosen of it.
+  std::shared_ptr<const Scene> shown;
   PackedScene packed;
   FeatureMask features = 0;
 };

@@ -83,6 +83,9 @@ void view(const WindowOptions& options) {
   light_up(*scene, console);
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;
+  check_lights(*scene, options.view.lights_off);
+  start.choice.lights_off = options.view.lights_off;
+  start.has_shadows = !options.view.has_no_shadows;
   start.scene = pack_chosen_scene(scene, start.choice);
   start.present_mode = options.present_mode;
   start.target_ms = options.target_ms;

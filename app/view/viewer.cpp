@@ -8,7 +8,8 @@
 #include <cstdio>
 
 #include "core/error.h"
-#include "view/describe_command.h"
+#include "explanation.h"
+#include "render/explain_pixel.h"
 
 namespace promin::app {
 namespace {
@@ -51,6 +52,8 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       screenshot_(device) {
   if (start.replay) replay_.emplace(std::move(*start.replay));
   switches_.scene = start.choice;
+  switches_.has_shadows = start.has_shadows;
+  switches_.shading = start.view.shading;
   switches_.max_depth = start.view.max_depth;
   show_scene(start.scene);
   fit_window();
@@ -89,6 +92,11 @@ void Viewer::run() {
 void Viewer::handle_input() {
   window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   for (const Press press : window_.take_presses()) handle_press(press);
+  for (const dvec2& place : window_.take_clicks()) {
+    const dvec2 full_size(picture_->full_size());
+    const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
+    explain(uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+  }
   if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
   if (window_.take_activity()) frames_to_draw_ = kSettlingFrames;
 }
@@ -118,10 +126,12 @@ void Viewer::handle_press(Press press) {
       bookmarks_.push_back(control_.camera());
       bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
       return;
-    case Press::kPrintCommand:
-      fmt::print("{}\n", describe_command(file_, reproducible_view()));
+    case Press::kPrintCommand: {
+      const View view = reproducible_view();
+      fmt::print("{}\n", describe_command(described_scene(view), view));
       std::fflush(stdout);
       return;
+    }
     case Press::kScreenshot:
       wants_screenshot_ = true;
       return;
@@ -130,6 +140,10 @@ void Viewer::handle_press(Press press) {
       return;
     default:
       break;
+  }
+  if (press >= Press::kFirstShading) {
+    switches_.shading = static_cast<Shading>(static_cast<int>(press) - static_cast<int>(Press::kFirstShading));
+    return;
   }
   const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
   if (index < scene_->cameras.size()) control_.place(scene_->cameras[index]);
@@ -170,12 +184,15 @@ void Viewer::update_screenshot() {
 }
 
 void Viewer::update_scene() {
+  if (features_ != (light_features() | features_of(switches_.shading))) {
+    finish_frames();
+    make_picture();
+  }
   if (loader_.is_busy()) {
     try {
       if (const std::optional<LoadedScene> loaded = loader_.take()) {
         finish_frames();
         show_scene(*loaded);
-        swapchain_.expire();
       }
     } catch (const Error& error) {
       report_failure(error.what());
@@ -192,13 +209,38 @@ void Viewer::update_scene() {
 }
 
 void Viewer::show_scene(const LoadedScene& loaded) {
-  const bool is_new = scene_ != loaded.scene;
-  gpu::translate_vulkan_errors([&] {
-    const auto on_device = std::make_shared<const DeviceScene>(device_, loaded.packed);
-    picture_.emplace(device_, on_device, loaded.features, target_ms_);
-  });
+  const bool is_new = scene_ && scene_ != loaded.scene;
+  device_scene_ = std::make_shared<const DeviceScene>(device_, loaded.packed);
+  numbers_ = loaded.packed.numbers;
+  scene_features_ = loaded.features;
   scene_ = loaded.scene;
+  shown_scene_ = loaded.shown;
+  make_picture();
+  explanation_.clear();
   if (is_new) report("read " + file_.filename().string());
+}
+
+void Viewer::make_picture() {
+  features_ = light_features() | features_of(switches_.shading);
+  picture_.emplace(device_, device_scene_, features_, target_ms_);
+  // Its films are made with the window's images.
+  swapchain_.expire();
+}
+
+FeatureMask Viewer::light_features() const {
+  return scene_features_ & ~(switches_.has_shadows ? 0 : layout::FEATURE_SHADOWS);
+}
+
+void Viewer::explain(const uvec2& pixel) {
+  finish_frames();
+  try {
+    const Explanation explanation =
+        explain_pixel(device_, *device_scene_, numbers_, light_features(), current_view(), pixel);
+    explanation_title_ = fmt::format("pixel {}, {}", pixel.x, pixel.y);
+    explanation_ = explain_text(explanation, *shown_scene_);
+  } catch (const RunError& error) {
+    report_failure(error.what());
+  }
 }
 
 bool Viewer::fit_window() {
@@ -291,6 +333,7 @@ void Viewer::build_overlay() {
     if (const std::optional<Camera> picked = show_overlay(content, switches_)) control_.place(*picked);
   }
   if (has_help_) show_help();
+  if (!explanation_.empty() && !show_explanation(explanation_title_, explanation_)) explanation_.clear();
   imgui_->end_frame();
 }
 
@@ -308,11 +351,22 @@ void Viewer::report_failure(const std::string& text) {
   frames_to_draw_ = kSettlingFrames;
 }
 
+DescribedScene Viewer::described_scene(const View& view) const {
+  DescribedScene described{file_, switches_.has_shadows, asked_choice_.lights_off, std::nullopt};
+  if (view.camera.projection == Projection::kPerspective) return described;
+  for (size_t i = 0; i < scene_->cameras.size(); ++i) {
+    const Camera& camera = scene_->cameras[i];
+    if (camera.projection == view.camera.projection && camera.ymag == view.camera.ymag) described.camera_index = i;
+  }
+  return described;
+}
+
 View Viewer::current_view() const {
   View view;
   view.camera = control_.camera();
   view.size = picture_->full_size();
   view.max_depth = switches_.effective_depth();
+  view.shading = switches_.shading;
   return view;
 }
 

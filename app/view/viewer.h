@@ -9,6 +9,7 @@
 #include "console.h"
 #include "run_stats.h"
 #include "view/camera_control.h"
+#include "view/describe_command.h"
 #include "view/display_pass.h"
 #include "view/flight.h"
 #include "view/frame_queue.h"
@@ -25,6 +26,7 @@ struct ViewerStart {
   std::filesystem::path file;
   LoadedScene scene;
   SceneChoice choice;
+  bool has_shadows = true;
   View view;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
@@ -61,6 +63,11 @@ class Viewer {
   /// Starts what changed switches ask for, takes in what has been loaded.
   void update_scene();
   void show_scene(const LoadedScene& loaded);
+  /// A picture of the scene with the pipeline that the switches ask for.
+  void make_picture();
+  /// Of the scene with its shadows on or off.
+  FeatureMask light_features() const;
+  void explain(const uvec2& pixel);
   /// Fits everything to the window. False while it has no pixels.
   bool fit_window();
   void finish_frames();
@@ -72,6 +79,8 @@ class Viewer {
   void build_overlay();
   void report(const std::string& text);
   void report_failure(const std::string& text);
+  /// Of the command that gives a view's picture.
+  DescribedScene described_scene(const View& view) const;
   View current_view() const;
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
@@ -84,8 +93,15 @@ class Viewer {
   double target_ms_;
 
   std::shared_ptr<const Scene> scene_;
+  /// What is chosen of it, on the device.
+  std::shared_ptr<const Scene> shown_scene_;
+  std::shared_ptr<const DeviceScene> device_scene_;
+  PrimitiveNumbers numbers_;
+  FeatureMask scene_features_ = 0;
   Switches switches_;
   SceneChoice asked_choice_;
+  /// Of the picture's pipeline.
+  FeatureMask features_ = 0;
   SceneLoader loader_;
   double next_file_check_ = 0.0;
   CameraControl control_;
@@ -107,6 +123,9 @@ class Viewer {
   FrameStatistics statistics_;
   std::string message_;
   bool is_failure_ = false;
+  /// Of a pixel; empty where none is shown.
+  std::string explanation_title_;
+  std::string explanation_;
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;

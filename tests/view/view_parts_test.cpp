@@ -22,9 +22,19 @@ TEST(DescribeCommand, NamesTheViewForAShell) {
   view.samples_per_pixel = 4;
   view.camera.eye = vec3(0.1F, -2.0F, 1e-7F);
   view.camera.yfov = 0.7F;
-  const std::string command = describe_command("it's a scene.gltf", view);
+  const std::string command = describe_command({.file = "it's a scene.gltf"}, view);
   EXPECT_THAT(command, testing::StartsWith("promin render 'it'\\''s a scene.gltf' -o view.exr --size 640 360 --spp 4"));
   EXPECT_THAT(command, testing::HasSubstr("--eye 0.100000001 -2 1.00000001e-07 --look 0 0 -1 --up 0 1 0 --fov "));
+}
+
+TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
+  View view;
+  view.shading = Shading::kSteps;
+  view.camera.projection = Projection::kOrthographic;
+  const std::string command =
+      describe_command({.file = "s", .has_shadows = false, .lights_off = {0, 2}, .camera_index = 1}, view);
+  EXPECT_THAT(command, testing::HasSubstr(" --shading steps --no-shadows --lights-off 0,2 --camera 1 --eye "));
+  EXPECT_THAT(command, testing::Not(testing::HasSubstr("--fov")));
 }
 
 // Every float's angle comes back from nine digits of degrees.
@@ -32,7 +42,7 @@ TEST(DescribeCommand, AnglesComeBackToTheBit) {
   View view;
   for (float yfov = 0.001F; yfov < 3.1F; yfov *= 1.0037F) {
     view.camera.yfov = yfov;
-    const std::string command = describe_command("s", view);
+    const std::string command = describe_command({.file = "s"}, view);
     const double degrees = std::stod(command.substr(command.find("--fov ") + 6));
     ASSERT_EQ(static_cast<float>(glm::radians(degrees)), yfov) << command;
   }
