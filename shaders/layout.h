@@ -127,7 +127,7 @@ struct LightRecord {
 
 // A picture's constants (uniform buffer). None of them decides a branch or a loop: see Dispatch.
 struct Frame {
-  vec4 eye;   // w = near: distance of the viewport plane
+  vec4 eye;  // w = near: distance of the viewport plane
   vec4 look;
   vec4 right;  // from one pixel to the next on the projection plane at distance 1 (orthographic: in the world)
   vec4 up;
@@ -146,7 +146,8 @@ struct Dispatch {
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = 0
-  uvec4 share;     // x = one past the last block; y = blocks that a workgroup takes one after the other; 0, 0
+  uvec4 share;     // x = one past the last block; casting: z = parts of the rays that workgroups in a row take theirs
+                   // from; 0 else
 };
 
 // A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.

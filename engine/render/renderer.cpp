@@ -68,7 +68,9 @@ void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& 
 
 struct Renderer::Impl {
   Impl(const gpu::Device& the_device, const Scene& the_scene, const RendererOptions& the_options)
-      : device(the_device), options(the_options), pacer(options.target_dispatch_ms, kMinBlocks) {
+      : device(the_device),
+        options(the_options),
+        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), kMinBlocks) {
     PackedScene packed =
         options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
     stats.bvh = packed.bvh;
@@ -120,7 +122,7 @@ struct Renderer::Impl {
     one_block.range = uvec4(0, 0, 1, 0);
     one_block.window = uvec4(0, 0, 1, 1);
     one_block.sampling = uvec4(1, 1, 1, 0);
-    one_block.share = uvec4(1, 1, 0, 0);
+    one_block.share.x = 1;
     set_camera(one_pixel, one_block, Camera(), uvec2(1));
     one_pixel.film_center.z = 0.5F;
     frame_buffer->write(std::as_bytes(std::span(&one_pixel, 1)));
@@ -171,7 +173,7 @@ struct Renderer::Impl {
         uncollected += most_rays_a_sample * blocks * count;
         range.range = uvec4(first, sample, count, view.max_depth);
         const uint32_t blocks_a_group = pick_blocks_a_group(blocks);
-        range.share = uvec4(first + blocks, blocks_a_group, 0, 0);
+        range.share.x = first + blocks;
         const double time_ms = kernel->run(range, *film, divide_up(blocks, blocks_a_group));
         result.trace_ms += time_ms;
         pacer.learn(static_cast<double>(blocks) * count, time_ms);
