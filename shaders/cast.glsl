@@ -3,7 +3,8 @@
 // Rays in, records out, a lane for each PACKET_SIZE rays in a row: the body of cast.comp, which differs from a variant
 // only in what it includes before this.
 
-layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
+layout(local_size_x = LANES) in;
 
 HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
@@ -18,7 +19,9 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
 }
 
 void main() {
-  uint first = dispatch.range.x + PACKET_SIZE * gl_GlobalInvocationID.x;
+  uint parts = dispatch.share.z;
+  uint group = gl_WorkGroupID.x % parts * (gl_NumWorkGroups.x / parts) + gl_WorkGroupID.x / parts;
+  uint first = dispatch.range.x + PACKET_SIZE * (group * LANES + gl_LocalInvocationIndex);
   if (first >= dispatch.range.y) return;
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];

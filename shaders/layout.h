@@ -163,7 +163,8 @@ struct Dispatch {
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = 0
-  uvec4 share;     // x = one past the last block; y = blocks that a workgroup takes one after the other; 0, 0
+  uvec4 share;     // x = one past the last block; casting: z = parts of the rays that workgroups in a row take theirs
+                   // from; 0 else
 };
 
 // A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.

@@ -76,8 +76,8 @@ bool follow(inout Path path, Hit hit, inout uvec3 ray_count) {
 // A lane takes its pixel of one block after the other and one sample after the other, without waiting for its
 // neighbours' mirror rays: the loop's every turn traces one ray of each lane.
 void main() {
-  uint block = dispatch.range.x + dispatch.share.y * gl_WorkGroupID.x;
-  uint end_block = min(block + dispatch.share.y, dispatch.share.x);
+  uint block = dispatch.range.x + gl_WorkGroupID.x;
+  uint end_block = dispatch.share.x;
   uint end_sample = dispatch.range.y + dispatch.range.z;
   uvec3 ray_count = uvec3(0u);
   uvec2 pixel = uvec2(0u);
@@ -92,7 +92,7 @@ void main() {
       if (sample_index == end_sample) {
         pixel = BLOCK_SIZE * uvec2(block % dispatch.sampling.z, block / dispatch.sampling.z) +
                 pixel_in_block(gl_LocalInvocationIndex);
-        ++block;
+        block += gl_NumWorkGroups.x;
         if (any(greaterThanEqual(pixel, dispatch.window.zw))) continue;
         index = pixel.y * dispatch.window.z + pixel.x;
         sample_index = dispatch.range.y;

@@ -77,7 +77,7 @@ PicturePiece PicturePieces::next(double units) {
   PicturePiece piece;
   piece.dispatch = dispatch_;
   piece.dispatch.range = uvec4(first_block_, first_sample_, sample_count, max_depth_);
-  piece.dispatch.share = uvec4(first_block_ + block_count_, blocks_a_group, 0, 0);
+  piece.dispatch.share.x = first_block_ + block_count_;
   piece.group_count = divide_up(block_count_, blocks_a_group);
   piece.units = static_cast<double>(block_count_) * sample_count;
   piece.most_rays_a_lane = (1.0 + max_depth_) * (1.0 + dispatch_.counts.z) * piece.units;

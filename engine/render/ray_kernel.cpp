@@ -17,9 +17,16 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kGroupLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+/// CPU drivers give each thread as many groups in a row. So that these take as long, groups in a row take their rays
+/// from as many parts of all.
+constexpr uint32_t kParts = 16;
 /// Keeps the device's cores busy in the first dispatch.
 constexpr double kFirstRays = 64.0 * kGroupLanes;
 static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
+
+uint32_t divide_up(uint32_t a, uint32_t b) {
+  return (a + b - 1) / b;
+}
 
 vk::DeviceSize hits_size(size_t ray_count) {
   return sizeof(layout::Dispatch) + ray_count * sizeof(layout::HitRecord);
@@ -42,7 +49,7 @@ struct RayKernel::Impl {
       : device(the_device),
         scene(std::move(the_scene)),
         options(the_options),
-        pacer(options.target_dispatch_ms, kFirstRays) {
+        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), kFirstRays) {
     const Stopwatch compiling;
     frame.emplace(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer);
     frame->write(std::as_bytes(std::span(&scene->frame(), 1)));
@@ -58,7 +65,9 @@ struct RayKernel::Impl {
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
     kernel.emplace(device, options.spirv, constants, buffers);
     // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
-    kernel->run(scene->dispatch(), *hits, 1);
+    layout::Dispatch no_rays = scene->dispatch();
+    no_rays.share.z = 1;
+    kernel->run(no_rays, *hits, 1);
     pipeline_ms = compiling.ms();
   }
 
@@ -94,6 +103,8 @@ struct RayKernel::Impl {
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
     layout::Dispatch dispatch = scene->dispatch();
+    const uint32_t parts = device.is_cpu() ? kParts : 1;
+    dispatch.share.z = parts;
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -102,7 +113,9 @@ struct RayKernel::Impl {
       const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : paced;
       const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
       dispatch.range = uvec4(first, first + count, 0, 0);
-      const double time_ms = kernel->run(dispatch, *hits, (count + group_rays - 1) / group_rays);
+      // As many in each part: those beyond the last ray do nothing.
+      const uint32_t part_groups = divide_up(divide_up(count, group_rays), parts);
+      const double time_ms = kernel->run(dispatch, *hits, parts * part_groups);
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;

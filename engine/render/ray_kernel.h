@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "layout.h"
@@ -33,8 +34,8 @@ struct RayKernelOptions {
   uint32_t packet_size = 1;
   /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
   bool avoids_texels = false;
-  /// A single dispatch is not meant to take longer.
-  double target_dispatch_ms = 25.0;
+  /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (render/tracing_kernel.h).
+  std::optional<double> target_dispatch_ms = std::nullopt;
   /// Fixed number of rays a dispatch, for tests; 0 adapts.
   uint32_t rays_per_dispatch = 0;
 };

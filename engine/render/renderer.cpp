@@ -28,7 +28,9 @@ constexpr double kMaxRaysALane = 2e9;
 
 struct Renderer::Impl {
   Impl(const gpu::Device& the_device, const Scene& the_scene, const RendererOptions& the_options)
-      : device(the_device), options(the_options), pacer(options.target_dispatch_ms, PicturePieces::kMinBlocks) {
+      : device(the_device),
+        options(the_options),
+        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), PicturePieces::kMinBlocks) {
     PackedScene packed =
         options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
     stats.bvh = packed.bvh;

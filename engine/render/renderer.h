@@ -57,8 +57,8 @@ struct RendererOptions {
   FeatureMask left_out_features = 0;
   /// Bring RenderResult::aovs as well. The image's bits stay the same.
   bool with_aovs = false;
-  /// A single dispatch is not meant to take longer; work is cut into tiles by measured time.
-  double target_dispatch_ms = 25.0;
+  /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (render/tracing_kernel.h).
+  std::optional<double> target_dispatch_ms = std::nullopt;
   /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
   uint32_t blocks_per_dispatch = 0;
 };

@@ -27,6 +27,10 @@ void Pacer::learn(double units, double time_ms) {
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
 
+double dispatch_target_ms(const gpu::Device& device) {
+  return device.is_cpu() ? 100.0 : 25.0;
+}
+
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                              std::span<const gpu::SpecializationConstant> constants,
                              std::span<const gpu::BoundBuffer> buffers)

@@ -25,6 +25,10 @@ class Pacer {
   double units_;
 };
 
+/// How long a dispatch should take: GPU drivers kill those of seconds; CPU drivers do not, and at the end of each
+/// dispatch their threads wait for the last one.
+double dispatch_target_ms(const gpu::Device& device);
+
 /// A pipeline that traces, timed by the device's clock where it has one.
 class TracingKernel {
  public:
