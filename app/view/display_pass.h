@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "core/math.h"
 #include "gpu/buffer.h"
+#include "gpu/pipeline.h"
 #include "view/swapchain.h"
 
 namespace promin::app {
@@ -19,25 +21,31 @@ struct ShownPicture {
 };
 inline constexpr size_t kFilmCount = 2;
 
-/// Draws a film to the window, scaled to all of it and encoded (shaders/display.frag).
+/// Draws pictures to the window: a film is encoded once (shaders/encode_film.comp), then drawn as often as the window
+/// wants it, scaled to all of the window (shaders/display.frag).
 class DisplayPass {
  public:
   /// Throws vk::SystemError.
   DisplayPass(const gpu::Device& device, const Swapchain& swapchain);
 
-  /// Says where film `film` is now; the device must be idle.
-  void bind(size_t film, const gpu::Buffer& buffer);
+  /// Makes room for pictures of so many pixels, and says where the films are now; the device must be idle.
+  void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count);
 
-  /// Records drawing within a render pass of the swapchain.
-  void record(const vk::raii::CommandBuffer& commands, const ShownPicture& picture, const uvec2& window_size) const;
+  /// Records encoding a film that was traced before.
+  void record_encoding(const vk::raii::CommandBuffer& commands, size_t film) const;
+  /// Records drawing the picture that was encoded last, within a render pass of the swapchain.
+  void record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& picture_size,
+                      const uvec2& window_size) const;
 
  private:
   const gpu::Device* device_;
+  std::optional<gpu::Buffer> encoded_;
+  std::array<std::optional<gpu::ComputePipeline>, kFilmCount> encoders_;
   vk::raii::DescriptorSetLayout set_layout_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};
   vk::raii::Pipeline pipeline_{nullptr};
   vk::raii::DescriptorPool pool_{nullptr};
-  std::vector<vk::raii::DescriptorSet> sets_;
+  vk::raii::DescriptorSet set_{nullptr};
 };
 
 }  // namespace promin::app

@@ -46,6 +46,7 @@ void LivePicture::resize(const uvec2& size) {
   full_size_ = pixels <= most_pixels ? size : uvec2(dvec2(size) * std::sqrt(most_pixels / pixels));
   for (Film& film : films_) film.reserve(full_size_.x * full_size_.y);
   shown_.reset();
+  shown_count_ = 0;
   picture_.reset();
 }
 
@@ -120,6 +121,7 @@ double LivePicture::record(const vk::raii::CommandBuffer& commands) {
 void LivePicture::finish() {
   shown_ = picture_when_done_;
   shown_version_ = picture_version_;
+  ++shown_count_;
   picture_.reset();
 }
 

@@ -38,6 +38,8 @@ class LivePicture {
   /// Whether the wanted view is shown in full size.
   bool is_complete() const;
   const std::optional<ShownPicture>& shown() const { return shown_; }
+  /// How many pictures have been shown so far; resize() starts anew.
+  uint64_t shown_count() const { return shown_count_; }
   /// Of the picture under way; 1 where there is none.
   double fraction_done() const { return picture_ ? picture_->fraction_done() : 1.0; }
 
@@ -69,6 +71,7 @@ class LivePicture {
   uint64_t wanted_version_ = 0;
   std::optional<ShownPicture> shown_;
   uint64_t shown_version_ = 0;
+  uint64_t shown_count_ = 0;
   /// Under way, on the film that is not shown.
   std::optional<PicturePieces> picture_;
   ShownPicture picture_when_done_;

@@ -251,7 +251,9 @@ bool Viewer::fit_window() {
   swapchain_.recreate(size);
   if (swapchain_.is_out_of_date()) return false;
   picture_->resize(swapchain_.size());
-  for (size_t i = 0; i < kFilmCount; ++i) display_.bind(i, picture_->film(i));
+  const uvec2 full_size = picture_->full_size();
+  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y);
+  encoded_count_ = 0;
   frames_to_draw_ = kSettlingFrames;
   return true;
 }
@@ -286,11 +288,9 @@ void Viewer::record(Frame& frame) {
 }
 
 void Viewer::record_tracing(Frame& frame) {
-  using Access = vk::AccessFlagBits;
   using Stage = vk::PipelineStageFlagBits;
-  // The film that is traced now was shown by the frame before.
-  frame.commands.pipelineBarrier(Stage::eFragmentShader | Stage::eTransfer, Stage::eComputeShader | Stage::eTransfer,
-                                 {}, {}, {}, {});
+  // Of the film that is traced now the frame before may have taken a screenshot.
+  frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
   if (wants_screenshot_ && picture_->is_complete() && !screenshot_.is_busy()) {
@@ -303,14 +303,16 @@ void Viewer::record_tracing(Frame& frame) {
     };
     wants_screenshot_ = false;
   }
-  const vk::MemoryBarrier traced(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead);
-  frame.commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eFragmentShader, {}, traced, {}, {});
   frame.mark(FrameMark::kTraced);
 }
 
 void Viewer::record_display(const Frame& frame) {
+  if (encoded_count_ != picture_->shown_count()) {
+    display_.record_encoding(frame.commands, picture_->shown()->film);
+    encoded_count_ = picture_->shown_count();
+  }
   swapchain_.begin_drawing(frame.commands, frame.image);
-  if (picture_->shown()) display_.record(frame.commands, *picture_->shown(), swapchain_.size());
+  if (picture_->shown()) display_.record_drawing(frame.commands, picture_->shown()->size, swapchain_.size());
   frame.mark(FrameMark::kDisplayed);
   imgui_->record(frame.commands);
   frame.commands.endRenderPass();

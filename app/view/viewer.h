@@ -117,6 +117,8 @@ class Viewer {
   std::unique_ptr<ImguiRenderer> imgui_;
   FrameQueue frames_;
   std::optional<LivePicture> picture_;
+  /// LivePicture::shown_count of what was encoded last.
+  uint64_t encoded_count_ = 0;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;
 

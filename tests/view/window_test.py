@@ -127,6 +127,65 @@ def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
         session.quit()
 
 
+def shows_what_is_chosen(bin_folder, scenes, folder):
+    session = Session(
+        bin_folder, scenes, folder, "--no-shadows", "--lights-off", "1,3", "--max-depth", "1", PROMIN_VALIDATION="sync"
+    )
+    with session as viewer:
+        viewer.press("p")
+        session.take_screenshot(1)
+        command = session.print_command()
+        expect(" --max-depth 1 --no-shadows --lights-off 1,3 " in command, f"not what is shown: {command}")
+        session.expect_same_picture(1, command)
+
+        viewer.press("F7")
+        session.take_screenshot(2)
+        command = session.print_command()
+        expect(" --shading steps " in command, f"not what is shown: {command}")
+        session.expect_same_picture(2, command)
+
+        # A click explains a pixel, and moves nothing.
+        viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
+        viewer.press("F1")
+        session.take_screenshot(3)
+        expect(
+            (folder / "promin-0001.png").read_bytes() == (folder / "promin-0003.png").read_bytes(),
+            "light is not as it was",
+        )
+        session.quit()
+
+
+def plays_what_it_recorded(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
+    with session as viewer:
+        session.take_screenshot(1)
+        viewer.hold("w", 0.4)
+        viewer.press("p")
+        session.take_screenshot(2)
+        session.quit()
+    path = json.loads((folder / "flight.json").read_text())["frames"]
+    expect(len(path) > 2, f"the flight has {len(path)} frames")
+
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", PROMIN_VALIDATION="core")
+    with session as viewer:
+        code = viewer.wait_for_end()
+        expect(code == 0, f"the replay ended with {code}: {viewer.err}")
+        expect(
+            re.fullmatch(rf"{len(path)} frames: median [\d.]+ ms, 99th percentile [\d.]+ ms, .*\n", viewer.out),
+            f"{len(path)} frames were recorded, and replayed: {viewer.out}",
+        )
+
+    # The flight ends where the last screenshot was taken.
+    last = len(path) - 1
+    words = ["--size", *SIZE, "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
+    done = run(bin_folder / "promin", "render", session.scene, *words, "-o", folder / "last.png")
+    expect(done.returncode == 0, done.stderr)
+    expect(
+        (folder / "last.png").read_bytes() == (folder / "promin-0002.png").read_bytes(),
+        "the flight does not end where the camera did",
+    )
+
+
 def survives_its_window(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, PROMIN_VALIDATION="sync")
     with session as viewer:
@@ -189,6 +248,9 @@ def refuses_what_is_wrong(bin_folder, scenes, folder):
     for code, words in (
         (2, ["--target-ms", "0", scenes / "sphere.gltf"]),
         (2, ["--present-mode", "soon", scenes / "sphere.gltf"]),
+        (2, ["--lights-off", "7", scenes / "sphere.gltf"]),
+        (2, ["--keep-open", scenes / "sphere.gltf"]),
+        (3, ["--replay", scenes / "sphere.gltf", scenes / "sphere.gltf"]),
         (2, []),
         (3, [folder / "missing.gltf"]),
     ):
