@@ -112,10 +112,16 @@ void OptionTable::add_required(const std::string& names, const std::string& plac
   command_.get_option(display_name(names))->required();
 }
 
+void OptionTable::add_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
+                               Setter set) {
+  add(names, placeholder, help, std::move(set));
+  command_.get_option(display_name(names))->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void OptionTable::add_required_repeated(const std::string& names, const std::string& placeholder,
                                         const std::string& help, Setter set) {
-  add_required(names, placeholder, help, std::move(set));
-  command_.get_option(display_name(names))->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_repeated(names, placeholder, help, std::move(set));
+  command_.get_option(display_name(names))->required();
 }
 
 void OptionTable::add_flag(const std::string& names, const std::string& help, bool& value) {

@@ -36,6 +36,9 @@ class Words {
   /// One of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
 
+  /// Parts of the words, to be read as words of the same option.
+  Words with(std::vector<std::string> words) const { return {command_, option_, std::move(words)}; }
+
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
@@ -55,7 +58,8 @@ class OptionTable {
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// What the command cannot do without.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
-  /// A required option of one word that may be given several times; the setter gets all.
+  /// An option of one word that may be given several times; the setter gets all.
+  void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);
   void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
                              Setter set);
   void add_flag(const std::string& names, const std::string& help, bool& value);

@@ -48,6 +48,7 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
                               });
   table.add_flag("--any", "Ask only whether anything is hit: t is 0 then, and infinite on a miss", options.is_any);
   add_tracing_options(table, options.tracing);
+  add_measuring_options(table, options.tracing);
 }
 
 void check_cast_options(const CastOptions& options) {

@@ -75,7 +75,7 @@ void print_info(const std::filesystem::path& file) {
   print_rows("cameras", describe_cameras(scene.cameras));
   print_row("bounds", describe_bounds(bounds_of(scene)));
   // What follows is of the scene as it would be rendered, with the lights that stand in.
-  light_up(scene, Camera(), Console(Verbosity::kQuiet));
+  light_up(scene, Console(Verbosity::kQuiet));
   print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(scene)), ", ")));
   const PackedScene packed = pack_scene(scene, builder_names().front());
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,

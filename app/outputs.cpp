@@ -4,8 +4,8 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
+#include <set>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -47,18 +47,17 @@ void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::pa
                    const std::optional<fs::path>& stats) {
   std::vector<fs::path> files = outputs;
   if (stats) files.push_back(*stats);
-  std::vector<fs::path> read;
-  for (const fs::path& input : inputs) read.push_back(resolve(input));
-  std::vector<fs::path> written;
+  std::set<fs::path> read;
+  for (const fs::path& input : inputs) read.insert(resolve(input));
+  std::set<fs::path> written;
   for (const fs::path& file : files) {
     const fs::path resolved = resolve(file);
-    if (std::find(read.begin(), read.end(), resolved) != read.end()) {
+    if (read.contains(resolved)) {
       throw UsageError({"the output would overwrite an input", file.string(), "name another file"});
     }
-    if (std::find(written.begin(), written.end(), resolved) != written.end()) {
+    if (!written.insert(resolved).second) {
       throw UsageError({"the same output file is named twice", file.string(), "name different files"});
     }
-    written.push_back(resolved);
   }
   const DeferredSignals while_probing;
   for (const fs::path& file : files) check_writable(file);

@@ -32,17 +32,17 @@ Progress::~Progress() {
   if (has_bar_) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::update(double fraction) {
+void Progress::update(double fraction, const std::string& at) {
   const Clock::time_point now = Clock::now();
   if (is_quiet_ || fraction <= 0.0 || fraction >= 1.0 || now - start_ < kLongWork) return;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const std::string left = format_time(elapsed / fraction * (1.0 - fraction));
+  const std::string left = format_time(elapsed / fraction * (1.0 - fraction)) + " left" + (at.empty() ? "" : ", " + at);
   if (is_terminal_) {
     if (has_bar_ && now - last_draw_ < kDrawInterval) return;
     last_draw_ = now;
     has_bar_ = true;
     const auto filled = static_cast<int>(fraction * kBarWidth);
-    const std::string bar = fmt::format("\r[{:=<{}}{:{}}] {:3.0f} %, {} left\033[K", "", filled, "", kBarWidth - filled,
+    const std::string bar = fmt::format("\r[{:=<{}}{:{}}] {:3.0f} %, {}\033[K", "", filled, "", kBarWidth - filled,
                                         std::floor(100.0 * fraction), left);
     std::fputs(bar.c_str(), stderr);
     std::fflush(stderr);
@@ -51,7 +51,7 @@ void Progress::update(double fraction) {
   const auto tenth = static_cast<int>(10.0 * fraction);
   if (tenth == last_tenth_) return;
   last_tenth_ = tenth;
-  std::fputs(fmt::format("{}: {:.0f} %, {} left\n", program_, std::floor(100.0 * fraction), left).c_str(), stderr);
+  std::fputs(fmt::format("{}: {:.0f} %, {}\n", program_, std::floor(100.0 * fraction), left).c_str(), stderr);
 }
 
 }  // namespace promin::app

@@ -18,8 +18,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// The fraction of the whole work that is done, 0...1.
-  void update(double fraction);
+  /// The fraction of the whole work that is done, 0...1, and what it is at, which may be empty.
+  void update(double fraction, const std::string& at = {});
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -15,7 +15,10 @@
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
+#include "explanation.h"
+#include "frame_plan.h"
 #include "image/image.h"
+#include "layout.h"
 #include "outputs.h"
 #include "progress.h"
 #include "render_options.h"
@@ -25,25 +28,29 @@
 namespace promin::app {
 namespace {
 
-/// Sets the renderer up, traces as often as asked for and leaves what it took in `stats`.
-RenderResult trace(const gpu::Device& device, const Scene& scene, const RenderOptions& options, RunStats& stats,
-                   const Console& console) {
-  RendererOptions renderer_options;
-  choose_tree(options.tracing, renderer_options);
-  renderer_options.force_all_features = options.has_all_features;
-  renderer_options.with_aovs = options.aovs.any();
-  Renderer renderer(device, scene, renderer_options);
-  take_setup(renderer.setup_stats(), stats, console);
-
-  RenderResult result;
-  Progress progress(console.is_quiet());
-  const uint32_t repeats = options.tracing.repeat_count;
-  for (uint32_t i = 0; i < repeats; ++i) {
-    result = renderer.render(*stats.view, [&](double fraction) { progress.update((i + fraction) / repeats); });
-    stats.trace_ms.push_back(result.trace_ms);
-  }
-  stats.rays = result.rays;
+RendererOptions make_renderer_options(const RenderOptions& options) {
+  RendererOptions result;
+  choose_tree(options.tracing, result);
+  result.force_all_features = options.has_all_features;
+  result.with_aovs = options.aovs.any();
+  if (options.view.has_no_shadows) result.left_out_features = layout::FEATURE_SHADOWS;
   return result;
+}
+
+/// A picture and the device's time for each of its repetitions.
+struct TracedFrame {
+  RenderResult result;
+  std::vector<double> trace_ms;
+};
+
+TracedFrame trace(Renderer& renderer, const View& view, uint32_t repeats,
+                  const std::function<void(double)>& on_progress) {
+  TracedFrame frame;
+  for (uint32_t i = 0; i < repeats; ++i) {
+    frame.result = renderer.render(view, [&](double fraction) { on_progress((i + fraction) / repeats); });
+    frame.trace_ms.push_back(frame.result.trace_ms);
+  }
+  return frame;
 }
 
 Channel channel_of(const std::string& name, std::span<const float> values) {
@@ -66,33 +73,88 @@ std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
   return channels;
 }
 
-Metadata make_metadata(const RunStats& stats) {
-  return {{"promin:version", PROMIN_VERSION},
-          {"promin:scene", stats.scene_file},
-          {"promin:device", stats.device.name},
-          {"promin:driver", stats.device.driver},
-          {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
-          {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
-          {"promin:max_depth", std::to_string(stats.view->max_depth)},
-          {"promin:trace_ms", fmt::format("{:.3f}", stats.median_trace_ms())}};
+Metadata make_metadata(const RunStats& stats, const PlannedFrame& planned, const TracedFrame& traced) {
+  Metadata metadata = describe_picture(stats);
+  metadata.emplace_back("promin:trace_ms", fmt::format("{:.3f}", median(traced.trace_ms)));
+  if (planned.number) metadata.emplace_back("promin:frame", std::to_string(*planned.number));
+  return metadata;
 }
 
-void write_pictures(const RenderOptions& options, const RenderResult& result, const RunStats& stats) {
+void write_pictures(const RenderOptions& options, const PlannedFrame& planned, const TracedFrame& traced,
+                    const RunStats& stats) {
   std::optional<CropPlacement> placement;
   if (stats.view->crop) placement = CropPlacement{stats.view->crop->lo, stats.view->size};
-  const Metadata metadata = make_metadata(stats);
-  const std::vector<Channel> channels = make_channels(result.aovs, options.aovs);
-  for (const std::filesystem::path& file : options.pictures) {
-    write_image(file, result.image, metadata, placement, channels);
+  const Metadata metadata = make_metadata(stats, planned, traced);
+  const std::vector<Channel> channels = make_channels(traced.result.aovs, options.aovs);
+  for (const std::filesystem::path& file : planned.pictures) {
+    write_image(file, traced.result.image, metadata, placement, channels);
   }
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
   std::vector<std::string> files;
   for (const std::filesystem::path& file : options.pictures) files.push_back(file.string());
-  return fmt::format("{}x{}, {} spp, {:.4g} Mrays in {:.1f} ms ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
-                     stats.view->size.y, stats.view->samples_per_pixel, 1e-6 * static_cast<double>(stats.rays.total()),
-                     stats.median_trace_ms(), stats.mrays_per_s(), stats.device.name, fmt::join(files, ", "));
+  const std::string frames = stats.frames.empty() ? "" : fmt::format("{} frames, ", stats.frames.size());
+  const std::string time_of = stats.frames.empty() ? "" : " a frame";
+  return fmt::format("{}x{}, {} spp, {}{:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
+                     stats.view->size.y, stats.view->samples_per_pixel, frames,
+                     1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
+                     stats.mrays_per_s(), stats.device.name, fmt::join(files, ", "));
+}
+
+/// Traces a frame and writes its pictures.
+void render_frame(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
+                  Renderer& renderer, RunStats& stats, const std::function<void(double)>& on_progress) {
+  const TracedFrame traced = trace(renderer, *stats.view, options.tracing.repeat_count, on_progress);
+  check_validation(device, stats);
+  stats.rays += traced.result.rays;
+  if (planned.number) {
+    stats.frames.push_back(*planned.number);
+    stats.trace_ms.push_back(median(traced.trace_ms));
+  } else {
+    stats.trace_ms = traced.trace_ms;
+  }
+  const DeferredSignals while_writing;
+  const Stopwatch write;
+  write_pictures(options, planned, traced, stats);
+  stats.write_ms += write.ms();
+}
+
+/// All of them, with what is loaded once. What fails says at which; those before are whole.
+void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const gpu::Device& device,
+                   Renderer& renderer, RunStats& stats, const Console& console) {
+  Progress progress(console.is_quiet());
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const PlannedFrame& frame = frames[i];
+    const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
+    if (frame.camera) stats.view->camera = *frame.camera;
+    try {
+      render_frame(frame, options, device, renderer, stats, [&](double fraction) {
+        progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
+      });
+    } catch (const RunError& error) {
+      if (name.empty()) throw;
+      throw RunError({name + ": " + error.what(), "", ""});
+    }
+  }
+}
+
+std::vector<std::filesystem::path> input_files(const RenderOptions& options) {
+  std::vector<std::filesystem::path> files = input_files(options.tracing);
+  if (options.path) files.push_back(*options.path);
+  return files;
+}
+
+std::vector<std::filesystem::path> pictures_of(const std::vector<PlannedFrame>& frames) {
+  std::vector<std::filesystem::path> files;
+  for (const PlannedFrame& frame : frames) files.insert(files.end(), frame.pictures.begin(), frame.pictures.end());
+  return files;
+}
+
+void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
+  if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
+  throw UsageError({fmt::format("--explain is beyond the picture of {}x{}", size.x, size.y), "on the command line",
+                    "stay within it or give a larger --size"});
 }
 
 void render(const RenderOptions& options) {
@@ -100,23 +162,33 @@ void render(const RenderOptions& options) {
   const TracingOptions& tracing = options.tracing;
   check_render_options(options);
   check_pictures(options.pictures);
-  check_outputs(input_files(tracing), options.pictures, tracing.stats);
+  const std::vector<PlannedFrame> frames = plan_frames(options);
+  check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const Console console(tracing.verbosity());
 
   RunStats stats;
   Scene scene = load_for(tracing, stats, console);
-  stats.view = make_view(scene, options.view, console);
-  light_up(scene, stats.view->camera, console);
+  ViewOptions view = options.view;
+  view.given_camera = frames.front().camera;
+  stats.view = make_view(scene, view, console);
+  check_explained_pixel(options, stats.view->size);
+  light_up(scene, console);
+  check_lights(scene, options.view.lights_off);
+  leave_out_lights(scene, options.view.lights_off);
   stats.light_count = scene.lights.size();
 
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
-  const RenderResult result = trace(*device, scene, options, stats, console);
-  check_validation(*device, stats);
+  Renderer renderer(*device, scene, make_renderer_options(options));
+  take_setup(renderer.setup_stats(), stats, console);
+  if (options.explained_pixel) {
+    const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
+    check_validation(*device, stats);
+    fmt::print("{}", explain_json(explanation, scene));
+    return;
+  }
+  render_frames(frames, options, *device, renderer, stats, console);
 
   const DeferredSignals while_writing;
-  const Stopwatch write;
-  write_pictures(options, result, stats);
-  stats.write_ms = write.ms();
   stats.total_ms = total.ms();
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
   if (!console.is_quiet()) fmt::print("{}\n", summarize(stats, options));

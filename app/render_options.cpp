@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <sstream>
 
 #include "arguments.h"
@@ -21,6 +22,7 @@ constexpr uint32_t kMaxDepth = 1000;
 /// The limits 0 and 180 themselves show nothing.
 constexpr double kMinFovDeg = 1e-3;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
+constexpr uint32_t kMaxFrame = 9999999;
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 constexpr std::array<std::string_view, 4> kAovNames = {"depth", "normal", "object", "primitive"};
 
@@ -50,29 +52,69 @@ PixelWindow read_window(const Words& words) {
   return window;
 }
 
+Shading read_shading(const Words& words) {
+  const std::span<const std::string_view> names = shading_names();
+  const auto place = std::find(names.begin(), names.end(), words.choice(names));
+  return static_cast<Shading>(place - names.begin());
+}
+
+/// "3-7", or "3" alone.
+FrameRange read_frames(const Words& words) {
+  const std::string& text = words.text();
+  const size_t dash = text.find('-');
+  const Words ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
+  const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
+  if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
+  return range;
+}
+
+/// Numbers between commas.
+std::vector<uint32_t> read_numbers(const Words& words) {
+  std::vector<uint32_t> numbers;
+  std::istringstream list(words.text() + ",");
+  for (std::string number; std::getline(list, number, ',');) {
+    uint32_t value = 0;
+    const char* end = number.data() + number.size();
+    const auto parsed = std::from_chars(number.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end) {
+      words.refuse(fmt::format("--lights-off takes numbers from 0 with commas between, not \"{}\"", words.text()));
+    }
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+void check_explain_options(const RenderOptions& options) {
+  const std::pair<bool, std::string_view> others[] = {{!options.pictures.empty(), "--output"},
+                                                      {options.path.has_value(), "--path"},
+                                                      {options.aovs.any(), "--aov"},
+                                                      {options.view.crop.has_value(), "--crop"},
+                                                      {options.view.shading != Shading::kFull, "--shading"},
+                                                      {options.tracing.stats.has_value(), "--stats"},
+                                                      {options.tracing.repeat_count > 1, "--repeat"}};
+  for (const auto& [is_given, name] : others) {
+    if (!is_given) continue;
+    throw UsageError(
+        {fmt::format("--explain and {} contradict each other", name), "on the command line", "leave one out"});
+  }
+}
+
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderOptions& options) {
-  ViewOptions& view = options.view;
+void add_view_options(OptionTable& table, ViewOptions& view) {
   PoseOptions& pose = view.pose;
-  OptionTable table(command);
-
-  add_scene_argument(table, options.tracing);
-  table.add_required_repeated("-o,--output", "FILE",
-                              "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
-                              [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
-  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
-            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
             [&](const Words& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--max-depth", "N",
             fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
             [&](const Words& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
+  table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(shading_names(), ", ")),
+            [&](const Words& w) { view.shading = read_shading(w); });
+  table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
+  table.add("--lights-off", "INDICES", "Sources to leave out, by their numbers from 0 with commas between",
+            [&](const Words& w) { view.lights_off = read_numbers(w); });
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const Words& w) { view.camera = w.text(); });
-  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
-            [&](const Words& w) { view.crop = read_window(w); });
-
   table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",
             [&](const Words& w) { pose.eye = w.vector(kMaxCoordinate); });
   table.add("--look", "X Y Z", "Direction of view, instead of the camera's",
@@ -83,16 +125,50 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const Words& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
   table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
             [&](const Words& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  ViewOptions& view = options.view;
+  OptionTable table(command);
+
+  add_scene_argument(table, options.tracing);
+  table.add_repeated("-o,--output", "FILE", "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
+                     [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
+            [&](const Words& w) { options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide)); });
+  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
+            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  add_view_options(table, view);
+  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
+            [&](const Words& w) { view.crop = read_window(w); });
+
+  table.add("--path", "FILE.json", "Render the frames of a camera path, each to -o with its number in place of ####",
+            [&](const Words& w) { options.path = w.text(); });
+  table.add("--frames", "A-B", "Of the path, the frames A to B, both included; the first is 0 [all]",
+            [&](const Words& w) { options.frames = read_frames(w); });
 
   table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(kAovNames, ",")),
             [&](const Words& w) { options.aovs = read_aovs(w); });
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
             [&](const Words& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
+  add_measuring_options(table, options.tracing);
 }
 
 void check_render_options(const RenderOptions& options) {
   check_tracing_options(options.tracing);
+  if (options.path && (options.view.camera || options.view.pose.any())) {
+    throw UsageError({"--path and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
+                      "on the command line", "leave one out"});
+  }
+  if (options.explained_pixel) {
+    check_explain_options(options);
+  } else if (options.pictures.empty()) {
+    throw UsageError({"--output is required", "on the command line", "see promin render --help"});
+  }
+  if (options.frames && !options.path) {
+    throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});
+  }
   const auto& pictures = options.pictures;
   if (options.aovs.any() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {
     throw UsageError({"--aov has no picture to go to", "on the command line", "give -o with the ending .exr as well"});

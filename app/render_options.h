@@ -29,6 +29,8 @@ struct PoseOptions {
   /// Vertical, degrees in (0, 180).
   std::optional<double> fov_deg;
   std::optional<double> near;
+
+  bool any() const { return eye || look || up || fov_deg || near; }
 };
 
 /// What of the scene is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
@@ -37,8 +39,14 @@ struct ViewOptions {
   std::optional<PixelWindow> crop;
   uint32_t samples_per_pixel = View{}.samples_per_pixel;
   uint32_t max_depth = View{}.max_depth;
+  Shading shading = Shading::kFull;
+  bool has_no_shadows = false;
+  /// Indices of the scene's lights.
+  std::vector<uint32_t> lights_off;
   /// Name or number of a camera.
   std::optional<std::string> camera;
+  /// Takes the place of the scene's cameras.
+  std::optional<Camera> given_camera;
   PoseOptions pose;
 };
 
@@ -52,14 +60,29 @@ struct AovChoice {
   bool any() const { return depth || normal || object || primitive; }
 };
 
+/// Numbers of frames from 0, both included.
+struct FrameRange {
+  uint32_t first = 0;
+  uint32_t last = 0;
+};
+
 struct RenderOptions {
   TracingOptions tracing;
   std::vector<std::filesystem::path> pictures;
   ViewOptions view;
   /// Channels that an EXR carries beside R, G and B.
   AovChoice aovs;
+  /// A camera path, and which of its frames; all where empty.
+  std::optional<std::filesystem::path> path;
+  std::optional<FrameRange> frames;
+  /// A pixel to explain instead of writing a picture.
+  std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 };
+
+/// The rows of what a window takes as well: what of the scene is shown, and the camera. `view` must outlive the
+/// parsing.
+void add_view_options(OptionTable& table, ViewOptions& view);
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_stats.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace promin::app {
 namespace {
@@ -35,19 +38,40 @@ Json json_of_bvh(const BvhStats& bvh) {
           {"sah_cost", bvh.sah_cost}};
 }
 
+Json json_of_frames(const RunStats& stats) {
+  Json json = Json::array();
+  for (size_t i = 0; i < stats.trace_ms.size(); ++i) {
+    json.push_back({{"frame", stats.frames[i]}, {"trace_ms", stats.trace_ms[i]}});
+  }
+  return json;
+}
+
 }  // namespace
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
 double RunStats::median_trace_ms() const {
-  if (trace_ms.empty()) return 0.0;
-  std::vector<double> sorted = trace_ms;
-  std::sort(sorted.begin(), sorted.end());
-  const size_t middle = sorted.size() / 2;
-  return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+  return median(trace_ms);
 }
 
 double RunStats::mrays_per_s() const {
-  const double ms = median_trace_ms();
+  const double ms = frames.empty() ? median_trace_ms() : std::accumulate(trace_ms.begin(), trace_ms.end(), 0.0);
   return ms > 0.0 ? static_cast<double>(rays.total()) / (1e3 * ms) : 0.0;
+}
+
+Metadata describe_picture(const RunStats& stats) {
+  return {{"promin:version", PROMIN_VERSION},
+          {"promin:scene", stats.scene_file},
+          {"promin:device", stats.device.name},
+          {"promin:driver", stats.device.driver},
+          {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
+          {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
+          {"promin:max_depth", std::to_string(stats.view->max_depth)}};
 }
 
 std::string to_json(const RunStats& stats) {
@@ -68,10 +92,14 @@ std::string to_json(const RunStats& stats) {
         {"trace", stats.median_trace_ms()},
         {"write", stats.write_ms},
         {"total", stats.total_ms}}},
-      {"trace_runs_ms", stats.trace_ms},
       {"rays", {{"primary", stats.rays.primary}, {"shadow", stats.rays.shadow}, {"reflection", stats.rays.reflection}}},
       {"mrays_per_s", stats.mrays_per_s()},
   };
+  if (stats.frames.empty()) {
+    json["trace_runs_ms"] = stats.trace_ms;
+  } else {
+    json["frames"] = json_of_frames(stats);
+  }
   if (stats.view) json["view"] = json_of_view(*stats.view);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

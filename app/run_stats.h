@@ -7,10 +7,14 @@
 #include <vector>
 
 #include "gpu/device_info.h"
+#include "image/image.h"
 #include "render/renderer.h"
 #include "scene_counts.h"
 
 namespace promin::app {
+
+/// Of any number of values; 0 of none.
+double median(std::vector<double> values);
 
 /// What one run over a scene made and cost: the content of `--stats`. Times in milliseconds.
 struct RunStats {
@@ -24,7 +28,9 @@ struct RunStats {
   std::optional<View> view;
   SetupStats setup;
   RayCounts rays;
-  /// Of each repetition.
+  /// Of a camera path, the numbers of its frames; the rays are those of all.
+  std::vector<uint32_t> frames;
+  /// Of each repetition; of a path, the median of each frame.
   std::vector<double> trace_ms;
   double load_ms = 0.0;
   double write_ms = 0.0;
@@ -32,9 +38,12 @@ struct RunStats {
 
   /// The median.
   double median_trace_ms() const;
-  /// All rays over the median trace time; 0 where that was too short to measure.
+  /// All rays over the median trace time, or over that of all frames; 0 where that was too short to measure.
   double mrays_per_s() const;
 };
+
+/// What an EXR of the run's view says of it.
+Metadata describe_picture(const RunStats& stats);
 
 /// As a JSON object, indented.
 std::string to_json(const RunStats& stats);

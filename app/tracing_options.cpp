@@ -26,12 +26,15 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
             [&](const Words& w) { options.builder = w.choice(builder_names()); });
   table.add("--bvh", "FILE.pbvh", "Take the BVH from a file of promin-bvh build",
             [&](const Words& w) { options.bvh = w.text(); });
+  table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
+  table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
+}
+
+void add_measuring_options(OptionTable& table, TracingOptions& options) {
   table.add("--repeat", "N", "Trace N times and report the median time [1]",
             [&](const Words& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
   table.add("--stats", "FILE.json", "Write counts and times as JSON",
             [&](const Words& w) { options.stats = w.text(); });
-  table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
-  table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
 }
 
 void check_tracing_options(const TracingOptions& options) {

@@ -34,6 +34,8 @@ struct TracingOptions {
 /// parsing.
 void add_scene_argument(OptionTable& table, TracingOptions& options);
 void add_tracing_options(OptionTable& table, TracingOptions& options);
+/// Those of commands that end and then tell what tracing took.
+void add_measuring_options(OptionTable& table, TracingOptions& options);
 
 /// Throws UsageError for what no single option shows: two that contradict each other.
 void check_tracing_options(const TracingOptions& options);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -44,6 +45,7 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
 }
 
 Camera choose_camera(const Scene& scene, const ViewOptions& options, const Console& console) {
+  if (options.given_camera) return *options.given_camera;
   if (options.camera) return find_camera(scene, *options.camera);
   if (!scene.cameras.empty()) return scene.cameras.front();
   if (!options.pose.eye || !options.pose.look) {
@@ -95,12 +97,13 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   }
   view.samples_per_pixel = options.samples_per_pixel;
   view.max_depth = options.max_depth;
+  view.shading = options.shading;
   return view;
 }
 
-void light_up(Scene& scene, const Camera& camera, const Console& console) {
+void light_up(Scene& scene, const Console& console) {
   if (!scene.lights.empty()) return;
-  scene.lights.push_back(make_headlight(camera));
+  scene.lights.push_back(make_headlight());
   if (scene.ambient != vec3(0.0F)) {
     console.note("the scene has no lights; a headlight along the view is used");
     return;
@@ -108,6 +111,22 @@ void light_up(Scene& scene, const Camera& camera, const Console& console) {
   scene.ambient = vec3(kDefaultAmbient);
   console.note(fmt::format("the scene has no lights; a headlight along the view and ambient light of {} are used",
                            kDefaultAmbient));
+}
+
+void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
+  for (const uint32_t index : indices) {
+    if (index < scene.lights.size()) continue;
+    throw UsageError({fmt::format("no light {} to leave out", index), scene.file.string(),
+                      fmt::format("it has {}, and the first is 0", scene.lights.size())});
+  }
+}
+
+void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices) {
+  std::vector<Light> kept;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+    if (std::find(indices.begin(), indices.end(), i) == indices.end()) kept.push_back(scene.lights[i]);
+  }
+  scene.lights = std::move(kept);
 }
 
 }  // namespace promin::app

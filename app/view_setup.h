@@ -13,7 +13,14 @@ namespace promin::app {
 /// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 
-/// Gives a scene without lights a headlight along the view, and ambient light where it has none, and a note says so.
-void light_up(Scene& scene, const Camera& camera, const Console& console);
+/// Gives a scene without lights a headlight, which follows the camera of each view, and ambient light where it has
+/// none, and a note says so.
+void light_up(Scene& scene, const Console& console);
+
+/// Throws UsageError where the scene, lit up, has no light of such an index.
+void check_lights(const Scene& scene, const std::vector<uint32_t>& indices);
+
+/// Removes lights by their indices, which are checked.
+void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices);
 
 }  // namespace promin::app

@@ -32,8 +32,12 @@ LAYOUT_CONSTANT FEATURE_SPECULAR = 1u << 10;
 LAYOUT_CONSTANT FEATURE_MIRRORS = 1u << 11;
 LAYOUT_CONSTANT FEATURE_SMOOTH_NORMALS = 1u << 12;
 LAYOUT_CONSTANT FEATURE_VERTEX_COLORS = 1u << 13;
-LAYOUT_CONSTANT FEATURE_COUNT = 14u;
-// What a caller may ask of a pipeline whatever the scene.
+LAYOUT_CONSTANT FEATURE_HEADLIGHT = 1u << 14;
+LAYOUT_CONSTANT FEATURE_COUNT = 15u;
+// What a caller may ask of a pipeline whatever the scene. Three bits hold what a picture shows, SHADING_*.
+LAYOUT_CONSTANT SHADING_SHIFT = 26u;
+LAYOUT_CONSTANT SHADING_MASK = 7u;
+LAYOUT_CONSTANT FEATURE_RAY_LOG = 1u << 29;      // each ray and source of one pixel: RayLog
 LAYOUT_CONSTANT FEATURE_AOVS = 1u << 30;         // depth, normal and id of each pixel
 LAYOUT_CONSTANT FEATURE_STEP_COUNTS = 1u << 31;  // node steps and primitive tests of each ray
 
@@ -46,6 +50,18 @@ LAYOUT_CONSTANT KIND_PLANE = 4u;
 LAYOUT_CONSTANT LIGHT_POINT = 0u;
 LAYOUT_CONSTANT LIGHT_DIRECTIONAL = 1u;
 LAYOUT_CONSTANT LIGHT_SPOT = 2u;
+LAYOUT_CONSTANT LIGHT_HEADLIGHT = 3u;
+
+// What a picture shows: light, or what debug shadings do (debug_shading.glsl).
+LAYOUT_CONSTANT SHADING_FULL = 0u;
+LAYOUT_CONSTANT SHADING_NORMALS = 1u;
+LAYOUT_CONSTANT SHADING_UV = 2u;
+LAYOUT_CONSTANT SHADING_OBJECT = 3u;
+LAYOUT_CONSTANT SHADING_PRIMITIVE = 4u;
+LAYOUT_CONSTANT SHADING_DEPTH = 5u;
+LAYOUT_CONSTANT SHADING_STEPS = 6u;
+// Steps at which the heat map of SHADING_STEPS is white.
+LAYOUT_CONSTANT HEAT_STEPS = 64u;
 
 // Descriptor bindings; Vulkan's required minimum is four storage buffers a stage.
 LAYOUT_CONSTANT BINDING_FRAME = 0u;
@@ -93,7 +109,8 @@ LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
 //   cylinder  a = center, radius         b = axis, half height
 //   cone      a = center, bottom radius  b = axis, half height           c.x = bits of the top radius
 //   plane     a = point                  b = normal
-// c.y is the scene-wide number in (object, primitive) order, which breaks ties; c.z the kind.
+// c.y is the scene-wide number in (object, primitive) order, which breaks ties; c.z the kind; c.w hashes of the object,
+// in the lower 16 bits, and of the primitive, which debug shadings make colours of.
 struct Primitive {
   vec4 a;
   vec4 b;
@@ -163,7 +180,26 @@ struct HitRecord {
 };
 LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 
+// What FEATURE_RAY_LOG keeps of a ray of the path, or of a source that may light its hit: LOG_SOURCE. Sources come
+// before the ray whose hit they light. Rays are as traced: the direction's largest component is in [1, 2), and t in
+// its units.
+struct RayLog {
+  uvec4 ids;  // x = LOG_*; y = the bounce or the source; z = the material; w = 1 where a source has a shadow ray
+  vec4 origin_tmin;
+  vec4 direction_tmax;
+  uvec4 hit;            // as HitRecord::a; of a shadow ray, of what it met first
+  vec4 position;        // w = lift
+  vec4 normal;          // geometric, as Hit::normal
+  vec4 shading_normal;  // faces the ray
+  vec4 weight;          // by which what the hit sends counts
+  vec4 own;             // ambient and emitted light
+  vec4 radiance;        // the path's so far; a source's contribution
+};
+LAYOUT_CONSTANT LOG_PATH = 0u;
+LAYOUT_CONSTANT LOG_SOURCE = 1u;
+
 #ifdef __cplusplus
+static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
 static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 144);

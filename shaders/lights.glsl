@@ -13,9 +13,11 @@ struct LightSample {
 #include "lights/point.glsl"
 #include "lights/directional.glsl"
 #include "lights/spot.glsl"
+#include "lights/headlight.glsl"
 
 LightSample sample_light(LightRecord light, vec3 position) {
   if (has(FEATURE_POINT_LIGHTS) && light.kind.x == LIGHT_POINT) return sample_point(light, position);
   if (has(FEATURE_SPOT_LIGHTS) && light.kind.x == LIGHT_SPOT) return sample_spot(light, position);
+  if (has(FEATURE_HEADLIGHT) && light.kind.x == LIGHT_HEADLIGHT) return sample_headlight();
   return sample_directional(light);
 }

@@ -25,6 +25,8 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 #include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
+#include "debug_shading.glsl"
+#include "ray_log.glsl"
 #include "secondary.glsl"
 #include "lights.glsl"
 #include "shading.glsl"
@@ -48,15 +50,19 @@ struct Path {
 
 // Adds what is seen at the hit, and turns the path into its mirror ray. False where it ends.
 bool follow(inout Path path, Hit hit, inout uvec3 ray_count) {
+  begin_path_log(path.ray, hit, path.bounces, path.weight);
   if (hit.primitive == NO_PRIMITIVE) {
     precise vec3 total = path.radiance + path.weight * frame.background.xyz;
     path.radiance = total;
+    log_own_light(frame.background.xyz);
+    end_path_log(total);
     return false;
   }
   ShadingPoint point = make_shading_point(path.ray, hit);
   vec3 direction = normalize3(path.ray.direction);
   precise vec3 radiance = path.radiance + path.weight * shade(point, -direction, ray_count.y);
   path.radiance = radiance;
+  end_path_log(radiance);
   if (!has(FEATURE_MIRRORS) || path.bounces >= dispatch.range.w) return false;
   precise vec3 weight = path.weight * point.material.reflection.xyz;
   path.weight = weight;
@@ -100,13 +106,19 @@ void main() {
     }
     if (!is_underway) break;
 
+    if (SHADING == SHADING_STEPS) step_counts = uvec2(0u);
     Hit hit = trace(path.ray, false);
     // Depths and ids have no average: the middle sample stands for the pixel. Of an odd number it is the centre.
     if (has(FEATURE_AOVS) && path.bounces == 0u && sample_index == dispatch.sampling.x / 2u) {
       order = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
       pixels[dispatch.window.z * dispatch.window.w + index] = normal_and_depth(path.ray, hit);
     }
-    is_underway = follow(path, hit, ray_count);
+    if (SHADING == SHADING_FULL) {
+      is_underway = follow(path, hit, ray_count);
+    } else {
+      path.radiance = debug_color(hit, uintBitsToFloat(normal_and_depth(path.ray, hit)));
+      is_underway = false;
+    }
     if (!is_underway) {
       precise vec3 next_sum = sum + path.radiance;
       sum = next_sum;

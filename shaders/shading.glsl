@@ -94,6 +94,10 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
                          weights.z * load_vertex(frame.first_index.w + record.corners_material.z);
     point.color = color;
   }
+  if (has(FEATURE_RAY_LOG)) {
+    log_surface(point.position, point.lift, surface.normal, point.normal,
+                record.corners_material.w & SURFACE_MATERIAL_MASK);
+  }
   return point;
 }
 
@@ -121,7 +125,9 @@ vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint 
     ++shadow_rays;
     vec3 origin = lift_off(point.shadow_position, point.geometric_normal, point.lift);
     precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
-    Hit blocker = trace(make_ray(origin, to_source, 0.0, sampled.tmax), true);
+    Ray ray = make_ray(origin, to_source, 0.0, sampled.tmax);
+    Hit blocker = trace(ray, true);
+    log_shadow_ray(ray, blocker);
     if (blocker.primitive != NO_PRIMITIVE) return vec3(0.0);
   }
   return share;
@@ -129,9 +135,13 @@ vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint 
 
 vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
   precise vec3 sum = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
-  if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS)) {
+  log_own_light(sum);
+  if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_HEADLIGHT)) {
     for (uint i = 0u; i < dispatch.counts.z; ++i) {
-      sum += shade_light(point, to_eye, load_light(frame.first_index.y + i), shadow_rays);
+      begin_source_log(i);
+      vec3 share = shade_light(point, to_eye, load_light(frame.first_index.y + i), shadow_rays);
+      end_source_log(share);
+      sum += share;
     }
   }
   return sum;

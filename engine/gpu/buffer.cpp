@@ -61,6 +61,10 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
   }
 }
 
+Buffer Buffer::make_readback(const Device& device, vk::DeviceSize size_bytes) {
+  return {device, size_bytes, vk::BufferUsageFlagBits::eTransferDst, kStagingPreferences};
+}
+
 vk::raii::BufferView Buffer::make_texel_view() const {
   const vk::DeviceSize most_bytes = device_->limits().maxTexelBufferElements * kTexelBytes;
   return {device_->handle(),
@@ -88,7 +92,7 @@ void Buffer::read(std::span<std::byte> data, vk::DeviceSize offset_bytes) const 
     std::memcpy(data.data(), mapped_ + offset_bytes, data.size());
     return;
   }
-  const Buffer staging(*device_, data.size(), vk::BufferUsageFlagBits::eTransferDst, kStagingPreferences);
+  const Buffer staging = make_readback(*device_, data.size());
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     const vk::MemoryBarrier before(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eTransferRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eTransfer, {},

@@ -21,8 +21,14 @@ class Buffer {
   /// the device's maxStorageBufferRange that is not a texel buffer within its maxTexelBufferElements either.
   Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage);
 
+  /// One that transfers write and the host reads, at mapped().
+  static Buffer make_readback(const Device& device, vk::DeviceSize size_bytes);
+
   const vk::raii::Buffer& handle() const { return buffer_; }
   vk::DeviceSize size_bytes() const { return size_bytes_; }
+
+  /// Empty where the host cannot map it.
+  std::span<const std::byte> mapped() const { return {mapped_, mapped_ == nullptr ? 0 : size_bytes_}; }
 
   /// The buffer, or as much of it as the device allows, as texels of four words.
   vk::raii::BufferView make_texel_view() const;

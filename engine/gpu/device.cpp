@@ -40,10 +40,14 @@ std::string version_text(uint32_t version) {
          std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-std::optional<uint32_t> find_compute_family(const vk::raii::PhysicalDevice& device) {
+/// A family that computes and, where there is a surface, draws and presents to it as well.
+std::optional<uint32_t> find_family(const vk::raii::PhysicalDevice& device, vk::SurfaceKHR surface) {
+  using Flag = vk::QueueFlagBits;
+  const vk::QueueFlags wanted = surface ? Flag::eCompute | Flag::eGraphics : vk::QueueFlags(Flag::eCompute);
   const auto families = device.getQueueFamilyProperties();
   for (uint32_t i = 0; i < families.size(); ++i) {
-    if (families[i].queueFlags & vk::QueueFlagBits::eCompute) return i;
+    const bool is_able = (families[i].queueFlags & wanted) == wanted;
+    if (is_able && (!surface || device.getSurfaceSupportKHR(i, surface))) return i;
   }
   return std::nullopt;
 }
@@ -73,7 +77,7 @@ std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::Physic
   return version.empty() ? name : name + " " + version;
 }
 
-DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index) {
+DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::SurfaceKHR surface) {
   const vk::PhysicalDeviceProperties properties = device.getProperties();
   DeviceInfo info;
   info.index = index;
@@ -86,9 +90,13 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index) {
     return info;
   }
   info.driver = driver_text(device, properties);
-  const auto family = find_compute_family(device);
-  if (!family) {
+  if (!find_family(device, {})) {
     info.obstacles.emplace_back("no compute queue");
+    return info;
+  }
+  const auto family = find_family(device, surface);
+  if (!family || (surface && !has_device_extension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME))) {
+    info.obstacles.emplace_back("it cannot present to this window; promin render needs none");
     return info;
   }
   if (device.getQueueFamilyProperties()[*family].timestampValidBits == 0) {
@@ -97,9 +105,9 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index) {
   return info;
 }
 
-std::vector<DeviceInfo> describe_all(const std::vector<vk::raii::PhysicalDevice>& devices) {
+std::vector<DeviceInfo> describe_all(const std::vector<vk::raii::PhysicalDevice>& devices, vk::SurfaceKHR surface) {
   std::vector<DeviceInfo> infos;
-  for (uint32_t i = 0; i < devices.size(); ++i) infos.push_back(describe(devices[i], i));
+  for (uint32_t i = 0; i < devices.size(); ++i) infos.push_back(describe(devices[i], i, surface));
   const auto best = std::min_element(infos.begin(), infos.end(), [](const DeviceInfo& a, const DeviceInfo& b) {
     const auto key = [](const DeviceInfo& d) { return std::pair(!d.obstacles.empty(), rank_of(d.type)); };
     return key(a) < key(b);
@@ -175,13 +183,17 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   }
 }
 
-Device::Device(const std::optional<std::string>& selection)
+Device::Device(const std::optional<std::string>& selection, const Presentation* presentation)
     : validation_messages_(std::make_unique<std::atomic<uint64_t>>(0)),
       context_(load_vulkan()),
-      instance_(make_instance(context_)),
+      instance_(make_instance(
+          context_, presentation != nullptr ? presentation->instance_extensions : std::vector<const char*>())),
       messenger_(make_messenger(instance_, validation_messages_.get())) {
+  if (presentation != nullptr) {
+    surface_ = vk::raii::SurfaceKHR(instance_, presentation->make_surface(*instance_));
+  }
   auto devices = enumerate(instance_);
-  const std::vector<DeviceInfo> infos = describe_all(devices);
+  const std::vector<DeviceInfo> infos = describe_all(devices, *surface_);
   const size_t index = select_device(infos, selection);
   physical_ = std::move(devices[index]);
   info_ = infos[index];
@@ -196,22 +208,23 @@ Device::Device(const std::optional<std::string>& selection)
     const auto driver = driver_properties(physical_, properties);
     is_lavapipe_ = driver && driver->driverID == vk::DriverId::eMesaLlvmpipe;
     memory_ = physical_.getMemoryProperties();
-    const uint32_t family = *find_compute_family(physical_);
-    if (const uint32_t bits = physical_.getQueueFamilyProperties()[family].timestampValidBits; bits > 0) {
+    queue_family_ = *find_family(physical_, *surface_);
+    if (const uint32_t bits = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits; bits > 0) {
       timestamp_period_ns_ = limits_.timestampPeriod;
       timestamp_mask_ = ~uint64_t{0} >> (64 - bits);
     }
     const float priority = 1.0F;
-    const vk::DeviceQueueCreateInfo queue_info({}, family, 1, &priority);
+    const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
     // A layered driver must be told that its extension is known of.
     std::vector<const char*> extensions;
     if (has_device_extension(physical_, "VK_KHR_portability_subset")) {
       extensions.push_back("VK_KHR_portability_subset");
     }
+    if (presentation != nullptr) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions));
-    queue_ = vk::raii::Queue(device_, family, 0);
+    queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
-        device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
+        device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));
     commands_ = std::move(
         vk::raii::CommandBuffers(device_, vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1))
             .front());
@@ -245,7 +258,7 @@ void Device::run(const std::function<void(const vk::raii::CommandBuffer&)>& reco
 std::vector<DeviceInfo> list_devices() {
   const vk::raii::Context context = load_vulkan();
   const vk::raii::Instance instance = make_instance(context);
-  return describe_all(enumerate(instance));
+  return describe_all(enumerate(instance), {});
 }
 
 void DeviceDeleter::operator()(Device* device) const {

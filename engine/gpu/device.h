@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
 #include "gpu/device_info.h"
@@ -14,15 +15,23 @@
 
 namespace promin::gpu {
 
+/// What a window asks of a device beside tracing.
+struct Presentation {
+  std::vector<const char*> instance_extensions;
+  /// Makes the surface, which the device will own. Throws DeviceError.
+  std::function<VkSurfaceKHR(VkInstance)> make_surface;
+};
+
 /// Runs `work` and turns Vulkan's exceptions into RunError sentences that name the call and the result.
 void translate_vulkan_errors(const std::function<void()>& work);
 
-/// A Vulkan instance and one logical device with one compute queue. Needs nothing beyond Vulkan 1.1's required
-/// minima. One thread uses a device at a time.
+/// A Vulkan instance and one logical device with one queue that computes; for a window it draws and presents as well.
+/// Needs nothing beyond Vulkan 1.1's required minima. One thread uses a device at a time.
 class Device {
  public:
-  /// See open_device (gpu/open_device.h). Throws DeviceError.
-  explicit Device(const std::optional<std::string>& selection);
+  /// See open_device (gpu/open_device.h); with `presentation` of the devices that can present to its surface. Throws
+  /// DeviceError.
+  explicit Device(const std::optional<std::string>& selection, const Presentation* presentation = nullptr);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
@@ -36,6 +45,12 @@ class Device {
   uint64_t validation_message_count() const { return *validation_messages_; }
 
   const vk::raii::Device& handle() const { return device_; }
+  const vk::raii::Instance& instance() const { return instance_; }
+  const vk::raii::PhysicalDevice& physical() const { return physical_; }
+  const vk::raii::Queue& queue() const { return queue_; }
+  uint32_t queue_family() const { return queue_family_; }
+  /// Null without a window.
+  const vk::raii::SurfaceKHR& surface() const { return surface_; }
   CompiledPipelines& compiled_pipelines() const { return compiled_pipelines_; }
   const vk::PhysicalDeviceLimits& limits() const { return limits_; }
   /// Nanoseconds a timestamp tick; 0 where the queue has no timestamps.
@@ -55,6 +70,7 @@ class Device {
   vk::raii::Context context_;
   vk::raii::Instance instance_{nullptr};
   vk::raii::DebugUtilsMessengerEXT messenger_{nullptr};
+  vk::raii::SurfaceKHR surface_{nullptr};
   vk::raii::PhysicalDevice physical_{nullptr};
   vk::PhysicalDeviceLimits limits_;
   vk::PhysicalDeviceMemoryProperties memory_;
@@ -62,6 +78,7 @@ class Device {
   uint64_t timestamp_mask_ = 0;
   vk::raii::Device device_{nullptr};
   mutable CompiledPipelines compiled_pipelines_;
+  uint32_t queue_family_ = 0;
   vk::raii::Queue queue_{nullptr};
   vk::raii::CommandPool pool_{nullptr};
   vk::raii::CommandBuffer commands_{nullptr};

@@ -52,10 +52,9 @@ vk::raii::Context load_vulkan() {
   }
 }
 
-vk::raii::Instance make_instance(const vk::raii::Context& context) {
+vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<const char*> extensions) {
   const std::string mode = validation_mode();
   std::vector<const char*> layers;
-  std::vector<const char*> extensions;
   vk::InstanceCreateFlags flags;
   if (!mode.empty()) {
     if (mode != "core" && mode != "sync") {

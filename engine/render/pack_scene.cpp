@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <string>
 
 #include "bvh/clip_triangle.h"
@@ -53,6 +54,17 @@ Bounds bounds_of(const TrianglePart& part) {
   Bounds bounds;
   for (const PartCorner& corner : part) bounds.extend(corner.position);
   return bounds;
+}
+
+uint32_t hash_of(std::initializer_list<uint64_t> words) {
+  Hash64 hash;
+  for (const uint64_t word : words) hash.add(word);
+  return static_cast<uint32_t>(hash.value() >> 48);
+}
+
+/// Primitive::c.w.
+uint32_t hashes_of(size_t object, uint32_t primitive) {
+  return hash_of({object}) | hash_of({object, primitive}) << 16;
 }
 
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
@@ -106,13 +118,14 @@ class Collector {
   void add(const Plane& plane) {
     Primitive primitive = pack(plane);
     primitive.c.y = result_.order++;
+    primitive.c.w = hashes_of(object_, 0);
     result_.planes.push_back(primitive);
     result_.plane_surfaces.push_back({uvec4(0, 0, 0, material_)});
   }
 
   template <typename Solid>
   void add(const Solid& solid) {
-    add_solid(pack(solid), bounds_of(solid), uvec4(0, 0, 0, material_));
+    add_solid(pack(solid), 0, bounds_of(solid), uvec4(0, 0, 0, material_));
   }
 
   void add(const Mesh& mesh) {
@@ -160,6 +173,7 @@ class Collector {
         const size_t place = first + i - static_cast<size_t>(skipped - degenerate.begin());
         Primitive primitive = pack(whole);
         primitive.c.y = result_.order + triangle;
+        primitive.c.w = hashes_of(object_, triangle);
         result_.solids[place] = primitive;
         result_.solid_surfaces[place] = {
             uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0), material_of(mesh, triangle) | flags)};
@@ -185,7 +199,7 @@ class Collector {
           vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
         }
         if (parts_.size() > 1) add_part(part, &part == parts_.data());
-        add_solid(pack(part), bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
+        add_solid(pack(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
       }
     }
   }
@@ -219,9 +233,10 @@ class Collector {
     parts.push_back(packed);
   }
 
-  void add_solid(Primitive primitive, const Bounds& box, const uvec4& surface) {
+  void add_solid(Primitive primitive, uint32_t number, const Bounds& box, const uvec4& surface) {
     check_count(scene_, result_.solids.size() + 1);
     primitive.c.y = result_.order++;
+    primitive.c.w = hashes_of(object_, number);
     result_.solids.push_back(primitive);
     result_.solid_surfaces.push_back({surface});
     result_.boxes.push_back(box);
@@ -243,15 +258,27 @@ MaterialRecord pack(const Material& m) {
           vec4(m.emissive, 0.0F)};
 }
 
+uint32_t kind_of(const Light& light) {
+  switch (light.kind) {
+    case LightKind::kPoint:
+      return LIGHT_POINT;
+    case LightKind::kDirectional:
+      return LIGHT_DIRECTIONAL;
+    case LightKind::kSpot:
+      return LIGHT_SPOT;
+    case LightKind::kHeadlight:
+      return LIGHT_HEADLIGHT;
+  }
+  return LIGHT_POINT;
+}
+
 LightRecord pack(const Light& light) {
   const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
   const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
-  const auto kind = light.kind == LightKind::kPoint         ? LIGHT_POINT
-                    : light.kind == LightKind::kDirectional ? LIGHT_DIRECTIONAL
-                                                            : LIGHT_SPOT;
   return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
           vec4(light.diffuse, static_cast<float>(1.0 / std::max(0.001, cos_inner - cos_outer))),
-          vec4(light.specular, 0.0F), uvec4(kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
+          vec4(light.specular, 0.0F),
+          uvec4(kind_of(light), light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
 }
 
 /// Appends records at the next multiple of their stride; returns their first index in that stride.

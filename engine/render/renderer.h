@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "image/image.h"
+#include "render/explain.h"
+#include "render/ray_counts.h"
 #include "render/setup_stats.h"
+#include "render/view.h"
 #include "scene/scene.h"
 
 namespace promin {
@@ -18,31 +21,6 @@ namespace promin {
 namespace gpu {
 class Device;
 }
-
-/// A window of pixels, half-open: x0 <= x < x1.
-struct PixelWindow {
-  uvec2 lo{0};
-  uvec2 hi{0};
-};
-
-/// One picture of the loaded scene.
-struct View {
-  Camera camera;
-  uvec2 size{1280, 720};
-  /// Pixels to trace; the whole picture where empty. A crop has the bits of the same pixels of the whole.
-  std::optional<PixelWindow> crop;
-  /// Samples a pixel, at fixed well-distributed points; 1 is the centre. 1...kMaxSamplesPerPixel (render/sampling.h).
-  uint32_t samples_per_pixel = 1;
-  /// Mirror bounces; 0 traces no mirror rays. 0...1000.
-  uint32_t max_depth = 5;
-};
-
-struct RayCounts {
-  uint64_t primary = 0;
-  uint64_t shadow = 0;
-  uint64_t reflection = 0;
-  uint64_t total() const { return primary + shadow + reflection; }
-};
 
 /// What each pixel's middle sample shows, that of index samples / 2: with an odd number of samples the pixel's centre.
 /// Row by row, as the image.
@@ -96,8 +74,13 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Traces one picture. `progress` is called after each dispatch with the fraction done, 0...1.
+  /// Traces one picture, and compiles first where its shading is another than the last one's. `progress` is called
+  /// after each dispatch with the fraction done, 0...1.
   RenderResult render(const View& view, const std::function<void(double)>& progress = {});
+
+  /// Traces the pixel at these coordinates of the whole picture as `render` does, and tells each ray and source; of
+  /// Shading::kFull whatever the view has. Throws RunError where that would be too much for the device.
+  Explanation explain(const View& view, const uvec2& pixel);
 
   const SetupStats& setup_stats() const;
 

@@ -9,6 +9,17 @@
 #include "gpu/device.h"
 
 namespace promin {
+namespace {
+
+using Access = vk::AccessFlagBits;
+using Stage = vk::PipelineStageFlagBits;
+
+}  // namespace
+
+void Pacer::aim(double target_ms) {
+  units_ = std::max(1.0, units_ * target_ms / target_ms_);
+  target_ms_ = target_ms;
+}
 
 void Pacer::learn(double units, double time_ms) {
   // No faster than fourfold a step: the next tile may be dearer than the last.
@@ -29,17 +40,26 @@ TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t
   }
 }
 
+void TracingKernel::put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
+                                  const gpu::Buffer& head) {
+  const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite, Access::eTransferWrite);
+  commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, after_last, {}, {});
+  commands.updateBuffer<layout::Dispatch>(*head.handle(), 0, constants);
+  const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite,
+                                 Access::eShaderRead | Access::eShaderWrite | Access::eUniformRead);
+  commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader, {}, before, {}, {});
+}
+
+void TracingKernel::record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
+                           const gpu::Buffer& head, uint32_t group_count) const {
+  put_constants(commands, constants, head);
+  pipeline_.dispatch(commands, group_count);
+}
+
 double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head, uint32_t group_count) const {
   const Stopwatch waiting;
   device_->run([&](const vk::raii::CommandBuffer& commands) {
-    using Access = vk::AccessFlagBits;
-    using Stage = vk::PipelineStageFlagBits;
-    const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite, Access::eTransferWrite);
-    commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, after_last, {}, {});
-    commands.updateBuffer<layout::Dispatch>(*head.handle(), 0, constants);
-    const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite,
-                                   Access::eShaderRead | Access::eShaderWrite | Access::eUniformRead);
-    commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader, {}, before, {}, {});
+    put_constants(commands, constants, head);
     if (*queries_) {
       commands.resetQueryPool(*queries_, 0, 2);
       commands.writeTimestamp(Stage::eTopOfPipe, *queries_, 0);

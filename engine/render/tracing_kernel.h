@@ -15,6 +15,8 @@ class Pacer {
   Pacer(double target_ms, double first_units) : target_ms_(target_ms), units_(first_units) {}
 
   double units() const { return units_; }
+  /// Another target from now on; what was learnt stays.
+  void aim(double target_ms);
   /// The last dispatch covered `units` in `time_ms`.
   void learn(double units, double time_ms);
 
@@ -35,11 +37,19 @@ class TracingKernel {
 
   void bind(const gpu::BoundBuffer& buffer) { pipeline_.bind(buffer); }
 
+  /// Records that `constants` go to the head of `head` and the workgroups run, after all that compute shaders and
+  /// transfers recorded before.
+  void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
+              uint32_t group_count) const;
+
   /// Puts `constants` at the head of `head`, runs the workgroups and waits. Returns device milliseconds (waiting time
   /// on the host where the queue has no timestamps).
   double run(const layout::Dispatch& constants, const gpu::Buffer& head, uint32_t group_count) const;
 
  private:
+  static void put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
+                            const gpu::Buffer& head);
+
   const gpu::Device* device_;
   gpu::ComputePipeline pipeline_;
   vk::raii::QueryPool queries_{nullptr};

@@ -32,6 +32,7 @@ constexpr std::array kFeatures{
     NamedFeature{FEATURE_MIRRORS, "mirrors"},
     NamedFeature{FEATURE_SMOOTH_NORMALS, "smooth normals"},
     NamedFeature{FEATURE_VERTEX_COLORS, "vertex colours"},
+    NamedFeature{FEATURE_HEADLIGHT, "headlight"},
 };
 static_assert(kFeatures.size() == FEATURE_COUNT);
 
@@ -62,6 +63,8 @@ FeatureMask features_of(const Light& light) {
       return FEATURE_SPOT_LIGHTS | falloff;
     case LightKind::kPoint:
       return FEATURE_POINT_LIGHTS | falloff;
+    case LightKind::kHeadlight:
+      return FEATURE_HEADLIGHT;
   }
   return 0;
 }

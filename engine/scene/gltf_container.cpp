@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf_container.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -68,38 +67,11 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
   return container;
 }
 
-/// Brackets outside of strings; whether they match is the parser's business.
-int depth_of(std::string_view json) {
-  int depth = 0;
-  int deepest = 0;
-  bool is_in_string = false;
-  for (size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (is_in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') is_in_string = false;
-    } else if (c == '"') {
-      is_in_string = true;
-    } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return deepest;
-}
-
 }  // namespace
 
 GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report) {
   const bool is_glb = bytes.size() >= 4 && read_u32(bytes, 0) == kMagic;
-  const GltfContainer container = is_glb ? split_glb(bytes, report) : GltfContainer{as_text(bytes), std::nullopt};
-  const int depth = depth_of(container.json);
-  if (depth > kMaxJsonDepth) {
-    refuse_file(report, "the JSON nests " + std::to_string(depth) + " deep, more than " + std::to_string(kMaxJsonDepth),
-                "");
-  }
-  return container;
+  return is_glb ? split_glb(bytes, report) : GltfContainer{as_text(bytes), std::nullopt};
 }
 
 }  // namespace promin

@@ -19,10 +19,7 @@ struct GltfContainer {
 };
 
 /// Takes a file apart, GLB by its magic number (glTF 2.0, section 4.4). Every length is checked against the bytes
-/// there are, and JSON that nests deeper than kMaxJsonDepth is refused before a recursive parser sees it.
-/// Throws InputError.
+/// there are. Throws InputError.
 GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report);
-
-inline constexpr int kMaxJsonDepth = 200;
 
 }  // namespace promin

@@ -7,25 +7,12 @@
 #include "scene/gltf_checks.h"
 #include "scene/gltf_container.h"
 #include "scene/gltf_schema.h"
+#include "scene/parse_json.h"
 
 namespace promin {
 namespace {
 
 using nlohmann::json;
-
-json parse_json(std::string_view text, LoadReport& report) {
-  json document;
-  try {
-    document = json::parse(text);
-  } catch (const json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
-    std::string message = error.what();
-    if (const size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
-    report.refuse("the JSON cannot be read: " + message, "", "export the file again");
-  }
-  report.throw_if_refused();
-  return document;
-}
 
 /// Removes members that the loader reads elsewhere or not at all.
 void erase_members(json& value, std::initializer_list<const char*> names) {
@@ -74,7 +61,7 @@ GltfDocument read_gltf_document(LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(report.file());
   const GltfContainer container = split_gltf(bytes, report);
   GltfDocument document;
-  document.json = parse_json(container.json, report);
+  document.json = parse_json(container.json, report, "export the file again");
 
   check_gltf_schema(document.json, report);
   report.throw_if_refused();

@@ -90,11 +90,10 @@ Camera frame_scene(const Scene& scene, float aspect_ratio) {
   return camera;
 }
 
-Light make_headlight(const Camera& camera) {
+Light make_headlight() {
   Light light;
   light.name = "headlight";
-  light.kind = LightKind::kDirectional;
-  light.direction = camera.look;
+  light.kind = LightKind::kHeadlight;
   return light;
 }
 

@@ -28,7 +28,8 @@ struct Material {
   vec3 emissive{0.0F};
 };
 
-enum class LightKind { kPoint, kDirectional, kSpot };
+/// A headlight is a directional source that shines along the view of whatever camera looks.
+enum class LightKind { kPoint, kDirectional, kSpot, kHeadlight };
 enum class Attenuation { kNone, kInverseSquare };
 
 /// A source with its own diffuse and specular power. Classic sources do not fall off with distance; physical ones
@@ -103,7 +104,7 @@ uint32_t primitive_count(const Shape& shape);
 /// `aspect_ratio` is width over height of the picture.
 Camera frame_scene(const Scene& scene, float aspect_ratio);
 
-/// The light of a scene without lights: directional along the view, i_d = i_s = 1.
-Light make_headlight(const Camera& camera);
+/// The light of a scene without lights: i_d = i_s = 1.
+Light make_headlight();
 
 }  // namespace promin

@@ -187,11 +187,9 @@ TEST(SceneTest, TheFramingCameraIsUpright) {
   EXPECT_GT(frame_scene(scene_of({Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F) << "above the ground";
 }
 
-TEST(SceneTest, TheHeadlightShinesAlongTheView) {
-  const Camera camera = frame_scene(scene_of({Sphere{}}), 1.0F);
-  const Light light = make_headlight(camera);
-  EXPECT_EQ(light.kind, LightKind::kDirectional);
-  EXPECT_EQ(light.direction, camera.look);
+TEST(SceneTest, TheHeadlightHasTheThesisPowers) {
+  const Light light = make_headlight();
+  EXPECT_EQ(light.kind, LightKind::kHeadlight);
   EXPECT_EQ(light.diffuse, vec3(1));
   EXPECT_EQ(light.specular, vec3(1));
   EXPECT_EQ(light.attenuation, Attenuation::kNone);

@@ -136,18 +136,17 @@ TEST(ViewSetupTest, ACropLiesWithinThePicture) {
 
 TEST(LightUpTest, OnlyASceneWithoutLightsIsLitUp) {
   Scene scene = make_scene();
-  light_up(scene, scene.cameras[1], kSilent);
+  light_up(scene, kSilent);
   ASSERT_EQ(scene.lights.size(), 1U);
-  EXPECT_EQ(scene.lights[0].kind, LightKind::kDirectional);
-  EXPECT_EQ(scene.lights[0].direction, scene.cameras[1].look);
+  EXPECT_EQ(scene.lights[0].kind, LightKind::kHeadlight);
   EXPECT_EQ(scene.ambient, vec3(0.1F));
 
-  light_up(scene, scene.cameras[0], kSilent);
+  light_up(scene, kSilent);
   EXPECT_EQ(scene.lights.size(), 1U);
 
   Scene ambient = make_scene();
   ambient.ambient = vec3(0.5F);
-  light_up(ambient, ambient.cameras[0], kSilent);
+  light_up(ambient, kSilent);
   EXPECT_EQ(ambient.lights.size(), 1U);
   EXPECT_EQ(ambient.ambient, vec3(0.5F)) << "the file's ambient light stays";
 }

@@ -99,7 +99,7 @@ Subject load_subject(const std::string& name) {
   subject.view.size = uvec2(160, 90);
   subject.view.camera =
       subject.scene.cameras.empty() ? frame_scene(subject.scene, 16.0F / 9.0F) : subject.scene.cameras[0];
-  if (subject.scene.lights.empty()) subject.scene.lights = {make_headlight(subject.view.camera)};
+  if (subject.scene.lights.empty()) subject.scene.lights = {make_headlight()};
   return subject;
 }
 

@@ -50,6 +50,10 @@ const Layout kLayouts[] = {
       OFFSET(Dispatch, share)}},
     {"RayRecord", {OFFSET(RayRecord, origin_tmin), OFFSET(RayRecord, direction_tmax)}},
     {"HitRecord", {OFFSET(HitRecord, a), OFFSET(HitRecord, b)}},
+    {"RayLog",
+     {OFFSET(RayLog, ids), OFFSET(RayLog, origin_tmin), OFFSET(RayLog, direction_tmax), OFFSET(RayLog, hit),
+      OFFSET(RayLog, position), OFFSET(RayLog, normal), OFFSET(RayLog, shading_normal), OFFSET(RayLog, weight),
+      OFFSET(RayLog, own), OFFSET(RayLog, radiance)}},
 };
 
 struct Shader {

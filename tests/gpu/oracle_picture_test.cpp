@@ -38,7 +38,7 @@ View view_of(Scene& scene) {
   view.size = size_for(scene);
   view.camera = scene.cameras.empty() ? frame_scene(scene, 4.0F / 3.0F) : scene.cameras.front();
   if (scene.lights.empty()) {
-    scene.lights.push_back(make_headlight(view.camera));
+    scene.lights.push_back(make_headlight());
     scene.ambient = vec3(0.1F);
   }
   return view;

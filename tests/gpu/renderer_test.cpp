@@ -111,17 +111,31 @@ TEST_F(RendererTest, TheInsideOfASphereIsDark) {
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {{"", Sphere{vec3(0.0F), 1.0F}, 0}};
-  scene.lights = {make_headlight(Camera())};
+  scene.lights = {make_headlight()};
   View view;
   view.size = uvec2(16, 16);
   for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(0.0F));
+}
+
+TEST_F(RendererTest, TheHeadlightFollowsTheCameraOfEachView) {
+  Scene scene = make_scene_of_everything();
+  scene.lights = {make_headlight()};
+  Renderer renderer(device(), scene);
+  View view = test::make_view(kSize);
+  for (const vec3& look : {vec3(0, 0, -1), vec3(0.28F, 0, -0.96F), vec3(-0.6F, 0, -0.8F)}) {
+    view.camera.look = look;
+    view.camera.up = vec3(0, 1, 0);
+    scene.lights[0].kind = LightKind::kDirectional;
+    scene.lights[0].direction = look;
+    EXPECT_TRUE(has_same_bits(renderer.render(view).image, render(scene, view).image));
+  }
 }
 
 TEST_F(RendererTest, CountsRays) {
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {{"", Sphere{vec3(0, 0, -3), 1.0F}, 0}, {"", Sphere{vec3(0, 0, 100), 1.0F}, 0}};
-  scene.lights = {make_headlight(Camera())};
+  scene.lights = {make_headlight()};
   View view;
   view.size = uvec2(64, 64);
   view.samples_per_pixel = 4;

@@ -173,6 +173,12 @@ Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) 
 }
 
 Picture render(const Scene& scene, const View& view) {
+  Scene lit = scene;
+  for (Light& light : lit.lights) {
+    if (light.kind != LightKind::kHeadlight) continue;
+    light.kind = LightKind::kDirectional;
+    light.direction = view.camera.look;
+  }
   Picture picture;
   picture.size = view.size;
   picture.pixels.resize(static_cast<size_t>(view.size.x) * view.size.y);
@@ -181,8 +187,8 @@ Picture render(const Scene& scene, const View& view) {
     for (uint32_t x = 0; x < view.size.x; ++x) {
       Pixel& pixel = picture.pixels[row * view.size.x + x];
       pixel.ray = camera_ray(view.camera, view.size, x, y);
-      pixel.hit = find_nearest_hit(scene, pixel.ray);
-      pixel.color = radiance(scene, pixel.ray, pixel.hit, view.max_depth);
+      pixel.hit = find_nearest_hit(lit, pixel.ray);
+      pixel.color = radiance(lit, pixel.ray, pixel.hit, view.max_depth);
     }
   });
   return picture;

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "camera_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
+
+#include "camera.h"
+#include "core/file.h"
+#include "scene/json_rule.h"
+#include "scene/load_scene.h"
+#include "scene/parse_json.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kMaxTime = 1e9;
+/// Nearer to 0 and 180 degrees radians in fp32 show nothing.
+constexpr double kMinFovDeg = 1e-5;
+constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
+const char* const kWriteAnew = "record the path again or mend the file";
+
+const std::array kRules{
+    rules::object(""),
+    rules::needed(rules::choice("format", "promin camera path")),
+    rules::needed(rules::integer("version", 1, 1)),
+    rules::needed(rules::array("frames")),
+    rules::object("frames[]"),
+    rules::needed(rules::number("frames[].time_s", 0.0, kMaxTime)),
+    rules::needed(rules::numbers("frames[].eye", 3, -kMaxCoordinate, kMaxCoordinate)),
+    rules::needed(rules::numbers("frames[].look", 3, -kMaxCoordinate, kMaxCoordinate)),
+    rules::needed(rules::numbers("frames[].up", 3, -kMaxCoordinate, kMaxCoordinate)),
+    rules::number("frames[].fov_deg", kMinFovDeg, kMaxFovDeg),
+    rules::number("frames[].ymag", kMinSize, kMaxCoordinate),
+    rules::number("frames[].near", 0.0, kMaxCoordinate),
+};
+
+vec3 read_vector(const json& v) {
+  return {v[0].get<float>(), v[1].get<float>(), v[2].get<float>()};
+}
+
+/// Of a frame that keeps the rules.
+TimedCamera read_frame(const json& frame, const std::string& place, LoadReport& report) {
+  TimedCamera timed;
+  timed.time_s = frame["time_s"].get<double>();
+  try {
+    timed.camera =
+        FreeCamera::from_pose(read_vector(frame["eye"]), read_vector(frame["look"]), read_vector(frame["up"])).camera();
+  } catch (const UsageError&) {
+    report.refuse("look and up are zero or parallel", place, "give two directions at an angle");
+  }
+  if (frame.contains("fov_deg") == frame.contains("ymag")) {
+    report.refuse("a frame has one of fov_deg and ymag", place, "give fov_deg for a perspective camera");
+  } else if (frame.contains("fov_deg")) {
+    timed.camera.yfov = static_cast<float>(glm::radians(frame["fov_deg"].get<double>()));
+  } else {
+    timed.camera.projection = Projection::kOrthographic;
+    timed.camera.ymag = frame["ymag"].get<float>();
+  }
+  timed.camera.near = frame.value("near", 0.0F);
+  return timed;
+}
+
+/// Nine digits tell any two floats apart.
+std::string write_vector(const vec3& v) {
+  return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x, v.y, v.z);
+}
+
+std::string write_frame(const TimedCamera& frame) {
+  const Camera& camera = frame.camera;
+  // Nine digits of degrees also tell any two floats in radians apart.
+  const std::string projection =
+      camera.projection == Projection::kPerspective
+          ? fmt::format("\"fov_deg\": {:.9g}", glm::degrees(static_cast<double>(camera.yfov)))
+          : fmt::format("\"ymag\": {:.9g}", camera.ymag);
+  return fmt::format(R"({{"time_s": {}, "eye": {}, "look": {}, "up": {}, {}, "near": {:.9g}}})", frame.time_s,
+                     write_vector(camera.eye), write_vector(camera.look), write_vector(camera.up), projection,
+                     camera.near);
+}
+
+/// FreeCamera's Q.
+glm::dquat rotation_of(const Camera& camera) {
+  return glm::normalize(glm::dquat(FreeCamera(camera).rotation()));
+}
+
+/// `share` in (0, 1).
+Camera interpolate(const Camera& from, const Camera& to, double share) {
+  const auto mix = [&](const auto& a, const auto& b) { return a + share * (b - a); };
+  const auto mix_real = [&](float a, float b) { return static_cast<float>(mix(double{a}, double{b})); };
+  Camera camera = from;
+  camera.eye = vec3(mix(dvec3(from.eye), dvec3(to.eye)));
+  const dmat3 rotation = glm::mat3_cast(glm::normalize(glm::slerp(rotation_of(from), rotation_of(to), share)));
+  camera.look = vec3(-rotation[2]);
+  camera.up = vec3(rotation[1]);
+  camera.near = mix_real(from.near, to.near);
+  if (from.projection != to.projection) return camera;
+  camera.yfov = mix_real(from.yfov, to.yfov);
+  camera.ymag = mix_real(from.ymag, to.ymag);
+  return camera;
+}
+
+}  // namespace
+
+CameraPath read_camera_path(const std::filesystem::path& file) {
+  LoadReport report(file);
+  const std::vector<std::byte> bytes = read_file(file);
+  json document = parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report, kWriteAnew);
+  for (const JsonRule& rule : kRules) check_json_rule(document, rule, report);
+  report.throw_if_refused();
+
+  CameraPath path;
+  for (const json& frame : document["frames"]) {
+    const std::string place = fmt::format("frames[{}]", path.size());
+    const TimedCamera next = read_frame(frame, place, report);
+    if (!path.empty() && !(next.time_s > path.back().time_s)) {
+      report.refuse("time_s does not grow from frame to frame", place, "order the frames by their times");
+    }
+    path.push_back(next);
+  }
+  if (path.empty()) report.refuse("there are no frames", "frames", kWriteAnew);
+  report.throw_if_refused();
+  return path;
+}
+
+void write_camera_path(const std::filesystem::path& file, const CameraPath& path) {
+  std::string text = "{\n  \"format\": \"promin camera path\",\n  \"version\": 1,\n  \"frames\": [";
+  for (size_t i = 0; i < path.size(); ++i) text += (i == 0 ? "\n    " : ",\n    ") + write_frame(path[i]);
+  write_text_file(file, text + "\n  ]\n}\n");
+}
+
+Camera camera_at(const CameraPath& path, double time_s) {
+  assert(!path.empty());
+  const auto next = std::upper_bound(path.begin(), path.end(), time_s,
+                                     [](double time, const TimedCamera& frame) { return time < frame.time_s; });
+  if (next == path.begin()) return path.front().camera;
+  const TimedCamera& last = *(next - 1);
+  if (next == path.end() || last.time_s == time_s) return last.camera;
+  return interpolate(last.camera, next->camera, (time_s - last.time_s) / (next->time_s - last.time_s));
+}
+
+}  // namespace promin

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "explanation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace promin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity: null.
+Json json_of(float value) {
+  return std::isfinite(value) ? Json::parse(fmt::format("{:.9g}", value)) : Json(nullptr);
+}
+
+Json json_of(const vec3& v) {
+  return Json::array({json_of(v.x), json_of(v.y), json_of(v.z)});
+}
+
+Json json_of(const Ray& ray) {
+  return {{"origin", json_of(ray.origin)},
+          {"direction", json_of(ray.direction)},
+          {"tmin", json_of(ray.tmin)},
+          {"tmax", json_of(ray.tmax)}};
+}
+
+/// Without what only the hits of the path have.
+Json json_of(const Hit& hit) {
+  if (hit.object < 0) return nullptr;
+  return {{"object", hit.object},
+          {"primitive", hit.primitive},
+          {"t", json_of(hit.t)},
+          {"u", json_of(hit.u)},
+          {"v", json_of(hit.v)}};
+}
+
+Json json_of(const ExplainedSource& source, const Scene& scene) {
+  Json json = {{"light", source.light},
+               {"name", scene.lights[source.light].name},
+               {"visible", source.is_visible()},
+               {"contribution", json_of(source.contribution)},
+               {"shadow_ray", nullptr}};
+  if (source.shadow_ray) {
+    json["shadow_ray"] = json_of(*source.shadow_ray);
+    json["shadow_ray"]["blocker"] = json_of(source.blocker);
+  }
+  return json;
+}
+
+Json json_of(const ExplainedRay& ray, size_t bounce, const Scene& scene) {
+  Json json = {{"kind", bounce == 0 ? "camera" : "mirror"}};
+  json.update(json_of(ray.ray));
+  json["weight"] = json_of(ray.weight);
+  json["hit"] = json_of(ray.hit);
+  if (ray.hit.object >= 0) {
+    json["hit"].update({{"object_name", scene.objects[static_cast<size_t>(ray.hit.object)].name},
+                        {"position", json_of(ray.position)},
+                        {"normal", json_of(ray.hit.normal)},
+                        {"shading_normal", json_of(ray.shading_normal)},
+                        {"lift", json_of(ray.lift)},
+                        {"material", ray.material},
+                        {"material_name", scene.materials[ray.material].name}});
+  }
+  json["own"] = json_of(ray.own);
+  json["sources"] = Json::array();
+  for (const ExplainedSource& source : ray.sources) json["sources"].push_back(json_of(source, scene));
+  json["radiance"] = json_of(ray.radiance);
+  return json;
+}
+
+/// `name` in quotes after what it names, if there is one.
+std::string with_name(const std::string& text, const std::string& name) {
+  return name.empty() ? text : text + " \"" + name + "\"";
+}
+
+std::string text_of(const vec3& v) {
+  return fmt::format("({:.6g} {:.6g} {:.6g})", v.x, v.y, v.z);
+}
+
+std::string text_of(const Hit& hit, const Scene& scene) {
+  return fmt::format(
+      "{} primitive {} at t {:.6g}",
+      with_name(fmt::format("object {}", hit.object), scene.objects[static_cast<size_t>(hit.object)].name),
+      hit.primitive, hit.t);
+}
+
+std::string text_of(const ExplainedSource& source, const Scene& scene) {
+  const std::string name = with_name(fmt::format("light {}", source.light), scene.lights[source.light].name);
+  if (source.is_visible()) return fmt::format("{}: visible, adds {}", name, text_of(source.contribution));
+  if (!source.shadow_ray) return name + ": adds nothing from where it is";
+  return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));
+}
+
+std::string text_of(const ExplainedRay& ray, size_t bounce, const Scene& scene) {
+  const std::string indent(2 * bounce + 2, ' ');
+  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, bounce == 0 ? "camera" : "mirror",
+                                 text_of(ray.ray.origin), text_of(ray.ray.direction), text_of(ray.weight));
+  const auto add = [&](const std::string& line) { text += indent + "  " + line + "\n"; };
+  if (ray.hit.object < 0) {
+    add("misses: background " + text_of(ray.own));
+  } else {
+    add(fmt::format("hits {}, u {:.6g}, v {:.6g}", text_of(ray.hit, scene), ray.hit.u, ray.hit.v));
+    add(fmt::format("at {}, normal {}, {}", text_of(ray.position), text_of(ray.shading_normal),
+                    with_name(fmt::format("material {}", ray.material), scene.materials[ray.material].name)));
+    add("ambient and emitted " + text_of(ray.own));
+  }
+  for (const ExplainedSource& source : ray.sources) add(text_of(source, scene));
+  add("path so far " + text_of(ray.radiance));
+  return text;
+}
+
+}  // namespace
+
+std::string explain_json(const Explanation& explanation, const Scene& scene) {
+  Json samples = Json::array();
+  for (const ExplainedSample& sample : explanation.samples) {
+    Json rays = Json::array();
+    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, rays.size(), scene));
+    samples.push_back({{"rays", rays}, {"radiance", json_of(sample.radiance())}});
+  }
+  const Json json = {{"pixel", {explanation.pixel.x, explanation.pixel.y}},
+                     {"samples", samples},
+                     {"sum", json_of(explanation.sum)},
+                     {"color", json_of(explanation.color)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string explain_text(const Explanation& explanation, const Scene& scene) {
+  std::string text =
+      fmt::format("pixel {} {}: {}\n", explanation.pixel.x, explanation.pixel.y, text_of(explanation.color));
+  for (size_t i = 0; i < explanation.samples.size(); ++i) {
+    text += fmt::format("sample {}\n", i);
+    const std::vector<ExplainedRay>& rays = explanation.samples[i].rays;
+    for (size_t bounce = 0; bounce < rays.size(); ++bounce) text += text_of(rays[bounce], bounce, scene);
+  }
+  return text;
+}
+
+}  // namespace promin::app

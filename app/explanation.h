@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "render/explain.h"
+#include "scene/scene.h"
+
+namespace promin::app {
+
+// A pixel's ray tree for people and programs; the scene is the one that was rendered, with the lights that stand in.
+
+/// As docs/explain.md says; numbers read back to the same bits.
+std::string explain_json(const Explanation& explanation, const Scene& scene);
+
+/// A line for each ray and source, indented under what sends it.
+std::string explain_text(const Explanation& explanation, const Scene& scene);
+
+}  // namespace promin::app

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "frame_plan.h"
+
+#include <fmt/format.h>
+
+#include "camera_path.h"
+#include "core/error.h"
+
+namespace promin::app {
+namespace {
+
+FrameRange choose_frames(const RenderOptions& options, size_t count) {
+  const auto last = static_cast<uint32_t>(count - 1);
+  const FrameRange range = options.frames.value_or(FrameRange{0, last});
+  if (range.last > last) {
+    throw UsageError({fmt::format("there is no frame {}", range.last), options.path->string(),
+                      fmt::format("the path has the frames 0-{}", last)});
+  }
+  return range;
+}
+
+}  // namespace
+
+std::filesystem::path number_file(const std::filesystem::path& file, uint32_t number) {
+  std::string name = file.filename().string();
+  const size_t end = name.find_last_of('#');
+  if (end == std::string::npos) return file;
+  const size_t before = name.find_last_not_of('#', end);
+  const size_t begin = before == std::string::npos ? 0 : before + 1;
+  const size_t width = end + 1 - begin;
+  name.replace(begin, width, fmt::format("{:0{}}", number, width));
+  return file.parent_path() / name;
+}
+
+std::vector<PlannedFrame> plan_frames(const RenderOptions& options) {
+  if (!options.path) return {{std::nullopt, std::nullopt, options.pictures}};
+  const CameraPath path = read_camera_path(*options.path);
+  const FrameRange range = choose_frames(options, path.size());
+  std::vector<PlannedFrame> frames;
+  for (uint32_t number = range.first; number <= range.last; ++number) {
+    PlannedFrame frame{number, path[number].camera, {}};
+    for (const std::filesystem::path& file : options.pictures) frame.pictures.push_back(number_file(file, number));
+    frames.push_back(std::move(frame));
+  }
+  for (const std::filesystem::path& file : options.pictures) {
+    if (frames.size() == 1 || number_file(file, 0) != file) continue;
+    throw UsageError({fmt::format("{} frames would go to one file", frames.size()), file.string(),
+                      "put #### where their numbers go"});
+  }
+  return frames;
+}
+
+}  // namespace promin::app

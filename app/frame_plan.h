@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "render_options.h"
+
+namespace promin::app {
+
+/// One picture of those that a command renders.
+struct PlannedFrame {
+  /// Of a camera path; empty where the scene's cameras or the user's pose are meant.
+  std::optional<uint32_t> number;
+  std::optional<Camera> camera;
+  std::vector<std::filesystem::path> pictures;
+};
+
+/// The frames that the options ask for: one, or those of the path. Throws InputError for a bad path, UsageError for
+/// frames that it does not have, and where several frames would go to one file.
+std::vector<PlannedFrame> plan_frames(const RenderOptions& options);
+
+/// A file's name with the last run of # replaced by the number, in as many digits or more; unchanged without a #.
+std::filesystem::path number_file(const std::filesystem::path& file, uint32_t number);
+
+}  // namespace promin::app

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/describe_command.h"
+
+#include <fmt/ranges.h>
+
+namespace promin::app {
+namespace {
+
+/// Nine digits bring a float back to the bit; of an angle in degrees they are within half of a float's last place.
+std::string words_of(const vec3& v) {
+  return fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z);
+}
+
+std::string quote(const std::string& word) {
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+std::string describe_command(const DescribedScene& scene, const View& view) {
+  const Camera& camera = view.camera;
+  std::string command =
+      fmt::format("promin render {} -o view.exr --size {} {} --spp {} --max-depth {}", quote(scene.file.string()),
+                  view.size.x, view.size.y, view.samples_per_pixel, view.max_depth);
+  if (view.shading != Shading::kFull) {
+    command += fmt::format(" --shading {}", shading_names()[static_cast<size_t>(view.shading)]);
+  }
+  if (!scene.has_shadows) command += " --no-shadows";
+  if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
+  if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
+  command +=
+      fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));
+  if (camera.projection == Projection::kPerspective) {
+    command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));
+  }
+  return command + fmt::format(" --near {:.9g}", camera.near);
+}
+
+}  // namespace promin::app

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/view.h"
+
+namespace promin::app {
+
+/// What of a scene a command leaves out, and where an orthographic view has its size from.
+struct DescribedScene {
+  std::filesystem::path file;
+  bool has_shadows = true;
+  std::vector<uint32_t> lights_off;
+  /// Of the scene's camera with the view's half height.
+  std::optional<size_t> camera_index;
+};
+
+/// The `promin render` command that gives the picture of a view, to the bit, for a shell.
+std::string describe_command(const DescribedScene& scene, const View& view);
+
+}  // namespace promin::app

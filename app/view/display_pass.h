@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/math.h"
+#include "gpu/buffer.h"
+#include "gpu/pipeline.h"
+#include "view/swapchain.h"
+
+namespace promin::app {
+
+/// A complete picture in device memory.
+struct ShownPicture {
+  /// Which of the films, below kFilmCount.
+  size_t film = 0;
+  uvec2 size{0};
+  uint32_t samples_per_pixel = 1;
+};
+inline constexpr size_t kFilmCount = 2;
+
+/// Draws pictures to the window: a film is encoded once (shaders/encode_film.comp), then drawn as often as the window
+/// wants it, scaled to all of the window (shaders/display.frag).
+class DisplayPass {
+ public:
+  /// Throws vk::SystemError.
+  DisplayPass(const gpu::Device& device, const Swapchain& swapchain);
+
+  /// Makes room for pictures of so many pixels, and says where the films are now; the device must be idle.
+  void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count);
+
+  /// Records encoding a film that was traced before.
+  void record_encoding(const vk::raii::CommandBuffer& commands, size_t film) const;
+  /// Records drawing the picture that was encoded last, within a render pass of the swapchain.
+  void record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& picture_size,
+                      const uvec2& window_size) const;
+
+ private:
+  const gpu::Device* device_;
+  std::optional<gpu::Buffer> encoded_;
+  std::array<std::optional<gpu::ComputePipeline>, kFilmCount> encoders_;
+  vk::raii::DescriptorSetLayout set_layout_{nullptr};
+  vk::raii::PipelineLayout layout_{nullptr};
+  vk::raii::Pipeline pipeline_{nullptr};
+  vk::raii::DescriptorPool pool_{nullptr};
+  vk::raii::DescriptorSet set_{nullptr};
+};
+
+}  // namespace promin::app

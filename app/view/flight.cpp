@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/flight.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace promin::app {
+namespace {
+
+/// The smallest value that is not exceeded by that share of them.
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+bool is_same_pose(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
+         a.ymag == b.ymag && a.near == b.near;
+}
+
+}  // namespace
+
+void FlightRecorder::add(double time_s, const Camera& camera) {
+  if (path_.empty()) start_s_ = time_s;
+  const double time = time_s - start_s_;
+  // Frames of one camera are as good as their first and last.
+  const size_t count = path_.size();
+  if (count >= 2 && is_same_pose(path_[count - 2].camera, camera) && is_same_pose(path_[count - 1].camera, camera)) {
+    path_.pop_back();
+  }
+  if (!path_.empty() && time <= path_.back().time_s) return;
+  path_.push_back({time, camera});
+}
+
+void FlightReplay::add(const FinishedFrame& frame) {
+  frame_ms_.push_back(frame.time_ms);
+  total_ms_ += frame.time_ms;
+  trace_ms_ += frame.stages.trace;
+}
+
+std::string FlightReplay::summarize() const {
+  return fmt::format("{} frames: median {:.2f} ms, 99th percentile {:.2f} ms, tracing {:.1f} % of the time",
+                     frame_ms_.size(), percentile(frame_ms_, 0.5), percentile(frame_ms_, 0.99),
+                     total_ms_ > 0.0 ? 100.0 * trace_ms_ / total_ms_ : 0.0);
+}
+
+}  // namespace promin::app

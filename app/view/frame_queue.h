@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+
+#include "gpu/buffer.h"
+#include "render/ray_counts.h"
+#include "view/swapchain.h"
+
+namespace promin::app {
+
+/// Device time of a frame's stages, in milliseconds; 0 where the queue has no timestamps.
+struct StageTimes {
+  double trace = 0.0;
+  double display = 0.0;
+  double overlay = 0.0;
+};
+
+/// What a frame was, once the device has finished it.
+struct FinishedFrame {
+  StageTimes stages;
+  RayCounts rays;
+  /// Units of tracing (LivePicture::record).
+  double units = 0.0;
+  /// From the beginning of its recording, or from the end of the frame before if that was later, to its end.
+  double time_ms = 0.0;
+};
+
+/// Where in a frame a timestamp is taken.
+enum class FrameMark { kBegin, kTraced, kDisplayed, kEnd };
+
+/// One of the frames in flight.
+struct Frame {
+  vk::raii::CommandBuffer commands{nullptr};
+  vk::raii::Semaphore ready{nullptr};
+  vk::raii::Fence fence{nullptr};
+  vk::raii::QueryPool queries{nullptr};
+  std::optional<gpu::Buffer> counters;
+  uint32_t image = 0;
+  bool is_in_flight = false;
+  bool is_presented = false;
+  double begin_time = 0.0;
+  double units = 0.0;
+  /// Called when the device has finished the frame.
+  std::function<void()> on_finished;
+
+  void mark(FrameMark mark) const;
+};
+
+/// Frames on their way to the window. Nothing here waits, but for finish().
+class FrameQueue {
+ public:
+  /// Two frames are in flight on a GPU. On a CPU device one is: nothing would run beside it, and the next would only
+  /// show an older camera.
+  FrameQueue(const gpu::Device& device, Swapchain& swapchain);
+
+  /// The next frame, with an image of the swapchain and its commands begun; null where none is free just now.
+  Frame* begin();
+  /// Ends the commands and hands the frame to the device.
+  void submit(Frame& frame);
+  bool is_idle() const;
+
+  /// Takes note of frames that the device has finished, in their order, and presents those that wait for that.
+  void poll(const std::function<void(const FinishedFrame&)>& on_finished);
+  /// Waits until the device is idle, then polls.
+  void finish(const std::function<void(const FinishedFrame&)>& on_finished);
+
+ private:
+  FinishedFrame take(Frame& frame);
+  double stage_ms(const Frame& frame, FrameMark from, FrameMark to) const;
+
+  const gpu::Device* device_;
+  Swapchain* swapchain_;
+  vk::raii::CommandPool pool_;
+  std::array<Frame, 2> frames_;
+  size_t most_in_flight_;
+  size_t next_ = 0;
+  /// Presenting would wait for the device: present when it has finished.
+  bool presents_late_;
+  double last_end_time_ = 0.0;
+};
+
+}  // namespace promin::app

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/imgui_renderer.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kMaxTextures = 8;
+
+void throw_failure(VkResult result) {
+  if (result < 0) throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "Dear ImGui");
+}
+
+vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
+  const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, kMaxTextures);
+  return {device.handle(),
+          vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kMaxTextures, size)};
+}
+
+void upload_fonts([[maybe_unused]] const gpu::Device& device) {
+#if IMGUI_VERSION_NUM >= 19000
+  ImGui_ImplVulkan_CreateFontsTexture();
+#else
+  device.run([](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
+  ImGui_ImplVulkan_DestroyFontUploadObjects();
+#endif
+}
+
+}  // namespace
+
+ImguiRenderer::ImguiRenderer(const gpu::Device& device, const Window& window, const Swapchain& swapchain)
+    : pool_(make_pool(device)) {
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::StyleColorsDark();
+  ImGui::GetStyle().WindowRounding = 4.0F;
+  ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
+  ImGui_ImplVulkan_InitInfo info = {};
+  info.Instance = *device.instance();
+  info.PhysicalDevice = *device.physical();
+  info.Device = *device.handle();
+  info.QueueFamily = device.queue_family();
+  info.Queue = *device.queue();
+  info.DescriptorPool = *pool_;
+  info.MinImageCount = 2;
+  info.ImageCount = std::max(info.MinImageCount, swapchain.image_count());
+  info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+  info.CheckVkResultFn = throw_failure;
+#if IMGUI_VERSION_NUM >= 19030
+  info.RenderPass = *swapchain.render_pass();
+  ImGui_ImplVulkan_Init(&info);
+#else
+  ImGui_ImplVulkan_Init(&info, *swapchain.render_pass());
+#endif
+  upload_fonts(device);
+}
+
+ImguiRenderer::~ImguiRenderer() {
+  ImGui_ImplVulkan_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void ImguiRenderer::begin_frame() {
+  ImGui_ImplVulkan_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void ImguiRenderer::end_frame() {
+  ImGui::Render();
+}
+
+void ImguiRenderer::record(const vk::raii::CommandBuffer& commands) const {
+  ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
+}
+
+bool ImguiRenderer::wants_keys() const {
+  return ImGui::GetIO().WantTextInput;
+}
+
+bool ImguiRenderer::wants_pointer() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+}  // namespace promin::app

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/keys.h"
+
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+namespace promin::app {
+namespace {
+
+constexpr Press camera(int number) {
+  return static_cast<Press>(static_cast<int>(Press::kFirstCamera) + number - 1);
+}
+
+constexpr Press shading(int number) {
+  return static_cast<Press>(static_cast<int>(Press::kFirstShading) + number - 1);
+}
+
+// A row without an effect shares its neighbour's.
+constexpr std::array kKeys = {
+    KeyBinding{GLFW_KEY_W, "W", "ahead; nearer when orbiting", Hold::kAhead},
+    KeyBinding{GLFW_KEY_S, "S", "back; away when orbiting", Hold::kBack},
+    KeyBinding{GLFW_KEY_A, "A", "left", Hold::kLeft},
+    KeyBinding{GLFW_KEY_D, "D", "right", Hold::kRight},
+    KeyBinding{GLFW_KEY_E, "E", "up", Hold::kUp},
+    KeyBinding{GLFW_KEY_Q, "Q", "down", Hold::kDown},
+    KeyBinding{GLFW_KEY_Z, "Z", "roll anticlockwise", Hold::kRollLeft},
+    KeyBinding{GLFW_KEY_X, "X", "roll clockwise", Hold::kRollRight},
+    KeyBinding{GLFW_KEY_LEFT_SHIFT, "Shift", "four times as fast", Hold::kFast},
+    KeyBinding{GLFW_KEY_RIGHT_SHIFT, "", "", Hold::kFast},
+    KeyBinding{GLFW_KEY_LEFT_CONTROL, "Ctrl", "a quarter as fast", Hold::kSlow},
+    KeyBinding{GLFW_KEY_RIGHT_CONTROL, "", "", Hold::kSlow},
+    KeyBinding{GLFW_KEY_O, "O", "orbit what is in the middle, or fly again", {}, Press::kOrbit},
+    KeyBinding{GLFW_KEY_R, "R", "reset the camera", {}, Press::kReset},
+    KeyBinding{GLFW_KEY_1, "1...9", "the scene's cameras", {}, camera(1)},
+    KeyBinding{GLFW_KEY_2, "", "", {}, camera(2)},
+    KeyBinding{GLFW_KEY_3, "", "", {}, camera(3)},
+    KeyBinding{GLFW_KEY_4, "", "", {}, camera(4)},
+    KeyBinding{GLFW_KEY_5, "", "", {}, camera(5)},
+    KeyBinding{GLFW_KEY_6, "", "", {}, camera(6)},
+    KeyBinding{GLFW_KEY_7, "", "", {}, camera(7)},
+    KeyBinding{GLFW_KEY_8, "", "", {}, camera(8)},
+    KeyBinding{GLFW_KEY_9, "", "", {}, camera(9)},
+    KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
+    KeyBinding{GLFW_KEY_F1, "F1...F7", "light, normals, uv, objects, primitives, depth, steps", {}, shading(1)},
+    KeyBinding{GLFW_KEY_F2, "", "", {}, shading(2)},
+    KeyBinding{GLFW_KEY_F3, "", "", {}, shading(3)},
+    KeyBinding{GLFW_KEY_F4, "", "", {}, shading(4)},
+    KeyBinding{GLFW_KEY_F5, "", "", {}, shading(5)},
+    KeyBinding{GLFW_KEY_F6, "", "", {}, shading(6)},
+    KeyBinding{GLFW_KEY_F7, "", "", {}, shading(7)},
+    KeyBinding{GLFW_KEY_P, "P", "pause refining, or a replay", {}, Press::kPause},
+    KeyBinding{GLFW_KEY_C, "C", "print the command that renders this view", {}, Press::kPrintCommand},
+    KeyBinding{GLFW_KEY_F12, "F12", "write promin-NNNN.exr and .png", {}, Press::kScreenshot},
+    KeyBinding{GLFW_KEY_F, "F", "full screen", {}, Press::kFullscreen},
+    KeyBinding{GLFW_KEY_TAB, "Tab", "hide or show the overlay", {}, Press::kOverlay},
+    KeyBinding{GLFW_KEY_H, "H", "this help", {}, Press::kHelp},
+    KeyBinding{GLFW_KEY_ESCAPE, "Esc", "quit", {}, Press::kQuit},
+};
+
+constexpr std::array kPointer = {
+    PointerBinding{"left drag", "look around"},
+    PointerBinding{"left click", "explain the pixel: its rays, sources, contributions"},
+    PointerBinding{"right click", "look around without a button; again to stop"},
+    PointerBinding{"wheel", "faster or slower"},
+};
+
+}  // namespace
+
+std::span<const KeyBinding> key_bindings() {
+  return kKeys;
+}
+
+std::span<const PointerBinding> pointer_bindings() {
+  return kPointer;
+}
+
+}  // namespace promin::app

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "view/motion.h"
+
+namespace promin::app {
+
+/// What a key does once when it is pressed.
+enum class Press {
+  kHelp,
+  kOverlay,
+  kFullscreen,
+  kReset,
+  kPause,
+  kOrbit,
+  kBookmark,
+  kPrintCommand,
+  kScreenshot,
+  kQuit,
+  /// Cameras 1...9 follow each other.
+  kFirstCamera,
+  kLastCamera = kFirstCamera + 8,
+  /// Shadings, in the order of Shading's values.
+  kFirstShading,
+  kLastShading = kFirstShading + 6
+};
+
+/// A key, by GLFW's number, and its effect: a row of the help too.
+struct KeyBinding {
+  int key = 0;
+  const char* name = "";
+  const char* effect = "";
+  std::optional<Hold> hold = std::nullopt;
+  std::optional<Press> press = std::nullopt;
+};
+
+std::span<const KeyBinding> key_bindings();
+
+/// What the pointer does: name and effect.
+struct PointerBinding {
+  const char* name = "";
+  const char* effect = "";
+};
+std::span<const PointerBinding> pointer_bindings();
+
+}  // namespace promin::app

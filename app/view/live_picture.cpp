@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/live_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kSampleStep = 4;
+/// The coarsest first picture, of the window's pixels on a side.
+constexpr double kMinScale = 1.0 / 16.0;
+/// How near below the affordable it comes.
+constexpr double kScaleStep = 0.98;
+
+uvec2 scale_size(const uvec2& size, double scale) {
+  return glm::max(uvec2(1), uvec2(glm::round(dvec2(size) * scale)));
+}
+
+double count_blocks(const uvec2& size) {
+  const uvec2 blocks = (size + layout::BLOCK_SIZE - 1U) / layout::BLOCK_SIZE;
+  return static_cast<double>(blocks.x) * blocks.y;
+}
+
+}  // namespace
+
+bool shows_same(const View& a, const View& b) {
+  const Camera& c = a.camera;
+  const Camera& d = b.camera;
+  return a.size == b.size && a.shading == b.shading && a.max_depth == b.max_depth && c.projection == d.projection &&
+         c.eye == d.eye && c.look == d.look && c.up == d.up && c.yfov == d.yfov && c.ymag == d.ymag && c.near == d.near;
+}
+
+LivePicture::LivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+                         double budget_ms)
+    : pacer_(budget_ms, PicturePieces::kMinBlocks) {
+  films_.reserve(kFilmCount);
+  for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
+}
+
+void LivePicture::resize(const uvec2& size) {
+  const double most_pixels = films_[0].max_capacity();
+  const double pixels = static_cast<double>(size.x) * size.y;
+  full_size_ = pixels <= most_pixels ? size : uvec2(dvec2(size) * std::sqrt(most_pixels / pixels));
+  for (Film& film : films_) film.reserve(full_size_.x * full_size_.y);
+  shown_.reset();
+  shown_count_ = 0;
+  picture_.reset();
+}
+
+void LivePicture::want(View view) {
+  view.size = full_size_;
+  if (shows_same(view, wanted_)) return;
+  wanted_ = view;
+  ++wanted_version_;
+}
+
+bool LivePicture::is_settled() const {
+  return !next_view() && !picture_;
+}
+
+bool LivePicture::is_complete() const {
+  return shown_ && shown_version_ == wanted_version_ && shown_->size == full_size_;
+}
+
+std::optional<View> LivePicture::next_view() const {
+  View view = wanted_;
+  view.samples_per_pixel = 1;
+  if (!shown_ || shown_version_ != wanted_version_) {
+    view.size = first_size();
+    return view;
+  }
+  if (is_paused_) return std::nullopt;
+  if (shown_->size != full_size_) return view;
+  view.samples_per_pixel = kSampleStep * shown_->samples_per_pixel;
+  return view.samples_per_pixel <= kMostSamples ? std::optional(view) : std::nullopt;
+}
+
+uvec2 LivePicture::first_size() const {
+  if (fixed_scale_) return scale_size(full_size_, *fixed_scale_);
+  // Blocks at the right and lower edge are not full: a picture of fewer pixels may have as many.
+  const double affordable = std::max<double>(pacer_.units(), PicturePieces::kMinBlocks);
+  double scale = 1.0;
+  while (scale > kMinScale && count_blocks(scale_size(full_size_, scale)) > affordable) {
+    scale =
+        std::max(kMinScale, kScaleStep * scale * std::sqrt(affordable / count_blocks(scale_size(full_size_, scale))));
+  }
+  return scale_size(full_size_, scale);
+}
+
+void LivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {
+  const size_t film = shown_ ? 1 - shown_->film : 0;
+  is_first_ = !shown_ || shown_version_ != wanted_version_;
+  picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options());
+  picture_when_done_ = {film, view.size, view.samples_per_pixel};
+  picture_version_ = wanted_version_;
+  films_[film].record_begin(commands, *picture_);
+}
+
+double LivePicture::record(const vk::raii::CommandBuffer& commands) {
+  // A view's first picture is finished even if the view has changed meanwhile: else a slow device would show none.
+  if (picture_ && picture_version_ != wanted_version_ && !is_first_) picture_.reset();
+  if (picture_ && is_paused_ && !is_first_) return 0.0;
+  if (!picture_) {
+    const std::optional<View> view = next_view();
+    if (!view) return 0.0;
+    begin(commands, *view);
+  }
+  double units = 0.0;
+  while (!picture_->is_done() && units < pacer_.units()) {
+    const PicturePiece piece = picture_->next(pacer_.units() - units);
+    films_[picture_when_done_.film].record(commands, piece);
+    units += piece.units;
+  }
+  if (picture_->is_done()) finish();
+  return units;
+}
+
+void LivePicture::finish() {
+  shown_ = picture_when_done_;
+  shown_version_ = picture_version_;
+  ++shown_count_;
+  picture_.reset();
+}
+
+void LivePicture::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
+  films_[picture_when_done_.film].record_take_counts(commands, target);
+}
+
+void LivePicture::learn(double units, double time_ms) {
+  // Drivers compile in a pipeline's first dispatch.
+  if (std::exchange(is_warm_, true)) pacer_.learn(units, time_ms);
+}
+
+}  // namespace promin::app

@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_program.h"
+#include "view/view_command.h"
+
+int main(int argc, char** argv) {
+  using namespace promin::app;
+  return run_program("promin-view", "Flies through a scene in a window, ray traced while you look. H shows the keys.",
+                     {add_view_command}, argc, argv);
+}

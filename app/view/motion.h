@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "core/math.h"
+
+namespace promin::app {
+
+/// What the camera does while its key is down.
+enum class Hold { kAhead, kBack, kLeft, kRight, kUp, kDown, kRollLeft, kRollRight, kFast, kSlow };
+inline constexpr size_t kHoldCount = 10;
+
+/// What the keys and the pointer asked of the camera over some time.
+struct Motion {
+  /// Along the camera's right, up and look: seconds that the keys were down, more of them when fast.
+  dvec3 travel{0.0};
+  /// Seconds of roll, anticlockwise.
+  double roll = 0.0;
+  /// The pointer's way while it turned the camera, in pixels to the right and down.
+  dvec2 turn{0.0};
+
+  bool is_none() const { return travel == dvec3(0.0) && roll == 0.0 && turn == dvec2(0.0); }
+};
+
+/// Sums motion up between frames, event by event: how far the camera goes does not depend on when frames are taken.
+class MotionSum {
+ public:
+  /// A key goes down or up at a time in seconds, which never goes back.
+  void set(Hold hold, bool is_down, double time);
+  void turn(const dvec2& pixels) { sum_.turn += pixels; }
+  /// All keys go up: the window has lost them.
+  void release_all(double time);
+
+  /// The motion since the last call.
+  Motion take(double time);
+  bool is_held() const;
+
+  static constexpr double kFastFactor = 4.0;
+  static constexpr double kSlowFactor = 0.25;
+
+ private:
+  void advance(double time);
+  double held(Hold hold) const { return down_[static_cast<size_t>(hold)] ? 1.0 : 0.0; }
+
+  std::array<bool, kHoldCount> down_{};
+  double last_time_ = 0.0;
+  Motion sum_;
+};
+
+}  // namespace promin::app

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "view/frame_queue.h"
+#include "view/live_picture.h"
+#include "view/scene_loader.h"
+
+namespace promin::app {
+
+/// What frames took lately: each a mean in which the last tenth of a second or so weighs most.
+class FrameStatistics {
+ public:
+  void add(const FinishedFrame& frame);
+
+  double frame_ms() const { return frame_ms_; }
+  const StageTimes& stages() const { return stages_; }
+  /// Of primary, shadow and reflection rays, 1e6 a second of tracing.
+  const dvec3& mrays_per_s() const { return mrays_per_s_; }
+  /// What of a frame's time is not tracing.
+  double overhead_ms() const { return overhead_ms_; }
+
+ private:
+  bool is_first_ = true;
+  double frame_ms_ = 0.0;
+  double overhead_ms_ = 0.0;
+  StageTimes stages_;
+  dvec3 mrays_per_s_{0.0};
+};
+
+/// What the user chooses in the overlay, or otherwise.
+struct Switches {
+  SceneChoice scene;
+  uint32_t max_depth = View{}.max_depth;
+  bool has_mirrors = true;
+  bool has_shadows = true;
+  Shading shading = Shading::kFull;
+  /// As LivePicture::fix_scale.
+  std::optional<double> scale;
+  bool is_paused = false;
+
+  uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
+};
+
+/// What the overlay shows beside.
+struct OverlayContent {
+  const FrameStatistics* statistics = nullptr;
+  const LivePicture* picture = nullptr;
+  const Scene* scene = nullptr;
+  std::string device;
+  double speed = 0.0;
+  bool is_orbiting = false;
+  bool is_loading = false;
+  /// What happened last; a failure stands out.
+  std::string message;
+  bool is_failure = false;
+  std::vector<Camera> bookmarks;
+};
+
+/// Shows the overlay between ImguiRenderer's begin_frame and end_frame, lets the user change the switches, and returns
+/// the camera that was picked from the lists.
+std::optional<Camera> show_overlay(const OverlayContent& content, Switches& switches);
+
+/// Shows what keys and pointer do.
+void show_help();
+
+/// Shows a text under a title, to scroll through; false when the user has closed it.
+bool show_explanation(const std::string& title, const std::string& text);
+
+}  // namespace promin::app

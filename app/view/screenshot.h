@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <string>
+
+#include "gpu/buffer.h"
+#include "image/image.h"
+#include "render/view.h"
+
+namespace promin::app {
+
+/// Pictures of the window on their way to files: promin-NNNN.exr and .png with the next number that is free in the
+/// working folder. One at a time, without the window waiting.
+class Screenshot {
+ public:
+  explicit Screenshot(const gpu::Device& device) : device_(&device) {}
+
+  bool is_busy() const { return copy_.has_value() || written_.valid(); }
+  /// Records copying a film that holds all of the picture. Not while busy.
+  void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view);
+  /// To be called when the device has done that; writes on a thread of its own.
+  void write(const Metadata& metadata);
+  /// What was written, as a sentence, once it is. Throws RunError.
+  std::optional<std::string> take();
+
+ private:
+  const gpu::Device* device_;
+  View view_;
+  std::optional<gpu::Buffer> copy_;
+  std::future<std::string> written_;
+};
+
+/// promin-NNNN, with the first number for which neither an .exr nor a .png is in the folder. Throws RunError when all
+/// are taken.
+std::string find_free_name(const std::filesystem::path& folder);
+
+}  // namespace promin::app

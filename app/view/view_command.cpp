@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/view_command.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <memory>
+
+#include "camera_path.h"
+#include "core/error.h"
+#include "outputs.h"
+#include "render_options.h"
+#include "tracing_run.h"
+#include "view/viewer.h"
+#include "view_setup.h"
+
+namespace promin::app {
+namespace {
+
+constexpr double kMinTargetMs = 1.0;
+constexpr double kMaxTargetMs = 10000.0;
+
+struct WindowOptions {
+  TracingOptions tracing;
+  ViewOptions view;
+  std::optional<std::string> present_mode;
+  std::optional<double> target_ms;
+  std::optional<std::filesystem::path> record;
+  std::optional<std::filesystem::path> replay;
+  bool stays_open = false;
+};
+
+void add_window_options(CLI::App& program, WindowOptions& options) {
+  OptionTable table(program);
+  add_scene_argument(table, options.tracing);
+  add_view_options(table, options.view);
+  table.add("--target-ms", "T",
+            fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
+                        kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
+            [&](const Words& w) { options.target_ms = w.real(0, kMinTargetMs, kMaxTargetMs); });
+  table.add("--present-mode", "MODE",
+            fmt::format("How frames go to the display: {}; fifo where it has no other [fifo]",
+                        fmt::join(present_mode_names(), ", ")),
+            [&](const Words& w) { options.present_mode = w.choice(present_mode_names()); });
+  table.add("--record", "FILE.json", "Write the camera's flight, a camera path, when the window closes",
+            [&](const Words& w) { options.record = w.text(); });
+  table.add("--replay", "FILE.json", "Play a camera path frame by frame, print what its frames took, and close",
+            [&](const Words& w) { options.replay = w.text(); });
+  table.add_flag("--keep-open", "After --replay let the user fly on", options.stays_open);
+  add_tracing_options(table, options.tracing);
+}
+
+void check_window_options(const WindowOptions& options) {
+  check_tracing_options(options.tracing);
+  if (options.replay && (options.view.camera || options.view.pose.any())) {
+    throw UsageError({"--replay and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
+                      "on the command line", "leave one out"});
+  }
+  if (options.stays_open && !options.replay) {
+    throw UsageError({"--keep-open has no replay to end", "on the command line", "give --replay as well"});
+  }
+  std::vector<std::filesystem::path> inputs = input_files(options.tracing);
+  if (options.replay) inputs.push_back(*options.replay);
+  if (options.record) check_outputs(inputs, {*options.record}, std::nullopt);
+}
+
+void view(const WindowOptions& options) {
+  const TracingOptions& tracing = options.tracing;
+  check_window_options(options);
+  const Console console(tracing.verbosity(), "promin-view");
+
+  RunStats stats;
+  ViewerStart start;
+  start.file = tracing.scene;
+  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console));
+  ViewOptions view_options = options.view;
+  if (options.replay) {
+    start.replay = read_camera_path(*options.replay);
+    view_options.given_camera = start.replay->front().camera;
+  }
+  start.view = make_view(*scene, view_options, console);
+  light_up(*scene, console);
+  start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
+  start.choice.bvh = tracing.bvh;
+  check_lights(*scene, options.view.lights_off);
+  start.choice.lights_off = options.view.lights_off;
+  start.has_shadows = !options.view.has_no_shadows;
+  start.scene = pack_chosen_scene(scene, start.choice);
+  start.present_mode = options.present_mode;
+  start.target_ms = options.target_ms;
+  start.stays_open = options.stays_open;
+  start.record = options.record;
+
+  Window window(start.view.size, "promin - " + start.file.filename().string());
+  const gpu::Presentation presentation = window.presentation();
+  const gpu::Device device(tracing.device, &presentation);
+  stats.device = device.info();
+  console.detail(device.choice());
+  gpu::translate_vulkan_errors([&] { Viewer(window, device, console, std::move(start), stats).run(); });
+  check_validation(device, stats);
+}
+
+}  // namespace
+
+Command add_view_command(CLI::App& program) {
+  const auto options = std::make_shared<WindowOptions>();
+  add_window_options(program, *options);
+  return {&program, [options] { view(*options); }};
+}
+
+}  // namespace promin::app

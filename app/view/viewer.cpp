@@ -1,0 +1,383 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/viewer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/error.h"
+#include "explanation.h"
+#include "render/explain_pixel.h"
+
+namespace promin::app {
+namespace {
+
+/// While there is something to do but no frame is free.
+constexpr double kShortWait = 1e-3;
+/// While there is nothing to do, in seconds; the scene's file is looked at as often.
+constexpr double kLongWait = 0.1;
+/// What a frame spends on tracing at least, of its target.
+constexpr double kLeastTraceShare = 0.5;
+/// ImGui settles its windows within so many frames.
+constexpr int kSettlingFrames = 3;
+
+/// Crosses the scene in some seconds.
+double speed_for(const Scene& scene) {
+  const Bounds bounds = bounds_of(scene);
+  constexpr double kSeconds = 8.0;
+  const double size = bounds.is_empty() ? 0.0 : glm::length(dvec3(bounds.extent()));
+  return size > 0.0 ? size / kSeconds : 1.0;
+}
+
+}  // namespace
+
+Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats)
+    : window_(window),
+      device_(device),
+      console_(console),
+      file_(start.file),
+      stats_(std::move(stats)),
+      target_ms_(start.target_ms.value_or(device.is_cpu() ? ViewerStart::kCpuTargetMs : window.refresh_interval_ms())),
+      scene_(start.scene.scene),
+      asked_choice_(start.choice),
+      loader_(start.file),
+      control_(start.replay ? start.replay->front().camera : start.view.camera, speed_for(*scene_)),
+      stays_open_(start.stays_open),
+      record_file_(start.record),
+      swapchain_(device, start.present_mode),
+      display_(device, swapchain_),
+      frames_(device, swapchain_),
+      screenshot_(device) {
+  if (start.replay) replay_.emplace(std::move(*start.replay));
+  switches_.scene = start.choice;
+  switches_.has_shadows = start.has_shadows;
+  switches_.shading = start.view.shading;
+  switches_.max_depth = start.view.max_depth;
+  show_scene(start.scene);
+  fit_window();
+  imgui_ = std::make_unique<ImguiRenderer>(device, window, swapchain_);
+}
+
+Viewer::~Viewer() {
+  device_.handle().waitIdle();
+}
+
+void Viewer::run() {
+  while (!is_quitting_ && !window_.should_close()) {
+    window_.poll();
+    frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
+    handle_input();
+    update_scene();
+    update_screenshot();
+    update_replay();
+    if (!fit_window() || !has_work()) {
+      window_.wait(frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() ? kLongWait : kShortWait);
+      continue;
+    }
+    Frame* frame = frames_.begin();
+    if (frame == nullptr) {
+      window_.wait(kShortWait);
+      continue;
+    }
+    record(*frame);
+    frames_.submit(*frame);
+  }
+  finish_frames();
+  if (record_file_ && !recorder_.path().empty()) write_camera_path(*record_file_, recorder_.path());
+  while (screenshot_.is_busy()) update_screenshot();
+}
+
+void Viewer::handle_input() {
+  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
+  for (const Press press : window_.take_presses()) handle_press(press);
+  for (const dvec2& place : window_.take_clicks()) {
+    const dvec2 full_size(picture_->full_size());
+    const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
+    explain(uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+  }
+  if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
+  if (window_.take_activity()) frames_to_draw_ = kSettlingFrames;
+}
+
+void Viewer::handle_press(Press press) {
+  switch (press) {
+    case Press::kHelp:
+      has_help_ = !has_help_;
+      return;
+    case Press::kOverlay:
+      has_overlay_ = !has_overlay_;
+      return;
+    case Press::kFullscreen:
+      return window_.toggle_fullscreen();
+    case Press::kReset:
+      return control_.reset();
+    case Press::kPause:
+      switches_.is_paused = !switches_.is_paused;
+      return;
+    case Press::kOrbit: {
+      const Bounds bounds = bounds_of(*scene_);
+      if (control_.is_orbiting()) return control_.fly();
+      if (!bounds.is_empty()) control_.orbit(bounds.center());
+      return;
+    }
+    case Press::kBookmark:
+      bookmarks_.push_back(control_.camera());
+      bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
+      return;
+    case Press::kPrintCommand: {
+      const View view = reproducible_view();
+      fmt::print("{}\n", describe_command(described_scene(view), view));
+      std::fflush(stdout);
+      return;
+    }
+    case Press::kScreenshot:
+      wants_screenshot_ = true;
+      return;
+    case Press::kQuit:
+      is_quitting_ = true;
+      return;
+    default:
+      break;
+  }
+  if (press >= Press::kFirstShading) {
+    switches_.shading = static_cast<Shading>(static_cast<int>(press) - static_cast<int>(Press::kFirstShading));
+    return;
+  }
+  const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
+  if (index < scene_->cameras.size()) control_.place(scene_->cameras[index]);
+}
+
+void Viewer::move_camera() {
+  const Motion motion = window_.take_motion();
+  if (is_replaying()) {
+    if (!replay_->is_done() && !switches_.is_paused) control_.place(replay_->next_camera());
+  } else if (!wants_screenshot_) {
+    // While a screenshot waits the camera holds still.
+    control_.apply(motion, window_.framebuffer_size().y);
+  }
+  if (record_file_) recorder_.add(Window::now(), control_.camera());
+}
+
+void Viewer::update_replay() {
+  if (!replay_) return;
+  if (!has_replay_started_) {
+    if (!picture_->is_complete()) return;
+    // Frames that began before do not count.
+    finish_frames();
+    has_replay_started_ = true;
+  } else if (replay_->is_done() && frames_.is_idle()) {
+    fmt::print("{}\n", replay_->summarize());
+    std::fflush(stdout);
+    replay_.reset();
+    is_quitting_ = is_quitting_ || !stays_open_;
+  }
+}
+
+void Viewer::update_screenshot() {
+  try {
+    if (const std::optional<std::string> text = screenshot_.take()) report(*text);
+  } catch (const Error& error) {
+    report_failure(error.what());
+  }
+}
+
+void Viewer::update_scene() {
+  if (features_ != (light_features() | features_of(switches_.shading))) {
+    finish_frames();
+    make_picture();
+  }
+  if (loader_.is_busy()) {
+    try {
+      if (const std::optional<LoadedScene> loaded = loader_.take()) {
+        finish_frames();
+        show_scene(*loaded);
+      }
+    } catch (const Error& error) {
+      report_failure(error.what());
+    }
+    return;
+  }
+  if (asked_choice_ != switches_.scene) {
+    asked_choice_ = switches_.scene;
+    return loader_.pack(scene_, asked_choice_);
+  }
+  if (Window::now() < next_file_check_) return;
+  next_file_check_ = Window::now() + kLongWait;
+  if (loader_.has_file_changed()) loader_.load(asked_choice_);
+}
+
+void Viewer::show_scene(const LoadedScene& loaded) {
+  const bool is_new = scene_ && scene_ != loaded.scene;
+  device_scene_ = std::make_shared<const DeviceScene>(device_, loaded.packed);
+  numbers_ = loaded.packed.numbers;
+  scene_features_ = loaded.features;
+  scene_ = loaded.scene;
+  shown_scene_ = loaded.shown;
+  make_picture();
+  explanation_.clear();
+  if (is_new) report("read " + file_.filename().string());
+}
+
+void Viewer::make_picture() {
+  features_ = light_features() | features_of(switches_.shading);
+  picture_.emplace(device_, device_scene_, features_, target_ms_);
+  // Its films are made with the window's images.
+  swapchain_.expire();
+}
+
+FeatureMask Viewer::light_features() const {
+  return scene_features_ & ~(switches_.has_shadows ? 0 : layout::FEATURE_SHADOWS);
+}
+
+void Viewer::explain(const uvec2& pixel) {
+  finish_frames();
+  try {
+    const Explanation explanation =
+        explain_pixel(device_, *device_scene_, numbers_, light_features(), current_view(), pixel);
+    explanation_title_ = fmt::format("pixel {}, {}", pixel.x, pixel.y);
+    explanation_ = explain_text(explanation, *shown_scene_);
+  } catch (const RunError& error) {
+    report_failure(error.what());
+  }
+}
+
+bool Viewer::fit_window() {
+  const uvec2 size = window_.framebuffer_size();
+  if (size.x == 0 || size.y == 0) return false;
+  if (!swapchain_.is_out_of_date() && swapchain_.size() == size) return true;
+  finish_frames();
+  swapchain_.recreate(size);
+  if (swapchain_.is_out_of_date()) return false;
+  picture_->resize(swapchain_.size());
+  const uvec2 full_size = picture_->full_size();
+  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y);
+  encoded_count_ = 0;
+  frames_to_draw_ = kSettlingFrames;
+  return true;
+}
+
+void Viewer::finish_frames() {
+  frames_.finish([&](const FinishedFrame& finished) { take_finished(finished); });
+}
+
+void Viewer::take_finished(const FinishedFrame& finished) {
+  statistics_.add(finished);
+  if (is_replaying()) replay_->add(finished);
+  if (finished.units == 0.0) return;
+  const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
+  picture_->learn(finished.units, trace_ms);
+  picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
+}
+
+bool Viewer::has_work() const {
+  if (is_replaying()) return !replay_->is_done();
+  return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
+}
+
+void Viewer::record(Frame& frame) {
+  move_camera();
+  build_overlay();
+  picture_->fix_scale(switches_.scale);
+  picture_->pause(switches_.is_paused && !wants_screenshot_);
+  picture_->want(current_view());
+  record_tracing(frame);
+  record_display(frame);
+  if (frames_to_draw_ > 0) --frames_to_draw_;
+}
+
+void Viewer::record_tracing(Frame& frame) {
+  using Stage = vk::PipelineStageFlagBits;
+  // Of the film that is traced now the frame before may have taken a screenshot.
+  frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
+  frame.units = picture_->record(frame.commands);
+  if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
+  if (wants_screenshot_ && picture_->is_complete() && !screenshot_.is_busy()) {
+    View view = picture_->wanted();
+    view.samples_per_pixel = picture_->shown()->samples_per_pixel;
+    screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
+    frame.on_finished = [this, view] {
+      stats_.view = view;
+      screenshot_.write(describe_picture(stats_));
+    };
+    wants_screenshot_ = false;
+  }
+  frame.mark(FrameMark::kTraced);
+}
+
+void Viewer::record_display(const Frame& frame) {
+  if (encoded_count_ != picture_->shown_count()) {
+    display_.record_encoding(frame.commands, picture_->shown()->film);
+    encoded_count_ = picture_->shown_count();
+  }
+  swapchain_.begin_drawing(frame.commands, frame.image);
+  if (picture_->shown()) display_.record_drawing(frame.commands, picture_->shown()->size, swapchain_.size());
+  frame.mark(FrameMark::kDisplayed);
+  imgui_->record(frame.commands);
+  frame.commands.endRenderPass();
+}
+
+void Viewer::build_overlay() {
+  imgui_->begin_frame();
+  if (has_overlay_) {
+    OverlayContent content;
+    content.statistics = &statistics_;
+    content.picture = &*picture_;
+    content.scene = scene_.get();
+    content.device = fmt::format("{} ({})", device_.info().name, device_.info().type);
+    content.speed = control_.speed();
+    content.is_orbiting = control_.is_orbiting();
+    content.is_loading = loader_.is_busy();
+    content.message = message_;
+    content.is_failure = is_failure_;
+    content.bookmarks = bookmarks_;
+    if (const std::optional<Camera> picked = show_overlay(content, switches_)) control_.place(*picked);
+  }
+  if (has_help_) show_help();
+  if (!explanation_.empty() && !show_explanation(explanation_title_, explanation_)) explanation_.clear();
+  imgui_->end_frame();
+}
+
+void Viewer::report(const std::string& text) {
+  message_ = text;
+  is_failure_ = false;
+  console_.note(text);
+  frames_to_draw_ = kSettlingFrames;
+}
+
+void Viewer::report_failure(const std::string& text) {
+  message_ = text;
+  is_failure_ = true;
+  console_.warn(text);
+  frames_to_draw_ = kSettlingFrames;
+}
+
+DescribedScene Viewer::described_scene(const View& view) const {
+  DescribedScene described{file_, switches_.has_shadows, asked_choice_.lights_off, std::nullopt};
+  if (view.camera.projection == Projection::kPerspective) return described;
+  for (size_t i = 0; i < scene_->cameras.size(); ++i) {
+    const Camera& camera = scene_->cameras[i];
+    if (camera.projection == view.camera.projection && camera.ymag == view.camera.ymag) described.camera_index = i;
+  }
+  return described;
+}
+
+View Viewer::current_view() const {
+  View view;
+  view.camera = control_.camera();
+  view.size = picture_->full_size();
+  view.max_depth = switches_.effective_depth();
+  view.shading = switches_.shading;
+  return view;
+}
+
+View Viewer::reproducible_view() const {
+  View view = current_view();
+  if (picture_->is_complete() && shows_same(view, picture_->wanted())) {
+    view.samples_per_pixel = picture_->shown()->samples_per_pixel;
+  }
+  return view;
+}
+
+}  // namespace promin::app

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/window.h"
+
+// Before GLFW, which then declares its Vulkan part.
+#include <vulkan/vulkan.h>
+
+#include <GLFW/glfw3.h>
+
+#include <utility>
+
+#include "core/error.h"
+
+namespace promin::app {
+namespace {
+
+/// A click that wanders further, in screen coordinates, is a drag.
+constexpr double kClickSlack = 3.0;
+
+[[noreturn]] void refuse(const std::string& what) {
+  const char* reason = nullptr;
+  glfwGetError(&reason);
+  throw DeviceError({what + (reason == nullptr ? "" : " (" + std::string(reason) + ")"), "for the window",
+                     "render pictures without one with promin render"});
+}
+
+}  // namespace
+
+/// GLFW's C callbacks, which hand on to the window.
+struct Window::Callbacks {
+  static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+
+  static void set(GLFWwindow* window) {
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) { of(w).on_key(key, action); });
+    glfwSetMouseButtonCallback(window,
+                               [](GLFWwindow* w, int button, int action, int) { of(w).on_button(button, action); });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).on_pointer({x, y}); });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) {
+      of(w).is_active_ = true;
+      if (!of(w).wants_pointer_) of(w).wheel_ += y;
+    });
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int is_focused) {
+      of(w).is_active_ = true;
+      if (is_focused == GLFW_FALSE) of(w).release();
+    });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).is_active_ = true; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).is_active_ = true; });
+  }
+};
+
+Window::Window(const uvec2& size, const std::string& title) {
+  if (glfwInit() == GLFW_FALSE) refuse("no display");
+  if (glfwVulkanSupported() == GLFW_FALSE) {
+    glfwTerminate();
+    throw DeviceError({"there is no Vulkan loader", "on this machine",
+                       "install libvulkan1 and a driver such as mesa-vulkan-drivers"});
+  }
+  glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  window_ = glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {
+    glfwTerminate();
+    throw DeviceError(
+        {"the display opens no window", "for promin-view", "render pictures without one with promin render"});
+  }
+  glfwSetWindowUserPointer(window_, this);
+  Callbacks::set(window_);
+}
+
+Window::~Window() {
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+gpu::Presentation Window::presentation() const {
+  uint32_t count = 0;
+  const char** names = glfwGetRequiredInstanceExtensions(&count);
+  if (names == nullptr) refuse("Vulkan has no surfaces");
+  return {{names, names + count}, [window = window_](VkInstance instance) {
+            VkSurfaceKHR surface = VK_NULL_HANDLE;
+            if (glfwCreateWindowSurface(instance, window, nullptr, &surface) != VK_SUCCESS) refuse("no surface");
+            return surface;
+          }};
+}
+
+uvec2 Window::framebuffer_size() const {
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  const bool is_minimised = glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0;
+  return is_minimised ? uvec2(0) : uvec2(width, height);
+}
+
+double Window::pixel_ratio() const {
+  int width = 0;
+  glfwGetWindowSize(window_, &width, nullptr);
+  return width > 0 ? static_cast<double>(framebuffer_size().x) / width : 1.0;
+}
+
+double Window::refresh_interval_ms() const {
+  constexpr int kUsualRate = 60;
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+  const int rate = mode == nullptr || mode->refreshRate <= 0 ? kUsualRate : mode->refreshRate;
+  return 1e3 / rate;
+}
+
+double Window::now() {
+  return glfwGetTime();
+}
+
+void Window::poll() {
+  glfwPollEvents();
+}
+
+void Window::wait(double seconds) {
+  glfwWaitEventsTimeout(seconds);
+}
+
+bool Window::should_close() const {
+  return glfwWindowShouldClose(window_) != 0;
+}
+
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::toggle_fullscreen() {
+  if (glfwGetWindowMonitor(window_) != nullptr) {
+    glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
+    return;
+  }
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+  if (mode == nullptr) return;
+  glfwGetWindowPos(window_, &windowed_[0], &windowed_[1]);
+  glfwGetWindowSize(window_, &windowed_[2], &windowed_[3]);
+  glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+std::vector<Press> Window::take_presses() {
+  return std::exchange(presses_, {});
+}
+
+double Window::take_wheel() {
+  return std::exchange(wheel_, 0.0);
+}
+
+std::vector<dvec2> Window::take_clicks() {
+  return std::exchange(clicks_, {});
+}
+
+bool Window::take_activity() {
+  return std::exchange(is_active_, false);
+}
+
+void Window::set_overlay_wants(bool keys, bool pointer) {
+  wants_keys_ = keys;
+  wants_pointer_ = pointer;
+}
+
+void Window::on_key(int key, int action) {
+  is_active_ = true;
+  for (const KeyBinding& binding : key_bindings()) {
+    if (binding.key != key) continue;
+    // A key that was down when the overlay took them over still comes up.
+    if (binding.hold && (action == GLFW_RELEASE || !wants_keys_)) {
+      motion_.set(*binding.hold, action != GLFW_RELEASE, now());
+    }
+    if (binding.press && action == GLFW_PRESS && !wants_keys_) presses_.push_back(*binding.press);
+  }
+}
+
+void Window::on_button(int button, int action) {
+  is_active_ = true;
+  const bool is_down = action == GLFW_PRESS;
+  if (is_down && wants_pointer_ && !is_captured_) return;
+  if (button == GLFW_MOUSE_BUTTON_RIGHT && is_down) capture_pointer(!is_captured_);
+  if (button != GLFW_MOUSE_BUTTON_LEFT) return;
+  if (is_down) {
+    is_dragging_ = true;
+    drag_start_ = pointer_;
+  } else if (std::exchange(is_dragging_, false) && glm::distance(pointer_, drag_start_) <= kClickSlack) {
+    clicks_.push_back(pixel_ratio() * pointer_);
+  }
+}
+
+void Window::on_pointer(const dvec2& place) {
+  is_active_ = true;
+  const dvec2 way = pixel_ratio() * (place - std::exchange(pointer_, place));
+  // A drag takes hold of the scene, the captured pointer of the camera.
+  if (is_captured_) {
+    motion_.turn(-way);
+  } else if (is_dragging_) {
+    motion_.turn(way);
+  }
+}
+
+void Window::release() {
+  motion_.release_all(now());
+  is_dragging_ = false;
+  capture_pointer(false);
+}
+
+void Window::capture_pointer(bool is_captured) {
+  if (is_captured == is_captured_) return;
+  is_captured_ = is_captured;
+  glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+  glfwGetCursorPos(window_, &pointer_.x, &pointer_.y);
+}
+
+}  // namespace promin::app

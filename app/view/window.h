@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "view/keys.h"
+
+struct GLFWwindow;
+
+namespace promin::app {
+
+/// A window of the desktop and what its user does with keys and pointer. One at a time, on the main thread.
+class Window {
+ public:
+  /// `size` in screen coordinates. Throws DeviceError where there is no display.
+  Window(const uvec2& size, const std::string& title);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// What a device needs to present here; valid as long as the window.
+  gpu::Presentation presentation() const;
+  GLFWwindow* handle() const { return window_; }
+
+  /// In pixels; 0 while minimised.
+  uvec2 framebuffer_size() const;
+  /// Pixels of the framebuffer for a unit of screen coordinates.
+  double pixel_ratio() const;
+  /// Of the display that the window is on, in milliseconds.
+  double refresh_interval_ms() const;
+  /// A clock in seconds.
+  static double now();
+
+  /// Takes events in without waiting, or waits until one comes, for at most so many seconds.
+  void poll();
+  void wait(double seconds);
+
+  bool should_close() const;
+  void set_title(const std::string& title);
+  void toggle_fullscreen();
+
+  // What happened since it was last taken.
+  Motion take_motion() { return motion_.take(now()); }
+  std::vector<Press> take_presses();
+  double take_wheel();
+  /// Places where the pointer was clicked without being dragged, in pixels.
+  std::vector<dvec2> take_clicks();
+  /// Whether anything happened at all.
+  bool take_activity();
+
+  /// Whether a key is down that moves the camera.
+  bool is_moving() const { return motion_.is_held(); }
+
+  /// Whether the overlay wants keys and pointer for itself just now.
+  void set_overlay_wants(bool keys, bool pointer);
+
+ private:
+  struct Callbacks;
+
+  void on_key(int key, int action);
+  void on_button(int button, int action);
+  void on_pointer(const dvec2& place);
+  void release();
+  void capture_pointer(bool is_captured);
+
+  GLFWwindow* window_ = nullptr;
+  MotionSum motion_;
+  std::vector<Press> presses_;
+  std::vector<dvec2> clicks_;
+  double wheel_ = 0.0;
+  bool is_active_ = true;
+  bool wants_keys_ = false;
+  bool wants_pointer_ = false;
+  bool is_dragging_ = false;
+  bool is_captured_ = false;
+  dvec2 pointer_{0.0};
+  dvec2 drag_start_{0.0};
+  /// Place and size before full screen, in screen coordinates.
+  int windowed_[4] = {0, 0, 0, 0};
+};
+
+}  // namespace promin::app

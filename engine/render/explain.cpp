@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/explain.h"
+
+#include <bit>
+#include <utility>
+
+#include "layout.h"
+#include "render/pack_scene.h"
+
+namespace promin {
+namespace {
+
+using layout::RayLog;
+
+Ray ray_of(const RayLog& log) {
+  return {vec3(log.origin_tmin), log.origin_tmin.w, vec3(log.direction_tmax), log.direction_tmax.w};
+}
+
+Hit hit_of(const RayLog& log, const PrimitiveNumbers& numbers) {
+  Hit hit;
+  const uint32_t order = log.hit.y;
+  if (order == layout::NO_ORDER) return hit;
+  const PrimitiveId id = primitive_of_order(numbers, order);
+  const vec2 weights(std::bit_cast<float>(log.hit.z), std::bit_cast<float>(log.hit.w));
+  const vec2 of_triangle = weights_of_triangle(numbers, order, weights);
+  hit.t = std::bit_cast<float>(log.hit.x);
+  hit.object = static_cast<int32_t>(id.object);
+  hit.primitive = static_cast<int32_t>(id.primitive);
+  hit.u = of_triangle.x;
+  hit.v = of_triangle.y;
+  hit.normal = vec3(log.normal);
+  return hit;
+}
+
+ExplainedSource source_of(const RayLog& log, const PrimitiveNumbers& numbers) {
+  ExplainedSource source;
+  source.light = log.ids.y;
+  if (log.ids.w != 0) source.shadow_ray = ray_of(log);
+  source.blocker = hit_of(log, numbers);
+  source.contribution = vec3(log.radiance);
+  return source;
+}
+
+}  // namespace
+
+ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbers& numbers) {
+  ExplainedSample sample;
+  std::vector<ExplainedSource> sources;
+  for (const RayLog& entry : log) {
+    if (entry.ids.x == layout::LOG_SOURCE) {
+      sources.push_back(source_of(entry, numbers));
+      continue;
+    }
+    ExplainedRay ray;
+    ray.ray = ray_of(entry);
+    ray.hit = hit_of(entry, numbers);
+    ray.position = vec3(entry.position);
+    ray.lift = entry.position.w;
+    ray.shading_normal = vec3(entry.shading_normal);
+    ray.material = entry.ids.z;
+    ray.weight = vec3(entry.weight);
+    ray.own = vec3(entry.own);
+    ray.sources = std::exchange(sources, {});
+    ray.radiance = vec3(entry.radiance);
+    sample.rays.push_back(std::move(ray));
+  }
+  return sample;
+}
+
+}  // namespace promin

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "gpu/buffer.h"
+#include "render/device_scene.h"
+#include "render/picture_pieces.h"
+#include "render/ray_counts.h"
+#include "render/tracing_kernel.h"
+#include "scene/features.h"
+
+namespace promin {
+
+/// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
+/// (shaders/render.comp). A picture is begun, then all of its pieces run; nothing of that waits unless it says so.
+class Film {
+ public:
+  /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
+  /// (render/shading.h), and FEATURE_AOVS.
+  Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features);
+
+  /// Makes room for so many pixels; the device is idle with respect to the film.
+  void reserve(uint32_t pixel_count);
+  uint32_t capacity() const { return capacity_; }
+
+  /// How the device wants pictures cut.
+  PieceOptions piece_options() const;
+  /// A picture of the film's scene.
+  PicturePieces cut(const View& view, const PixelWindow& window, const PieceOptions& options) const;
+
+  /// Records the beginning of a picture that has room, after all that compute shaders and transfers recorded before.
+  void record_begin(const vk::raii::CommandBuffer& commands, const PicturePieces& picture) const;
+  /// Records one of its pieces, likewise.
+  void record(const vk::raii::CommandBuffer& commands, const PicturePiece& piece) const;
+  /// Records a copy of the counters to the start of `target`, kCountersBytes of it, and sets them to zero.
+  void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
+
+  /// As the recordings above, and waits. `run` returns device milliseconds as TracingKernel::run does.
+  void begin(const PicturePieces& picture) const;
+  double run(const PicturePiece& piece) const;
+  RayCounts take_counts() const;
+  /// Traces a block of one pixel: drivers compile late, and a pipeline's first dispatch must not count as tracing.
+  void warm_up() const;
+
+  /// Records of a pixel, of uvec4: its sum over samples, and of the AOVs another.
+  uint32_t records_per_pixel() const;
+  /// Most pixels that a film can have on this device.
+  uint32_t max_capacity() const;
+  const gpu::Buffer& buffer() const { return *buffer_; }
+
+  /// Where the pixels lie in the buffer; counters before them.
+  static const vk::DeviceSize kPixelsOffset;
+  static const vk::DeviceSize kCountersBytes;
+
+ private:
+  const gpu::Device* device_;
+  std::shared_ptr<const DeviceScene> scene_;
+  FeatureMask features_;
+  gpu::Buffer frame_;
+  std::optional<gpu::Buffer> buffer_;
+  uint32_t capacity_ = 0;
+  std::optional<TracingKernel> kernel_;
+};
+
+/// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
+void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);
+
+/// The sum of counters as record_take_counts copies them.
+RayCounts sum_counts(std::span<const std::byte> counters);
+
+}  // namespace promin

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/picture_pieces.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "render/sampling.h"
+
+namespace promin {
+namespace {
+
+constexpr uint32_t kMaxBlocks = 65535;  // Vulkan's guaranteed workgroup count
+
+uint32_t divide_up(uint32_t a, uint32_t b) {
+  return (a + b - 1) / b;
+}
+
+/// The camera's part of a frame, computed in double.
+void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& camera, const uvec2& size) {
+  const bool is_orthographic = camera.projection == Projection::kOrthographic;
+  const double half_height =
+      is_orthographic ? static_cast<double>(camera.ymag) : std::tan(0.5 * static_cast<double>(camera.yfov));
+  const double pixel = 2.0 * half_height / size.y;
+  const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
+  const dvec3 up = dvec3(camera.up) * pixel;
+  // A ray's interval is open, but what lies on the viewport itself is drawn.
+  const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
+  frame.eye = vec4(camera.eye, before_near);
+  frame.look = vec4(camera.look, 0.0F);
+  dispatch.sampling.w = is_orthographic ? 1 : 0;
+  frame.right = vec4(vec3(right), 0.0F);
+  frame.up = vec4(vec3(up), 0.0F);
+  frame.film_center.x = 0.5F * static_cast<float>(size.x);
+  frame.film_center.y = 0.5F * static_cast<float>(size.y);
+}
+
+/// Where a lane has several pixels it does not wait for its neighbours' mirror rays; but the device's cores want
+/// groups to share.
+uint32_t pick_blocks_a_group(uint32_t blocks, uint32_t wanted_groups) {
+  constexpr uint32_t kMostBlocks = 16;
+  return wanted_groups > 0 ? std::clamp(blocks / wanted_groups, 1U, kMostBlocks) : 1;
+}
+
+}  // namespace
+
+PicturePieces::PicturePieces(const layout::Frame& frame, const layout::Dispatch& dispatch, const View& view,
+                             const PixelWindow& window, const PieceOptions& options)
+    : frame_(frame),
+      dispatch_(dispatch),
+      options_(options),
+      samples_(view.samples_per_pixel),
+      max_depth_(view.max_depth) {
+  assert(samples_ >= 1 && samples_ <= kMaxSamplesPerPixel);
+  set_camera(frame_, dispatch_, view.camera, view.size);
+  const uvec2 size = window.hi - window.lo;
+  const uint32_t block_columns = divide_up(size.x, layout::BLOCK_SIZE);
+  frame_.film_center.z = static_cast<float>(0.5 / samples_);
+  dispatch_.window = uvec4(window.lo, size);
+  dispatch_.sampling = uvec4(samples_, lattice_generator(samples_), block_columns, dispatch_.sampling.w);
+  pixel_count_ = size.x * size.y;
+  block_total_ = block_columns * divide_up(size.y, layout::BLOCK_SIZE);
+}
+
+double PicturePieces::fraction_done() const {
+  return (first_block_ + block_count_ * (static_cast<double>(first_sample_) / samples_)) / block_total_;
+}
+
+PicturePiece PicturePieces::next(double units) {
+  assert(!is_done());
+  if (first_sample_ == 0) block_count_ = pick_block_count(units);
+  const double wanted = std::max(1.0, units / block_count_);
+  const auto sample_count = static_cast<uint32_t>(std::min<double>(wanted, samples_ - first_sample_));
+  const uint32_t blocks_a_group = pick_blocks_a_group(block_count_, options_.wanted_groups);
+
+  PicturePiece piece;
+  piece.dispatch = dispatch_;
+  piece.dispatch.range = uvec4(first_block_, first_sample_, sample_count, max_depth_);
+  piece.dispatch.share.x = first_block_ + block_count_;
+  piece.group_count = divide_up(block_count_, blocks_a_group);
+  piece.units = static_cast<double>(block_count_) * sample_count;
+  piece.most_rays_a_lane = (1.0 + max_depth_) * (1.0 + dispatch_.counts.z) * piece.units;
+
+  first_sample_ += sample_count;
+  if (first_sample_ == samples_) {
+    first_block_ += block_count_;
+    block_count_ = 0;
+    first_sample_ = 0;
+  }
+  return piece;
+}
+
+uint32_t PicturePieces::pick_block_count(double units) const {
+  const uint32_t remaining = block_total_ - first_block_;
+  if (options_.blocks_per_piece > 0) return std::min({options_.blocks_per_piece, remaining, kMaxBlocks});
+  const double wanted = units / samples_;
+  const auto blocks = static_cast<uint32_t>(std::clamp(wanted, double{kMinBlocks}, double{kMaxBlocks}));
+  return std::min(blocks, remaining);
+}
+
+}  // namespace promin

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A film's pixels for a window: the sum over samples divided, and encoded to sRGB in 8 bits as PNGs are.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "layout.h"
+
+layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+
+// As in render.comp. The head is that of the picture's last dispatch.
+layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
+  Dispatch dispatch;
+  uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
+  uvec4 pixels[];
+};
+layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
+
+vec3 encode_srgb(vec3 linear) {
+  vec3 x = clamp(linear, 0.0, 1.0);
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}
+
+void main() {
+  uint count = dispatch.window.z * dispatch.window.w;
+  float samples = float(dispatch.sampling.x);
+  uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
+    vec3 radiance = uintBitsToFloat(pixels[i].xyz) / samples;
+    encoded[i] = packUnorm4x8(vec4(encode_srgb(radiance), 1.0));
+  }
+}

@@ -1,0 +1,5 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A source at infinity behind the camera, whichever way that looks.
+
+LightSample sample_headlight() { return LightSample(-frame.look.xyz, INFINITY, 1.0); }

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// `promin render --explain`, and the debug shadings of `--shading`.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+#include "explanation.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+vec3 vector_of(const json& v) {
+  return {v.at(0).get<float>(), v.at(1).get<float>(), v.at(2).get<float>()};
+}
+
+TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
+  const Image picture = render({"square.gltf", "--size", "64", "36", "-s", "2"}, "a.exr");
+  for (const auto& [x, y] : {std::pair(32U, 18U), std::pair(0U, 0U)}) {
+    const ProcessResult result = run(
+        {"render", "square.gltf", "--size", "64", "36", "-s", "2", "--explain", std::to_string(x), std::to_string(y)});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, IsEmpty());
+    const json explanation = json::parse(result.out);
+    EXPECT_EQ(explanation.at("pixel"), json({x, y}));
+    EXPECT_EQ(vector_of(explanation.at("color")), picture.at(x, y));
+    ASSERT_EQ(explanation.at("samples").size(), 2U);
+    const json& ray = explanation.at("samples")[0].at("rays")[0];
+    EXPECT_EQ(ray.at("kind"), "camera");
+    EXPECT_EQ(vector_of(ray.at("origin")), vec3(0, 0, 4));
+    EXPECT_EQ(ray.at("tmax"), nullptr) << "infinite";
+    if (x == 0) {
+      EXPECT_EQ(ray.at("hit"), nullptr);
+      EXPECT_THAT(ray.at("sources"), IsEmpty());
+      continue;
+    }
+    EXPECT_EQ(ray.at("hit").at("object"), 0);
+    EXPECT_EQ(ray.at("hit").at("position")[2], 0.0);
+    const json& source = ray.at("sources").at(0);
+    EXPECT_EQ(source.at("visible"), true);
+    EXPECT_EQ(source.at("shadow_ray").at("tmax").get<double>(), 1.0);
+    EXPECT_EQ(source.at("shadow_ray").at("blocker"), nullptr);
+    EXPECT_EQ(vector_of(ray.at("own")) + vector_of(source.at("contribution")), vector_of(ray.at("radiance")));
+  }
+}
+
+TEST_F(CliTest, ExplainGoesAloneAndStaysInThePicture) {
+  const std::pair<Words, std::string> cases[] = {
+      {{"--explain", "64", "0"}, "--explain is beyond the picture of 64x36"},
+      {{"--explain", "0", "36"}, "--explain is beyond"},
+      {{"--explain", "1"}, "too few values for --explain"},
+      {{"--explain", "-1", "0"}, "--explain takes a whole number"},
+      {{"--explain", "1", "1", "-o", "a.exr"}, "--explain and --output contradict"},
+      {{"--explain", "1", "1", "--path", "p.json"}, "--explain and --path contradict"},
+      {{"--explain", "1", "1", "--aov", "depth"}, "--explain and --aov contradict"},
+      {{"--explain", "1", "1", "--shading", "uv"}, "--explain and --shading contradict"},
+      {{"--explain", "1", "1", "--stats", "s.json"}, "--explain and --stats contradict"},
+      {{"--explain", "1", "1", "--repeat", "2"}, "--explain and --repeat contradict"},
+      {{"--explain", "1", "1", "--crop", "0", "0", "2", "2"}, "--explain and --crop contradict"},
+  };
+  for (const auto& [more, part] : cases) {
+    SCOPED_TRACE(testing::PrintToString(more));
+    Words arguments = {"render", "square.gltf", "--size", "64", "36"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure(run(arguments), 2, part);
+    EXPECT_THAT(files(), IsEmpty());
+  }
+}
+
+TEST_F(CliTest, ShadingsShowOtherThanLight) {
+  const Image normals = render({"square.gltf", "--size", "64", "36", "--shading", "normals"}, "a.exr");
+  EXPECT_EQ(normals.at(32, 18), vec3(0.5F, 0.5F, 1.0F));
+  EXPECT_EQ(normals.at(0, 0), vec3(0.0F));
+  expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--shading", "light"}), 2, "--shading takes full or ");
+}
+
+TEST(ExplanationTest, TextNamesWhatIsHitAndWhatIsInTheWay) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "matt";
+  scene.objects = {{"ball", Sphere{}, 0}};
+  scene.lights = {Light{"key"}, Light{}, make_headlight()};
+  Explanation explanation;
+  explanation.pixel = uvec2(3, 4);
+  explanation.color = vec3(0.25F);
+  ExplainedRay ray;
+  ray.hit.object = 0;
+  ray.hit.primitive = 0;
+  ray.hit.t = 2.0F;
+  ExplainedSource visible{0, Ray{}, Hit{}, vec3(0.25F)};
+  ExplainedSource blocked{1, Ray{}, ray.hit, vec3(0.0F)};
+  ray.sources = {visible, blocked, {2, std::nullopt, Hit{}, vec3(0.0F)}};
+  explanation.samples = {{{ray, ExplainedRay{}}}};
+  const std::string text = app::explain_text(explanation, scene);
+  for (const char* part :
+       {"pixel 3 4: (0.25 0.25 0.25)\nsample 0\n  camera ray", "\n    hits object 0 \"ball\" primitive 0 at t 2,",
+        "material 0 \"matt\"\n", "\n    light 0 \"key\": visible, adds (0.25 0.25 0.25)\n",
+        "\n    light 1: blocked by object 0 \"ball\" primitive 0 at t 2\n",
+        "\n    light 2 \"headlight\": adds nothing from where it is\n", "\n    mirror ray from", "\n      misses: "}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// `promin render --path`: the frames of a camera path.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+#include "frame_plan.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+/// Three poses before the scenes of the fixture, and the options that give each alone.
+constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, "frames": [
+  {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
+  {"time_s": 0.1, "eye": [1, 0.5, 3], "look": [-0.28, 0, -0.96], "up": [0, 1, 0], "fov_deg": 60},
+  {"time_s": 0.3, "eye": [2, 0, 3], "look": [-0.6, 0, -0.8], "up": [0, 1, 0], "fov_deg": 30}]})";
+const Words kPoses[] = {
+    {"--eye", "0", "0", "4", "--look", "0", "0", "-1", "--up", "0", "1", "0", "--fov", "45", "--near", "0.01"},
+    {"--eye", "1", "0.5", "3", "--look", "-0.28", "0", "-0.96", "--up", "0", "1", "0", "--fov", "60", "--near", "0"},
+    {"--eye", "2", "0", "3", "--look", "-0.6", "0", "-0.8", "--up", "0", "1", "0", "--fov", "30", "--near", "0"}};
+
+class PathCliTest : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    write("path.json", kPath);
+  }
+
+  ProcessResult render_path(Words more) const {
+    more.insert(more.begin(), {"render", "square.gltf", "--size", "32", "18", "--path", "path.json"});
+    return run(more);
+  }
+};
+
+TEST_F(PathCliTest, EachFrameHasTheBitsOfItsPoseAlone) {
+  // The second has no lights: its headlight follows the camera.
+  for (const char* scene : {"square.gltf", "triangle.obj"}) {
+    const ProcessResult result = run({"render", scene, "--size", "32", "18", "-s", "2", "--path", "path.json", "-o",
+                                      "f.##.exr", "--aov", "depth", "--quiet"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    for (size_t i = 0; i < std::size(kPoses); ++i) {
+      Words alone = {scene, "--size", "32", "18", "-s", "2"};
+      alone.insert(alone.end(), kPoses[i].begin(), kPoses[i].end());
+      const Image expected = render(alone, "alone.exr");
+      EXPECT_EQ(read_image(folder() / ("f.0" + std::to_string(i) + ".exr")).pixels, expected.pixels)
+          << scene << ", frame " << i;
+      EXPECT_NE(expected.pixels, std::vector<vec3>(expected.pixels.size(), vec3(0.0F)));
+    }
+  }
+}
+
+TEST_F(PathCliTest, RangesPickFramesAndNamesTakeTheirNumbers) {
+  EXPECT_EQ(render_path({"--frames", "1-2", "-o", "a#.png", "-o", "b.png.####.exr", "--quiet"}).exit_code, 0);
+  EXPECT_THAT(files(), UnorderedElementsAre("path.json", "a1.png", "a2.png", "b.png.0001.exr", "b.png.0002.exr"));
+  EXPECT_EQ(render_path({"--frames", "2", "-o", "one.exr", "--quiet"}).exit_code, 0);
+  EXPECT_THAT(files(), testing::Contains("one.exr"));
+  EXPECT_EQ(run({"render", "square.gltf", "--size", "8", "8", "-o", "x.#.exr"}).exit_code, 0);
+  EXPECT_THAT(files(), testing::Contains("x.#.exr")) << "an ordinary name without a path";
+  EXPECT_EQ(app::number_file("a/f##.#.exr", 123), "a/f##.123.exr");
+  EXPECT_EQ(app::number_file("a#/f.exr", 1), "a#/f.exr");
+}
+
+TEST_F(PathCliTest, StatsTellOfEachFrame) {
+  const ProcessResult result = render_path({"--repeat", "2", "-o", "f#.exr", "--stats", "s.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("32x18, 1 spp, 3 frames, "));
+  const json stats = json::parse(read("s.json"));
+  std::vector<double> times;
+  for (const json& frame : stats.at("frames")) {
+    EXPECT_EQ(frame.at("frame"), times.size());
+    times.push_back(frame.at("trace_ms"));
+  }
+  ASSERT_EQ(times.size(), 3U);
+  EXPECT_EQ(stats.at("rays").at("primary"), 3 * 32 * 18);
+  const double total_ms = times[0] + times[1] + times[2];
+  std::sort(times.begin(), times.end());
+  EXPECT_EQ(stats.at("times_ms").at("trace"), times[1]) << "the median";
+  const double rays = stats.at("rays").at("primary").get<double>() + stats.at("rays").at("shadow").get<double>();
+  EXPECT_NEAR(stats.at("mrays_per_s").get<double>(), rays / total_ms / 1e3, 1e-6 * rays / total_ms);
+}
+
+TEST_F(PathCliTest, WrongUseIsRefused) {
+  const std::pair<Words, std::string> cases[] = {
+      {{"-o", "a.exr"}, "3 frames would go to one file, a.exr; put ####"},
+      {{"-o", "a#/f.exr"}, "3 frames would go to one file"},
+      {{"-o", "f#.exr", "--camera", "main"}, "--path and a camera"},
+      {{"-o", "f#.exr", "--near", "1"}, "--path and a camera"},
+      {{"-o", "f#.exr", "--frames", "1-3"}, "there is no frame 3, path.json; the path has the frames 0-2"},
+      {{"-o", "f#.exr", "--frames", "2-1"}, "--frames is empty"},
+      {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number"},
+      {{"-o", "f#.exr", "--frames", "-1"}, "--frames takes a whole number"},
+      {{"-o", "f0.exr", "-o", "f#.exr", "--frames", "0"}, "the same output file is named twice"},
+      {{"-o", "f#.exr", "--stats", "path.json"}, "overwrite an input"},
+  };
+  for (const auto& [arguments, part] : cases) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    expect_failure(render_path(arguments), 2, part);
+    EXPECT_THAT(files(), testing::ElementsAre("path.json"));
+  }
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames has no path");
+  write("path.json", "{}");
+  const ProcessResult bad = render_path({"-o", "f#.exr"});
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_THAT(bad.err, HasSubstr("(1 of 3 problems)"));
+}
+
+TEST_F(PathCliTest, AFailureKeepsTheFramesDoneAndNamesItsOwn) {
+  options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
+  // The first frame shows nothing and so takes few bytes.
+  std::string path = kPath;
+  path.replace(path.find("[0, 0, -1]"), 10, "[0, 0, 1]");
+  write("path.json", path);
+  options_.max_file_bytes = 2000;
+  expect_failure(render_path({"--size", "300", "300", "-o", "f#.png", "--quiet"}), 1, "frame 1: ");
+  EXPECT_THAT(files(), UnorderedElementsAre("path.json", "f0.png"));
+  EXPECT_EQ(read_image(folder() / "f0.png").size, uvec2(300, 300));
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/explain.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <filesystem>
+
+#include "core/error.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "render/caster.h"
+#include "render/renderer.h"
+#include "scene/load_scene.h"
+
+namespace promin {
+namespace {
+
+using Bits = std::array<uint32_t, 3>;
+
+Bits bits_of(const vec3& v) {
+  return std::bit_cast<Bits>(v);
+}
+
+Hit cast(Caster& caster, const Ray& ray, HitQuery query) {
+  Hit hit;
+  caster.cast(std::span(&ray, 1), std::span(&hit, 1), query);
+  return hit;
+}
+
+void expect_same_hit(const Hit& a, const Hit& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.object, b.object);
+  EXPECT_EQ(a.primitive, b.primitive);
+  EXPECT_EQ(a.u, b.u);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(bits_of(a.normal), bits_of(b.normal));
+}
+
+class ExplainTest : public test::DeviceTest {
+ protected:
+  /// Holds explanations of pixels all over the picture against it, against cast rays and against themselves.
+  static void check(const Scene& scene, const View& view) {
+    Renderer renderer(device(), scene);
+    Caster caster(device(), scene);
+    const Image picture = renderer.render(view).image;
+    for (uint32_t i = 0; i < 40; ++i) {
+      const uvec2 pixel(i * 37 % view.size.x, (i * 23 + i / 7) % view.size.y);
+      SCOPED_TRACE(testing::Message() << "pixel " << pixel.x << " " << pixel.y);
+      const Explanation explanation = renderer.explain(view, pixel);
+      EXPECT_EQ(explanation.pixel, pixel);
+      EXPECT_EQ(bits_of(explanation.color), bits_of(picture.at(pixel.x, pixel.y)));
+      expect_sums(explanation, scene);
+      expect_counts(renderer, view, explanation);
+      for (const ExplainedSample& sample : explanation.samples) expect_hits(sample, caster);
+    }
+  }
+
+  /// The colour is what its parts add up to, in fp32 and to the bit.
+  static void expect_sums(const Explanation& explanation, const Scene& scene) {
+    vec3 sum(0.0F);
+    for (const ExplainedSample& sample : explanation.samples) {
+      vec3 weight(1.0F);
+      vec3 radiance(0.0F);
+      for (const ExplainedRay& ray : sample.rays) {
+        EXPECT_EQ(bits_of(ray.weight), bits_of(weight));
+        vec3 sent = ray.own;
+        for (const ExplainedSource& source : ray.sources) sent += source.contribution;
+        radiance += weight * sent;
+        EXPECT_EQ(bits_of(ray.radiance), bits_of(radiance));
+        if (ray.hit.object >= 0) weight *= scene.materials[ray.material].reflection;
+        if (ray.hit.object < 0) {
+          EXPECT_EQ(ray.own, scene.background);
+          EXPECT_TRUE(ray.sources.empty());
+        } else {
+          EXPECT_EQ(ray.sources.size(), scene.lights.size());
+        }
+      }
+      sum += radiance;
+    }
+    EXPECT_EQ(bits_of(explanation.sum), bits_of(sum));
+  }
+
+  static void expect_counts(Renderer& renderer, View view, const Explanation& explanation) {
+    view.crop = PixelWindow{explanation.pixel, explanation.pixel + 1U};
+    const RayCounts counts = renderer.render(view).rays;
+    RayCounts explained;
+    for (const ExplainedSample& sample : explanation.samples) {
+      explained.primary += 1;
+      explained.reflection += sample.rays.size() - 1;
+      for (const ExplainedRay& ray : sample.rays) {
+        for (const ExplainedSource& source : ray.sources) explained.shadow += source.shadow_ray ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(explained.primary, counts.primary);
+    EXPECT_EQ(explained.shadow, counts.shadow);
+    EXPECT_EQ(explained.reflection, counts.reflection);
+  }
+
+  static void expect_hits(const ExplainedSample& sample, Caster& caster) {
+    for (const ExplainedRay& ray : sample.rays) {
+      expect_same_hit(ray.hit, cast(caster, ray.ray, HitQuery::kNearest));
+      for (const ExplainedSource& source : ray.sources) {
+        if (!source.shadow_ray) {
+          EXPECT_EQ(source.contribution, vec3(0.0F));
+          continue;
+        }
+        const bool is_occluded = cast(caster, *source.shadow_ray, HitQuery::kAny).t == 0.0F;
+        EXPECT_EQ(source.is_visible(), !is_occluded);
+        EXPECT_EQ(source.contribution != vec3(0.0F), !is_occluded);
+      }
+    }
+  }
+};
+
+TEST_F(ExplainTest, EverythingAddsUpToThePicture) {
+  View view = test::make_view(uvec2(150, 100));
+  view.samples_per_pixel = 3;
+  check(test::make_scene_of_everything(), view);
+}
+
+TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {
+  for (const char* name : {"mirrors.gltf", "metallic_roughness.gltf", "triangles_smooth.gltf"}) {
+    SCOPED_TRACE(name);
+    Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name);
+    View view;
+    view.size = uvec2(96, 72);
+    view.camera = scene.cameras.empty() ? frame_scene(scene, 4.0F / 3.0F) : scene.cameras.front();
+    check(scene, view);
+    scene.lights = {make_headlight()};
+    check(scene, view);
+  }
+}
+
+TEST_F(ExplainTest, TooLongALogIsRefused) {
+  Scene scene = test::make_scene_of_everything();
+  scene.lights.resize(1000);
+  View view = test::make_view(uvec2(16, 16));
+  Renderer renderer(device(), scene);
+  EXPECT_NO_THROW(renderer.explain(view, uvec2(0)));
+  view.max_depth = 1000;
+  EXPECT_THROW(renderer.explain(view, uvec2(0)), RunError);
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/shading.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "layout.h"
+#include "render/pack_scene.h"
+#include "render/ray_kernel.h"
+#include "render/renderer.h"
+
+namespace promin {
+namespace {
+
+using test::has_same_bits;
+
+using Key = std::tuple<float, float, float>;
+
+Key key_of(const vec3& color) {
+  return {color.x, color.y, color.z};
+}
+
+class ShadingTest : public test::DeviceTest {
+ protected:
+  ShadingTest() {
+    RendererOptions options;
+    options.with_aovs = true;
+    renderer_.emplace(device(), scene_, options);
+    aovs_ = renderer_->render(view_).aovs;
+  }
+
+  Image show(Shading shading) {
+    view_.shading = shading;
+    return renderer_->render(view_).image;
+  }
+
+  bool is_miss(size_t pixel) const { return aovs_.object[pixel] == Aovs::kNoId; }
+
+  Scene scene_ = test::make_scene_of_everything();
+  View view_ = test::make_view(uvec2(150, 100));
+  std::optional<Renderer> renderer_;
+  Aovs aovs_;
+};
+
+TEST_F(ShadingTest, LightHasTheSameBitsAfterEveryOther) {
+  const Image before = show(Shading::kFull);
+  for (size_t i = 1; i < shading_names().size(); ++i) {
+    EXPECT_FALSE(has_same_bits(show(static_cast<Shading>(i)), before)) << shading_names()[i];
+  }
+  EXPECT_TRUE(has_same_bits(show(Shading::kFull), before));
+}
+
+TEST_F(ShadingTest, NormalsAndDepthAreThoseOfTheAovs) {
+  const float size = pack_scene(scene_, "sah").frame.tree_bounds.w;
+  const Image normals = show(Shading::kNormals);
+  const Image depth = show(Shading::kDepth);
+  for (size_t i = 0; i < normals.pixels.size(); ++i) {
+    ASSERT_EQ(normals.pixels[i], is_miss(i) ? vec3(0.0F) : 0.5F + 0.5F * aovs_.normal[i]) << i;
+    // Division may round its own way on a device.
+    const float nearness = is_miss(i) ? 0.0F : size / (size + aovs_.depth[i]);
+    ASSERT_NEAR(depth.pixels[i].x, nearness * nearness, 1e-6F) << i;
+    ASSERT_EQ(depth.pixels[i], vec3(depth.pixels[i].x)) << i;
+  }
+}
+
+TEST_F(ShadingTest, ColorsTellObjectsAndPrimitivesApart) {
+  const Image objects = show(Shading::kObject);
+  const Image primitives = show(Shading::kPrimitive);
+  std::map<uint32_t, std::set<Key>> of_object;
+  std::map<std::pair<uint32_t, uint32_t>, std::set<Key>> of_primitive;
+  std::set<Key> object_colors;
+  std::set<Key> primitive_colors;
+  for (size_t i = 0; i < objects.pixels.size(); ++i) {
+    if (is_miss(i)) {
+      ASSERT_EQ(objects.pixels[i], vec3(0.0F));
+      continue;
+    }
+    of_object[aovs_.object[i]].insert(key_of(objects.pixels[i]));
+    of_primitive[{aovs_.object[i], aovs_.primitive[i]}].insert(key_of(primitives.pixels[i]));
+    object_colors.insert(key_of(objects.pixels[i]));
+    primitive_colors.insert(key_of(primitives.pixels[i]));
+  }
+  for (const auto& [id, colors] : of_object) EXPECT_EQ(colors.size(), 1U) << id;
+  for (const auto& [id, colors] : of_primitive) EXPECT_EQ(colors.size(), 1U) << id.first << " " << id.second;
+  // Of 2^15 colours two may be the same.
+  EXPECT_GE(object_colors.size() + 1, of_object.size());
+  EXPECT_GE(primitive_colors.size() + 1, of_primitive.size());
+  EXPECT_GT(of_primitive.size(), of_object.size());
+}
+
+TEST_F(ShadingTest, ColorsDoNotDependOnTheTree) {
+  RendererOptions options;
+  options.builder = "spatial";
+  Renderer other(device(), scene_, options);
+  const Image objects = show(Shading::kObject);
+  EXPECT_TRUE(has_same_bits(other.render(view_).image, objects));
+  const Image primitives = show(Shading::kPrimitive);
+  EXPECT_TRUE(has_same_bits(other.render(view_).image, primitives));
+}
+
+TEST_F(ShadingTest, UvAreTheHits) {
+  const Image picture = show(Shading::kUv);
+  size_t triangles = 0;
+  for (uint32_t y = 0; y < view_.size.y; y += 7) {
+    for (uint32_t x = 0; x < view_.size.x; x += 5) {
+      const Hit hit = renderer_->explain(view_, {x, y}).samples.front().rays.front().hit;
+      const vec3 expected = hit.object < 0 ? vec3(0.0F) : vec3(hit.u, hit.v, 1.0F - hit.u - hit.v);
+      EXPECT_EQ(picture.at(x, y), expected) << x << " " << y;
+      triangles += hit.u > 0.0F ? 1 : 0;
+    }
+  }
+  EXPECT_GT(triangles, 1U);
+}
+
+// Against the counts of cast rays, and lighter with each step up to the scale's end.
+TEST_F(ShadingTest, StepsAreAHeatMapOfTheCounts) {
+  const Image picture = show(Shading::kSteps);
+  std::vector<layout::RayRecord> rays;
+  std::vector<vec3> colors;
+  for (uint32_t y = 0; y < view_.size.y; y += 7) {
+    for (uint32_t x = 0; x < view_.size.x; x += 5) {
+      const Ray ray = renderer_->explain(view_, {x, y}).samples.front().rays.front().ray;
+      rays.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
+      colors.push_back(picture.at(x, y));
+    }
+  }
+  RayKernelOptions options;
+  options.features |= layout::FEATURE_STEP_COUNTS;
+  std::vector<layout::HitRecord> records(rays.size());
+  RayKernel(device(), upload_scene(device(), pack_scene(scene_, "sah")), options).run(rays, records);
+
+  std::map<uint32_t, vec3> heat;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const uint32_t steps = std::min((records[i].b.w & 0xFFFF) + (records[i].b.w >> 16), layout::HEAT_STEPS);
+    EXPECT_EQ(heat.try_emplace(steps, colors[i]).first->second, colors[i]) << steps << " steps";
+  }
+  EXPECT_GT(heat.size(), 10U);
+  float last = -1.0F;
+  for (const auto& [steps, color] : heat) {
+    const float luminance = glm::dot(color, vec3(0.2126F, 0.7152F, 0.0722F));
+    EXPECT_GT(luminance, last) << steps << " steps";
+    last = luminance;
+  }
+}
+
+}  // namespace
+}  // namespace promin

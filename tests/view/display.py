@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""A window on an X server without a screen, and a user's hands for it."""
+
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import time
+
+
+class Failure(Exception):
+    """What a test found wrong."""
+
+
+def wait_for(condition, what, seconds=20.0):
+    """The first true value of condition(), which is asked again and again."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if value := condition():
+            return value
+        time.sleep(0.02)
+    raise Failure(f"no {what} within {seconds:g} s")
+
+
+class Display:
+    """An X server of its own, on a display number that is free."""
+
+    def __init__(self, size="1024x768x24"):
+        reader, writer = os.pipe()
+        self.process = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writer), "-screen", "0", size, "-nolisten", "tcp"],
+            pass_fds=[writer],
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(writer)
+        with os.fdopen(reader) as pipe:
+            number = pipe.readline().strip()
+        if not number:
+            raise Failure("Xvfb does not start")
+        self.environment = {**os.environ, "DISPLAY": f":{number}"}
+        self.environment.pop("WAYLAND_DISPLAY", None)
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+
+
+class Viewer:
+    """promin-view in a folder, with its output in files that grow."""
+
+    def __init__(self, display, program, arguments, folder, **environment):
+        self.display = display
+        self.logs = [tempfile.TemporaryFile("w+"), tempfile.TemporaryFile("w+")]
+        self.process = subprocess.Popen(
+            [program, *arguments],
+            cwd=folder,
+            env={**display.environment, **environment},
+            stdout=self.logs[0],
+            stderr=self.logs[1],
+        )
+        self.window = wait_for(self.find_window, "window")
+        self.xdotool("windowfocus", "--sync", self.window)
+
+    def xdotool(self, *words):
+        done = subprocess.run(
+            ["xdotool", *map(str, words)], env=self.display.environment, capture_output=True, text=True, timeout=20
+        )
+        return done.stdout.strip()
+
+    def find_window(self):
+        self.check_alive()
+        found = self.xdotool("search", "--onlyvisible", "--name", "^promin")
+        return found.split("\n")[0] if found else None
+
+    def read(self, stream):
+        # A handle of its own: the program writes where this one stands.
+        return pathlib.Path(f"/proc/self/fd/{self.logs[stream].fileno()}").read_text()
+
+    @property
+    def out(self):
+        return self.read(0)
+
+    @property
+    def err(self):
+        return self.read(1)
+
+    def check_alive(self):
+        if self.process.poll() is not None:
+            raise Failure(f"promin-view ended with {self.process.returncode}:\n{self.err}")
+
+    def press(self, *keys):
+        self.xdotool("key", *keys)
+        self.check_alive()
+
+    def hold(self, key, seconds):
+        self.xdotool("keydown", key)
+        time.sleep(seconds)
+        self.xdotool("keyup", key)
+
+    def drag(self, start, end):
+        self.xdotool("mousemove", "--window", self.window, *start, "mousedown", 1)
+        self.xdotool("mousemove", "--window", self.window, *end, "mouseup", 1)
+
+    def wait_for_line(self, pattern, stream, what):
+        """The first line that has the pattern."""
+
+        def search():
+            self.check_alive()
+            return re.search(rf"^.*{pattern}.*$", self.read(stream), re.MULTILINE)
+
+        return wait_for(search, what).group(0)
+
+    def wait_for_end(self):
+        try:
+            return self.process.wait(timeout=20)
+        except subprocess.TimeoutExpired:
+            raise Failure("promin-view does not end") from None
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()

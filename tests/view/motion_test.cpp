@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/motion.h"
+
+#include <gtest/gtest.h>
+
+#include "view/camera_control.h"
+
+namespace promin::app {
+namespace {
+
+constexpr double kHeight = 360.0;
+
+/// Holds ahead for a second and fast for the middle half, with frames at these times.
+Motion fly(const std::vector<double>& frame_times) {
+  MotionSum motion;
+  motion.take(1.0);
+  Motion sum;
+  const auto take = [&](double time) {
+    const Motion part = motion.take(time);
+    sum.travel += part.travel;
+    sum.roll += part.roll;
+  };
+  const auto play = [&](double from, double to) {
+    for (const double time : frame_times) {
+      if (time >= from && time < to) take(time);
+    }
+  };
+  motion.set(Hold::kAhead, true, 1.0);
+  motion.set(Hold::kRollLeft, true, 1.0);
+  play(1.0, 1.25);
+  motion.set(Hold::kFast, true, 1.25);
+  play(1.25, 1.75);
+  motion.set(Hold::kFast, false, 1.75);
+  play(1.75, 2.0);
+  motion.set(Hold::kAhead, false, 2.0);
+  motion.set(Hold::kRollLeft, false, 2.0);
+  take(3.0);
+  return sum;
+}
+
+TEST(Motion, DoesNotDependOnTheFrames) {
+  const Motion expected = fly({});
+  EXPECT_NEAR(expected.travel.z, 0.5 + 0.5 * MotionSum::kFastFactor, 1e-12);
+  EXPECT_NEAR(glm::length(fly({1.1, 1.3, 1.31, 1.9}).travel - expected.travel), 0.0, 1e-12);
+  EXPECT_NEAR(fly({1.5, 1.99}).roll, expected.roll, 1e-12);
+}
+
+TEST(Motion, OppositeKeysCancelAndReleasedOnesRest) {
+  MotionSum motion;
+  motion.set(Hold::kLeft, true, 0.0);
+  motion.set(Hold::kRight, true, 0.0);
+  EXPECT_TRUE(motion.is_held());
+  EXPECT_TRUE(motion.take(5.0).is_none());
+  motion.set(Hold::kLeft, false, 5.0);
+  motion.release_all(6.0);
+  EXPECT_FALSE(motion.is_held());
+  EXPECT_EQ(motion.take(9.0).travel, dvec3(1.0, 0.0, 0.0));
+}
+
+TEST(CameraControl, KeepsTheBitsOfACameraThatRests) {
+  Camera camera;
+  camera.eye = vec3(0.1F, 0.2F, 0.3F);
+  camera.look = glm::normalize(vec3(0.3F, -0.2F, -0.9F));
+  camera.up = glm::normalize(glm::cross(glm::cross(camera.look, vec3(0, 1, 0)), camera.look));
+  CameraControl control(camera, 1.0);
+  control.apply({}, kHeight);
+  EXPECT_EQ(control.camera().look, camera.look);
+  EXPECT_EQ(control.camera().up, camera.up);
+  EXPECT_EQ(control.camera().eye, camera.eye);
+}
+
+// What was under the pointer in the middle stays under it, to first order.
+TEST(CameraControl, ADragTurnsByTheFieldOfView) {
+  CameraControl control(Camera{}, 1.0);
+  Motion motion;
+  motion.turn = dvec2(kHeight, 0.0);
+  control.apply(motion, kHeight);
+  const double angle = std::acos(static_cast<double>(glm::dot(control.camera().look, Camera{}.look)));
+  EXPECT_NEAR(angle, static_cast<double>(Camera{}.yfov), 1e-6);
+  EXPECT_LT(control.camera().look.x, 0.0F);  // to the right, so the camera turns to the left
+}
+
+TEST(CameraControl, AnOrbitFacesItsCenterAtTheSameDistance) {
+  Camera camera;
+  camera.eye = vec3(3, 1, 8);
+  CameraControl control(camera, 1.0);
+  const dvec3 center(0.5, -1.0, 0.25);
+  const double distance = glm::distance(dvec3(camera.eye), center);
+  control.orbit(center);
+  Motion motion;
+  motion.travel = dvec3(0.01, 0.02, 0.0);
+  motion.turn = dvec2(3.0, -2.0);
+  motion.roll = 0.01;
+  for (int i = 0; i < 10000; ++i) {
+    control.apply(motion, kHeight);
+    if (i % 1000 > 0) continue;
+    const dvec3 ahead = center - control.position();
+    ASSERT_NEAR(glm::length(ahead), distance, 1e-9);
+    ASSERT_NEAR(glm::dot(glm::normalize(ahead), dvec3(control.camera().look)), 1.0, 1e-6);
+  }
+  motion = {};
+  motion.travel.z = 1.0;
+  control.apply(motion, kHeight);
+  EXPECT_LT(glm::distance(control.position(), center), 0.5 * distance);
+}
+
+TEST(CameraControl, ResetGoesBackToTheStart) {
+  Camera camera;
+  camera.eye = vec3(1, 2, 3);
+  CameraControl control(camera, 2.0);
+  Motion motion;
+  motion.travel = dvec3(0, 0, 3);
+  control.apply(motion, kHeight);
+  EXPECT_EQ(control.camera().eye, vec3(1, 2, -3));
+  control.orbit(dvec3(0.0));
+  control.reset();
+  EXPECT_EQ(control.camera().eye, camera.eye);
+  EXPECT_FALSE(control.is_orbiting());
+}
+
+}  // namespace
+}  // namespace promin::app

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "view/describe_command.h"
+#include "view/flight.h"
+#include "view/keys.h"
+#include "view/screenshot.h"
+
+namespace promin::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(DescribeCommand, NamesTheViewForAShell) {
+  View view;
+  view.size = uvec2(640, 360);
+  view.samples_per_pixel = 4;
+  view.camera.eye = vec3(0.1F, -2.0F, 1e-7F);
+  view.camera.yfov = 0.7F;
+  const std::string command = describe_command({.file = "it's a scene.gltf"}, view);
+  EXPECT_THAT(command, testing::StartsWith("promin render 'it'\\''s a scene.gltf' -o view.exr --size 640 360 --spp 4"));
+  EXPECT_THAT(command, testing::HasSubstr("--eye 0.100000001 -2 1.00000001e-07 --look 0 0 -1 --up 0 1 0 --fov "));
+}
+
+TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
+  View view;
+  view.shading = Shading::kSteps;
+  view.camera.projection = Projection::kOrthographic;
+  const std::string command =
+      describe_command({.file = "s", .has_shadows = false, .lights_off = {0, 2}, .camera_index = 1}, view);
+  EXPECT_THAT(command, testing::HasSubstr(" --shading steps --no-shadows --lights-off 0,2 --camera 1 --eye "));
+  EXPECT_THAT(command, testing::Not(testing::HasSubstr("--fov")));
+}
+
+// Every float's angle comes back from nine digits of degrees.
+TEST(DescribeCommand, AnglesComeBackToTheBit) {
+  View view;
+  for (float yfov = 0.001F; yfov < 3.1F; yfov *= 1.0037F) {
+    view.camera.yfov = yfov;
+    const std::string command = describe_command({.file = "s"}, view);
+    const double degrees = std::stod(command.substr(command.find("--fov ") + 6));
+    ASSERT_EQ(static_cast<float>(glm::radians(degrees)), yfov) << command;
+  }
+}
+
+TEST(FindFreeName, TakesTheNextNumberOfBothEndings) {
+  const fs::path folder = fs::path(testing::TempDir()) / "promin_free_name";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  EXPECT_EQ(find_free_name(folder), "promin-0001");
+  std::ofstream(folder / "promin-0001.png") << "x";
+  std::ofstream(folder / "promin-0002.exr") << "x";
+  std::ofstream(folder / "promin-0004.exr") << "x";
+  EXPECT_EQ(find_free_name(folder), "promin-0003");
+  fs::remove_all(folder);
+}
+
+TEST(FlightRecorder, KeepsTheEndsOfARest) {
+  FlightRecorder recorder;
+  Camera camera;
+  recorder.add(10.0, camera);
+  for (const double time : {10.5, 11.0, 12.0}) recorder.add(time, camera);
+  camera.eye.x = 1.0F;
+  recorder.add(12.5, camera);
+  std::vector<double> times;
+  for (const TimedCamera& frame : recorder.path()) times.push_back(frame.time_s);
+  EXPECT_EQ(times, (std::vector<double>{0.0, 2.0, 2.5}));
+  EXPECT_EQ(recorder.path().back().camera.eye.x, 1.0F);
+}
+
+TEST(FlightReplay, TellsMedianAndPercentile) {
+  FlightReplay replay(CameraPath(2));
+  for (int i = 1; i <= 101; ++i) {
+    FinishedFrame frame;
+    frame.time_ms = i;
+    frame.stages.trace = 0.5 * i;
+    replay.add(frame);
+  }
+  EXPECT_EQ(replay.summarize(), "101 frames: median 51.00 ms, 99th percentile 100.00 ms, tracing 50.0 % of the time");
+  replay.next_camera();
+  EXPECT_FALSE(replay.is_done());
+  replay.next_camera();
+  EXPECT_TRUE(replay.is_done());
+}
+
+TEST(Keys, NoneHasTwoEffects) {
+  for (const KeyBinding& binding : key_bindings()) {
+    EXPECT_TRUE(binding.hold.has_value() != binding.press.has_value()) << binding.name;
+    const auto same = [&](const KeyBinding& other) { return other.key == binding.key; };
+    EXPECT_EQ(std::count_if(key_bindings().begin(), key_bindings().end(), same), 1) << binding.name;
+  }
+}
+
+}  // namespace
+}  // namespace promin::app

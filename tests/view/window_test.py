@@ -1,0 +1,273 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""promin-view as a user meets it: a real window on an X server, keys and pointer by xdotool.
+
+window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the programs.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from display import Display, Failure, Viewer, wait_for
+
+SIZE = (160, 96)
+
+
+def expect(condition, what):
+    if not condition:
+        raise Failure(what)
+
+
+def run(*words, environment=None):
+    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=60, env=environment)
+
+
+class Session:
+    """A window on the showcase, in a folder that holds a copy of it."""
+
+    def __init__(self, bin_folder, scenes, folder, *arguments, **environment):
+        self.bin = bin_folder
+        self.folder = folder
+        for name in ("showcase.gltf", "showcase.bin"):
+            shutil.copy(scenes / name, folder)
+        self.scene = folder / "showcase.gltf"
+        self.display = Display()
+        try:
+            words = ["showcase.gltf", "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
+            self.viewer = Viewer(self.display, bin_folder / "promin-view", words, folder, **environment)
+        except BaseException:
+            self.display.close()
+            raise
+
+    def __enter__(self):
+        return self.viewer
+
+    def __exit__(self, *_):
+        self.viewer.close()
+        self.display.close()
+
+    def print_command(self):
+        """What C prints."""
+        count = self.viewer.out.count("\n")
+        self.viewer.press("c")
+        wait_for(lambda: self.viewer.out.count("\n") > count, "command")
+        return self.viewer.out.splitlines()[-1]
+
+    def take_screenshot(self, number):
+        self.viewer.press("F12")
+        self.viewer.wait_for_line(f"wrote promin-{number:04}.exr", 1, "screenshot")
+
+    def render(self, command, output):
+        """Runs a command as it was printed, to another file."""
+        words = shlex.split(command)
+        expect(words[:2] == ["promin", "render"], f"not a command of promin: {command}")
+        words[words.index("-o") + 1] = output
+        done = subprocess.run(
+            [self.bin / "promin", *words[1:]], cwd=self.folder, capture_output=True, text=True, timeout=60
+        )
+        expect(done.returncode == 0, f"{command}: {done.stderr}")
+        return self.folder / output
+
+    def expect_same_picture(self, number, command):
+        """The screenshot is what the command renders."""
+        png = self.render(command, "view.png")
+        expect(
+            png.read_bytes() == (self.folder / f"promin-{number:04}.png").read_bytes(),
+            f"the PNG is not what this renders: {command}",
+        )
+        exr = self.render(command, "view.exr")
+        done = run(self.bin / "promin-compare", self.folder / f"promin-{number:04}.exr", exr, "--fail", 0)
+        expect(done.returncode == 0, done.stderr)
+        expect(json.loads(done.stdout)["largest"] == 0, f"the EXR differs: {done.stdout}")
+
+    def quit(self):
+        self.viewer.press("Escape")
+        code = self.viewer.wait_for_end()
+        expect(code == 0, f"it ended with {code}:\n{self.viewer.err}")
+        expect("validation" not in self.viewer.err, self.viewer.err)
+
+
+def eye_of(command):
+    return re.search(r"--eye (\S+) (\S+) (\S+)", command).groups()
+
+
+def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, PROMIN_VALIDATION="core")
+    with session as viewer:
+        session.take_screenshot(1)
+        start = session.print_command()
+        viewer.press("p")
+        viewer.hold("w", 0.3)
+        viewer.hold("z", 0.1)
+        viewer.drag((100, 50), (120, 40))
+        session.take_screenshot(2)
+        flown = session.print_command()
+        expect(eye_of(flown) != eye_of(start), f"the camera did not move: {flown}")
+        expect(flown.split(" --look ")[1] != start.split(" --look ")[1], f"the camera did not turn: {flown}")
+        session.expect_same_picture(2, flown)
+
+        viewer.press("r")
+        session.take_screenshot(3)
+        reset = session.print_command()
+        expect(eye_of(reset) == eye_of(start), f"the camera was not reset: {reset}")
+
+        viewer.press("o")
+        viewer.hold("d", 0.2)
+        viewer.press("o", "2", "b", "h", "Tab", "Tab")
+        session.take_screenshot(4)
+        session.expect_same_picture(4, session.print_command())
+        session.quit()
+
+
+def shows_what_is_chosen(bin_folder, scenes, folder):
+    session = Session(
+        bin_folder, scenes, folder, "--no-shadows", "--lights-off", "1,3", "--max-depth", "1", PROMIN_VALIDATION="sync"
+    )
+    with session as viewer:
+        viewer.press("p")
+        session.take_screenshot(1)
+        command = session.print_command()
+        expect(" --max-depth 1 --no-shadows --lights-off 1,3 " in command, f"not what is shown: {command}")
+        session.expect_same_picture(1, command)
+
+        viewer.press("F7")
+        session.take_screenshot(2)
+        command = session.print_command()
+        expect(" --shading steps " in command, f"not what is shown: {command}")
+        session.expect_same_picture(2, command)
+
+        # A click explains a pixel, and moves nothing.
+        viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
+        viewer.press("F1")
+        session.take_screenshot(3)
+        expect(
+            (folder / "promin-0001.png").read_bytes() == (folder / "promin-0003.png").read_bytes(),
+            "light is not as it was",
+        )
+        session.quit()
+
+
+def plays_what_it_recorded(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
+    with session as viewer:
+        session.take_screenshot(1)
+        viewer.hold("w", 0.4)
+        viewer.press("p")
+        session.take_screenshot(2)
+        session.quit()
+    path = json.loads((folder / "flight.json").read_text())["frames"]
+    expect(len(path) > 2, f"the flight has {len(path)} frames")
+
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", PROMIN_VALIDATION="core")
+    with session as viewer:
+        code = viewer.wait_for_end()
+        expect(code == 0, f"the replay ended with {code}: {viewer.err}")
+        expect(
+            re.fullmatch(rf"{len(path)} frames: median [\d.]+ ms, 99th percentile [\d.]+ ms, .*\n", viewer.out),
+            f"{len(path)} frames were recorded, and replayed: {viewer.out}",
+        )
+
+    # The flight ends where the last screenshot was taken.
+    last = len(path) - 1
+    words = ["--size", *SIZE, "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
+    done = run(bin_folder / "promin", "render", session.scene, *words, "-o", folder / "last.png")
+    expect(done.returncode == 0, done.stderr)
+    expect(
+        (folder / "last.png").read_bytes() == (folder / "promin-0002.png").read_bytes(),
+        "the flight does not end where the camera did",
+    )
+
+
+def survives_its_window(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, PROMIN_VALIDATION="sync")
+    with session as viewer:
+        session.take_screenshot(1)
+        for i in range(20):
+            viewer.xdotool("windowsize", viewer.window, SIZE[0] + 37 * (i % 5) - 60, SIZE[1] + 23 * (i % 7) - 40)
+            viewer.hold("w" if i % 2 else "s", 0.02)
+            viewer.check_alive()
+        viewer.xdotool("windowunmap", "--sync", viewer.window)
+        viewer.xdotool("windowmap", "--sync", viewer.window)
+        viewer.xdotool("windowsize", "--sync", viewer.window, 120, 70)
+        viewer.xdotool("windowfocus", "--sync", viewer.window)
+        wait_for(lambda: "--size 120 70" in session.print_command(), "new size")
+        viewer.press("p")
+        session.take_screenshot(2)
+        session.expect_same_picture(2, session.print_command())
+        session.quit()
+
+
+def reads_a_changed_scene(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder)
+    with session as viewer:
+        text = session.scene.read_text()
+        viewer.press("p")
+        viewer.hold("w", 0.1)
+        session.take_screenshot(1)
+        before = session.print_command()
+
+        session.scene.write_text(text[: len(text) // 2])
+        viewer.wait_for_line("warning: .*showcase.gltf", 1, "failure of a broken scene")
+        session.take_screenshot(2)
+        expect(
+            (folder / "promin-0001.png").read_bytes() == (folder / "promin-0002.png").read_bytes(),
+            "a broken scene changed the picture",
+        )
+
+        changed = text.replace('"color": [0.1, 0.17, 0.22]', '"color": [0.9, 0.1, 0.1]')
+        expect(changed != text, "the showcase has another background now: change this test")
+        session.scene.write_text(changed)
+        viewer.wait_for_line("note: read showcase.gltf", 1, "new scene")
+        session.take_screenshot(3)
+        after = session.print_command()
+        expect(after == before, f"the camera moved: {after}")
+        expect(
+            (folder / "promin-0001.png").read_bytes() != (folder / "promin-0003.png").read_bytes(),
+            "the new scene is not shown",
+        )
+        session.expect_same_picture(3, after)
+        session.quit()
+
+
+def needs_a_display(bin_folder, scenes, _):
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = run(bin_folder / "promin-view", scenes / "sphere.gltf", environment=environment)
+    expect(done.returncode == 4, f"it ended with {done.returncode}: {done.stderr}")
+    expect(re.match(r"promin-view: error: no display.*promin render\n$", done.stderr), done.stderr)
+
+
+def refuses_what_is_wrong(bin_folder, scenes, folder):
+    for code, words in (
+        (2, ["--target-ms", "0", scenes / "sphere.gltf"]),
+        (2, ["--present-mode", "soon", scenes / "sphere.gltf"]),
+        (2, ["--lights-off", "7", scenes / "sphere.gltf"]),
+        (2, ["--keep-open", scenes / "sphere.gltf"]),
+        (3, ["--replay", scenes / "sphere.gltf", scenes / "sphere.gltf"]),
+        (2, []),
+        (3, [folder / "missing.gltf"]),
+    ):
+        done = run(bin_folder / "promin-view", *words)
+        expect(done.returncode == code, f"{words}: {done.returncode}, not {code}: {done.stderr}")
+        expect(done.stderr.startswith("promin-view: error: "), done.stderr)
+        expect(done.stderr.count("\n") == 1, done.stderr)
+
+
+def main():
+    name, bin_folder, scenes = sys.argv[1:]
+    with tempfile.TemporaryDirectory(prefix="promin_view_") as folder:
+        try:
+            globals()[name](pathlib.Path(bin_folder).resolve(), pathlib.Path(scenes).resolve(), pathlib.Path(folder))
+        except Failure as failure:
+            sys.exit(f"{name}: {failure}")
+
+
+if __name__ == "__main__":
+    main()
