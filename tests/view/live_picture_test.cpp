@@ -48,7 +48,7 @@ TEST_F(LivePictureTest, EveryLevelIsWhatTheRendererGives) {
   Renderer renderer(device(), scene_);
   View view = test::make_view(kSize);
   picture.want(view);
-  for (const uint32_t samples : {1U, 4U}) {
+  for (const uint32_t samples : {1U, 4U, 16U}) {
     view.samples_per_pixel = samples;
     while (!picture.is_complete() || picture.shown()->samples_per_pixel != samples) trace(picture);
     EXPECT_TRUE(test::has_same_bits(read(picture), renderer.render(view).image)) << samples << " spp";
