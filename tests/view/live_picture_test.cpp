@@ -55,6 +55,24 @@ TEST_F(LivePictureTest, EveryLevelIsWhatTheRendererGives) {
   }
 }
 
+// Frames in which one piece ends and the next begins, with all samples of some blocks and a few of others.
+TEST_F(LivePictureTest, NoBudgetChangesABit) {
+  Renderer renderer(device(), scene_);
+  View view = test::make_view(kSize);
+  view.samples_per_pixel = 16;
+  const Image expected = renderer.render(view).image;
+  for (const double units : {150.0, 1050.0, 3000.0}) {
+    LivePicture picture = make_picture();
+    picture.learn(1.0, 1.0);  // the first is not taken
+    picture.want(view);
+    while (!picture.is_complete() || picture.shown()->samples_per_pixel != 16) {
+      picture.learn(units, 1.0);
+      trace(picture);
+    }
+    EXPECT_TRUE(test::has_same_bits(read(picture), expected)) << units << " units a frame";
+  }
+}
+
 TEST_F(LivePictureTest, IsRefinedStepByStepAndThenRests) {
   LivePicture picture = make_picture();
   picture.resize(uvec2(16, 16));
