@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/display_pass.h"
 
+#include <algorithm>
+
 #include "cover_window.spv.h"
 #include "display.spv.h"
 #include "encode_film.spv.h"
@@ -18,8 +20,8 @@ struct DisplayConstants {
 constexpr uint32_t kDecodes = 0;
 constexpr uint32_t kEncodedBinding = 0;
 
-/// Workgroups that encode a film: enough for any device, each takes its share.
-constexpr uint32_t kEncodingGroups = 1024;
+/// Most workgroups that encode a film: enough for any device, each takes its share.
+constexpr uint32_t kMostEncodingGroups = 1024;
 
 template <size_t N>
 vk::raii::ShaderModule make_module(const gpu::Device& device, const uint32_t (&spirv)[N]) {
@@ -86,14 +88,16 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
   }
 }
 
-void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, size_t film) const {
+void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) const {
   using Access = vk::AccessFlagBits;
   using Stage = vk::PipelineStageFlagBits;
   const vk::MemoryBarrier traced(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead);
   // The frame before may still draw what was encoded before.
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer | Stage::eFragmentShader, Stage::eComputeShader, {},
                            traced, {}, {});
-  encoders_[film]->dispatch(commands, kEncodingGroups);
+  constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+  const uint32_t groups = (picture.size.x * picture.size.y + kLanes - 1) / kLanes;
+  encoders_[picture.film]->dispatch(commands, std::min(groups, kMostEncodingGroups));
   const vk::MemoryBarrier encoded(Access::eShaderWrite, Access::eShaderRead);
   commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, encoded, {}, {});
 }

@@ -31,8 +31,8 @@ class DisplayPass {
   /// Makes room for pictures of so many pixels, and says where the films are now; the device must be idle.
   void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count);
 
-  /// Records encoding a film that was traced before.
-  void record_encoding(const vk::raii::CommandBuffer& commands, size_t film) const;
+  /// Records encoding a picture that was traced before.
+  void record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) const;
   /// Records drawing the picture that was encoded last, within a render pass of the swapchain.
   void record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& picture_size,
                       const uvec2& window_size) const;

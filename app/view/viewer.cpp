@@ -308,7 +308,7 @@ void Viewer::record_tracing(Frame& frame) {
 
 void Viewer::record_display(const Frame& frame) {
   if (encoded_count_ != picture_->shown_count()) {
-    display_.record_encoding(frame.commands, picture_->shown()->film);
+    display_.record_encoding(frame.commands, *picture_->shown());
     encoded_count_ = picture_->shown_count();
   }
   swapchain_.begin_drawing(frame.commands, frame.image);

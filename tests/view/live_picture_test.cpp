@@ -48,10 +48,28 @@ TEST_F(LivePictureTest, EveryLevelIsWhatTheRendererGives) {
   Renderer renderer(device(), scene_);
   View view = test::make_view(kSize);
   picture.want(view);
-  for (const uint32_t samples : {1U, 4U}) {
+  for (const uint32_t samples : {1U, 4U, 16U}) {
     view.samples_per_pixel = samples;
     while (!picture.is_complete() || picture.shown()->samples_per_pixel != samples) trace(picture);
     EXPECT_TRUE(test::has_same_bits(read(picture), renderer.render(view).image)) << samples << " spp";
+  }
+}
+
+// Frames in which one piece ends and the next begins, with all samples of some blocks and a few of others.
+TEST_F(LivePictureTest, NoBudgetChangesABit) {
+  Renderer renderer(device(), scene_);
+  View view = test::make_view(kSize);
+  view.samples_per_pixel = 16;
+  const Image expected = renderer.render(view).image;
+  for (const double units : {150.0, 1050.0, 3000.0}) {
+    LivePicture picture = make_picture();
+    picture.learn(1.0, 1.0);  // the first is not taken
+    picture.want(view);
+    while (!picture.is_complete() || picture.shown()->samples_per_pixel != 16) {
+      picture.learn(units, 1.0);
+      trace(picture);
+    }
+    EXPECT_TRUE(test::has_same_bits(read(picture), expected)) << units << " units a frame";
   }
 }
 

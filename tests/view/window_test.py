@@ -250,7 +250,7 @@ def refuses_what_is_wrong(bin_folder, scenes, folder):
         (2, ["--present-mode", "soon", scenes / "sphere.gltf"]),
         (2, ["--lights-off", "7", scenes / "sphere.gltf"]),
         (2, ["--keep-open", scenes / "sphere.gltf"]),
-        (3, ["--replay", scenes / "sphere.gltf", scenes / "sphere.gltf"]),
+        (3, ["--replay", folder / "missing.json", scenes / "sphere.gltf"]),
         (2, []),
         (3, [folder / "missing.gltf"]),
     ):
