@@ -12,4 +12,5 @@
 #include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
+#include "loop_check.glsl"
 #include "cast.glsl"

@@ -162,10 +162,13 @@ struct Dispatch {
                    // casting: x = first ray, y = one past the last
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
-  uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = 0
+  uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
   uvec4 share;     // x = one past the last block; casting: z = parts of the rays that workgroups in a row take theirs
-                   // from; 0 else
+                   // from, w = 1 after the dispatch if were_loops_cut(); 0 else
 };
+
+// More than one, and not known to the compiler (loop_check.glsl).
+LAYOUT_CONSTANT LOOP_CHECK_TURNS = 2u;
 
 // A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.
 struct RayRecord {

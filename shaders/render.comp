@@ -11,9 +11,9 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "bindings.glsl"
 
 // A pixel's sum over samples (bits) and the `order` of what it shows; after all pixels, with FEATURE_AOVS, each one's
-// geometric normal and depth (bits). And rays traced, x = primary, y = shadow, z = reflection, a counter a lane of a
-// block: one for all would have every lane queue for it, and a sum over the block would need barriers, for which
-// lavapipe 22.3 runs a coroutine a subgroup and leaks it.
+// geometric normal and depth (bits). And rays traced, x = primary, y = shadow, z = reflection, and w = times that
+// were_loops_cut(), a counter a lane of a block: one for all would have every lane queue for it, and a sum over the
+// block would need barriers, for which lavapipe 22.3 runs a coroutine a subgroup and leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   Dispatch dispatch;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
@@ -31,6 +31,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 #include "lights.glsl"
 #include "shading.glsl"
 #include "camera.glsl"
+#include "loop_check.glsl"
 
 // Bits of the normal, as wound or outward, and of the distance from the ray's origin; infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
@@ -129,4 +130,5 @@ void main() {
   atomicAdd(ray_counts[gl_LocalInvocationIndex].x, ray_count.x);
   if (ray_count.y > 0u) atomicAdd(ray_counts[gl_LocalInvocationIndex].y, ray_count.y);
   if (ray_count.z > 0u) atomicAdd(ray_counts[gl_LocalInvocationIndex].z, ray_count.z);
+  if (were_loops_cut()) atomicAdd(ray_counts[gl_LocalInvocationIndex].w, 1u);
 }

@@ -9,6 +9,7 @@
 #include "gpu/device.h"
 #include "render.spv.h"
 #include "render/device_scene.h"
+#include "render/film.h"
 #include "render/picture_pieces.h"
 #include "render/tracing_kernel.h"
 
@@ -60,6 +61,7 @@ class LoggingKernel {
     film_.write(std::as_bytes(std::span(&head_, 1)));
     kernel_->run(sample, film_, 1);
     film_.read(std::as_writable_bytes(std::span(&head_, 1)));
+    if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("lower --max-depth");
     std::vector<layout::RayLog> log(head_.log_count.x);
     film_.read(std::as_writable_bytes(std::span(log)), sizeof(LoggedFilm));
     return log;

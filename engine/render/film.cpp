@@ -29,6 +29,13 @@ struct FilmHead {
   Counters ray_counts{};
 };
 
+Counters lanes_of(std::span<const std::byte> counters) {
+  Counters lanes;
+  assert(counters.size() >= sizeof lanes);
+  std::memcpy(lanes.data(), counters.data(), sizeof lanes);
+  return lanes;
+}
+
 uint64_t bytes_for(uint64_t pixel_count, uint32_t records_per_pixel) {
   return sizeof(FilmHead) + pixel_count * records_per_pixel * sizeof(uvec4);
 }
@@ -102,10 +109,10 @@ double Film::run(const PicturePiece& piece) const {
   return kernel_->run(piece.dispatch, *buffer_, piece.group_count);
 }
 
-RayCounts Film::take_counts() const {
+FilmCounts Film::take_counts() const {
   const gpu::Buffer target = gpu::Buffer::make_readback(*device_, kCountersBytes);
   device_->run([&](const vk::raii::CommandBuffer& commands) { record_take_counts(commands, target); });
-  return sum_counts(target.mapped());
+  return {sum_counts(target.mapped()), were_loops_cut(target.mapped())};
 }
 
 void Film::warm_up() const {
@@ -134,12 +141,14 @@ void average_samples(std::span<const uvec4> records, uint32_t samples, std::span
 }
 
 RayCounts sum_counts(std::span<const std::byte> counters) {
-  Counters lanes;
-  assert(counters.size() >= sizeof lanes);
-  std::memcpy(lanes.data(), counters.data(), sizeof lanes);
   RayCounts sum;
-  for (const uvec4& lane : lanes) sum += {lane.x, lane.y, lane.z};
+  for (const uvec4& lane : lanes_of(counters)) sum += {lane.x, lane.y, lane.z};
   return sum;
+}
+
+bool were_loops_cut(std::span<const std::byte> counters) {
+  const Counters lanes = lanes_of(counters);
+  return std::any_of(lanes.begin(), lanes.end(), [](const uvec4& lane) { return lane.w != 0; });
 }
 
 }  // namespace promin

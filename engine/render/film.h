@@ -15,6 +15,12 @@
 
 namespace promin {
 
+struct FilmCounts {
+  RayCounts rays;
+  /// See were_loops_cut.
+  bool has_cut_loops = false;
+};
+
 /// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
 /// (shaders/render.comp). A picture is begun, then all of its pieces run; nothing of that waits unless it says so.
 class Film {
@@ -42,7 +48,7 @@ class Film {
   /// As the recordings above, and waits. `run` returns device milliseconds as TracingKernel::run does.
   void begin(const PicturePieces& picture) const;
   double run(const PicturePiece& piece) const;
-  RayCounts take_counts() const;
+  FilmCounts take_counts() const;
   /// Traces a block of one pixel: drivers compile late, and a pipeline's first dispatch must not count as tracing.
   void warm_up() const;
 
@@ -71,5 +77,7 @@ void average_samples(std::span<const uvec4> records, uint32_t samples, std::span
 
 /// The sum of counters as record_take_counts copies them.
 RayCounts sum_counts(std::span<const std::byte> counters);
+/// Whether they tell that the driver cut a lane's loops (shaders/loop_check.glsl): then pixels are wrong.
+bool were_loops_cut(std::span<const std::byte> counters);
 
 }  // namespace promin

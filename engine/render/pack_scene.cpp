@@ -354,7 +354,8 @@ void pack_contents(PackedScene& packed, const Scene& scene, Collected& collected
       surfaces[i] = collected.solid_surfaces[references[i]];
     }
   });
-  packed.dispatch.counts = uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), 0);
+  packed.dispatch.counts =
+      uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), LOOP_CHECK_TURNS);
   packed.primitives.insert(packed.primitives.end(), collected.planes.begin(), collected.planes.end());
   surfaces.insert(surfaces.end(), collected.plane_surfaces.begin(), collected.plane_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.push_back({});

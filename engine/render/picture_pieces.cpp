@@ -36,14 +36,11 @@ void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& 
   frame.film_center.y = 0.5F * static_cast<float>(size.y);
 }
 
-/// Samples that a lane takes at most, of one pixel or of several, where groups take several blocks. llvmpipe ends a
-/// lane's loops after 65535 turns of all of them together (LP_MAX_TGSI_LOOP_ITERATIONS), and leaves pixels untraced.
-constexpr uint32_t kMostSamplesALane = 16;
-
 /// Where a lane has several pixels it does not wait for its neighbours' mirror rays; but the device's cores want
 /// groups to share.
-uint32_t pick_blocks_a_group(uint32_t blocks, uint32_t sample_count, uint32_t wanted_groups) {
-  return wanted_groups > 0 ? std::clamp(blocks / wanted_groups, 1U, kMostSamplesALane / sample_count) : 1;
+uint32_t pick_blocks_a_group(uint32_t blocks, uint32_t sample_count, const PieceOptions& options) {
+  if (options.wanted_groups == 0) return 1;
+  return std::clamp(blocks / options.wanted_groups, 1U, options.most_samples_a_lane / sample_count);
 }
 
 }  // namespace
@@ -74,10 +71,10 @@ PicturePiece PicturePieces::next(double units) {
   assert(!is_done());
   if (first_sample_ == 0) block_count_ = pick_block_count(units);
   const double wanted = std::max(1.0, units / block_count_);
-  const uint32_t most_samples = options_.wanted_groups > 0 ? kMostSamplesALane : samples_;
+  const uint32_t most_samples = options_.wanted_groups > 0 ? options_.most_samples_a_lane : samples_;
   const auto sample_count =
       static_cast<uint32_t>(std::min<double>(wanted, std::min(most_samples, samples_ - first_sample_)));
-  const uint32_t blocks_a_group = pick_blocks_a_group(block_count_, sample_count, options_.wanted_groups);
+  const uint32_t blocks_a_group = pick_blocks_a_group(block_count_, sample_count, options_);
 
   PicturePiece piece;
   piece.dispatch = dispatch_;

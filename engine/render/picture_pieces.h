@@ -22,6 +22,9 @@ struct PicturePiece {
 struct PieceOptions {
   /// Workgroups among which a piece is shared out at least, before one takes several blocks; 0: each takes one.
   uint32_t wanted_groups = 0;
+  /// With wanted groups: samples that a lane takes at most, of one pixel or of several. llvmpipe lets a lane's loops
+  /// turn 65535 times, all together (shaders/loop_check.glsl).
+  uint32_t most_samples_a_lane = 16;
   /// Fixed number of blocks a piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };

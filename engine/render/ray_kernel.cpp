@@ -98,6 +98,12 @@ struct RayKernel::Impl {
     for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);
   }
 
+  void check_loops() const {
+    layout::Dispatch head;
+    hits->read(std::as_writable_bytes(std::span(&head, 1)));
+    if (head.share.w != 0) throw make_cut_loops_error("take another device");
+  }
+
   double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
     make_buffers(input.size());
     rays->write(std::as_bytes(input));
@@ -116,6 +122,7 @@ struct RayKernel::Impl {
       // As many in each part: those beyond the last ray do nothing.
       const uint32_t part_groups = divide_up(divide_up(count, group_rays), parts);
       const double time_ms = kernel->run(dispatch, *hits, parts * part_groups);
+      if (device.is_lavapipe()) check_loops();
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;

@@ -60,6 +60,23 @@ struct Renderer::Impl {
                   const std::function<void(double)>& on_progress) {
     PieceOptions cut = film->piece_options();
     cut.blocks_per_piece = options.blocks_per_dispatch;
+    FilmCounts counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
+    if (counts.has_cut_loops) {
+      cut.most_samples_a_lane = 1;
+      counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
+    }
+    if (counts.has_cut_loops) throw make_cut_loops_error("lower --max-depth or take another device");
+    result.rays += counts.rays;
+  }
+
+  FilmCounts trace_pieces(const PixelWindow& window, const View& view, const PieceOptions& cut, double& trace_ms,
+                          const std::function<void(double)>& on_progress) {
+    FilmCounts counts;
+    const auto collect = [&] {
+      const FilmCounts taken = film->take_counts();
+      counts.rays += taken.rays;
+      counts.has_cut_loops = counts.has_cut_loops || taken.has_cut_loops;
+    };
     PicturePieces picture = film->cut(view, window, cut);
     film->reserve(picture.pixel_count());
     film->begin(picture);
@@ -68,15 +85,16 @@ struct Renderer::Impl {
       const PicturePiece piece = picture.next(pacer.units());
       uncollected += piece.most_rays_a_lane;
       const double time_ms = film->run(piece);
-      result.trace_ms += time_ms;
+      trace_ms += time_ms;
       pacer.learn(piece.units, time_ms);
       if (uncollected > kMaxRaysALane) {
-        result.rays += film->take_counts();
+        collect();
         uncollected = 0.0;
       }
       on_progress(picture.fraction_done());
     }
-    result.rays += film->take_counts();
+    collect();
+    return counts;
   }
 
   /// Adds what the film holds of a band to the result, from its pixel `first` on.

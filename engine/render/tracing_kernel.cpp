@@ -31,6 +31,11 @@ double dispatch_target_ms(const gpu::Device& device) {
   return device.is_cpu() ? 100.0 : 25.0;
 }
 
+RunError make_cut_loops_error(const std::string& cure) {
+  return RunError(
+      {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure});
+}
+
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                              std::span<const gpu::SpecializationConstant> constants,
                              std::span<const gpu::BoundBuffer> buffers)

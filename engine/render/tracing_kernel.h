@@ -3,7 +3,9 @@
 #pragma once
 
 #include <span>
+#include <string>
 
+#include "core/error.h"
 #include "gpu/pipeline.h"
 #include "layout.h"
 
@@ -28,6 +30,9 @@ class Pacer {
 /// How long a dispatch should take: GPU drivers kill those of seconds; CPU drivers do not, and at the end of each
 /// dispatch their threads wait for the last one.
 double dispatch_target_ms(const gpu::Device& device);
+
+/// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
+RunError make_cut_loops_error(const std::string& cure);
 
 /// A pipeline that traces, timed by the device's clock where it has one.
 class TracingKernel {

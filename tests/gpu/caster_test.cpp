@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/caster.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -140,6 +141,33 @@ TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
   EXPECT_EQ(compile(201), before + 1);
   options.query = HitQuery::kAny;
   EXPECT_EQ(compile(200), before + 2);
+}
+
+// llvmpipe ends a lane's loops after 65535 turns: what it then has is no answer.
+TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
+  constexpr int kSlivers = 40000;
+  Mesh mesh;
+  // Slivers along a diagonal, whose boxes the ray meets and they not, and behind them a triangle.
+  for (int i = 0; i < kSlivers; ++i) {
+    const auto z = static_cast<float>(i + 1);
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {vec3(-1, -1, z), vec3(1, 1, z), vec3(1, 0.99F, z)});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto last = static_cast<uint32_t>(mesh.positions.size());
+  const float back = kSlivers + 1;
+  mesh.positions.insert(mesh.positions.end(), {vec3(-9, -9, back), vec3(9, -9, back), vec3(0, 9, back)});
+  mesh.triangles.push_back({last, last + 1, last + 2});
+  Scene scene;
+  scene.materials.resize(1);
+  scene.objects = {{"", mesh, 0}};
+  const std::vector<Ray> rays = {{vec3(-0.5F, 0.5F, 0), 0.0F, vec3(0, 0, 1), kInfinity}};
+  try {
+    EXPECT_EQ(cast(scene, rays)[0].primitive, kSlivers);
+  } catch (const RunError& error) {
+    EXPECT_TRUE(device().is_lavapipe());
+    EXPECT_THAT(error.what(), testing::HasSubstr("65535"));
+  }
 }
 
 TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/renderer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "gpu/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "layout.h"
@@ -165,6 +167,19 @@ TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
   for (const vec3& pixel : render(scene, view, forced).image.pixels) EXPECT_EQ(pixel, scene.background);
 }
 
+/// Mirrors that lose nothing and send 1/1024 each; sources that light neither of them.
+Scene make_facing_mirrors(uint32_t light_count) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].diffuse = vec3(0.0F);
+  scene.materials[0].emissive = vec3(1.0F / 1024.0F);
+  scene.materials[0].reflection = vec3(1.0F);
+  scene.objects = {{"", Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
+  scene.lights.resize(light_count);
+  for (Light& light : scene.lights) light.position = vec3(0, 0, 1);
+  return scene;
+}
+
 // Facing mirrors: each bounce multiplies by kr and the last brings nothing.
 TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
   Scene scene;
@@ -180,6 +195,29 @@ TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
     view.max_depth = depth;
     const float expected = 2.0F - std::ldexp(1.0F, -static_cast<int>(depth));
     EXPECT_EQ(render(scene, view).image.pixels[0], vec3(expected)) << "depth " << depth;
+  }
+}
+
+// llvmpipe ends a lane's loops after 65535 turns: 16 samples a lane would pass that.
+TEST_F(RendererTest, ManyBouncesAreTracedToTheEnd) {
+  View view;
+  view.size = uvec2(8, 8);
+  view.samples_per_pixel = 16;
+  view.max_depth = 1000;
+  const float expected = 1001.0F / 1024.0F;
+  for (const vec3& pixel : render(make_facing_mirrors(2), view).image.pixels) ASSERT_EQ(pixel, vec3(expected));
+}
+
+// And here a single one does. What is not traced whole must not pass for a picture.
+TEST_F(RendererTest, TooManyTurnsAreRefusedOrTraced) {
+  View view;
+  view.size = uvec2(1, 1);
+  view.max_depth = 1000;
+  try {
+    EXPECT_EQ(render(make_facing_mirrors(60), view).image.pixels[0], vec3(1001.0F / 1024.0F));
+  } catch (const RunError& error) {
+    EXPECT_TRUE(device().is_lavapipe());
+    EXPECT_THAT(error.what(), testing::HasSubstr("--max-depth"));
   }
 }
 

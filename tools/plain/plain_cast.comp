@@ -12,4 +12,5 @@
 #include "plain_ray.glsl"
 #include "plain_primitives.glsl"
 #include "traversal.glsl"
+#include "loop_check.glsl"
 #include "cast.glsl"
