@@ -61,7 +61,11 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
 }
 
 Viewer::~Viewer() {
-  device_.handle().waitIdle();
+  try {
+    device_.handle().waitIdle();
+  } catch (const vk::SystemError&) {
+    // A lost device: what threw before says so.
+  }
 }
 
 void Viewer::run() {
