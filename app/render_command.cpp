@@ -174,6 +174,7 @@ void render(const RenderOptions& options) {
   check_explained_pixel(options, stats.view->size);
   light_up(scene, console);
   check_lights(scene, options.view.lights_off);
+  std::vector<Light> all_lights = scene.lights;
   leave_out_lights(scene, options.view.lights_off);
   stats.light_count = scene.lights.size();
 
@@ -181,8 +182,10 @@ void render(const RenderOptions& options) {
   Renderer renderer(*device, scene, make_renderer_options(options));
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {
-    const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
+    Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
     check_validation(*device, stats);
+    number_lights_of_whole(explanation, options.view.lights_off);
+    scene.lights = std::move(all_lights);
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }

@@ -67,4 +67,10 @@ void CameraControl::swing(double alpha, double beta, double gamma, double distan
   camera_.move(glm::dot(way, camera_.look()), glm::dot(way, camera_.up()), glm::dot(way, camera_.right()));
 }
 
+double speed_to_cross(const Bounds& bounds) {
+  constexpr double kSeconds = 8.0;
+  const double size = bounds.is_empty() ? 0.0 : glm::length(dvec3(bounds.extent()));
+  return size > 0.0 ? size / kSeconds : 1.0;
+}
+
 }  // namespace promin::app

@@ -24,8 +24,6 @@ class CameraControl {
   void place(const Camera& camera);
   /// The pose that the control was made with, flying.
   void reset();
-  /// Another start, of a scene that was read anew; the pose is kept.
-  void set_start(const Camera& camera) { start_ = camera; }
 
   /// Turns towards `center` and orbits it from now on. Not if the camera is there.
   void orbit(const dvec3& center);
@@ -48,5 +46,8 @@ class CameraControl {
   std::optional<dvec3> center_;
   double speed_;
 };
+
+/// At which a scene is crossed in some seconds.
+double speed_to_cross(const Bounds& bounds);
 
 }  // namespace promin::app

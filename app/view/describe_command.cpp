@@ -20,6 +20,15 @@ std::string quote(const std::string& word) {
 
 }  // namespace
 
+std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera) {
+  if (camera.projection == Projection::kPerspective) return std::nullopt;
+  for (size_t i = 0; i < scene.cameras.size(); ++i) {
+    const Camera& other = scene.cameras[i];
+    if (other.projection == camera.projection && other.ymag == camera.ymag) return i;
+  }
+  return std::nullopt;
+}
+
 std::string describe_command(const DescribedScene& scene, const View& view) {
   const Camera& camera = view.camera;
   std::string command =
@@ -36,7 +45,10 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   if (camera.projection == Projection::kPerspective) {
     command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));
   }
-  return command + fmt::format(" --near {:.9g}", camera.near);
+  command += fmt::format(" --near {:.9g}", camera.near);
+  // No other picture depends on the tree.
+  if (view.shading != Shading::kSteps) return command;
+  return command + (scene.bvh ? " --bvh " + quote(scene.bvh->string()) : " --builder " + scene.builder);
 }
 
 }  // namespace promin::app

@@ -15,10 +15,16 @@ namespace promin::app {
 struct DescribedScene {
   std::filesystem::path file;
   bool has_shadows = true;
-  std::vector<uint32_t> lights_off;
+  std::vector<uint32_t> lights_off = {};
   /// Of the scene's camera with the view's half height.
-  std::optional<size_t> camera_index;
+  std::optional<size_t> camera_index = std::nullopt;
+  /// The tree, whose steps a picture may show.
+  std::string builder = "sah";
+  std::optional<std::filesystem::path> bvh = std::nullopt;
 };
+
+/// The scene's camera that has an orthographic camera's half height, which no option gives.
+std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera);
 
 /// The `promin render` command that gives the picture of a view, to the bit, for a shell.
 std::string describe_command(const DescribedScene& scene, const View& view);

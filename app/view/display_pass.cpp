@@ -75,7 +75,13 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
   constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
   const vk::DeviceSize size = pixel_count * sizeof(uint32_t);
   if (!encoded_ || encoded_->size_bytes() < size) {
-    encoded_.emplace(*device_, size, vk::BufferUsageFlagBits::eStorageBuffer);
+    gpu::Buffer larger(*device_, size, vk::BufferUsageFlagBits::eStorageBuffer);
+    if (encoded_size_) {
+      device_->run([&](const vk::raii::CommandBuffer& commands) {
+        commands.copyBuffer(*encoded_->handle(), *larger.handle(), vk::BufferCopy(0, 0, encoded_->size_bytes()));
+      });
+    }
+    encoded_ = std::move(larger);
     const vk::DescriptorBufferInfo info(*encoded_->handle(), 0, VK_WHOLE_SIZE);
     vk::WriteDescriptorSet write(*set_, 0, 0, 1, kStorage);
     write.pBufferInfo = &info;
@@ -88,7 +94,7 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
   }
 }
 
-void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) const {
+void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) {
   using Access = vk::AccessFlagBits;
   using Stage = vk::PipelineStageFlagBits;
   const vk::MemoryBarrier traced(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead);
@@ -100,11 +106,13 @@ void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const
   encoders_[picture.film]->dispatch(commands, std::min(groups, kMostEncodingGroups));
   const vk::MemoryBarrier encoded(Access::eShaderWrite, Access::eShaderRead);
   commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, encoded, {}, {});
+  encoded_size_ = picture.size;
 }
 
-void DisplayPass::record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& picture_size,
-                                 const uvec2& window_size) const {
-  const DisplayConstants constants{uvec4(picture_size, 0, 0), vec4(vec2(picture_size) / vec2(window_size), 0.0F, 0.0F)};
+void DisplayPass::record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& window_size) const {
+  if (!encoded_size_) return;
+  const DisplayConstants constants{uvec4(*encoded_size_, 0, 0),
+                                   vec4(vec2(*encoded_size_) / vec2(window_size), 0.0F, 0.0F)};
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline_);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, {});
   commands.pushConstants<DisplayConstants>(*layout_, vk::ShaderStageFlagBits::eFragment, 0, constants);

@@ -28,18 +28,20 @@ class DisplayPass {
   /// Throws vk::SystemError.
   DisplayPass(const gpu::Device& device, const Swapchain& swapchain);
 
-  /// Makes room for pictures of so many pixels, and says where the films are now; the device must be idle.
+  /// Makes room for pictures of so many pixels, and says where the films are now; the device must be idle. What was
+  /// encoded last is kept.
   void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count);
 
   /// Records encoding a picture that was traced before.
-  void record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) const;
-  /// Records drawing the picture that was encoded last, within a render pass of the swapchain.
-  void record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& picture_size,
-                      const uvec2& window_size) const;
+  void record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture);
+  /// Records drawing the picture that was encoded last, if any, within a render pass of the swapchain.
+  void record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& window_size) const;
 
  private:
   const gpu::Device* device_;
   std::optional<gpu::Buffer> encoded_;
+  /// Of the picture in it; none at first.
+  std::optional<uvec2> encoded_size_;
   std::array<std::optional<gpu::ComputePipeline>, kFilmCount> encoders_;
   vk::raii::DescriptorSetLayout set_layout_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};

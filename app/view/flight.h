@@ -28,7 +28,6 @@ class FlightReplay {
  public:
   explicit FlightReplay(CameraPath path) : path_(std::move(path)) {}
 
-  const Camera& first_camera() const { return path_.front().camera; }
   /// The camera of the next frame; not when done.
   const Camera& next_camera() { return path_[next_++].camera; }
   bool is_done() const { return next_ == path_.size(); }

@@ -3,6 +3,7 @@
 #include "view/frame_queue.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/film.h"
 #include "view/window.h"
@@ -40,14 +41,16 @@ FrameQueue::FrameQueue(const gpu::Device& device, Swapchain& swapchain)
 }
 
 Frame* FrameQueue::begin() {
+  if (!asked_time_) asked_time_ = Window::now();
   const auto count = std::count_if(frames_.begin(), frames_.end(), [](const Frame& f) { return f.is_in_flight; });
   Frame& frame = frames_[next_];
   if (static_cast<size_t>(count) >= most_in_flight_ || frame.is_in_flight) return nullptr;
   const std::optional<uint32_t> image = swapchain_->acquire(*frame.ready);
   if (!image) return nullptr;
   frame.image = *image;
-  frame.begin_time = Window::now();
+  frame.begin_time = *std::exchange(asked_time_, std::nullopt);
   frame.units = 0.0;
+  frame.is_of_flight = false;
   frame.commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
   if (*frame.queries) frame.commands.resetQueryPool(*frame.queries, 0, kMarkCount);
   frame.mark(FrameMark::kBegin);
@@ -96,6 +99,7 @@ FinishedFrame FrameQueue::take(Frame& frame) {
                      stage_ms(frame, FrameMark::kTraced, FrameMark::kDisplayed),
                      stage_ms(frame, FrameMark::kDisplayed, FrameMark::kEnd)};
   finished.units = frame.units;
+  finished.is_of_flight = frame.is_of_flight;
   if (frame.units > 0.0) finished.rays = sum_counts(frame.counters->mapped());
   const double end_time = Window::now();
   finished.time_ms = 1e3 * (end_time - std::max(frame.begin_time, last_end_time_));

@@ -25,7 +25,10 @@ struct FinishedFrame {
   RayCounts rays;
   /// Units of tracing (LivePicture::record).
   double units = 0.0;
-  /// From the beginning of its recording, or from the end of the frame before if that was later, to its end.
+  /// As Frame::is_of_flight.
+  bool is_of_flight = false;
+  /// From when it was first asked for, or from the end of the frame before if that was later, to its end: waiting for
+  /// the display counts, a rest does not.
   double time_ms = 0.0;
 };
 
@@ -44,6 +47,8 @@ struct Frame {
   bool is_presented = false;
   double begin_time = 0.0;
   double units = 0.0;
+  /// Whether it shows the next camera of a flight.
+  bool is_of_flight = false;
   /// Called when the device has finished the frame.
   std::function<void()> on_finished;
 
@@ -80,6 +85,8 @@ class FrameQueue {
   size_t next_ = 0;
   /// Presenting would wait for the device: present when it has finished.
   bool presents_late_;
+  /// When the next frame was first asked for; none where it has not been.
+  std::optional<double> asked_time_;
   double last_end_time_ = 0.0;
 };
 

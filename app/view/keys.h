@@ -23,10 +23,8 @@ enum class Press {
   kQuit,
   /// Cameras 1...9 follow each other.
   kFirstCamera,
-  kLastCamera = kFirstCamera + 8,
   /// Shadings, in the order of Shading's values.
-  kFirstShading,
-  kLastShading = kFirstShading + 6
+  kFirstShading = kFirstCamera + 9
 };
 
 /// A key, by GLFW's number, and its effect: a row of the help too.

@@ -35,7 +35,9 @@ bool shows_same(const View& a, const View& b) {
 
 LivePicture::LivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
                          double budget_ms)
-    : pacer_(budget_ms, PicturePieces::kMinBlocks) {
+    : longest_piece_ms_(dispatch_target_ms(device)),
+      budget_ms_(budget_ms),
+      pacer_(budget_ms, PicturePieces::kMinBlocks) {
   films_.reserve(kFilmCount);
   for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
 }
@@ -58,7 +60,7 @@ void LivePicture::want(View view) {
 }
 
 bool LivePicture::is_settled() const {
-  return !next_view() && !picture_;
+  return !next_view() && (!picture_ || (is_paused_ && !is_first_));
 }
 
 bool LivePicture::is_complete() const {
@@ -109,8 +111,9 @@ double LivePicture::record(const vk::raii::CommandBuffer& commands) {
     begin(commands, *view);
   }
   double units = 0.0;
+  const double most_units = pacer_.units() * std::min(1.0, longest_piece_ms_ / budget_ms_);
   while (!picture_->is_done() && units < pacer_.units()) {
-    const PicturePiece piece = picture_->next(pacer_.units() - units);
+    const PicturePiece piece = picture_->next(std::min(most_units, pacer_.units() - units));
     films_[picture_when_done_.film].record(commands, piece);
     units += piece.units;
   }
@@ -127,6 +130,11 @@ void LivePicture::finish() {
 
 void LivePicture::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
   films_[picture_when_done_.film].record_take_counts(commands, target);
+}
+
+void LivePicture::set_budget(double budget_ms) {
+  budget_ms_ = budget_ms;
+  pacer_.aim(budget_ms);
 }
 
 void LivePicture::learn(double units, double time_ms) {

@@ -49,7 +49,7 @@ class LivePicture {
   void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
   /// How long units of a frame took, by which the next budget is met.
   void learn(double units, double time_ms);
-  void set_budget(double budget_ms) { pacer_.aim(budget_ms); }
+  void set_budget(double budget_ms);
 
   static constexpr uint32_t kMostSamples = 64;
 
@@ -61,6 +61,9 @@ class LivePicture {
   void finish();
 
   std::vector<Film> films_;
+  /// Of one dispatch; a longer budget takes several.
+  double longest_piece_ms_;
+  double budget_ms_;
   Pacer pacer_;
   bool is_warm_ = false;
   uvec2 full_size_{1};

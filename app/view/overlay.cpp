@@ -135,7 +135,6 @@ void FrameStatistics::add(const FinishedFrame& frame) {
   follow(stages_.trace, frame.stages.trace);
   follow(stages_.display, frame.stages.display);
   follow(stages_.overlay, frame.stages.overlay);
-  follow(overhead_ms_, frame.time_ms - frame.stages.trace);
   if (!(frame.stages.trace > 0.0)) return;
   const dvec3 rays(frame.rays.primary, frame.rays.shadow, frame.rays.reflection);
   mrays_per_s_ += share * (1e-3 / frame.stages.trace * rays - mrays_per_s_);

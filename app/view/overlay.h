@@ -21,13 +21,12 @@ class FrameStatistics {
   const StageTimes& stages() const { return stages_; }
   /// Of primary, shadow and reflection rays, 1e6 a second of tracing.
   const dvec3& mrays_per_s() const { return mrays_per_s_; }
-  /// What of a frame's time is not tracing.
-  double overhead_ms() const { return overhead_ms_; }
+  /// What of a frame's work is not tracing. Waiting for the display is no work.
+  double overhead_ms() const { return stages_.display + stages_.overlay; }
 
  private:
   bool is_first_ = true;
   double frame_ms_ = 0.0;
-  double overhead_ms_ = 0.0;
   StageTimes stages_;
   dvec3 mrays_per_s_{0.0};
 };

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/scene_loader.h"
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -12,10 +11,6 @@
 
 namespace promin::app {
 
-bool SceneChoice::is_lit_by(uint32_t light) const {
-  return std::find(lights_off.begin(), lights_off.end(), light) == lights_off.end();
-}
-
 LoadedScene load_chosen_scene(const std::filesystem::path& file, const SceneChoice& choice) {
   const auto scene = std::make_shared<Scene>(load_scene(file));
   light_up(*scene, Console(Verbosity::kQuiet));
@@ -23,17 +18,18 @@ LoadedScene load_chosen_scene(const std::filesystem::path& file, const SceneChoi
 }
 
 LoadedScene pack_chosen_scene(std::shared_ptr<const Scene> scene, const SceneChoice& choice) {
-  std::vector<uint32_t> lights_off = choice.lights_off;
-  std::erase_if(lights_off, [&](uint32_t light) { return light >= scene->lights.size(); });
   LoadedScene loaded;
-  loaded.shown = scene;
+  loaded.choice = choice;
+  std::vector<uint32_t>& lights_off = loaded.choice.lights_off;
+  std::erase_if(lights_off, [&](uint32_t light) { return light >= scene->lights.size(); });
+  std::shared_ptr<const Scene> chosen = scene;
   if (!lights_off.empty()) {
-    const auto shown = std::make_shared<Scene>(*scene);
-    leave_out_lights(*shown, lights_off);
-    loaded.shown = shown;
+    const auto lit = std::make_shared<Scene>(*scene);
+    leave_out_lights(*lit, lights_off);
+    chosen = lit;
   }
-  loaded.packed = choice.bvh ? pack_scene_with(*choice.bvh, *loaded.shown) : pack_scene(*loaded.shown, choice.builder);
-  loaded.features = features_of(*loaded.shown);
+  loaded.packed = choice.bvh ? pack_scene_with(*choice.bvh, *chosen) : pack_scene(*chosen, choice.builder);
+  loaded.features = features_of(*chosen);
   loaded.scene = std::move(scene);
   return loaded;
 }

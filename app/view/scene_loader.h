@@ -23,15 +23,14 @@ struct SceneChoice {
   std::vector<uint32_t> lights_off;
 
   bool operator==(const SceneChoice&) const = default;
-  bool is_lit_by(uint32_t light) const;
 };
 
 /// A scene that is ready to be copied to the device.
 struct LoadedScene {
   /// As the file has it, lit up.
   std::shared_ptr<const Scene> scene;
-  /// What is chosen of it.
-  std::shared_ptr<const Scene> shown;
+  /// What of it is packed, with only those lights off that the scene has.
+  SceneChoice choice;
   PackedScene packed;
   FeatureMask features = 0;
 };

@@ -51,6 +51,10 @@ void Screenshot::write(const Metadata& metadata) {
   written_ = std::async(std::launch::async, write_pictures, std::move(records), view_, metadata);
 }
 
+void Screenshot::wait() const {
+  if (written_.valid()) written_.wait();
+}
+
 std::optional<std::string> Screenshot::take() {
   if (!written_.valid() || written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
     return std::nullopt;

@@ -30,7 +30,7 @@ vk::SurfaceFormatKHR choose_format(const std::vector<vk::SurfaceFormatKHR>& form
 }
 
 vk::raii::RenderPass make_render_pass(const gpu::Device& device, vk::Format format) {
-  const vk::AttachmentDescription color({}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eDontCare,
+  const vk::AttachmentDescription color({}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eClear,
                                         vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
                                         vk::AttachmentStoreOp::eDontCare, vk::ImageLayout::eUndefined,
                                         vk::ImageLayout::ePresentSrcKHR);
@@ -60,7 +60,11 @@ Swapchain::Swapchain(const gpu::Device& device, std::optional<std::string_view> 
   render_pass_ = make_render_pass(device, format_.format);
 }
 
-void Swapchain::recreate(const uvec2& size) {
+std::string_view Swapchain::present_mode() const {
+  return kModeNames[static_cast<size_t>(std::find(kModes.begin(), kModes.end(), present_mode_) - kModes.begin())];
+}
+
+bool Swapchain::recreate(const uvec2& size) {
   const vk::SurfaceCapabilitiesKHR limits = device_->physical().getSurfaceCapabilitiesKHR(*device_->surface());
   // A window manager may say the size; otherwise it is the window's own.
   const bool is_told = limits.currentExtent.width != 0xFFFFFFFF;
@@ -68,7 +72,7 @@ void Swapchain::recreate(const uvec2& size) {
       is_told ? limits.currentExtent
               : vk::Extent2D(std::clamp(size.x, limits.minImageExtent.width, limits.maxImageExtent.width),
                              std::clamp(size.y, limits.minImageExtent.height, limits.maxImageExtent.height));
-  if (extent.width == 0 || extent.height == 0) return;
+  if (extent.width == 0 || extent.height == 0) return false;
   const uint32_t most = limits.maxImageCount == 0 ? ~0U : limits.maxImageCount;
   using Alpha = vk::CompositeAlphaFlagBitsKHR;
   const Alpha alpha = (limits.supportedCompositeAlpha & Alpha::eOpaque) ? Alpha::eOpaque : Alpha::eInherit;
@@ -93,6 +97,7 @@ void Swapchain::recreate(const uvec2& size) {
   while (rendered_.size() < images_.size()) rendered_.emplace_back(device_->handle(), vk::SemaphoreCreateInfo());
   size_ = uvec2(extent.width, extent.height);
   is_out_of_date_ = false;
+  return true;
 }
 
 std::optional<uint32_t> Swapchain::acquire(vk::Semaphore ready) {

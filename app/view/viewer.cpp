@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "deferred_signals.h"
 #include "explanation.h"
 #include "render/explain_pixel.h"
 
@@ -23,14 +24,6 @@ constexpr double kLeastTraceShare = 0.5;
 /// ImGui settles its windows within so many frames.
 constexpr int kSettlingFrames = 3;
 
-/// Crosses the scene in some seconds.
-double speed_for(const Scene& scene) {
-  const Bounds bounds = bounds_of(scene);
-  constexpr double kSeconds = 8.0;
-  const double size = bounds.is_empty() ? 0.0 : glm::length(dvec3(bounds.extent()));
-  return size > 0.0 ? size / kSeconds : 1.0;
-}
-
 }  // namespace
 
 Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats)
@@ -43,13 +36,17 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       scene_(start.scene.scene),
       asked_choice_(start.choice),
       loader_(start.file),
-      control_(start.replay ? start.replay->front().camera : start.view.camera, speed_for(*scene_)),
+      control_(start.replay ? start.replay->front().camera : start.view.camera, speed_to_cross(bounds_of(*scene_))),
       stays_open_(start.stays_open),
       record_file_(start.record),
       swapchain_(device, start.present_mode),
       display_(device, swapchain_),
       frames_(device, swapchain_),
       screenshot_(device) {
+  if (start.present_mode && *start.present_mode != swapchain_.present_mode()) {
+    console_.warn(
+        fmt::format("the window has no present mode {}; {} is used", *start.present_mode, swapchain_.present_mode()));
+  }
   if (start.replay) replay_.emplace(std::move(*start.replay));
   switches_.scene = start.choice;
   switches_.has_shadows = start.has_shadows;
@@ -61,7 +58,11 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
 }
 
 Viewer::~Viewer() {
-  device_.handle().waitIdle();
+  try {
+    device_.handle().waitIdle();
+  } catch (const vk::SystemError&) {
+    // A lost device: what threw before says so.
+  }
 }
 
 void Viewer::run() {
@@ -85,8 +86,13 @@ void Viewer::run() {
     frames_.submit(*frame);
   }
   finish_frames();
-  if (record_file_ && !recorder_.path().empty()) write_camera_path(*record_file_, recorder_.path());
-  while (screenshot_.is_busy()) update_screenshot();
+  if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
+  if (record_file_ && !recorder_.path().empty()) {
+    const DeferredSignals while_writing;
+    write_camera_path(*record_file_, recorder_.path());
+  }
+  screenshot_.wait();
+  update_screenshot();
 }
 
 void Viewer::handle_input() {
@@ -149,10 +155,11 @@ void Viewer::handle_press(Press press) {
   if (index < scene_->cameras.size()) control_.place(scene_->cameras[index]);
 }
 
-void Viewer::move_camera() {
+void Viewer::move_camera(Frame& frame) {
   const Motion motion = window_.take_motion();
   if (is_replaying()) {
-    if (!replay_->is_done() && !switches_.is_paused) control_.place(replay_->next_camera());
+    frame.is_of_flight = !replay_->is_done() && !switches_.is_paused;
+    if (frame.is_of_flight) control_.place(replay_->next_camera());
   } else if (!wants_screenshot_) {
     // While a screenshot waits the camera holds still.
     control_.apply(motion, window_.framebuffer_size().y);
@@ -164,8 +171,6 @@ void Viewer::update_replay() {
   if (!replay_) return;
   if (!has_replay_started_) {
     if (!picture_->is_complete()) return;
-    // Frames that began before do not count.
-    finish_frames();
     has_replay_started_ = true;
   } else if (replay_->is_done() && frames_.is_idle()) {
     fmt::print("{}\n", replay_->summarize());
@@ -184,17 +189,18 @@ void Viewer::update_screenshot() {
 }
 
 void Viewer::update_scene() {
-  if (features_ != (light_features() | features_of(switches_.shading))) {
+  if (features_ != (light_features(scene_features_) | features_of(switches_.shading))) {
     finish_frames();
-    make_picture();
+    make_picture(device_scene_, scene_features_);
   }
   if (loader_.is_busy()) {
     try {
       if (const std::optional<LoadedScene> loaded = loader_.take()) {
         finish_frames();
-        show_scene(*loaded);
+        gpu::translate_vulkan_errors([&] { show_scene(*loaded); });
       }
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
+      // Whatever it is, memory that is too short too: the old picture stays.
       report_failure(error.what());
     }
     return;
@@ -210,34 +216,41 @@ void Viewer::update_scene() {
 
 void Viewer::show_scene(const LoadedScene& loaded) {
   const bool is_new = scene_ && scene_ != loaded.scene;
-  device_scene_ = std::make_shared<const DeviceScene>(device_, loaded.packed);
+  const auto device_scene = std::make_shared<const DeviceScene>(device_, loaded.packed);
+  make_picture(device_scene, loaded.features);
+  device_scene_ = device_scene;
   numbers_ = loaded.packed.numbers;
   scene_features_ = loaded.features;
   scene_ = loaded.scene;
-  shown_scene_ = loaded.shown;
-  make_picture();
+  shown_choice_ = loaded.choice;
   explanation_.clear();
   if (is_new) report("read " + file_.filename().string());
 }
 
-void Viewer::make_picture() {
-  features_ = light_features() | features_of(switches_.shading);
-  picture_.emplace(device_, device_scene_, features_, target_ms_);
-  // Its films are made with the window's images.
-  swapchain_.expire();
+void Viewer::make_picture(std::shared_ptr<const DeviceScene> scene, FeatureMask scene_features) {
+  const FeatureMask features = light_features(scene_features) | features_of(switches_.shading);
+  // What fails leaves the picture before.
+  LivePicture picture(device_, std::move(scene), features, target_ms_);
+  if (asked_size_ != uvec2(0)) picture.resize(swapchain_.size());
+  picture_.emplace(std::move(picture));
+  features_ = features;
+  // Before the window has images it has no size.
+  if (asked_size_ != uvec2(0)) fit_picture();
 }
 
-FeatureMask Viewer::light_features() const {
-  return scene_features_ & ~(switches_.has_shadows ? 0 : layout::FEATURE_SHADOWS);
+FeatureMask Viewer::light_features(FeatureMask scene_features) const {
+  return scene_features & ~(switches_.has_shadows ? 0 : layout::FEATURE_SHADOWS);
 }
 
 void Viewer::explain(const uvec2& pixel) {
   finish_frames();
   try {
-    const Explanation explanation =
-        explain_pixel(device_, *device_scene_, numbers_, light_features(), current_view(), pixel);
-    explanation_title_ = fmt::format("pixel {}, {}", pixel.x, pixel.y);
-    explanation_ = explain_text(explanation, *shown_scene_);
+    Explanation explanation =
+        explain_pixel(device_, *device_scene_, numbers_, light_features(scene_features_), current_view(), pixel);
+    number_lights_of_whole(explanation, shown_choice_.lights_off);
+    explanation_title_ = fmt::format("pixel {}, {} at 1 spp", pixel.x, pixel.y);
+    explanation_ = explain_text(explanation, *scene_);
+    console_.detail(explanation_);
   } catch (const RunError& error) {
     report_failure(error.what());
   }
@@ -246,16 +259,22 @@ void Viewer::explain(const uvec2& pixel) {
 bool Viewer::fit_window() {
   const uvec2 size = window_.framebuffer_size();
   if (size.x == 0 || size.y == 0) return false;
-  if (!swapchain_.is_out_of_date() && swapchain_.size() == size) return true;
+  // The surface may have given another size than it was asked for.
+  if (!swapchain_.is_out_of_date() && size == asked_size_) return true;
   finish_frames();
-  swapchain_.recreate(size);
-  if (swapchain_.is_out_of_date()) return false;
+  const uvec2 before = swapchain_.size();
+  if (!swapchain_.recreate(size)) return false;
+  asked_size_ = size;
+  if (swapchain_.size() != before) fit_picture();
+  frames_to_draw_ = kSettlingFrames;
+  return true;
+}
+
+void Viewer::fit_picture() {
   picture_->resize(swapchain_.size());
   const uvec2 full_size = picture_->full_size();
   display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y);
   encoded_count_ = 0;
-  frames_to_draw_ = kSettlingFrames;
-  return true;
 }
 
 void Viewer::finish_frames() {
@@ -264,7 +283,7 @@ void Viewer::finish_frames() {
 
 void Viewer::take_finished(const FinishedFrame& finished) {
   statistics_.add(finished);
-  if (is_replaying()) replay_->add(finished);
+  if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   picture_->learn(finished.units, trace_ms);
@@ -272,16 +291,17 @@ void Viewer::take_finished(const FinishedFrame& finished) {
 }
 
 bool Viewer::has_work() const {
-  if (is_replaying()) return !replay_->is_done();
+  if (is_replaying() && !switches_.is_paused) return !replay_->is_done();
   return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
 }
 
 void Viewer::record(Frame& frame) {
-  move_camera();
+  move_camera(frame);
   build_overlay();
   picture_->fix_scale(switches_.scale);
-  picture_->pause(switches_.is_paused && !wants_screenshot_);
   picture_->want(current_view());
+  // A screenshot takes what it needs, and no more.
+  picture_->pause(switches_.is_paused && !(wants_screenshot_ && !picture_->is_complete()));
   record_tracing(frame);
   record_display(frame);
   if (frames_to_draw_ > 0) --frames_to_draw_;
@@ -312,7 +332,7 @@ void Viewer::record_display(const Frame& frame) {
     encoded_count_ = picture_->shown_count();
   }
   swapchain_.begin_drawing(frame.commands, frame.image);
-  if (picture_->shown()) display_.record_drawing(frame.commands, picture_->shown()->size, swapchain_.size());
+  display_.record_drawing(frame.commands, swapchain_.size());
   frame.mark(FrameMark::kDisplayed);
   imgui_->record(frame.commands);
   frame.commands.endRenderPass();
@@ -354,13 +374,8 @@ void Viewer::report_failure(const std::string& text) {
 }
 
 DescribedScene Viewer::described_scene(const View& view) const {
-  DescribedScene described{file_, switches_.has_shadows, asked_choice_.lights_off, std::nullopt};
-  if (view.camera.projection == Projection::kPerspective) return described;
-  for (size_t i = 0; i < scene_->cameras.size(); ++i) {
-    const Camera& camera = scene_->cameras[i];
-    if (camera.projection == view.camera.projection && camera.ymag == view.camera.ymag) described.camera_index = i;
-  }
-  return described;
+  const SceneChoice& on = shown_choice_;
+  return {file_, switches_.has_shadows, on.lights_off, find_half_height(*scene_, view.camera), on.builder, on.bvh};
 }
 
 View Viewer::current_view() const {

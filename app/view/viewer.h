@@ -54,7 +54,7 @@ class Viewer {
  private:
   void handle_input();
   void handle_press(Press press);
-  void move_camera();
+  void move_camera(Frame& frame);
   bool is_replaying() const { return replay_ && has_replay_started_; }
   /// Begins the replay when its first camera is shown, and ends it.
   void update_replay();
@@ -63,13 +63,15 @@ class Viewer {
   /// Starts what changed switches ask for, takes in what has been loaded.
   void update_scene();
   void show_scene(const LoadedScene& loaded);
-  /// A picture of the scene with the pipeline that the switches ask for.
-  void make_picture();
-  /// Of the scene with its shadows on or off.
-  FeatureMask light_features() const;
+  /// A picture of a scene with the pipeline that the switches ask for.
+  void make_picture(std::shared_ptr<const DeviceScene> scene, FeatureMask scene_features);
+  /// Of a scene with its shadows on or off.
+  FeatureMask light_features(FeatureMask scene_features) const;
   void explain(const uvec2& pixel);
   /// Fits everything to the window. False while it has no pixels.
   bool fit_window();
+  /// Fits the picture to the window's images.
+  void fit_picture();
   void finish_frames();
   void take_finished(const FinishedFrame& finished);
   bool has_work() const;
@@ -93,13 +95,13 @@ class Viewer {
   double target_ms_;
 
   std::shared_ptr<const Scene> scene_;
-  /// What is chosen of it, on the device.
-  std::shared_ptr<const Scene> shown_scene_;
   std::shared_ptr<const DeviceScene> device_scene_;
   PrimitiveNumbers numbers_;
   FeatureMask scene_features_ = 0;
   Switches switches_;
   SceneChoice asked_choice_;
+  /// What of scene_ is on the device.
+  SceneChoice shown_choice_;
   /// Of the picture's pipeline.
   FeatureMask features_ = 0;
   SceneLoader loader_;
@@ -113,6 +115,8 @@ class Viewer {
   FlightRecorder recorder_;
 
   Swapchain swapchain_;
+  /// That the swapchain was made for; 0 before it is.
+  uvec2 asked_size_{0};
   DisplayPass display_;
   std::unique_ptr<ImguiRenderer> imgui_;
   FrameQueue frames_;

@@ -120,10 +120,6 @@ bool Window::should_close() const {
   return glfwWindowShouldClose(window_) != 0;
 }
 
-void Window::set_title(const std::string& title) {
-  glfwSetWindowTitle(window_, title.c_str());
-}
-
 void Window::toggle_fullscreen() {
   if (glfwGetWindowMonitor(window_) != nullptr) {
     glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
@@ -175,23 +171,30 @@ void Window::on_button(int button, int action) {
   const bool is_down = action == GLFW_PRESS;
   if (is_down && wants_pointer_ && !is_captured_) return;
   if (button == GLFW_MOUSE_BUTTON_RIGHT && is_down) capture_pointer(!is_captured_);
-  if (button != GLFW_MOUSE_BUTTON_LEFT) return;
+  // The captured pointer is nowhere in the window.
+  if (button != GLFW_MOUSE_BUTTON_LEFT || is_captured_) return;
   if (is_down) {
     is_dragging_ = true;
+    is_click_ = true;
     drag_start_ = pointer_;
-  } else if (std::exchange(is_dragging_, false) && glm::distance(pointer_, drag_start_) <= kClickSlack) {
+  } else if (std::exchange(is_dragging_, false) && is_click_) {
     clicks_.push_back(pixel_ratio() * pointer_);
   }
 }
 
 void Window::on_pointer(const dvec2& place) {
   is_active_ = true;
-  const dvec2 way = pixel_ratio() * (place - std::exchange(pointer_, place));
+  dvec2 way = place - std::exchange(pointer_, place);
   // A drag takes hold of the scene, the captured pointer of the camera.
   if (is_captured_) {
-    motion_.turn(-way);
+    motion_.turn(-pixel_ratio() * way);
   } else if (is_dragging_) {
-    motion_.turn(way);
+    if (is_click_) {
+      way = place - drag_start_;
+      if (glm::length(way) <= kClickSlack) return;
+      is_click_ = false;
+    }
+    motion_.turn(pixel_ratio() * way);
   }
 }
 
@@ -204,6 +207,7 @@ void Window::release() {
 void Window::capture_pointer(bool is_captured) {
   if (is_captured == is_captured_) return;
   is_captured_ = is_captured;
+  is_dragging_ = false;
   glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
   glfwGetCursorPos(window_, &pointer_.x, &pointer_.y);
 }

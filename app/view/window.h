@@ -39,7 +39,6 @@ class Window {
   void wait(double seconds);
 
   bool should_close() const;
-  void set_title(const std::string& title);
   void toggle_fullscreen();
 
   // What happened since it was last taken.
@@ -75,6 +74,8 @@ class Window {
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
   bool is_dragging_ = false;
+  /// Whether the pointer has not wandered since the button went down.
+  bool is_click_ = false;
   bool is_captured_ = false;
   dvec2 pointer_{0.0};
   dvec2 drag_start_{0.0};

@@ -14,7 +14,7 @@ class Failure(Exception):
     """What a test found wrong."""
 
 
-def wait_for(condition, what, seconds=20.0):
+def wait_for(condition, what, seconds=60.0):
     """The first true value of condition(), which is asked again and again."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -60,18 +60,27 @@ class Viewer:
             stdout=self.logs[0],
             stderr=self.logs[1],
         )
+
+    def run_xdotool(self, *words):
+        return subprocess.run(
+            ["xdotool", *map(str, words)], env=self.display.environment, capture_output=True, text=True, timeout=60
+        )
+
+    def xdotool(self, *words):
+        done = self.run_xdotool(*words)
+        if done.returncode != 0:
+            self.check_alive()
+            raise Failure(f"xdotool {words}: {done.stderr}")
+
+    def focus(self):
+        """Keys go to the window from now on."""
         self.window = wait_for(self.find_window, "window")
         self.xdotool("windowfocus", "--sync", self.window)
 
-    def xdotool(self, *words):
-        done = subprocess.run(
-            ["xdotool", *map(str, words)], env=self.display.environment, capture_output=True, text=True, timeout=20
-        )
-        return done.stdout.strip()
-
     def find_window(self):
         self.check_alive()
-        found = self.xdotool("search", "--onlyvisible", "--name", "^promin")
+        # It fails where there is none yet.
+        found = self.run_xdotool("search", "--onlyvisible", "--name", "^promin").stdout.strip()
         return found.split("\n")[0] if found else None
 
     def read(self, stream):
@@ -114,7 +123,7 @@ class Viewer:
 
     def wait_for_end(self):
         try:
-            return self.process.wait(timeout=20)
+            return self.process.wait(timeout=60)
         except subprocess.TimeoutExpired:
             raise Failure("promin-view does not end") from None
 

@@ -129,6 +129,19 @@ TEST_F(LivePictureTest, APausedPictureIsNotRefined) {
   EXPECT_FALSE(picture.is_settled());
 }
 
+TEST_F(LivePictureTest, RestsWhenPausedWhileItIsRefined) {
+  LivePicture picture = make_picture();
+  picture.want(test::make_view(kSize));
+  while (!picture.is_complete()) trace(picture);
+  trace(picture);  // refining is under way
+  ASSERT_LT(picture.fraction_done(), 1.0);
+  picture.pause(true);
+  EXPECT_TRUE(picture.is_settled());
+  EXPECT_EQ(trace(picture), 0.0);
+  picture.pause(false);
+  EXPECT_FALSE(picture.is_settled());
+}
+
 TEST_F(LivePictureTest, AFasterDeviceGetsMorePixels) {
   LivePicture picture = make_picture();
   View view = test::make_view(kSize);

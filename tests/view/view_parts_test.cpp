@@ -37,6 +37,14 @@ TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
   EXPECT_THAT(command, testing::Not(testing::HasSubstr("--fov")));
 }
 
+TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
+  View view;
+  EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::Not(testing::HasSubstr("median")));
+  view.shading = Shading::kSteps;
+  EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::EndsWith(" --builder median"));
+  EXPECT_THAT(describe_command({.file = "s", .bvh = "a tree"}, view), testing::EndsWith(" --bvh 'a tree'"));
+}
+
 // Every float's angle comes back from nine digits of degrees.
 TEST(DescribeCommand, AnglesComeBackToTheBit) {
   View view;
