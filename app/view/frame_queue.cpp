@@ -100,7 +100,10 @@ FinishedFrame FrameQueue::take(Frame& frame) {
                      stage_ms(frame, FrameMark::kDisplayed, FrameMark::kEnd)};
   finished.units = frame.units;
   finished.is_of_flight = frame.is_of_flight;
-  if (frame.units > 0.0) finished.rays = sum_counts(frame.counters->mapped());
+  if (frame.units > 0.0) {
+    finished.rays = sum_counts(frame.counters->mapped());
+    finished.has_cut_loops = were_loops_cut(frame.counters->mapped());
+  }
   const double end_time = Window::now();
   finished.time_ms = 1e3 * (end_time - std::max(frame.begin_time, last_end_time_));
   last_end_time_ = end_time;

@@ -23,6 +23,8 @@ struct StageTimes {
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
+  /// The driver cut the tracing short (render/film.h): pixels are wrong.
+  bool has_cut_loops = false;
   /// Units of tracing (LivePicture::record).
   double units = 0.0;
   /// As Frame::is_of_flight.

@@ -285,6 +285,7 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   statistics_.add(finished);
   if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
+  if (finished.has_cut_loops && !is_failure_) report_failure(make_cut_loops_error("lower the depth").what());
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   picture_->learn(finished.units, trace_ms);
   picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
