@@ -17,6 +17,9 @@ dmat3 make_rotation_y(double beta);
 /// tips to the left, and the picture turns clockwise.
 dmat3 make_rotation_z(double alpha);
 
+/// Whether the two show the same: all but their names and aspect ratios.
+bool shows_same(const Camera& a, const Camera& b);
+
 /// The thesis' free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
 ///   M(alpha, beta, gamma) = Mz(alpha) My(beta) Mx(gamma),  Q <- Q M
 ///   look = Q (0, 0, -1),  up = Q (0, 1, 0),  right = look x up

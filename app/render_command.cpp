@@ -32,6 +32,7 @@ RendererOptions make_renderer_options(const RenderOptions& options) {
   RendererOptions result;
   choose_tree(options.tracing, result);
   result.force_all_features = options.has_all_features;
+  result.shading = options.view.shading;
   result.with_aovs = options.aovs.any();
   if (options.view.has_no_shadows) result.left_out_features = layout::FEATURE_SHADOWS;
   return result;

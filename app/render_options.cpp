@@ -155,12 +155,16 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_measuring_options(table, options.tracing);
 }
 
+void check_no_camera(const ViewOptions& options, std::string_view name) {
+  if (!options.camera && !options.pose.any()) return;
+  throw UsageError(
+      {fmt::format("{} and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other", name),
+       "on the command line", "leave one out"});
+}
+
 void check_render_options(const RenderOptions& options) {
   check_tracing_options(options.tracing);
-  if (options.path && (options.view.camera || options.view.pose.any())) {
-    throw UsageError({"--path and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
-                      "on the command line", "leave one out"});
-  }
+  if (options.path) check_no_camera(options.view, "--path");
   if (options.explained_pixel) {
     check_explain_options(options);
   } else if (options.pictures.empty()) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/math.h"
@@ -86,6 +87,9 @@ void add_view_options(OptionTable& table, ViewOptions& view);
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// Throws UsageError where there is a camera beside the option of this name, which brings cameras of its own.
+void check_no_camera(const ViewOptions& options, std::string_view name);
 
 /// Throws UsageError for what no single option shows: two that contradict each other.
 void check_render_options(const RenderOptions& options);

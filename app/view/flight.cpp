@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "camera.h"
+
 namespace promin::app {
 namespace {
 
@@ -16,11 +18,6 @@ double percentile(std::vector<double> values, double share) {
   return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-bool is_same_pose(const Camera& a, const Camera& b) {
-  return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
-         a.ymag == b.ymag && a.near == b.near;
-}
-
 }  // namespace
 
 void FlightRecorder::add(double time_s, const Camera& camera) {
@@ -28,7 +25,7 @@ void FlightRecorder::add(double time_s, const Camera& camera) {
   const double time = time_s - start_s_;
   // Frames of one camera are as good as their first and last.
   const size_t count = path_.size();
-  if (count >= 2 && is_same_pose(path_[count - 2].camera, camera) && is_same_pose(path_[count - 1].camera, camera)) {
+  if (count >= 2 && shows_same(path_[count - 2].camera, camera) && shows_same(path_[count - 1].camera, camera)) {
     path_.pop_back();
   }
   if (!path_.empty() && time <= path_.back().time_s) return;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "camera.h"
+
 namespace promin::app {
 namespace {
 
@@ -27,10 +29,7 @@ double count_blocks(const uvec2& size) {
 }  // namespace
 
 bool shows_same(const View& a, const View& b) {
-  const Camera& c = a.camera;
-  const Camera& d = b.camera;
-  return a.size == b.size && a.shading == b.shading && a.max_depth == b.max_depth && c.projection == d.projection &&
-         c.eye == d.eye && c.look == d.look && c.up == d.up && c.yfov == d.yfov && c.ymag == d.ymag && c.near == d.near;
+  return a.size == b.size && a.shading == b.shading && a.max_depth == b.max_depth && shows_same(a.camera, b.camera);
 }
 
 LivePicture::LivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,

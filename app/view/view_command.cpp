@@ -54,10 +54,7 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
 
 void check_window_options(const WindowOptions& options) {
   check_tracing_options(options.tracing);
-  if (options.replay && (options.view.camera || options.view.pose.any())) {
-    throw UsageError({"--replay and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other",
-                      "on the command line", "leave one out"});
-  }
+  if (options.replay) check_no_camera(options.view, "--replay");
   if (options.stays_open && !options.replay) {
     throw UsageError({"--keep-open has no replay to end", "on the command line", "give --replay as well"});
   }

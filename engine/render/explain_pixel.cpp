@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "gpu/device.h"
-#include "render.spv.h"
 #include "render/device_scene.h"
 #include "render/film.h"
 #include "render/picture_pieces.h"
@@ -42,24 +41,16 @@ class LoggingKernel {
   LoggingKernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features, const layout::Frame& frame,
                 const View& view)
       : frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer),
-        film_(device, film_bytes(scene, view), vk::BufferUsageFlagBits::eStorageBuffer) {
+        film_(device, film_bytes(scene, view), vk::BufferUsageFlagBits::eStorageBuffer),
+        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, frame_, film_)) {
     frame_.write(std::as_bytes(std::span(&frame, 1)));
-    const std::array constants{
-        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features | layout::FEATURE_RAY_LOG},
-        gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
-        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() ? 1U : 0U}};
-    std::vector<gpu::BoundBuffer> buffers = scene.geometry();
-    for (const gpu::BoundBuffer& buffer : scene.shading()) buffers.push_back(buffer);
-    buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame_});
-    buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film_});
-    kernel_.emplace(device, k_render_spirv, constants, buffers);
   }
 
   /// Traces one sample of the pixel; they come in their order.
   std::vector<layout::RayLog> trace(const layout::Dispatch& sample) {
     head_.log_count = uvec4(0);
     film_.write(std::as_bytes(std::span(&head_, 1)));
-    kernel_->run(sample, film_, 1);
+    kernel_.run(sample, film_, 1);
     film_.read(std::as_writable_bytes(std::span(&head_, 1)));
     if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("lower --max-depth");
     std::vector<layout::RayLog> log(head_.log_count.x);
@@ -74,7 +65,7 @@ class LoggingKernel {
   gpu::Buffer frame_;
   gpu::Buffer film_;
   LoggedFilm head_;
-  std::optional<TracingKernel> kernel_;
+  TracingKernel kernel_;
 };
 
 }  // namespace

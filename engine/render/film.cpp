@@ -51,15 +51,7 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
       features_(features),
       frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
-  const std::array constants{
-      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features_},
-      gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene_->stack_size()},
-      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene_->fetches_texels() ? 1U : 0U}};
-  std::vector<gpu::BoundBuffer> buffers = scene_->geometry();
-  for (const gpu::BoundBuffer& bound : scene_->shading()) buffers.push_back(bound);
-  buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame_});
-  buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_});
-  kernel_.emplace(device, k_render_spirv, constants, buffers);
+  kernel_.emplace(make_picture_kernel(device, *scene_, features_, frame_, *buffer_));
 }
 
 void Film::reserve(uint32_t pixel_count) {
@@ -131,6 +123,19 @@ uint32_t Film::records_per_pixel() const {
 uint32_t Film::max_capacity() const {
   const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(FilmHead)) / sizeof(uvec4);
   return static_cast<uint32_t>(records / records_per_pixel());
+}
+
+TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
+                                  const gpu::Buffer& frame, const gpu::Buffer& film) {
+  const std::array constants{
+      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
+      gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
+      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() ? 1U : 0U}};
+  std::vector<gpu::BoundBuffer> buffers = scene.geometry();
+  for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
+  buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});
+  buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
+  return {device, k_render_spirv, constants, buffers};
 }
 
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {

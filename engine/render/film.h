@@ -72,6 +72,10 @@ class Film {
   std::optional<TracingKernel> kernel_;
 };
 
+/// The pipeline of shaders/render.comp for a scene's `features`, bound to the scene and to these buffers.
+TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
+                                  const gpu::Buffer& frame, const gpu::Buffer& film);
+
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);
 

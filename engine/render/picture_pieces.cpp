@@ -6,16 +6,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/divide_up.h"
 #include "render/sampling.h"
 
 namespace promin {
 namespace {
 
 constexpr uint32_t kMaxBlocks = 65535;  // Vulkan's guaranteed workgroup count
-
-uint32_t divide_up(uint32_t a, uint32_t b) {
-  return (a + b - 1) / b;
-}
 
 /// The camera's part of a frame, computed in double.
 void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& camera, const uvec2& size) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cast.spv.h"
+#include "core/divide_up.h"
 #include "core/stopwatch.h"
 #include "gpu/device.h"
 #include "render/device_scene.h"
@@ -23,10 +24,6 @@ constexpr uint32_t kParts = 16;
 /// Keeps the device's cores busy in the first dispatch.
 constexpr double kFirstRays = 64.0 * kGroupLanes;
 static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
-
-uint32_t divide_up(uint32_t a, uint32_t b) {
-  return (a + b - 1) / b;
-}
 
 vk::DeviceSize hits_size(size_t ray_count) {
   return sizeof(layout::Dispatch) + ray_count * sizeof(layout::HitRecord);

@@ -45,7 +45,7 @@ struct Renderer::Impl {
     stats.upload_ms = uploading.ms();
 
     const Stopwatch compiling;
-    make_film(Shading::kFull);
+    make_film(options.shading);
     stats.pipeline_ms = compiling.ms();
   }
 
@@ -60,13 +60,16 @@ struct Renderer::Impl {
                   const std::function<void(double)>& on_progress) {
     PieceOptions cut = film->piece_options();
     cut.blocks_per_piece = options.blocks_per_dispatch;
-    FilmCounts counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
-    if (counts.has_cut_loops) {
-      cut.most_samples_a_lane = 1;
-      counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
+    for (;;) {
+      cut.most_samples_a_lane = most_samples_a_lane;
+      const FilmCounts counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
+      if (!counts.has_cut_loops) {
+        result.rays += counts.rays;
+        return;
+      }
+      if (most_samples_a_lane == 1) throw make_cut_loops_error("lower --max-depth or take another device");
+      most_samples_a_lane = 1;
     }
-    if (counts.has_cut_loops) throw make_cut_loops_error("lower --max-depth or take another device");
-    result.rays += counts.rays;
   }
 
   FilmCounts trace_pieces(const PixelWindow& window, const View& view, const PieceOptions& cut, double& trace_ms,
@@ -123,6 +126,8 @@ struct Renderer::Impl {
   const gpu::Device& device;
   RendererOptions options;
   Pacer pacer;
+  /// Less once the driver has cut loops: the next band and picture would have it do so again.
+  uint32_t most_samples_a_lane = PieceOptions{}.most_samples_a_lane;
   SetupStats stats;
   PrimitiveNumbers numbers;
   std::shared_ptr<const DeviceScene> scene;

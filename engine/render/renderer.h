@@ -55,6 +55,8 @@ struct RendererOptions {
   bool force_all_features = false;
   /// Features to leave out although the scene uses them, e.g. FEATURE_SHADOWS: then nothing throws a shadow.
   FeatureMask left_out_features = 0;
+  /// What the first pictures will show: its pipeline is compiled at once, others as they are asked for.
+  Shading shading = Shading::kFull;
   /// Bring RenderResult::aovs as well. The image's bits stay the same.
   bool with_aovs = false;
   /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (render/tracing_kernel.h).
