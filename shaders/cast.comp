@@ -12,5 +12,6 @@
 #include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
+#include "share_out.glsl"
 #include "loop_check.glsl"
 #include "cast.glsl"

@@ -19,9 +19,7 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
 }
 
 void main() {
-  uint parts = dispatch.share.z;
-  uint group = gl_WorkGroupID.x % parts * (gl_NumWorkGroups.x / parts) + gl_WorkGroupID.x / parts;
-  uint first = dispatch.range.x + PACKET_SIZE * (group * LANES + gl_LocalInvocationIndex);
+  uint first = dispatch.range.x + PACKET_SIZE * (shared_out_group() * LANES + gl_LocalInvocationIndex);
   if (first >= dispatch.range.y) return;
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];

@@ -7,7 +7,7 @@
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
-// As in render.comp. The head is that of the picture's last dispatch.
+// As in film.glsl. The head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   Dispatch dispatch;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];

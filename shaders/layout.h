@@ -158,13 +158,15 @@ struct Frame {
 // What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform
 // buffer, because lavapipe compiles the shader anew for each value of those that control flow depends on.
 struct Dispatch {
-  uvec4 range;     // x = first block, y = first sample, z = samples to take; w = mirror bounces
+  uvec4 range;     // x = first block, y = one past the last, z = sample, w = mirror bounces
                    // casting: x = first ray, y = one past the last
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
-  uvec4 share;     // x = one past the last block; casting: z = parts of the rays that workgroups in a row take theirs
-                   // from, w = 1 after the dispatch if were_loops_cut(); 0 else
+  uvec4 share;     // x = parts of all pixels or rays that workgroups in a row take theirs from; casting: w = 1 after
+                   // the dispatch if were_loops_cut(); 0 else
+  uvec4 queue;     // of paths from one stage to the next: x = its first record, y = paths put, z = paths taken,
+                   // w = paths that a lane takes at most
 };
 
 // More than one, and not known to the compiler (loop_check.glsl).
@@ -206,7 +208,7 @@ static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
 static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 144);
-static_assert(sizeof(Dispatch) == 80);
+static_assert(sizeof(Dispatch) == 96);
 #undef LAYOUT_CONSTANT
 }  // namespace promin::layout
 #endif

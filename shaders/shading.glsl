@@ -101,9 +101,8 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
   return point;
 }
 
-// One source's share, its shadow ray included.
-vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint shadow_rays) {
-  LightSample sampled = sample_light(light, point.position);
+// What a source adds where nothing is between.
+vec3 unshadowed_share(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
   vec3 to_light = normalize3(sampled.direction);
   precise float cosine = dot3(point.normal, to_light);
   if (!(cosine > 0.0 && sampled.strength > 0.0)) return vec3(0.0);
@@ -119,36 +118,22 @@ vec3 shade_light(ShadingPoint point, vec3 to_eye, LightRecord light, inout uint 
     }
   }
   share *= sampled.strength;
-  if (!(max_abs(share) > 0.0)) return vec3(0.0);
-
-  if (has(FEATURE_SHADOWS)) {
-    ++shadow_rays;
-    vec3 origin = lift_off(point.shadow_position, point.geometric_normal, point.lift);
-    precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
-    Ray ray = make_ray(origin, to_source, 0.0, sampled.tmax);
-    Hit blocker = trace(ray, true);
-    log_shadow_ray(ray, blocker);
-    if (blocker.primitive != NO_PRIMITIVE) return vec3(0.0);
-  }
   return share;
 }
 
-vec3 shade(ShadingPoint point, vec3 to_eye, inout uint shadow_rays) {
-  precise vec3 sum = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
-  log_own_light(sum);
-  if (has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_HEADLIGHT)) {
-    for (uint i = 0u; i < dispatch.counts.z; ++i) {
-      begin_source_log(i);
-      vec3 share = shade_light(point, to_eye, load_light(frame.first_index.y + i), shadow_rays);
-      end_source_log(share);
-      sum += share;
-    }
-  }
-  return sum;
+Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
+  vec3 origin = lift_off(point.shadow_position, point.geometric_normal, point.lift);
+  precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
+  return make_ray(origin, to_source, 0.0, sampled.tmax);
 }
 
-// A function of its own: written into the loop that follows the bounces, glslang 12 runs out of memory over it.
-Ray mirror_ray(ShadingPoint point, vec3 direction) {
-  vec3 origin = lift_off(point.position, point.geometric_normal, point.lift);
-  return make_ray(origin, reflect_direction(direction, point.normal, point.geometric_normal), 0.0, INFINITY);
+// What the point sends without any source.
+vec3 own_light(ShadingPoint point) {
+  precise vec3 own = point.material.ambient.xyz * point.color * frame.ambient.xyz + point.material.emissive.xyz;
+  return own;
+}
+
+uint source_count() {
+  bool has_sources = has(FEATURE_POINT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_HEADLIGHT);
+  return has_sources ? dispatch.counts.z : 0u;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 
 #include "core/error.h"
 #include "gpu/device.h"
@@ -36,21 +37,26 @@ uint64_t film_bytes(const DeviceScene& scene, const View& view) {
   return sizeof(LoggedFilm) + most_entries * sizeof(layout::RayLog);
 }
 
+constexpr uint64_t kQueuedPathBytes = Film::kQueuedPathRecords * sizeof(uvec4);
+
 class LoggingKernel {
  public:
   LoggingKernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features, const layout::Frame& frame,
                 const View& view)
       : frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer),
-        film_(device, film_bytes(scene, view), vk::BufferUsageFlagBits::eStorageBuffer),
-        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, frame_, film_)) {
+        queue_offset_(film_bytes(scene, view)),
+        film_(device, queue_offset_ + kQueuedPathBytes, vk::BufferUsageFlagBits::eStorageBuffer),
+        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, 1, frame_, film_)) {
     frame_.write(std::as_bytes(std::span(&frame, 1)));
   }
 
   /// Traces one sample of the pixel; they come in their order.
-  std::vector<layout::RayLog> trace(const layout::Dispatch& sample) {
+  std::vector<layout::RayLog> trace(const PicturePiece& sample) {
     head_.log_count = uvec4(0);
     film_.write(std::as_bytes(std::span(&head_, 1)));
-    kernel_.run(sample, film_, 1);
+    layout::Dispatch dispatch = sample.dispatch;
+    dispatch.queue.x = static_cast<uint32_t>((queue_offset_ - offsetof(LoggedFilm, pixel)) / sizeof(uvec4));
+    kernel_.run(dispatch, film_, sample.group_counts);
     film_.read(std::as_writable_bytes(std::span(&head_, 1)));
     if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("lower --max-depth");
     std::vector<layout::RayLog> log(head_.log_count.x);
@@ -63,6 +69,8 @@ class LoggingKernel {
 
  private:
   gpu::Buffer frame_;
+  /// Of the queue of paths, behind the log.
+  uint64_t queue_offset_;
   gpu::Buffer film_;
   LoggedFilm head_;
   TracingKernel kernel_;
@@ -77,7 +85,7 @@ Explanation explain_pixel(const gpu::Device& device, const DeviceScene& scene, c
   Explanation explanation;
   explanation.pixel = pixel;
   while (!samples.is_done()) {
-    explanation.samples.push_back(explain_sample(kernel.trace(samples.next(1.0).dispatch), numbers));
+    explanation.samples.push_back(explain_sample(kernel.trace(samples.next(1.0)), numbers));
   }
   explanation.sum = kernel.sum();
   explanation.color = explanation.sum / static_cast<float>(view.samples_per_pixel);

@@ -10,8 +10,9 @@
 #include <cstring>
 #include <thread>
 
+#include "camera_stage.spv.h"
 #include "gpu/device.h"
-#include "render.spv.h"
+#include "mirror_stage.spv.h"
 
 namespace promin {
 namespace {
@@ -23,7 +24,7 @@ constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 /// One for each lane of a block.
 using Counters = std::array<uvec4, kLanes>;
 
-/// Head of the film buffer (shaders/render.comp).
+/// Head of the film buffer (shaders/film.glsl).
 struct FilmHead {
   layout::Dispatch dispatch{};
   Counters ray_counts{};
@@ -36,8 +37,13 @@ Counters lanes_of(std::span<const std::byte> counters) {
   return lanes;
 }
 
-uint64_t bytes_for(uint64_t pixel_count, uint32_t records_per_pixel) {
-  return sizeof(FilmHead) + pixel_count * records_per_pixel * sizeof(uvec4);
+/// Records of the longest queue of paths that a piece may need.
+constexpr uint32_t kQueueRecords = PicturePieces::kMaxBlocks * kLanes * Film::kQueuedPathRecords;
+
+/// GPUs trace pixels alone: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes minutes
+/// to compile packets. Steps and logs are of single rays.
+uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
+  return device.is_lavapipe() && (features & layout::FEATURE_STEP_COUNTS) == 0 ? 4 : 1;
 }
 
 }  // namespace
@@ -45,18 +51,21 @@ uint64_t bytes_for(uint64_t pixel_count, uint32_t records_per_pixel) {
 const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
 const vk::DeviceSize Film::kCountersBytes = sizeof(Counters);
 
-Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features)
+Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+           std::optional<uint32_t> packet_size)
     : device_(&device),
       scene_(std::move(scene)),
       features_(features),
+      packet_size_(packet_size.value_or(pick_packet_size(device, features))),
       frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
-  kernel_.emplace(make_picture_kernel(device, *scene_, features_, frame_, *buffer_));
+  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_));
 }
 
 void Film::reserve(uint32_t pixel_count) {
   if (capacity_ >= pixel_count) return;
-  buffer_.emplace(*device_, bytes_for(pixel_count, records_per_pixel()), vk::BufferUsageFlagBits::eStorageBuffer);
+  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + queue_records();
+  buffer_.emplace(*device_, sizeof(FilmHead) + records * sizeof(uvec4), vk::BufferUsageFlagBits::eStorageBuffer);
   capacity_ = pixel_count;
   if (kernel_) kernel_->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_});
 }
@@ -64,7 +73,12 @@ void Film::reserve(uint32_t pixel_count) {
 PieceOptions Film::piece_options() const {
   // On a GPU one group waits while others work.
   constexpr uint32_t kGroupsACore = 8;
-  return {.wanted_groups = device_->is_cpu() ? kGroupsACore * std::max(1U, std::thread::hardware_concurrency()) : 0};
+  PieceOptions options{.packet_size = packet_size_, .parts = parts_of_dispatch(*device_)};
+  if (device_->is_cpu()) {
+    options.wanted_groups = kGroupsACore * std::max(1U, std::thread::hardware_concurrency());
+    options.most_paths_a_lane = 16;
+  }
+  return options;
 }
 
 PicturePieces Film::cut(const View& view, const PixelWindow& window, const PieceOptions& options) const {
@@ -80,7 +94,7 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const PicturePi
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const PicturePiece& piece) const {
-  kernel_->record(commands, piece.dispatch, *buffer_, piece.group_count);
+  kernel_->record(commands, dispatch_of(piece), *buffer_, piece.group_counts);
 }
 
 void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
@@ -98,7 +112,7 @@ void Film::begin(const PicturePieces& picture) const {
 }
 
 double Film::run(const PicturePiece& piece) const {
-  return kernel_->run(piece.dispatch, *buffer_, piece.group_count);
+  return kernel_->run(dispatch_of(piece), *buffer_, piece.group_counts);
 }
 
 FilmCounts Film::take_counts() const {
@@ -120,14 +134,25 @@ uint32_t Film::records_per_pixel() const {
   return (features_ & layout::FEATURE_AOVS) != 0 ? 2 : 1;
 }
 
+uint32_t Film::queue_records() const {
+  return (features_ & layout::FEATURE_MIRRORS) != 0 ? kQueueRecords : 0;
+}
+
+layout::Dispatch Film::dispatch_of(const PicturePiece& piece) const {
+  layout::Dispatch dispatch = piece.dispatch;
+  dispatch.queue.x = capacity_ * records_per_pixel();
+  return dispatch;
+}
+
 uint32_t Film::max_capacity() const {
   const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(FilmHead)) / sizeof(uvec4);
-  return static_cast<uint32_t>(records / records_per_pixel());
+  return static_cast<uint32_t>((records - queue_records()) / records_per_pixel());
 }
 
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  const gpu::Buffer& frame, const gpu::Buffer& film) {
+                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film) {
   const std::array constants{
+      gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
       gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
       gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
       gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() ? 1U : 0U}};
@@ -135,7 +160,12 @@ TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& 
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
   buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});
   buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
-  return {device, k_render_spirv, constants, buffers};
+  TracingKernel kernel(device, k_camera_stage_spirv, constants, buffers);
+  if ((features & layout::FEATURE_MIRRORS) != 0) {
+    // Mirror rays go everywhere: each is traced alone.
+    kernel.add_stage(k_mirror_stage_spirv, std::span(constants).subspan(1), buffers);
+  }
+  return kernel;
 }
 
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {

@@ -22,12 +22,15 @@ struct FilmCounts {
 };
 
 /// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
-/// (shaders/render.comp). A picture is begun, then all of its pieces run; nothing of that waits unless it says so.
+/// in two stages (shaders/camera_stage.comp, shaders/mirror_stage.comp). A picture is begun, then all of its pieces
+/// run; nothing of that waits unless it says so.
 class Film {
  public:
   /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
-  /// (render/shading.h), and FEATURE_AOVS.
-  Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features);
+  /// (render/shading.h), and FEATURE_AOVS. `packet_size`: pixels that a lane takes together, 1, 2 or 4; empty: as suits
+  /// the device.
+  Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+       std::optional<uint32_t> packet_size = std::nullopt);
 
   /// Makes room for so many pixels; the device is idle with respect to the film.
   void reserve(uint32_t pixel_count);
@@ -61,20 +64,26 @@ class Film {
   /// Where the pixels lie in the buffer; counters before them.
   static const vk::DeviceSize kPixelsOffset;
   static const vk::DeviceSize kCountersBytes;
+  /// Of uvec4, what a path takes in the queue between the stages (shaders/path.glsl).
+  static constexpr uint32_t kQueuedPathRecords = 4;
 
  private:
+  uint32_t queue_records() const;
+  layout::Dispatch dispatch_of(const PicturePiece& piece) const;
+
   const gpu::Device* device_;
   std::shared_ptr<const DeviceScene> scene_;
   FeatureMask features_;
+  uint32_t packet_size_;
   gpu::Buffer frame_;
   std::optional<gpu::Buffer> buffer_;
   uint32_t capacity_ = 0;
   std::optional<TracingKernel> kernel_;
 };
 
-/// The pipeline of shaders/render.comp for a scene's `features`, bound to the scene and to these buffers.
+/// The stages of a picture for a scene's `features`, bound to the scene and to these buffers.
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  const gpu::Buffer& frame, const gpu::Buffer& film);
+                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film);
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);

@@ -12,8 +12,6 @@
 namespace promin {
 namespace {
 
-constexpr uint32_t kMaxBlocks = 65535;  // Vulkan's guaranteed workgroup count
-
 /// The camera's part of a frame, computed in double.
 void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& camera, const uvec2& size) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
@@ -33,11 +31,10 @@ void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& 
   frame.film_center.y = 0.5F * static_cast<float>(size.y);
 }
 
-/// Where a lane has several pixels it does not wait for its neighbours' mirror rays; but the device's cores want
-/// groups to share.
-uint32_t pick_blocks_a_group(uint32_t blocks, uint32_t sample_count, const PieceOptions& options) {
-  if (options.wanted_groups == 0) return 1;
-  return std::clamp(blocks / options.wanted_groups, 1U, options.most_samples_a_lane / sample_count);
+/// Where a lane has several it does not wait for its neighbours'; but the device's cores want groups to share.
+uint32_t pick_paths_a_lane(uint32_t blocks, const PieceOptions& options) {
+  if (options.wanted_groups == 0) return options.most_paths_a_lane;
+  return std::clamp(blocks / options.wanted_groups, 1U, options.most_paths_a_lane);
 }
 
 }  // namespace
@@ -49,6 +46,7 @@ PicturePieces::PicturePieces(const layout::Frame& frame, const layout::Dispatch&
       options_(options),
       samples_(view.samples_per_pixel),
       max_depth_(view.max_depth) {
+  static_assert(kMaxBlocks <= 65535, "Vulkan's guaranteed workgroup count");
   assert(samples_ >= 1 && samples_ <= kMaxSamplesPerPixel);
   set_camera(frame_, dispatch_, view.camera, view.size);
   const uvec2 size = window.hi - window.lo;
@@ -61,31 +59,29 @@ PicturePieces::PicturePieces(const layout::Frame& frame, const layout::Dispatch&
 }
 
 double PicturePieces::fraction_done() const {
-  return (first_block_ + block_count_ * (static_cast<double>(first_sample_) / samples_)) / block_total_;
+  return (first_block_ + block_count_ * (static_cast<double>(sample_) / samples_)) / block_total_;
 }
 
 PicturePiece PicturePieces::next(double units) {
   assert(!is_done());
-  if (first_sample_ == 0) block_count_ = pick_block_count(units);
-  const double wanted = std::max(1.0, units / block_count_);
-  const uint32_t most_samples = options_.wanted_groups > 0 ? options_.most_samples_a_lane : samples_;
-  const auto sample_count =
-      static_cast<uint32_t>(std::min<double>(wanted, std::min(most_samples, samples_ - first_sample_)));
-  const uint32_t blocks_a_group = pick_blocks_a_group(block_count_, sample_count, options_);
+  if (sample_ == 0) block_count_ = pick_block_count(units);
+  const uint32_t paths_a_lane = pick_paths_a_lane(block_count_, options_);
 
   PicturePiece piece;
   piece.dispatch = dispatch_;
-  piece.dispatch.range = uvec4(first_block_, first_sample_, sample_count, max_depth_);
-  piece.dispatch.share.x = first_block_ + block_count_;
-  piece.group_count = divide_up(block_count_, blocks_a_group);
-  piece.units = static_cast<double>(block_count_) * sample_count;
+  piece.dispatch.range = uvec4(first_block_, first_block_ + block_count_, sample_, max_depth_);
+  piece.dispatch.share.x = options_.parts;
+  piece.dispatch.queue.w = paths_a_lane;
+  const uint32_t part_groups = divide_up(divide_up(block_count_, options_.packet_size), options_.parts);
+  piece.group_counts = {options_.parts * part_groups, divide_up(block_count_, paths_a_lane)};
+  piece.units = block_count_;
   piece.most_rays_a_lane = (1.0 + max_depth_) * (1.0 + dispatch_.counts.z) * piece.units;
 
-  first_sample_ += sample_count;
-  if (first_sample_ == samples_) {
+  ++sample_;
+  if (sample_ == samples_) {
     first_block_ += block_count_;
     block_count_ = 0;
-    first_sample_ = 0;
+    sample_ = 0;
   }
   return piece;
 }
@@ -93,8 +89,7 @@ PicturePiece PicturePieces::next(double units) {
 uint32_t PicturePieces::pick_block_count(double units) const {
   const uint32_t remaining = block_total_ - first_block_;
   if (options_.blocks_per_piece > 0) return std::min({options_.blocks_per_piece, remaining, kMaxBlocks});
-  const double wanted = units / samples_;
-  const auto blocks = static_cast<uint32_t>(std::clamp(wanted, double{kMinBlocks}, double{kMaxBlocks}));
+  const auto blocks = static_cast<uint32_t>(std::clamp(units, double{kMinBlocks}, double{kMaxBlocks}));
   return std::min(blocks, remaining);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "layout.h"
@@ -9,27 +10,34 @@
 
 namespace promin {
 
-/// One dispatch of a picture.
+/// A sample of each pixel of some blocks: one dispatch of each stage of a picture.
 struct PicturePiece {
+  /// But for the place of the queue.
   layout::Dispatch dispatch{};
-  uint32_t group_count = 0;
-  /// What it takes: blocks of 8x8 pixels times samples.
+  /// Workgroups of shaders/camera_stage.comp and of shaders/mirror_stage.comp.
+  std::array<uint32_t, 2> group_counts{};
+  /// What it takes: blocks of 8x8 pixels.
   double units = 0.0;
   /// Most rays that a lane may count in it.
   double most_rays_a_lane = 0.0;
 };
 
 struct PieceOptions {
-  /// Workgroups among which a piece is shared out at least, before one takes several blocks; 0: each takes one.
+  /// Pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
+  uint32_t packet_size = 1;
+  /// See shaders/share_out.glsl.
+  uint32_t parts = 1;
+  /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
   uint32_t wanted_groups = 0;
-  /// With wanted groups: samples that a lane takes at most, of one pixel or of several. llvmpipe lets a lane's loops
-  /// turn 65535 times, all together (shaders/loop_check.glsl).
-  uint32_t most_samples_a_lane = 16;
+  /// Paths that a lane of the mirror stage takes one after the other, at most. llvmpipe lets a lane's loops turn 65535
+  /// times, all together (shaders/loop_check.glsl).
+  uint32_t most_paths_a_lane = 1;
   /// Fixed number of blocks a piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
 
-/// A picture cut into dispatches, a range of blocks and of samples each. Every cut gives the same bits. Vulkan-free.
+/// A picture cut into pieces: a range of blocks at a time, and of that a sample at a time. Every cut gives the same
+/// bits. Vulkan-free.
 class PicturePieces {
  public:
   /// Of `window` of the picture. `frame` and `dispatch` hold what they take from the scene (PackedScene).
@@ -46,6 +54,8 @@ class PicturePieces {
   PicturePiece next(double units);
 
   static constexpr uint32_t kMinBlocks = 64;
+  /// Nor more blocks than these: that bounds the queue of paths.
+  static constexpr uint32_t kMaxBlocks = 8192;
 
  private:
   uint32_t pick_block_count(double units) const;
@@ -58,9 +68,9 @@ class PicturePieces {
   uint32_t pixel_count_;
   uint32_t block_total_;
   uint32_t first_block_ = 0;
-  /// Of the blocks under way, and of these the samples taken.
+  /// Of the blocks under way, and of these the next sample.
   uint32_t block_count_ = 0;
-  uint32_t first_sample_ = 0;
+  uint32_t sample_ = 0;
 };
 
 }  // namespace promin

@@ -18,9 +18,6 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kGroupLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-/// CPU drivers give each thread as many groups in a row. So that these take as long, groups in a row take their rays
-/// from as many parts of all.
-constexpr uint32_t kParts = 16;
 /// Keeps the device's cores busy in the first dispatch.
 constexpr double kFirstRays = 64.0 * kGroupLanes;
 static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
@@ -63,8 +60,8 @@ struct RayKernel::Impl {
     kernel.emplace(device, options.spirv, constants, buffers);
     // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
     layout::Dispatch no_rays = scene->dispatch();
-    no_rays.share.z = 1;
-    kernel->run(no_rays, *hits, 1);
+    no_rays.share.x = 1;
+    kernel->run(no_rays, *hits, {1});
     pipeline_ms = compiling.ms();
   }
 
@@ -106,8 +103,8 @@ struct RayKernel::Impl {
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
     layout::Dispatch dispatch = scene->dispatch();
-    const uint32_t parts = device.is_cpu() ? kParts : 1;
-    dispatch.share.z = parts;
+    const uint32_t parts = parts_of_dispatch(device);
+    dispatch.share.x = parts;
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -118,7 +115,7 @@ struct RayKernel::Impl {
       dispatch.range = uvec4(first, first + count, 0, 0);
       // As many in each part: those beyond the last ray do nothing.
       const uint32_t part_groups = divide_up(divide_up(count, group_rays), parts);
-      const double time_ms = kernel->run(dispatch, *hits, parts * part_groups);
+      const double time_ms = kernel->run(dispatch, *hits, {parts * part_groups});
       if (device.is_lavapipe()) check_loops();
       pacer.learn(count, time_ms);
       total_ms += time_ms;

@@ -50,7 +50,8 @@ struct Renderer::Impl {
   }
 
   void make_film(Shading of) {
-    film.emplace(device, scene, stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0));
+    const FeatureMask features = stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0);
+    film.emplace(device, scene, features, options.packet_size);
     film->warm_up();
     shading = of;
   }
@@ -61,14 +62,14 @@ struct Renderer::Impl {
     PieceOptions cut = film->piece_options();
     cut.blocks_per_piece = options.blocks_per_dispatch;
     for (;;) {
-      cut.most_samples_a_lane = most_samples_a_lane;
+      if (!takes_many_paths) cut.most_paths_a_lane = 1;
       const FilmCounts counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
       if (!counts.has_cut_loops) {
         result.rays += counts.rays;
         return;
       }
-      if (most_samples_a_lane == 1) throw make_cut_loops_error("lower --max-depth or take another device");
-      most_samples_a_lane = 1;
+      if (!takes_many_paths) throw make_cut_loops_error("lower --max-depth or take another device");
+      takes_many_paths = false;
     }
   }
 
@@ -126,8 +127,9 @@ struct Renderer::Impl {
   const gpu::Device& device;
   RendererOptions options;
   Pacer pacer;
-  /// Less once the driver has cut loops: the next band and picture would have it do so again.
-  uint32_t most_samples_a_lane = PieceOptions{}.most_samples_a_lane;
+  /// A lane, one after the other. Not once the driver has cut loops: the next band and picture would have it do so
+  /// again.
+  bool takes_many_paths = true;
   SetupStats stats;
   PrimitiveNumbers numbers;
   std::shared_ptr<const DeviceScene> scene;

@@ -61,6 +61,8 @@ struct RendererOptions {
   bool with_aovs = false;
   /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (render/tracing_kernel.h).
   std::optional<double> target_dispatch_ms = std::nullopt;
+  /// Pixels that a lane traces together: 1, 2 or 4; where empty, as suits the device. The image's bits stay the same.
+  std::optional<uint32_t> packet_size = std::nullopt;
   /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
   uint32_t blocks_per_dispatch = 0;
 };

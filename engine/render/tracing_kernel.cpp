@@ -31,6 +31,10 @@ double dispatch_target_ms(const gpu::Device& device) {
   return device.is_cpu() ? 100.0 : 25.0;
 }
 
+uint32_t parts_of_dispatch(const gpu::Device& device) {
+  return device.is_cpu() ? 16 : 1;
+}
+
 RunError make_cut_loops_error(const std::string& cure) {
   return RunError(
       {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure});
@@ -39,9 +43,30 @@ RunError make_cut_loops_error(const std::string& cure) {
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                              std::span<const gpu::SpecializationConstant> constants,
                              std::span<const gpu::BoundBuffer> buffers)
-    : device_(&device), pipeline_(device, spirv, constants, buffers) {
+    : device_(&device) {
+  add_stage(spirv, constants, buffers);
   if (device.timestamp_period_ns() > 0.0) {
     queries_ = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
+  }
+}
+
+void TracingKernel::add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
+                              std::span<const gpu::BoundBuffer> buffers) {
+  stages_.emplace_back(*device_, spirv, constants, buffers);
+}
+
+void TracingKernel::bind(const gpu::BoundBuffer& buffer) {
+  for (gpu::ComputePipeline& stage : stages_) stage.bind(buffer);
+}
+
+void TracingKernel::dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const {
+  for (size_t i = 0; i < stages_.size(); ++i) {
+    if (i > 0) {
+      const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite,
+                                         Access::eShaderRead | Access::eShaderWrite);
+      commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader, {}, after_last, {}, {});
+    }
+    stages_[i].dispatch(commands, group_counts[i]);
   }
 }
 
@@ -56,12 +81,13 @@ void TracingKernel::put_constants(const vk::raii::CommandBuffer& commands, const
 }
 
 void TracingKernel::record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
-                           const gpu::Buffer& head, uint32_t group_count) const {
+                           const gpu::Buffer& head, const GroupCounts& group_counts) const {
   put_constants(commands, constants, head);
-  pipeline_.dispatch(commands, group_count);
+  dispatch_stages(commands, group_counts);
 }
 
-double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head, uint32_t group_count) const {
+double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head,
+                          const GroupCounts& group_counts) const {
   const Stopwatch waiting;
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     put_constants(commands, constants, head);
@@ -69,7 +95,7 @@ double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& 
       commands.resetQueryPool(*queries_, 0, 2);
       commands.writeTimestamp(Stage::eTopOfPipe, *queries_, 0);
     }
-    pipeline_.dispatch(commands, group_count);
+    dispatch_stages(commands, group_counts);
     if (*queries_) commands.writeTimestamp(Stage::eBottomOfPipe, *queries_, 1);
     const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead);
     commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost, {}, after, {}, {});

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "gpu/pipeline.h"
@@ -31,32 +33,43 @@ class Pacer {
 /// dispatch their threads wait for the last one.
 double dispatch_target_ms(const gpu::Device& device);
 
+/// From how many parts of all work the workgroups of a dispatch in a row take theirs (shaders/share_out.glsl).
+uint32_t parts_of_dispatch(const gpu::Device& device);
+
 /// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
 RunError make_cut_loops_error(const std::string& cure);
 
-/// A pipeline that traces, timed by the device's clock where it has one.
+/// Workgroups of each stage of a TracingKernel; those of stages that it has not are of no account.
+using GroupCounts = std::array<uint32_t, 2>;
+
+/// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
 class TracingKernel {
  public:
   TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                 std::span<const gpu::SpecializationConstant> constants, std::span<const gpu::BoundBuffer> buffers);
 
-  void bind(const gpu::BoundBuffer& buffer) { pipeline_.bind(buffer); }
+  /// Another pipeline, to run after the first and see what that wrote.
+  void add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
+                 std::span<const gpu::BoundBuffer> buffers);
+
+  void bind(const gpu::BoundBuffer& buffer);
 
   /// Records that `constants` go to the head of `head` and the workgroups run, after all that compute shaders and
   /// transfers recorded before.
   void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
-              uint32_t group_count) const;
+              const GroupCounts& group_counts) const;
 
   /// Puts `constants` at the head of `head`, runs the workgroups and waits. Returns device milliseconds (waiting time
   /// on the host where the queue has no timestamps).
-  double run(const layout::Dispatch& constants, const gpu::Buffer& head, uint32_t group_count) const;
+  double run(const layout::Dispatch& constants, const gpu::Buffer& head, const GroupCounts& group_counts) const;
 
  private:
+  void dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const;
   static void put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
                             const gpu::Buffer& head);
 
   const gpu::Device* device_;
-  gpu::ComputePipeline pipeline_;
+  std::vector<gpu::ComputePipeline> stages_;
   vk::raii::QueryPool queries_{nullptr};
 };
 

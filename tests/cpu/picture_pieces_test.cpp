@@ -23,14 +23,13 @@ PicturePieces cut(const PieceOptions& options) {
 
 TEST(PicturePieces, CoverEverySampleOnceAndInOrder) {
   for (const double units : {1.0, 100.0, 1050.0, 1e9}) {
-    PicturePieces pieces = cut({.wanted_groups = 16});
+    PicturePieces pieces = cut({});
     std::vector<uint32_t> samples_taken(32 * 17);
     while (!pieces.is_done()) {
-      const PicturePiece piece = pieces.next(units);
-      const layout::Dispatch& dispatch = piece.dispatch;
-      for (uint32_t block = dispatch.range.x; block < dispatch.share.x; ++block) {
-        ASSERT_EQ(samples_taken[block], dispatch.range.y) << "block " << block;
-        samples_taken[block] += dispatch.range.z;
+      const layout::Dispatch& dispatch = pieces.next(units).dispatch;
+      for (uint32_t block = dispatch.range.x; block < dispatch.range.y; ++block) {
+        ASSERT_EQ(samples_taken[block], dispatch.range.z) << "block " << block;
+        ++samples_taken[block];
       }
     }
     for (const uint32_t count : samples_taken) ASSERT_EQ(count, 50U) << units << " units";
@@ -38,17 +37,33 @@ TEST(PicturePieces, CoverEverySampleOnceAndInOrder) {
   }
 }
 
-// llvmpipe ends loops that turn too often, without a word.
-TEST(PicturePieces, NoLaneTakesLong) {
-  for (const double units : {1.0, 1050.0, 1e9}) {
-    PicturePieces pieces = cut({.wanted_groups = 16});
+TEST(PicturePieces, GroupsOfEachStageSufficeForAllPixels) {
+  for (const double units : {1.0, 100.0, 1050.0, 1e9}) {
+    PicturePieces pieces = cut({.packet_size = 4, .parts = 16, .wanted_groups = 16, .most_paths_a_lane = 16});
     while (!pieces.is_done()) {
       const PicturePiece piece = pieces.next(units);
-      const uint32_t blocks = piece.dispatch.share.x - piece.dispatch.range.x;
-      const uint32_t blocks_a_group = (blocks + piece.group_count - 1) / piece.group_count;
-      ASSERT_LE(blocks_a_group * piece.dispatch.range.z, 16U) << units << " units";
+      const uint32_t blocks = piece.dispatch.range.y - piece.dispatch.range.x;
+      ASSERT_EQ(piece.group_counts[0] % 16, 0U);
+      ASSERT_GE(4 * piece.group_counts[0], blocks) << units << " units";
+      ASSERT_GE(piece.group_counts[1] * piece.dispatch.queue.w, blocks) << units << " units";
     }
   }
+}
+
+// llvmpipe ends loops that turn too often, without a word; and threads want groups to share.
+TEST(PicturePieces, ALaneTakesSeveralPathsWhereThereAreGroupsEnough) {
+  const PieceOptions options{.wanted_groups = 16, .most_paths_a_lane = 16};
+  EXPECT_EQ(cut(options).next(64.0).dispatch.queue.w, 4U);
+  EXPECT_EQ(cut(options).next(1e9).dispatch.queue.w, 16U);
+  EXPECT_EQ(cut({.wanted_groups = 1000, .most_paths_a_lane = 16}).next(64.0).dispatch.queue.w, 1U);
+}
+
+TEST(PicturePieces, TheQueueOfPathsIsBounded) {
+  View view = make_view();
+  view.size = uvec2(4096);
+  PicturePieces pieces({}, {}, view, {uvec2(0), view.size});
+  const layout::Dispatch dispatch = pieces.next(1e9).dispatch;
+  EXPECT_EQ(dispatch.range.y - dispatch.range.x, PicturePieces::kMaxBlocks);
 }
 
 }  // namespace

@@ -11,10 +11,11 @@
 #include <map>
 #include <string>
 
+#include "camera_stage.spv.h"
 #include "cast.spv.h"
 #include "core/file.h"
 #include "gpu/spirv_module.h"
-#include "render.spv.h"
+#include "mirror_stage.spv.h"
 
 namespace promin {
 namespace {
@@ -47,7 +48,7 @@ const Layout kLayouts[] = {
       OFFSET(Frame, background), OFFSET(Frame, tree_bounds), OFFSET(Frame, film_center), OFFSET(Frame, first_index)}},
     {"Dispatch",
      {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts),
-      OFFSET(Dispatch, share)}},
+      OFFSET(Dispatch, share), OFFSET(Dispatch, queue)}},
     {"RayRecord", {OFFSET(RayRecord, origin_tmin), OFFSET(RayRecord, direction_tmax)}},
     {"HitRecord", {OFFSET(HitRecord, a), OFFSET(HitRecord, b)}},
     {"RayLog",
@@ -63,7 +64,9 @@ struct Shader {
   uint32_t least_float_operation_count;
 };
 
-const Shader kShaders[] = {{"Cast", k_cast_spirv, 180}, {"Render", k_render_spirv, 270}};
+const Shader kShaders[] = {{"Cast", k_cast_spirv, 180},
+                           {"CameraStage", k_camera_stage_spirv, 270},
+                           {"MirrorStage", k_mirror_stage_spirv, 270}};
 
 void PrintTo(const Shader& shader, std::ostream* out) {
   *out << shader.name;
@@ -93,7 +96,7 @@ TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
                                               {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},
                                               {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
                                               {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE}};
-  EXPECT_EQ(test::SpirvModule(k_render_spirv).spec_ids, expected);
+  EXPECT_EQ(test::SpirvModule(k_camera_stage_spirv).spec_ids, expected);
   expected["ANY_HIT"] = layout::CONSTANT_ANY_HIT;
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
 }

@@ -46,7 +46,6 @@ TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
   single_blocks.blocks_per_dispatch = 1;
   RendererOptions odd_blocks;
   odd_blocks.blocks_per_dispatch = 37;
-  odd_blocks.target_dispatch_ms = 1e-3;  // a sample a dispatch as well
   const RenderResult expected = render(scene, view);
   const RenderResult by_one = render(scene, view, single_blocks);
   const RenderResult by_many = render(scene, view, odd_blocks);
@@ -54,6 +53,27 @@ TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
   EXPECT_TRUE(has_same_bits(by_many.image, expected.image));
   EXPECT_EQ(by_one.rays.total(), expected.rays.total());
   EXPECT_EQ(by_many.rays.total(), expected.rays.total());
+}
+
+TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
+  if (device().is_cpu() && !device().is_lavapipe()) GTEST_SKIP() << "takes minutes to compile packets";
+  const Scene scene = make_scene_of_everything();
+  View view = test::make_view(kSize);
+  view.samples_per_pixel = 3;
+  RendererOptions options;
+  options.with_aovs = true;
+  options.packet_size = 1;
+  const RenderResult expected = render(scene, view, options);
+  for (const uint32_t packet_size : {2U, 4U}) {
+    options.packet_size = packet_size;
+    const RenderResult result = render(scene, view, options);
+    EXPECT_TRUE(has_same_bits(result.image, expected.image)) << packet_size;
+    EXPECT_EQ(result.rays.shadow, expected.rays.shadow) << packet_size;
+    EXPECT_EQ(result.rays.total(), expected.rays.total()) << packet_size;
+    EXPECT_EQ(result.aovs.normal, expected.aovs.normal) << packet_size;
+    EXPECT_EQ(result.aovs.depth, expected.aovs.depth) << packet_size;
+    EXPECT_EQ(result.aovs.primitive, expected.aovs.primitive) << packet_size;
+  }
 }
 
 TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {

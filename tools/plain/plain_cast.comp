@@ -12,5 +12,6 @@
 #include "plain_ray.glsl"
 #include "plain_primitives.glsl"
 #include "traversal.glsl"
+#include "share_out.glsl"
 #include "loop_check.glsl"
 #include "cast.glsl"

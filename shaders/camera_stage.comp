@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The first stage of a picture: a sample of each pixel, with its camera ray and the shadow rays of its hit. A lane takes
+// PACKET_SIZE pixels that lie side by side; paths that a mirror leads on go to the queue for mirror_stage.comp.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "layout.h"
+
+layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+
+#include "bindings.glsl"
+#include "film.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "make_ray.glsl"
+#include "primitives.glsl"
+#include "traversal.glsl"
+#include "debug_shading.glsl"
+#include "ray_log.glsl"
+#include "secondary.glsl"
+#include "lights.glsl"
+#include "shading.glsl"
+#include "path.glsl"
+#include "camera.glsl"
+#include "share_out.glsl"
+#include "loop_check.glsl"
+
+uvec3 ray_count = uvec3(0u);
+
+// Of each pixel of the packet.
+bool is_inside[PACKET_SIZE];
+bool is_lit[PACKET_SIZE];  // it shows a surface
+Path paths[PACKET_SIZE];
+ShadingPoint points[PACKET_SIZE];
+vec3 seen[PACKET_SIZE];  // from the hit, so far
+vec3 shares[PACKET_SIZE];
+
+// Bits of the normal, as wound or outward, and of the distance from the ray's origin; infinite on a miss.
+uvec4 normal_and_depth(Ray ray, Hit hit) {
+  if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
+  SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
+  precise float depth = hit.t * length3(ray.direction);
+  return floatBitsToUint(vec4(surface.normal, depth));
+}
+
+// Of the packet's pixels those in the window, with their camera rays. False where there is none.
+bool begin_packet() {
+  uint place = PACKET_SIZE * (shared_out_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
+  uint block = dispatch.range.x + place / (BLOCK_SIZE * BLOCK_SIZE);
+  uvec2 corner = BLOCK_SIZE * uvec2(block % dispatch.sampling.z, block / dispatch.sampling.z);
+  bool is_any_inside = false;
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    uvec2 pixel = corner + pixel_in_block((place + i) % (BLOCK_SIZE * BLOCK_SIZE));
+    is_inside[i] = block < dispatch.range.y && all(lessThan(pixel, dispatch.window.zw));
+    is_any_inside = is_any_inside || is_inside[i];
+    packet[i] = camera_ray(pixel, dispatch.range.z);
+    if (!is_inside[i]) packet[i].tmax = -1.0;
+    ray_count.x += is_inside[i] ? 1u : 0u;
+    uint index = pixel.y * dispatch.window.z + pixel.x;
+    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index);
+  }
+  return is_any_inside;
+}
+
+// The pixel's record, new or of the samples before, with what the AOVs want of this one.
+void put_record(Path path, Ray ray, Hit hit) {
+  bool is_first = dispatch.range.z == 0u;
+  // Depths and ids have no average: the middle sample stands for the pixel. Of an odd number it is the centre.
+  bool is_middle = has(FEATURE_AOVS) && dispatch.range.z == dispatch.sampling.x / 2u;
+  if (is_middle) pixels[dispatch.window.z * dispatch.window.w + path.pixel] = normal_and_depth(ray, hit);
+  if (is_first) pixels[path.pixel] = uvec4(0u, 0u, 0u, NO_ORDER);
+  if (is_middle) pixels[path.pixel].w = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
+}
+
+// What the camera rays hit, before any source.
+void arrive() {
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    is_lit[i] = false;
+    if (!is_inside[i]) continue;
+    // A copy: glslang 12 fails where packets are made of points that are made of packets.
+    Ray ray = packet[i];
+    put_record(paths[i], ray, found[i]);
+    if (SHADING != SHADING_FULL) {
+      seen[i] = debug_color(found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
+      continue;
+    }
+    begin_path_log(ray, found[i], 0u, paths[i].weight);
+    seen[i] = frame.background.xyz;
+    if (found[i].primitive != NO_PRIMITIVE) {
+      is_lit[i] = true;
+      points[i] = make_shading_point(ray, found[i]);
+      seen[i] = own_light(points[i]);
+    }
+    log_own_light(seen[i]);
+  }
+}
+
+// One source's shares, and a packet of the shadow rays that they need.
+void aim_at_source(LightRecord light) {
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    shares[i] = vec3(0.0);
+    packet[i].tmax = -1.0;
+    if (!is_lit[i]) continue;
+    LightSample sampled = sample_light(light, points[i].position);
+    shares[i] = unshadowed_share(points[i], -paths[i].direction, light, sampled);
+    if (!has(FEATURE_SHADOWS) || !(max_abs(shares[i]) > 0.0)) continue;
+    packet[i] = shadow_ray(points[i], light, sampled);
+    ++ray_count.y;
+  }
+}
+
+void add_shares(uint source) {
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    if (!is_lit[i]) continue;
+    begin_source_log(source);
+    if (packet[i].tmax >= 0.0) log_shadow_ray(packet[i], found[i]);
+    vec3 share = found[i].primitive == NO_PRIMITIVE ? shares[i] : vec3(0.0);
+    end_source_log(share);
+    precise vec3 sum = seen[i] + share;
+    seen[i] = sum;
+  }
+}
+
+void leave() {
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    if (!is_inside[i]) continue;
+    Path path = paths[i];
+    add_radiance(path, seen[i]);
+    if (SHADING == SHADING_FULL) end_path_log(path.radiance);
+    if (has(FEATURE_MIRRORS) && is_lit[i] && dispatch.range.w > 0u && bounce(path, points[i])) {
+      put_path(path);
+    } else {
+      finish_path(path);
+    }
+  }
+}
+
+// Camera rays in the first turn, in each of the others shadow rays to one source: one copy of the traversal for both,
+// which halves what drivers compile.
+void trace_pixels() {
+  uint sources = SHADING == SHADING_FULL ? source_count() : 0u;
+  uint source = 0u;
+  bool is_first_turn = true;
+  for (;;) {
+    trace_packet(!is_first_turn);
+    if (!is_first_turn) {
+      add_shares(source);
+      ++source;
+    }
+    // A loop, which CPU drivers leave out where no lane is in it; both sides of a branch they execute.
+    while (is_first_turn) {
+      arrive();
+      is_first_turn = false;
+    }
+    if (source >= sources) break;
+    aim_at_source(load_light(frame.first_index.y + source));
+  }
+}
+
+void main() {
+  if (begin_packet()) {
+    step_counts = uvec2(0u);
+    trace_pixels();
+    leave();
+  }
+  add_counts(ray_count, were_loops_cut());
+}

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The second stage of a picture: the paths that camera_stage.comp has put into the queue, with all of their mirror and
+// shadow rays. These go everywhere, so lanes do not wait for each other: the loop's every turn traces one ray of each
+// lane, be it of its path or to a source.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "layout.h"
+
+layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+
+#include "bindings.glsl"
+#include "film.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "make_ray.glsl"
+#include "primitives.glsl"
+#include "traversal.glsl"
+#include "ray_log.glsl"
+#include "secondary.glsl"
+#include "lights.glsl"
+#include "shading.glsl"
+#include "path.glsl"
+#include "loop_check.glsl"
+
+uvec3 ray_count = uvec3(0u);
+
+Path path;
+uint bounces;
+ShadingPoint point;  // where the path has come to
+vec3 seen;           // from there, so far
+uint source;         // the next one to look at; source_count() after the last
+vec3 share;          // of the source that the shadow ray goes to
+Ray ray;             // to trace next
+bool is_to_source;   // it is a shadow ray
+
+void follow_path() {
+  ray = make_ray(path.origin, path.direction, 0.0, INFINITY);
+  is_to_source = false;
+  ++bounces;
+  ++ray_count.z;
+}
+
+// False where the path ends.
+bool arrive(Hit hit) {
+  begin_path_log(ray, hit, bounces, path.weight);
+  bool is_miss = hit.primitive == NO_PRIMITIVE;
+  seen = frame.background.xyz;
+  if (!is_miss) {
+    path.direction = normalize3(ray.direction);
+    point = make_shading_point(ray, hit);
+    seen = own_light(point);
+  }
+  log_own_light(seen);
+  source = is_miss ? source_count() : 0u;
+  return !is_miss;
+}
+
+void add_share(vec3 unblocked) {
+  end_source_log(unblocked);
+  precise vec3 sum = seen + unblocked;
+  seen = sum;
+  ++source;
+}
+
+// Takes the sources in turn up to one that needs a shadow ray. False where none is left.
+bool aim_at_source() {
+  while (source < source_count()) {
+    begin_source_log(source);
+    LightRecord light = load_light(frame.first_index.y + source);
+    LightSample sampled = sample_light(light, point.position);
+    share = unshadowed_share(point, -path.direction, light, sampled);
+    if (has(FEATURE_SHADOWS) && max_abs(share) > 0.0) {
+      ray = shadow_ray(point, light, sampled);
+      is_to_source = true;
+      ++ray_count.y;
+      return true;
+    }
+    add_share(share);
+  }
+  return false;
+}
+
+// False where the path ends.
+bool leave(bool is_on_surface) {
+  add_radiance(path, seen);
+  end_path_log(path.radiance);
+  return is_on_surface && bounces < dispatch.range.w && bounce(path, point);
+}
+
+void main() {
+  uint left = dispatch.queue.w;
+  bool is_underway = false;
+  for (;;) {
+    while (!is_underway && left > 0u) {
+      is_underway = take_path(path);
+      left = is_underway ? left - 1u : 0u;
+      bounces = 0u;
+      if (is_underway) follow_path();
+    }
+    if (!is_underway) break;
+    Hit hit = trace(ray, is_to_source);
+    bool is_on_surface = true;
+    if (is_to_source) {
+      log_shadow_ray(ray, hit);
+      add_share(hit.primitive == NO_PRIMITIVE ? share : vec3(0.0));
+    } else {
+      is_on_surface = arrive(hit);
+    }
+    if (aim_at_source()) continue;
+    if (leave(is_on_surface)) {
+      follow_path();
+    } else {
+      finish_path(path);
+      is_underway = false;
+    }
+  }
+  add_counts(ray_count, were_loops_cut());
+}

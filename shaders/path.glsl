@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Whitted's recursion without refraction is a loop: I = sum of (product of kr so far) * Phong.
+
+struct Path {
+  vec3 origin;     // of its ray
+  vec3 direction;  // likewise, unit
+  vec3 weight;     // product of kr so far
+  vec3 radiance;   // sum so far
+  uint pixel;
+};
+
+void add_radiance(inout Path path, vec3 seen) {
+  precise vec3 sum = path.radiance + path.weight * seen;
+  path.radiance = sum;
+}
+
+// Turns the path into its mirror ray. False where that brings nothing.
+bool bounce(inout Path path, ShadingPoint point) {
+  precise vec3 weight = path.weight * point.material.reflection.xyz;
+  path.weight = weight;
+  if (!(max_abs(weight) > 0.0)) return false;
+  path.origin = lift_off(point.position, point.geometric_normal, point.lift);
+  path.direction = reflect_direction(path.direction, point.normal, point.geometric_normal);
+  return true;
+}
+
+// Adds a sample to its pixel.
+void finish_path(Path path) {
+  precise vec3 sum = uintBitsToFloat(pixels[path.pixel].xyz) + path.radiance;
+  pixels[path.pixel].xyz = floatBitsToUint(sum);
+}
+
+// The queue from one stage to the next: four records a path. No path waits for another, so its place is free.
+const uint QUEUED_PATH_SIZE = 4u;
+
+void put_path(Path path) {
+  uint first = dispatch.queue.x + QUEUED_PATH_SIZE * atomicAdd(dispatch.queue.y, 1u);
+  pixels[first] = uvec4(floatBitsToUint(path.origin), path.pixel);
+  pixels[first + 1u] = uvec4(floatBitsToUint(path.direction), 0u);
+  pixels[first + 2u] = uvec4(floatBitsToUint(path.weight), 0u);
+  pixels[first + 3u] = uvec4(floatBitsToUint(path.radiance), 0u);
+}
+
+// False where none is left.
+bool take_path(out Path path) {
+  uint place = atomicAdd(dispatch.queue.z, 1u);
+  if (place >= dispatch.queue.y) return false;
+  uint first = dispatch.queue.x + QUEUED_PATH_SIZE * place;
+  uvec4 origin_pixel = pixels[first];
+  path = Path(uintBitsToFloat(origin_pixel.xyz), uintBitsToFloat(pixels[first + 1u].xyz),
+              uintBitsToFloat(pixels[first + 2u].xyz), uintBitsToFloat(pixels[first + 3u].xyz), origin_pixel.w);
+  return true;
+}
