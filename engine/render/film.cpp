@@ -51,15 +51,19 @@ uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
 const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
 const vk::DeviceSize Film::kCountersBytes = sizeof(Counters);
 
+PictureShaders picture_shaders() {
+  return {k_camera_stage_spirv, k_mirror_stage_spirv};
+}
+
 Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
-           std::optional<uint32_t> packet_size)
+           const FilmOptions& options)
     : device_(&device),
       scene_(std::move(scene)),
       features_(features),
-      packet_size_(packet_size.value_or(pick_packet_size(device, features))),
+      packet_size_(options.packet_size.value_or(pick_packet_size(device, features))),
       frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
-  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_));
+  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_, options.shaders));
 }
 
 void Film::reserve(uint32_t pixel_count) {
@@ -111,8 +115,10 @@ void Film::begin(const PicturePieces& picture) const {
   device_->run([&](const vk::raii::CommandBuffer& commands) { record_begin(commands, picture); });
 }
 
-double Film::run(const PicturePiece& piece) const {
-  return kernel_->run(dispatch_of(piece), *buffer_, piece.group_counts);
+double Film::run(std::span<const PicturePiece> pieces) const {
+  return kernel_->run([&](const vk::raii::CommandBuffer& commands) {
+    for (const PicturePiece& piece : pieces) record(commands, piece);
+  });
 }
 
 FilmCounts Film::take_counts() const {
@@ -127,7 +133,8 @@ void Film::warm_up() const {
   one_pixel.max_depth = 0;
   PicturePieces picture = cut(one_pixel, {uvec2(0), uvec2(1)}, {});
   begin(picture);
-  run(picture.next(1.0));
+  const PicturePiece piece = picture.next(1.0);
+  run({&piece, 1});
 }
 
 uint32_t Film::records_per_pixel() const {
@@ -150,7 +157,8 @@ uint32_t Film::max_capacity() const {
 }
 
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film) {
+                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
+                                  const PictureShaders& shaders) {
   const std::array constants{
       gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
       gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
@@ -160,10 +168,10 @@ TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& 
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
   buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});
   buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
-  TracingKernel kernel(device, k_camera_stage_spirv, constants, buffers);
+  TracingKernel kernel(device, shaders.camera_stage, constants, buffers);
   if ((features & layout::FEATURE_MIRRORS) != 0) {
     // Mirror rays go everywhere: each is traced alone.
-    kernel.add_stage(k_mirror_stage_spirv, std::span(constants).subspan(1), buffers);
+    kernel.add_stage(shaders.mirror_stage, std::span(constants).subspan(1), buffers);
   }
   return kernel;
 }

@@ -21,16 +21,31 @@ struct FilmCounts {
   bool has_cut_loops = false;
 };
 
+/// SPIR-V of both stages of a picture.
+struct PictureShaders {
+  std::span<const uint32_t> camera_stage;
+  std::span<const uint32_t> mirror_stage;
+};
+
+/// shaders/camera_stage.comp and shaders/mirror_stage.comp.
+PictureShaders picture_shaders();
+
+struct FilmOptions {
+  /// Pixels that a lane of the camera stage takes together, 1, 2 or 4; empty: as suits the device.
+  std::optional<uint32_t> packet_size = std::nullopt;
+  /// Others with the same bindings are for measurements.
+  PictureShaders shaders = picture_shaders();
+};
+
 /// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
 /// in two stages (shaders/camera_stage.comp, shaders/mirror_stage.comp). A picture is begun, then all of its pieces
 /// run; nothing of that waits unless it says so.
 class Film {
  public:
   /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
-  /// (render/shading.h), and FEATURE_AOVS. `packet_size`: pixels that a lane takes together, 1, 2 or 4; empty: as suits
-  /// the device.
+  /// (render/shading.h), and FEATURE_AOVS.
   Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
-       std::optional<uint32_t> packet_size = std::nullopt);
+       const FilmOptions& options = {});
 
   /// Makes room for so many pixels; the device is idle with respect to the film.
   void reserve(uint32_t pixel_count);
@@ -50,7 +65,7 @@ class Film {
 
   /// As the recordings above, and waits. `run` returns device milliseconds as TracingKernel::run does.
   void begin(const PicturePieces& picture) const;
-  double run(const PicturePiece& piece) const;
+  double run(std::span<const PicturePiece> pieces) const;
   FilmCounts take_counts() const;
   /// Traces a block of one pixel: drivers compile late, and a pipeline's first dispatch must not count as tracing.
   void warm_up() const;
@@ -83,7 +98,8 @@ class Film {
 
 /// The stages of a picture for a scene's `features`, bound to the scene and to these buffers.
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film);
+                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
+                                  const PictureShaders& shaders = picture_shaders());
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);

@@ -21,6 +21,9 @@ namespace {
 /// Vulkan guarantees for a storage buffer.
 constexpr uint32_t kMaxFilmRecords = ((64U << 20) - 4096) / sizeof(uvec4);
 
+/// So that recording them takes no time.
+constexpr size_t kMostPiecesAtOnce = 64;
+
 /// A lane's counters have 32 bits: they are taken before they may have passed that.
 constexpr double kMaxRaysALane = 2e9;
 
@@ -51,7 +54,7 @@ struct Renderer::Impl {
 
   void make_film(Shading of) {
     const FeatureMask features = stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0);
-    film.emplace(device, scene, features, options.packet_size);
+    film.emplace(device, scene, features, FilmOptions{.packet_size = options.packet_size});
     film->warm_up();
     shading = of;
   }
@@ -85,12 +88,19 @@ struct Renderer::Impl {
     film->reserve(picture.pixel_count());
     film->begin(picture);
     double uncollected = 0.0;
+    std::vector<PicturePiece> pieces;
     while (!picture.is_done()) {
-      const PicturePiece piece = picture.next(pacer.units());
-      uncollected += piece.most_rays_a_lane;
-      const double time_ms = film->run(piece);
+      // Of a small picture a piece is less than is asked for.
+      pieces.clear();
+      double units = 0.0;
+      do {
+        pieces.push_back(picture.next(pacer.units() - units));
+        units += pieces.back().units;
+        uncollected += pieces.back().most_rays_a_lane;
+      } while (units < pacer.units() && pieces.size() < kMostPiecesAtOnce && !picture.is_done());
+      const double time_ms = film->run(pieces);
       trace_ms += time_ms;
-      pacer.learn(piece.units, time_ms);
+      pacer.learn(units, time_ms);
       if (uncollected > kMaxRaysALane) {
         collect();
         uncollected = 0.0;

@@ -88,14 +88,17 @@ void TracingKernel::record(const vk::raii::CommandBuffer& commands, const layout
 
 double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head,
                           const GroupCounts& group_counts) const {
+  return run([&](const vk::raii::CommandBuffer& commands) { record(commands, constants, head, group_counts); });
+}
+
+double TracingKernel::run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const {
   const Stopwatch waiting;
   device_->run([&](const vk::raii::CommandBuffer& commands) {
-    put_constants(commands, constants, head);
     if (*queries_) {
       commands.resetQueryPool(*queries_, 0, 2);
       commands.writeTimestamp(Stage::eTopOfPipe, *queries_, 0);
     }
-    dispatch_stages(commands, group_counts);
+    record_all(commands);
     if (*queries_) commands.writeTimestamp(Stage::eBottomOfPipe, *queries_, 1);
     const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead);
     commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost, {}, after, {}, {});

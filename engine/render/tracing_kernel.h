@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,9 +60,11 @@ class TracingKernel {
   void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
               const GroupCounts& group_counts) const;
 
-  /// Puts `constants` at the head of `head`, runs the workgroups and waits. Returns device milliseconds (waiting time
-  /// on the host where the queue has no timestamps).
+  /// Runs what `record` records and waits. Returns device milliseconds (waiting time on the host where the queue has no
+  /// timestamps).
   double run(const layout::Dispatch& constants, const gpu::Buffer& head, const GroupCounts& group_counts) const;
+  /// The same of all that `record_all` records, which calls `record` as often as it likes.
+  double run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const;
 
  private:
   void dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const;
