@@ -13,7 +13,8 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   // Back to the units of the direction as given. Where that overflows there is no t to tell of.
   precise float t = hit.t * power_of_two_inverse(max_abs(request.direction_tmax.xyz));
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
-  vec3 normal = surface_point(ray, load_primitive(hit.primitive), hit).normal;
+  // Who asks for any hit is not told which.
+  vec3 normal = ANY_HIT != 0u ? vec3(0.0) : surface_point(ray, load_primitive(hit.primitive), hit).normal;
   return HitRecord(uvec4(floatBitsToUint(t), hit.order, floatBitsToUint(vec2(hit.u, hit.v))),
                    uvec4(floatBitsToUint(normal), steps));
 }
