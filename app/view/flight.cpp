@@ -21,15 +21,23 @@ double percentile(std::vector<double> values, double share) {
 }  // namespace
 
 void FlightRecorder::add(double time_s, const Camera& camera) {
-  if (path_.empty()) start_s_ = time_s;
+  std::vector<TimedCamera>& frames = path_.frames;
+  if (frames.empty()) start_s_ = time_s;
   const double time = time_s - start_s_;
   // Frames of one camera are as good as their first and last.
-  const size_t count = path_.size();
-  if (count >= 2 && shows_same(path_[count - 2].camera, camera) && shows_same(path_[count - 1].camera, camera)) {
-    path_.pop_back();
+  const size_t count = frames.size();
+  if (count >= 2 && shows_same(frames[count - 2].camera, camera) && shows_same(frames[count - 1].camera, camera)) {
+    frames.pop_back();
   }
-  if (!path_.empty() && time <= path_.back().time_s) return;
-  path_.push_back({time, camera});
+  if (!frames.empty() && time <= frames.back().time_s) return;
+  frames.push_back({time, camera});
+}
+
+Camera FlightReplay::next_camera(double time_s) {
+  const double interval_s = pictures_.interval_s();
+  // What is late by less than a picture is made up for; the time of a slow picture or of a pause is not.
+  due_s_ = time_s - due_s_ < interval_s ? due_s_ + interval_s : time_s + interval_s;
+  return pictures_.camera(next_++);
 }
 
 void FlightReplay::add(const FinishedFrame& frame) {

@@ -29,6 +29,7 @@ struct WindowOptions {
   std::optional<double> target_ms;
   std::optional<std::filesystem::path> record;
   std::optional<std::filesystem::path> replay;
+  std::optional<double> fps;
   bool stays_open = false;
 };
 
@@ -46,8 +47,9 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
             [&](const Words& w) { options.present_mode = w.choice(present_mode_names()); });
   table.add("--record", "FILE.json", "Write the camera's flight, a camera path, when the window closes",
             [&](const Words& w) { options.record = w.text(); });
-  table.add("--replay", "FILE.json", "Play a camera path frame by frame, print what its frames took, and close",
+  table.add("--replay", "FILE.json", "Play a camera path, print what its frames took, and close",
             [&](const Words& w) { options.replay = w.text(); });
+  add_fps_option(table, options.fps);
   table.add_flag("--keep-open", "After --replay let the user fly on", options.stays_open);
   add_tracing_options(table, options.tracing);
 }
@@ -57,6 +59,9 @@ void check_window_options(const WindowOptions& options) {
   if (options.replay) check_no_camera(options.view, "--replay");
   if (options.stays_open && !options.replay) {
     throw UsageError({"--keep-open has no replay to end", "on the command line", "give --replay as well"});
+  }
+  if (options.fps && !options.replay) {
+    throw UsageError({"--fps has no path to play", "on the command line", "give --replay as well"});
   }
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);
   if (options.replay) inputs.push_back(*options.replay);
@@ -74,8 +79,8 @@ void view(const WindowOptions& options) {
   auto scene = std::make_shared<Scene>(load_for(tracing, stats, console));
   ViewOptions view_options = options.view;
   if (options.replay) {
-    start.replay = read_camera_path(*options.replay);
-    view_options.given_camera = start.replay->front().camera;
+    start.replay.emplace(read_camera_path(*options.replay), options.fps);
+    view_options.given_camera = start.replay->camera(0);
   }
   start.view = make_view(*scene, view_options, console);
   light_up(*scene, console);

@@ -36,7 +36,7 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       scene_(start.scene.scene),
       asked_choice_(start.choice),
       loader_(start.file),
-      control_(start.replay ? start.replay->front().camera : start.view.camera, speed_to_cross(bounds_of(*scene_))),
+      control_(start.view.camera, speed_to_cross(bounds_of(*scene_))),
       stays_open_(start.stays_open),
       record_file_(start.record),
       swapchain_(device, start.present_mode),
@@ -74,7 +74,10 @@ void Viewer::run() {
     update_screenshot();
     update_replay();
     if (!fit_window() || !has_work()) {
-      window_.wait(frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() ? kLongWait : kShortWait);
+      const bool is_at_rest = frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() && !is_replaying();
+      window_.wait(is_at_rest ? kLongWait : kShortWait);
+      // The rest lasts until the event that ends it.
+      keep_camera();
       continue;
     }
     Frame* frame = frames_.begin();
@@ -85,9 +88,10 @@ void Viewer::run() {
     record(*frame);
     frames_.submit(*frame);
   }
+  keep_camera();
   finish_frames();
   if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
-  if (record_file_ && !recorder_.path().empty()) {
+  if (record_file_) {
     const DeferredSignals while_writing;
     write_camera_path(*record_file_, recorder_.path());
   }
@@ -158,13 +162,21 @@ void Viewer::handle_press(Press press) {
 void Viewer::move_camera(Frame& frame) {
   const Motion motion = window_.take_motion();
   if (is_replaying()) {
-    frame.is_of_flight = !replay_->is_done() && !switches_.is_paused;
-    if (frame.is_of_flight) control_.place(replay_->next_camera());
+    frame.is_of_flight = is_picture_due();
+    if (frame.is_of_flight) control_.place(replay_->next_camera(Window::now()));
   } else if (!wants_screenshot_) {
     // While a screenshot waits the camera holds still.
     control_.apply(motion, window_.framebuffer_size().y);
   }
+  keep_camera();
+}
+
+void Viewer::keep_camera() {
   if (record_file_) recorder_.add(Window::now(), control_.camera());
+}
+
+bool Viewer::is_picture_due() const {
+  return !switches_.is_paused && replay_->is_due(Window::now());
 }
 
 void Viewer::update_replay() {
@@ -292,7 +304,7 @@ void Viewer::take_finished(const FinishedFrame& finished) {
 }
 
 bool Viewer::has_work() const {
-  if (is_replaying() && !switches_.is_paused) return !replay_->is_done();
+  if (is_replaying() && !switches_.is_paused) return is_picture_due();
   return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
 }
 

@@ -32,8 +32,8 @@ struct ViewerStart {
   /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
   std::optional<double> target_ms;
 
-  /// A flight to play, and whether the window stays open after it.
-  std::optional<CameraPath> replay;
+  /// What of a flight to play, and whether the window stays open after it.
+  std::optional<PathPictures> replay;
   bool stays_open = false;
   /// Where the camera's flight goes when the window closes.
   std::optional<std::filesystem::path> record;
@@ -55,7 +55,11 @@ class Viewer {
   void handle_input();
   void handle_press(Press press);
   void move_camera(Frame& frame);
+  /// Takes the camera down for the flight that is recorded, if one is.
+  void keep_camera();
   bool is_replaying() const { return replay_ && has_replay_started_; }
+  /// Of a replay.
+  bool is_picture_due() const;
   /// Begins the replay when its first camera is shown, and ends it.
   void update_replay();
   /// Says what has become of screenshots.

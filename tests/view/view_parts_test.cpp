@@ -76,13 +76,13 @@ TEST(FlightRecorder, KeepsTheEndsOfARest) {
   camera.eye.x = 1.0F;
   recorder.add(12.5, camera);
   std::vector<double> times;
-  for (const TimedCamera& frame : recorder.path()) times.push_back(frame.time_s);
+  for (const TimedCamera& frame : recorder.path().frames) times.push_back(frame.time_s);
   EXPECT_EQ(times, (std::vector<double>{0.0, 2.0, 2.5}));
-  EXPECT_EQ(recorder.path().back().camera.eye.x, 1.0F);
+  EXPECT_EQ(recorder.path().frames.back().camera.eye.x, 1.0F);
 }
 
 TEST(FlightReplay, TellsMedianAndPercentile) {
-  FlightReplay replay(CameraPath(2));
+  FlightReplay replay(PathPictures({{{0.0, Camera{}}, {1.0, Camera{}}}, std::nullopt}));
   for (int i = 1; i <= 101; ++i) {
     FinishedFrame frame;
     frame.time_ms = i;
@@ -90,10 +90,27 @@ TEST(FlightReplay, TellsMedianAndPercentile) {
     replay.add(frame);
   }
   EXPECT_EQ(replay.summarize(), "101 frames: median 51.00 ms, 99th percentile 100.00 ms, tracing 50.0 % of the time");
-  replay.next_camera();
+  EXPECT_TRUE(replay.is_due(7.0));
+  replay.next_camera(7.0);
+  EXPECT_TRUE(replay.is_due(7.0)) << "stored frames wait for nothing";
   EXPECT_FALSE(replay.is_done());
-  replay.next_camera();
+  replay.next_camera(7.0);
   EXPECT_TRUE(replay.is_done());
+  EXPECT_FALSE(replay.is_due(8.0));
+}
+
+TEST(FlightReplay, PlaysSecondsInSeconds) {
+  FlightReplay replay(PathPictures({{{0.0, Camera{}}, {10.0, Camera{}}}, 4.0}));
+  ASSERT_TRUE(replay.is_due(100.0));
+  replay.next_camera(100.0);
+  EXPECT_FALSE(replay.is_due(100.24));
+  ASSERT_TRUE(replay.is_due(100.25));
+  replay.next_camera(100.3);  // late, but the next is in time
+  EXPECT_FALSE(replay.is_due(100.49));
+  ASSERT_TRUE(replay.is_due(100.5));
+  replay.next_camera(107.0);  // much too late: those after it are not hurried
+  EXPECT_FALSE(replay.is_due(107.24));
+  EXPECT_TRUE(replay.is_due(107.25));
 }
 
 TEST(Keys, NoneHasTwoEffects) {

@@ -7,6 +7,7 @@ window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the 
 """
 
 import json
+import math
 import os
 import pathlib
 import re
@@ -15,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 from display import Display, Failure, Viewer, wait_for
 
@@ -179,13 +181,19 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         # Paused, a screenshot is of one sample a pixel, as what `promin render` gives below.
         viewer.press("p")
         session.take_screenshot(1)
-        viewer.hold("w", 0.4)
+        viewer.hold("w", 0.2)
+        time.sleep(1.0)
+        viewer.hold("w", 0.2)
         session.take_screenshot(2)
         session.quit()
-    path = json.loads((folder / "flight.json").read_text())["frames"]
+    flight = json.loads((folder / "flight.json").read_text())
+    path = flight["frames"]
     expect(len(path) > 2, f"the flight has {len(path)} frames")
+    rests = [b["time_s"] - a["time_s"] for a, b in zip(path, path[1:]) if a["eye"] == b["eye"]]
+    expect(sum(rest > 0.8 for rest in rests[1:]) > 0, f"a rest of a second became {rests}")
 
-    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", PROMIN_VALIDATION="core")
+    words = ["--replay", "flight.json", "--fps", "stored"]
+    session = Session(bin_folder, scenes, folder, *words, PROMIN_VALIDATION="core")
     with session as viewer:
         code = viewer.wait_for_end()
         expect(code == 0, f"the replay ended with {code}: {viewer.err}")
@@ -194,8 +202,31 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
             f"{len(path)} frames were recorded, and replayed: {viewer.out}",
         )
 
+    # By time, it takes its time.
+    begin = time.monotonic()
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json")
+    with session as viewer:
+        code = viewer.wait_for_end()
+    seconds = path[-1]["time_s"]
+    expect(code == 0 and time.monotonic() - begin >= seconds - 1 / flight["fps"], f"{seconds} s went by too fast")
+    count = math.floor(seconds * flight["fps"] + 1e-6) + 1
+    expect(viewer.out.startswith(f"{count} frames: "), f"{count} frames are due: {viewer.out}")
+
+    # Between frames window and renderer have the same cameras.
+    half_way = {**flight, "fps": 7, "frames": [{**path[0], "time_s": 0}, {**path[-1], "time_s": 0.2}]}
+    (folder / "half_way.json").write_text(json.dumps(half_way))
+    session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open")
+    with session as viewer:
+        viewer.wait_for_line("^2 frames: ", 0, "end of the replay")
+        viewer.focus()
+        viewer.press("p")
+        session.take_screenshot(3)
+        command = f"promin render showcase.gltf --path half_way.json --frames 1 --size {SIZE[0]} {SIZE[1]} -o x"
+        session.expect_same_picture(3, command)
+        session.quit()
+
     # The flight ends where the last screenshot was taken.
-    last = len(path) - 1
+    last = count - 1
     words = ["--size", *SIZE, "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
     done = run(bin_folder / "promin", "render", session.scene, *words, "-o", folder / "last.png")
     expect(done.returncode == 0, done.stderr)
