@@ -64,7 +64,8 @@ void FrameQueue::submit(Frame& frame) {
   const vk::PipelineStageFlags wait_stage = Stage::eColorAttachmentOutput;
   const vk::CommandBuffer commands = *frame.commands;
   const vk::Semaphore rendered = swapchain_->rendered(frame.image);
-  device_->queue().submit(vk::SubmitInfo(wait, wait_stage, commands, rendered), *frame.fence);
+  const vk::SubmitInfo info(wait, wait_stage, commands, rendered);
+  device_->use_queue([&](const vk::raii::Queue& queue) { queue.submit(info, *frame.fence); });
   frame.is_in_flight = true;
   frame.is_presented = !presents_late_;
   if (!presents_late_) swapchain_->present(frame.image);
@@ -87,10 +88,10 @@ void FrameQueue::poll(const std::function<void(const FinishedFrame&)>& on_finish
 }
 
 void FrameQueue::finish(const std::function<void(const FinishedFrame&)>& on_finished) {
-  device_->handle().waitIdle();
+  device_->wait_idle();
   poll(on_finished);
   // What was presented last belongs to the queue until it is idle again.
-  device_->handle().waitIdle();
+  device_->wait_idle();
 }
 
 FinishedFrame FrameQueue::take(Frame& frame) {
