@@ -25,7 +25,8 @@ vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
 
 void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 #if IMGUI_VERSION_NUM >= 19000
-  ImGui_ImplVulkan_CreateFontsTexture();
+  // It submits by itself.
+  device.use_queue([](const vk::raii::Queue&) { ImGui_ImplVulkan_CreateFontsTexture(); });
 #else
   device.run([](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
@@ -46,7 +47,7 @@ ImguiRenderer::ImguiRenderer(const gpu::Device& device, const Window& window, co
   info.PhysicalDevice = *device.physical();
   info.Device = *device.handle();
   info.QueueFamily = device.queue_family();
-  info.Queue = *device.queue();
+  info.Queue = device.use_queue([](const vk::raii::Queue& queue) { return static_cast<VkQueue>(*queue); });
   info.DescriptorPool = *pool_;
   info.MinImageCount = 2;
   info.ImageCount = std::max(info.MinImageCount, swapchain.image_count());

@@ -150,8 +150,8 @@ std::optional<Camera> show_overlay(const OverlayContent& content, Switches& swit
   show_text("{}", content.device);
   show_times(content);
   show_picture(*content.picture);
-  show_text("{}, speed {:.3g} a second{}", content.is_orbiting ? "orbiting" : "flying", content.speed,
-            content.is_loading ? ", loading" : "");
+  show_text("{}, speed {:.3g} a second", content.is_orbiting ? "orbiting" : "flying", content.speed);
+  if (!content.awaited.empty()) show_text("{} ...", content.awaited);
   if (content.is_failure) ImGui::PushStyleColor(ImGuiCol_Text, kFailureColor);
   if (!content.message.empty()) show_text("{}", content.message);
   if (content.is_failure) ImGui::PopStyleColor();

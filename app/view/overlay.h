@@ -53,7 +53,8 @@ struct OverlayContent {
   std::string device;
   double speed = 0.0;
   bool is_orbiting = false;
-  bool is_loading = false;
+  /// What is under way beside; empty where nothing is.
+  std::string awaited;
   /// What happened last; a failure stands out.
   std::string message;
   bool is_failure = false;

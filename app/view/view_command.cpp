@@ -68,6 +68,18 @@ void check_window_options(const WindowOptions& options) {
   if (options.record) check_outputs(inputs, {*options.record}, std::nullopt);
 }
 
+/// Waits for it while the window answers; none where the user closes that.
+std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, PictureMaker& maker) {
+  constexpr double kWait = 0.02;
+  while (!maker.is_ready()) {
+    window.set_title(title + " (" + maker.describe() + ")");
+    window.wait(kWait);
+    if (window.wants_to_close()) return std::nullopt;
+  }
+  window.set_title(title);
+  return maker.take();
+}
+
 void view(const WindowOptions& options) {
   const TracingOptions& tracing = options.tracing;
   check_window_options(options);
@@ -76,7 +88,7 @@ void view(const WindowOptions& options) {
   RunStats stats;
   ViewerStart start;
   start.file = tracing.scene;
-  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console));
+  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, start.sources));
   ViewOptions view_options = options.view;
   if (options.replay) {
     start.replay.emplace(read_camera_path(*options.replay), options.fps);
@@ -88,20 +100,24 @@ void view(const WindowOptions& options) {
   start.choice.bvh = tracing.bvh;
   check_lights(*scene, options.view.lights_off);
   start.choice.lights_off = options.view.lights_off;
-  start.has_shadows = !options.view.has_no_shadows;
   start.present_mode = options.present_mode;
   start.target_ms = options.target_ms;
   start.stays_open = options.stays_open;
   start.record = options.record;
 
-  Window window(start.view.size, "promin - " + start.file.filename().string());
+  const std::string title = "promin - " + start.file.filename().string();
+  Window window(start.view.size, title);
   const gpu::Presentation presentation = window.presentation();
   const gpu::Device device(tracing.device, &presentation);
   stats.device = device.info();
   console.detail(device.choice());
+  PictureMaker maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs));
   // The longest last: without a window it would be in vain.
-  start.scene = pack_chosen_scene(scene, start.choice);
-  gpu::translate_vulkan_errors([&] { Viewer(window, device, console, std::move(start), stats).run(); });
+  maker.pack(scene, start.choice, {!options.view.has_no_shadows, start.view.shading}, window.framebuffer_size());
+  std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
+  if (!picture) return;
+  gpu::translate_vulkan_errors(
+      [&] { Viewer(window, device, console, maker, std::move(*picture), std::move(start), stats).run(); });
   check_validation(device, stats);
 }
 

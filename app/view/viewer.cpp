@@ -9,8 +9,6 @@
 
 #include "core/error.h"
 #include "deferred_signals.h"
-#include "explanation.h"
-#include "render/explain_pixel.h"
 
 namespace promin::app {
 namespace {
@@ -26,17 +24,20 @@ constexpr int kSettlingFrames = 3;
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats)
+Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, PictureMaker& maker,
+               ReadyPicture picture, ViewerStart start, RunStats stats)
     : window_(window),
       device_(device),
       console_(console),
+      maker_(maker),
       file_(start.file),
       stats_(std::move(stats)),
       target_ms_(start.target_ms.value_or(device.is_cpu() ? ViewerStart::kCpuTargetMs : window.refresh_interval_ms())),
-      scene_(start.scene.scene),
       asked_choice_(start.choice),
-      loader_(start.file),
-      control_(start.view.camera, speed_to_cross(bounds_of(*scene_))),
+      last_asked_look_(picture.look),
+      watch_(std::move(start.sources)),
+      asker_(device),
+      control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
       stays_open_(start.stays_open),
       record_file_(start.record),
       swapchain_(device, start.present_mode),
@@ -49,32 +50,51 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
   }
   if (start.replay) replay_.emplace(std::move(*start.replay));
   switches_.scene = start.choice;
-  switches_.has_shadows = start.has_shadows;
-  switches_.shading = start.view.shading;
+  switches_.has_shadows = picture.look.has_shadows;
+  switches_.shading = picture.look.shading;
   switches_.max_depth = start.view.max_depth;
-  show_scene(start.scene);
+  show_picture(std::move(picture));
   fit_window();
   imgui_ = std::make_unique<ImguiRenderer>(device, window, swapchain_);
 }
 
 Viewer::~Viewer() {
   try {
-    device_.handle().waitIdle();
+    device_.wait_idle();
   } catch (const vk::SystemError&) {
     // A lost device: what threw before says so.
   }
 }
 
 void Viewer::run() {
-  while (!is_quitting_ && !window_.should_close()) {
+  const DeferredSignals signals;
+  try {
+    show_frames(signals);
+  } catch (...) {
+    // The flight up to here is whole, whatever happened to the device.
+    if (record_file_) write_camera_path(*record_file_, recorder_.path());
+    throw;
+  }
+  if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
+  if (record_file_) write_camera_path(*record_file_, recorder_.path());
+  screenshot_.wait();
+  update_screenshot();
+}
+
+void Viewer::show_frames(const DeferredSignals& signals) {
+  keep_camera();
+  while (!is_quitting_ && !window_.should_close() && !signals.is_pending()) {
     window_.poll();
     frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
     handle_input();
-    update_scene();
+    take_picture();
+    ask_for_picture();
+    update_answers();
     update_screenshot();
     update_replay();
     if (!fit_window() || !has_work()) {
-      const bool is_at_rest = frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() && !is_replaying();
+      const bool is_at_rest =
+          frames_.is_idle() && !maker_.is_busy() && !asker_.is_busy() && !screenshot_.is_busy() && !is_replaying();
       window_.wait(is_at_rest ? kLongWait : kShortWait);
       // The rest lasts until the event that ends it.
       keep_camera();
@@ -90,13 +110,6 @@ void Viewer::run() {
   }
   keep_camera();
   finish_frames();
-  if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
-  if (record_file_) {
-    const DeferredSignals while_writing;
-    write_camera_path(*record_file_, recorder_.path());
-  }
-  screenshot_.wait();
-  update_screenshot();
 }
 
 void Viewer::handle_input() {
@@ -105,7 +118,7 @@ void Viewer::handle_input() {
   for (const dvec2& place : window_.take_clicks()) {
     const dvec2 full_size(picture_->full_size());
     const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
-    explain(uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+    asker_.ask_why(scene_, look_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
   }
   if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
   if (window_.take_activity()) frames_to_draw_ = kSettlingFrames;
@@ -126,12 +139,10 @@ void Viewer::handle_press(Press press) {
     case Press::kPause:
       switches_.is_paused = !switches_.is_paused;
       return;
-    case Press::kOrbit: {
-      const Bounds bounds = bounds_of(*scene_);
-      if (control_.is_orbiting()) return control_.fly();
-      if (!bounds.is_empty()) control_.orbit(bounds.center());
-      return;
-    }
+    case Press::kOrbit:
+      wants_orbit_ = !wants_orbit_ && !control_.is_orbiting();
+      if (wants_orbit_) return asker_.ask_middle(scene_, look_, control_.camera());
+      return control_.fly();
     case Press::kBookmark:
       bookmarks_.push_back(control_.camera());
       bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
@@ -156,7 +167,8 @@ void Viewer::handle_press(Press press) {
     return;
   }
   const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
-  if (index < scene_->cameras.size()) control_.place(scene_->cameras[index]);
+  const std::vector<Camera>& cameras = scene_->scene->cameras;
+  if (index < cameras.size()) control_.place(cameras[index]);
 }
 
 void Viewer::move_camera(Frame& frame) {
@@ -200,72 +212,82 @@ void Viewer::update_screenshot() {
   }
 }
 
-void Viewer::update_scene() {
-  if (features_ != (light_features(scene_features_) | features_of(switches_.shading))) {
-    finish_frames();
-    make_picture(device_scene_, scene_features_);
-  }
-  if (loader_.is_busy()) {
-    try {
-      if (const std::optional<LoadedScene> loaded = loader_.take()) {
-        finish_frames();
-        gpu::translate_vulkan_errors([&] { show_scene(*loaded); });
-      }
-    } catch (const std::exception& error) {
-      // Whatever it is, memory that is too short too: the old picture stays.
-      report_failure(error.what());
-    }
-    return;
-  }
-  if (asked_choice_ != switches_.scene) {
-    asked_choice_ = switches_.scene;
-    return loader_.pack(scene_, asked_choice_);
-  }
-  if (Window::now() < next_file_check_) return;
-  next_file_check_ = Window::now() + kLongWait;
-  if (loader_.has_file_changed()) loader_.load(asked_choice_);
-}
-
-void Viewer::show_scene(const LoadedScene& loaded) {
-  const bool is_new = scene_ && scene_ != loaded.scene;
-  const auto device_scene = std::make_shared<const DeviceScene>(device_, loaded.packed);
-  make_picture(device_scene, loaded.features);
-  device_scene_ = device_scene;
-  numbers_ = loaded.packed.numbers;
-  scene_features_ = loaded.features;
-  scene_ = loaded.scene;
-  shown_choice_ = loaded.choice;
-  explanation_.clear();
-  if (is_new) report("read " + file_.filename().string());
-}
-
-void Viewer::make_picture(std::shared_ptr<const DeviceScene> scene, FeatureMask scene_features) {
-  const FeatureMask features = light_features(scene_features) | features_of(switches_.shading);
-  // What fails leaves the picture before.
-  LivePicture picture(device_, std::move(scene), features, target_ms_);
-  if (asked_size_ != uvec2(0)) picture.resize(swapchain_.size());
-  picture_.emplace(std::move(picture));
-  features_ = features;
-  // Before the window has images it has no size.
-  if (asked_size_ != uvec2(0)) fit_picture();
-}
-
-FeatureMask Viewer::light_features(FeatureMask scene_features) const {
-  return scene_features & ~(switches_.has_shadows ? 0 : layout::FEATURE_SHADOWS);
-}
-
-void Viewer::explain(const uvec2& pixel) {
-  finish_frames();
+void Viewer::take_picture() {
+  // A frame in flight traces the picture that would go.
+  if (!maker_.is_ready() || !frames_.is_idle()) return;
   try {
-    Explanation explanation =
-        explain_pixel(device_, *device_scene_, numbers_, light_features(scene_features_), current_view(), pixel);
-    number_lights_of_whole(explanation, shown_choice_.lights_off);
-    explanation_title_ = fmt::format("pixel {}, {} at 1 spp", pixel.x, pixel.y);
-    explanation_ = explain_text(explanation, *scene_);
-    console_.detail(explanation_);
-  } catch (const RunError& error) {
+    show_picture(std::move(*maker_.take()));
+  } catch (const std::exception& error) {
+    // Whatever it is, memory that is too short too: the old picture stays.
     report_failure(error.what());
   }
+  if (std::vector<SourceFile> sources = maker_.take_sources(); !sources.empty()) watch_.follow(std::move(sources));
+}
+
+void Viewer::ask_for_picture() {
+  if (maker_.is_busy()) return;
+  const uvec2 size = swapchain_.size();
+  if (asked_choice_ != switches_.scene) {
+    maker_.pack(scene_->scene, switches_.scene, asked_look(), size);
+  } else if (last_asked_look_ != asked_look()) {
+    maker_.compile(scene_, asked_look(), size);
+  } else {
+    if (Window::now() < next_file_check_) return;
+    next_file_check_ = Window::now() + kLongWait;
+    if (!watch_.has_changed()) return;
+    maker_.read(file_, asked_choice_, asked_look(), size);
+  }
+  asked_choice_ = switches_.scene;
+  last_asked_look_ = asked_look();
+  frames_to_draw_ = kSettlingFrames;
+}
+
+void Viewer::show_picture(ReadyPicture ready) {
+  const bool is_new = scene_ && scene_->scene != ready.scene->scene;
+  if (!scene_ || scene_ != ready.scene) explanation_.text.clear();
+  picture_.emplace(std::move(ready.picture));
+  scene_ = std::move(ready.scene);
+  look_ = ready.look;
+  // Before the window has images it has no size.
+  if (asked_size_ != uvec2(0)) fit_picture();
+  frames_to_draw_ = kSettlingFrames;
+  if (!is_new) return;
+  std::string text = "read " + file_.filename().string();
+  report(text);
+  for (const std::string& warning : scene_->scene->warnings) {
+    console_.warn(warning);
+    text += "\nwarning: " + warning;
+  }
+  message_ = text;
+}
+
+void Viewer::update_answers() {
+  try {
+    if (std::optional<PixelText> answer = asker_.take_text()) {
+      explanation_ = std::move(*answer);
+      console_.detail(explanation_.text);
+      frames_to_draw_ = kSettlingFrames;
+    }
+    if (const std::optional<std::optional<dvec3>> middle = asker_.take_middle()) {
+      const Bounds bounds = bounds_of(*scene_->scene);
+      const std::optional<dvec3> center =
+          *middle || bounds.is_empty() ? *middle : std::optional(dvec3(bounds.center()));
+      if (std::exchange(wants_orbit_, false) && center) control_.orbit(*center);
+      frames_to_draw_ = kSettlingFrames;
+    }
+  } catch (const RunError& error) {
+    wants_orbit_ = wants_orbit_ && asker_.is_looking_for_middle();
+    report_failure(error.what());
+  }
+}
+
+bool Viewer::awaits_look() const {
+  return look_ != asked_look() && (maker_.is_busy() || last_asked_look_ != asked_look());
+}
+
+std::string Viewer::describe_awaited() const {
+  if (maker_.is_busy()) return maker_.describe();
+  return asker_.is_busy() ? "tracing a pixel" : "";
 }
 
 bool Viewer::fit_window() {
@@ -304,6 +326,8 @@ void Viewer::take_finished(const FinishedFrame& finished) {
 }
 
 bool Viewer::has_work() const {
+  // It is taken in when the last frame is done.
+  if (maker_.is_ready()) return false;
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
   return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
 }
@@ -326,7 +350,7 @@ void Viewer::record_tracing(Frame& frame) {
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
-  if (wants_screenshot_ && picture_->is_complete() && !screenshot_.is_busy()) {
+  if (wants_screenshot_ && picture_->is_complete() && !awaits_look() && !screenshot_.is_busy()) {
     View view = picture_->wanted();
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
@@ -357,18 +381,18 @@ void Viewer::build_overlay() {
     OverlayContent content;
     content.statistics = &statistics_;
     content.picture = &*picture_;
-    content.scene = scene_.get();
+    content.scene = scene_->scene.get();
     content.device = fmt::format("{} ({})", device_.info().name, device_.info().type);
     content.speed = control_.speed();
     content.is_orbiting = control_.is_orbiting();
-    content.is_loading = loader_.is_busy();
+    content.awaited = describe_awaited();
     content.message = message_;
     content.is_failure = is_failure_;
     content.bookmarks = bookmarks_;
     if (const std::optional<Camera> picked = show_overlay(content, switches_)) control_.place(*picked);
   }
   if (has_help_) show_help();
-  if (!explanation_.empty() && !show_explanation(explanation_title_, explanation_)) explanation_.clear();
+  if (!explanation_.text.empty() && !show_explanation(explanation_.title, explanation_.text)) explanation_.text.clear();
   imgui_->end_frame();
 }
 
@@ -387,8 +411,9 @@ void Viewer::report_failure(const std::string& text) {
 }
 
 DescribedScene Viewer::described_scene(const View& view) const {
-  const SceneChoice& on = shown_choice_;
-  return {file_, switches_.has_shadows, on.lights_off, find_half_height(*scene_, view.camera), on.builder, on.bvh};
+  const SceneChoice& on = scene_->choice;
+  const std::optional<size_t> camera = find_half_height(*scene_->scene, view.camera);
+  return {file_, look_.has_shadows, on.lights_off, camera, on.builder, on.bvh};
 }
 
 View Viewer::current_view() const {
@@ -396,7 +421,7 @@ View Viewer::current_view() const {
   view.camera = control_.camera();
   view.size = picture_->full_size();
   view.max_depth = switches_.effective_depth();
-  view.shading = switches_.shading;
+  view.shading = look_.shading;
   return view;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "console.h"
+#include "deferred_signals.h"
 #include "run_stats.h"
 #include "view/camera_control.h"
 #include "view/describe_command.h"
@@ -16,6 +17,8 @@
 #include "view/imgui_renderer.h"
 #include "view/live_picture.h"
 #include "view/overlay.h"
+#include "view/picture_maker.h"
+#include "view/pixel_asker.h"
 #include "view/screenshot.h"
 #include "view/window.h"
 
@@ -24,9 +27,9 @@ namespace promin::app {
 /// What a viewer starts with.
 struct ViewerStart {
   std::filesystem::path file;
-  LoadedScene scene;
+  /// What the scene was read from.
+  std::vector<SourceFile> sources;
   SceneChoice choice;
-  bool has_shadows = true;
   View view;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
@@ -45,13 +48,16 @@ struct ViewerStart {
 class Viewer {
  public:
   /// Throws RunError, vk::SystemError.
-  Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats);
+  Viewer(Window& window, const gpu::Device& device, const Console& console, PictureMaker& maker, ReadyPicture picture,
+         ViewerStart start, RunStats stats);
   ~Viewer();
 
-  /// Throws RunError where the flight cannot be written, vk::SystemError.
+  /// SIGINT, SIGTERM and SIGHUP end it as the user does, and the program when what was recorded is written. Throws
+  /// RunError where the flight cannot be written, vk::SystemError.
   void run();
 
  private:
+  void show_frames(const DeferredSignals& signals);
   void handle_input();
   void handle_press(Press press);
   void move_camera(Frame& frame);
@@ -64,14 +70,18 @@ class Viewer {
   void update_replay();
   /// Says what has become of screenshots.
   void update_screenshot();
-  /// Starts what changed switches ask for, takes in what has been loaded.
-  void update_scene();
-  void show_scene(const LoadedScene& loaded);
-  /// A picture of a scene with the pipeline that the switches ask for.
-  void make_picture(std::shared_ptr<const DeviceScene> scene, FeatureMask scene_features);
-  /// Of a scene with its shadows on or off.
-  FeatureMask light_features(FeatureMask scene_features) const;
-  void explain(const uvec2& pixel);
+  /// Has pictures made that changed switches and files ask for.
+  void ask_for_picture();
+  /// Takes in a picture that is ready.
+  void take_picture();
+  void show_picture(ReadyPicture ready);
+  /// Says what has become of questions about pixels.
+  void update_answers();
+  Look asked_look() const { return {switches_.has_shadows, switches_.shading}; }
+  /// Whether another look than the one shown is on its way.
+  bool awaits_look() const;
+  /// What is under way beside the picture, in words.
+  std::string describe_awaited() const;
   /// Fits everything to the window. False while it has no pixels.
   bool fit_window();
   /// Fits the picture to the window's images.
@@ -94,22 +104,23 @@ class Viewer {
   Window& window_;
   const gpu::Device& device_;
   const Console& console_;
+  PictureMaker& maker_;
   std::filesystem::path file_;
   RunStats stats_;
   double target_ms_;
 
-  std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const DeviceScene> device_scene_;
-  PrimitiveNumbers numbers_;
-  FeatureMask scene_features_ = 0;
+  std::shared_ptr<const ShownScene> scene_;
+  /// Of the picture.
+  Look look_;
   Switches switches_;
+  /// What the maker was asked for last: what failed is not asked for again.
   SceneChoice asked_choice_;
-  /// What of scene_ is on the device.
-  SceneChoice shown_choice_;
-  /// Of the picture's pipeline.
-  FeatureMask features_ = 0;
-  SceneLoader loader_;
+  Look last_asked_look_;
+  SceneWatch watch_;
   double next_file_check_ = 0.0;
+  PixelAsker asker_;
+  /// Whether an orbit begins when its center is found.
+  bool wants_orbit_ = false;
   CameraControl control_;
   std::vector<Camera> bookmarks_;
   std::optional<FlightReplay> replay_;
@@ -133,9 +144,8 @@ class Viewer {
   FrameStatistics statistics_;
   std::string message_;
   bool is_failure_ = false;
-  /// Of a pixel; empty where none is shown.
-  std::string explanation_title_;
-  std::string explanation_;
+  /// Without a text where none is shown.
+  PixelText explanation_;
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;

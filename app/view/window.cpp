@@ -7,6 +7,7 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/error.h"
@@ -118,6 +119,14 @@ void Window::wait(double seconds) {
 
 bool Window::should_close() const {
   return glfwWindowShouldClose(window_) != 0;
+}
+
+bool Window::wants_to_close() const {
+  return should_close() || std::find(presses_.begin(), presses_.end(), Press::kQuit) != presses_.end();
+}
+
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
 }
 
 void Window::toggle_fullscreen() {

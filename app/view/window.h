@@ -39,6 +39,9 @@ class Window {
   void wait(double seconds);
 
   bool should_close() const;
+  /// Whether that, or the key to quit is among the presses to take.
+  bool wants_to_close() const;
+  void set_title(const std::string& title);
   void toggle_fullscreen();
 
   // What happened since it was last taken.
