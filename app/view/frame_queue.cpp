@@ -100,6 +100,7 @@ FinishedFrame FrameQueue::take(Frame& frame) {
                      stage_ms(frame, FrameMark::kTraced, FrameMark::kDisplayed),
                      stage_ms(frame, FrameMark::kDisplayed, FrameMark::kEnd)};
   finished.units = frame.units;
+  finished.most_samples_a_lane = frame.most_samples_a_lane;
   finished.is_of_flight = frame.is_of_flight;
   if (frame.units > 0.0) {
     finished.rays = sum_counts(frame.counters->mapped());
@@ -110,7 +111,7 @@ FinishedFrame FrameQueue::take(Frame& frame) {
   last_end_time_ = end_time;
   device_->handle().resetFences({*frame.fence});
   frame.is_in_flight = false;
-  if (frame.on_finished) std::exchange(frame.on_finished, {})();
+  if (frame.on_finished) std::exchange(frame.on_finished, {})(finished);
   return finished;
 }
 

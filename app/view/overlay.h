@@ -8,6 +8,7 @@
 
 #include "view/frame_queue.h"
 #include "view/live_picture.h"
+#include "view/overlay_scale.h"
 #include "view/scene_loader.h"
 
 namespace promin::app {
@@ -60,6 +61,9 @@ struct OverlayContent {
   bool is_failure = false;
   std::vector<Camera> bookmarks;
 };
+
+/// Makes ImGui's fonts and sizes anew; not within a frame.
+void scale_overlay(const OverlayScale& scale);
 
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, lets the user change the switches, and returns
 /// the camera that was picked from the lists.

@@ -21,12 +21,14 @@ namespace {
 /// Drivers of GPUs kill what takes seconds.
 constexpr double kMinTargetMs = 1.0;
 constexpr double kMaxTargetMs = 1000.0;
+constexpr double kMinScale = 0.01;
 
 struct WindowOptions {
   TracingOptions tracing;
   ViewOptions view;
   std::optional<std::string> present_mode;
   std::optional<double> target_ms;
+  std::optional<double> scale;
   std::optional<std::filesystem::path> record;
   std::optional<std::filesystem::path> replay;
   std::optional<double> fps;
@@ -41,6 +43,10 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
             fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
                         kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
             [&](const Words& w) { options.target_ms = w.real(0, kMinTargetMs, kMaxTargetMs); });
+  table.add("--scale", "S",
+            fmt::format("Pixels of a moving picture for one of the window on a side, {} to 1 [as the target allows]",
+                        kMinScale),
+            [&](const Words& w) { options.scale = w.real(0, kMinScale, 1.0); });
   table.add("--present-mode", "MODE",
             fmt::format("How frames go to the display: {}; fifo where it has no other [fifo]",
                         fmt::join(present_mode_names(), ", ")),
@@ -86,9 +92,10 @@ void view(const WindowOptions& options) {
   const Console console(tracing.verbosity(), "promin-view");
 
   RunStats stats;
+  std::vector<SourceFile> sources;
   ViewerStart start;
   start.file = tracing.scene;
-  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, start.sources));
+  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
   ViewOptions view_options = options.view;
   if (options.replay) {
     start.replay.emplace(read_camera_path(*options.replay), options.fps);
@@ -102,6 +109,7 @@ void view(const WindowOptions& options) {
   start.choice.lights_off = options.view.lights_off;
   start.present_mode = options.present_mode;
   start.target_ms = options.target_ms;
+  start.scale = options.scale;
   start.stays_open = options.stays_open;
   start.record = options.record;
 
@@ -111,9 +119,10 @@ void view(const WindowOptions& options) {
   const gpu::Device device(tracing.device, &presentation);
   stats.device = device.info();
   console.detail(device.choice());
-  PictureMaker maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs));
+  PictureMaker maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
   // The longest last: without a window it would be in vain.
-  maker.pack(scene, start.choice, {!options.view.has_no_shadows, start.view.shading}, window.framebuffer_size());
+  const Look look{!options.view.has_no_shadows, start.view.shading};
+  maker.begin(scene, {start.choice, look, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
   if (!picture) return;
   gpu::translate_vulkan_errors(

@@ -15,12 +15,10 @@ namespace {
 
 /// While there is something to do but no frame is free.
 constexpr double kShortWait = 1e-3;
-/// While there is nothing to do, in seconds; the scene's file is looked at as often.
+/// While there is nothing to do, in seconds; the scene's files are looked at as often.
 constexpr double kLongWait = 0.1;
 /// What a frame spends on tracing at least, of its target.
 constexpr double kLeastTraceShare = 0.5;
-/// ImGui settles its windows within so many frames.
-constexpr int kSettlingFrames = 3;
 
 }  // namespace
 
@@ -32,10 +30,8 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       maker_(maker),
       file_(start.file),
       stats_(std::move(stats)),
-      target_ms_(start.target_ms.value_or(device.is_cpu() ? ViewerStart::kCpuTargetMs : window.refresh_interval_ms())),
-      asked_choice_(start.choice),
-      last_asked_look_(picture.look),
-      watch_(std::move(start.sources)),
+      follows_display_(!start.target_ms && !device.is_cpu()),
+      target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
       asker_(device),
       control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
       stays_open_(start.stays_open),
@@ -50,6 +46,7 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
   }
   if (start.replay) replay_.emplace(std::move(*start.replay));
   switches_.scene = start.choice;
+  switches_.scale = start.scale;
   switches_.has_shadows = picture.look.has_shadows;
   switches_.shading = picture.look.shading;
   switches_.max_depth = start.view.max_depth;
@@ -87,8 +84,7 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     window_.poll();
     frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
     handle_input();
-    take_picture();
-    ask_for_picture();
+    update_picture();
     update_answers();
     update_screenshot();
     update_replay();
@@ -110,65 +106,6 @@ void Viewer::show_frames(const DeferredSignals& signals) {
   }
   keep_camera();
   finish_frames();
-}
-
-void Viewer::handle_input() {
-  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
-  for (const Press press : window_.take_presses()) handle_press(press);
-  for (const dvec2& place : window_.take_clicks()) {
-    const dvec2 full_size(picture_->full_size());
-    const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
-    asker_.ask_why(scene_, look_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
-  }
-  if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
-  if (window_.take_activity()) frames_to_draw_ = kSettlingFrames;
-}
-
-void Viewer::handle_press(Press press) {
-  switch (press) {
-    case Press::kHelp:
-      has_help_ = !has_help_;
-      return;
-    case Press::kOverlay:
-      has_overlay_ = !has_overlay_;
-      return;
-    case Press::kFullscreen:
-      return window_.toggle_fullscreen();
-    case Press::kReset:
-      return control_.reset();
-    case Press::kPause:
-      switches_.is_paused = !switches_.is_paused;
-      return;
-    case Press::kOrbit:
-      wants_orbit_ = !wants_orbit_ && !control_.is_orbiting();
-      if (wants_orbit_) return asker_.ask_middle(scene_, look_, control_.camera());
-      return control_.fly();
-    case Press::kBookmark:
-      bookmarks_.push_back(control_.camera());
-      bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
-      return;
-    case Press::kPrintCommand: {
-      const View view = reproducible_view();
-      fmt::print("{}\n", describe_command(described_scene(view), view));
-      std::fflush(stdout);
-      return;
-    }
-    case Press::kScreenshot:
-      wants_screenshot_ = true;
-      return;
-    case Press::kQuit:
-      is_quitting_ = true;
-      return;
-    default:
-      break;
-  }
-  if (press >= Press::kFirstShading) {
-    switches_.shading = static_cast<Shading>(static_cast<int>(press) - static_cast<int>(Press::kFirstShading));
-    return;
-  }
-  const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
-  const std::vector<Camera>& cameras = scene_->scene->cameras;
-  if (index < cameras.size()) control_.place(cameras[index]);
 }
 
 void Viewer::move_camera(Frame& frame) {
@@ -212,34 +149,18 @@ void Viewer::update_screenshot() {
   }
 }
 
-void Viewer::take_picture() {
+void Viewer::update_picture() {
   // A frame in flight traces the picture that would go.
-  if (!maker_.is_ready() || !frames_.is_idle()) return;
-  try {
-    show_picture(std::move(*maker_.take()));
-  } catch (const std::exception& error) {
-    // Whatever it is, memory that is too short too: the old picture stays.
-    report_failure(error.what());
+  if (maker_.is_ready() && frames_.is_idle()) {
+    try {
+      show_picture(std::move(*maker_.take()));
+    } catch (const std::exception& error) {
+      // Whatever it is, memory that is too short too: the old picture stays.
+      report_failure(error.what());
+    }
   }
-  if (std::vector<SourceFile> sources = maker_.take_sources(); !sources.empty()) watch_.follow(std::move(sources));
-}
-
-void Viewer::ask_for_picture() {
-  if (maker_.is_busy()) return;
-  const uvec2 size = swapchain_.size();
-  if (asked_choice_ != switches_.scene) {
-    maker_.pack(scene_->scene, switches_.scene, asked_look(), size);
-  } else if (last_asked_look_ != asked_look()) {
-    maker_.compile(scene_, asked_look(), size);
-  } else {
-    if (Window::now() < next_file_check_) return;
-    next_file_check_ = Window::now() + kLongWait;
-    if (!watch_.has_changed()) return;
-    maker_.read(file_, asked_choice_, asked_look(), size);
-  }
-  asked_choice_ = switches_.scene;
-  last_asked_look_ = asked_look();
-  frames_to_draw_ = kSettlingFrames;
+  const PictureRequest request{switches_.scene, asked_look(), swapchain_.size()};
+  if (maker_.update(scene_, request, Window::now())) draw_again();
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
@@ -250,7 +171,7 @@ void Viewer::show_picture(ReadyPicture ready) {
   look_ = ready.look;
   // Before the window has images it has no size.
   if (asked_size_ != uvec2(0)) fit_picture();
-  frames_to_draw_ = kSettlingFrames;
+  draw_again();
   if (!is_new) return;
   std::string text = "read " + file_.filename().string();
   report(text);
@@ -266,14 +187,14 @@ void Viewer::update_answers() {
     if (std::optional<PixelText> answer = asker_.take_text()) {
       explanation_ = std::move(*answer);
       console_.detail(explanation_.text);
-      frames_to_draw_ = kSettlingFrames;
+      draw_again();
     }
     if (const std::optional<std::optional<dvec3>> middle = asker_.take_middle()) {
       const Bounds bounds = bounds_of(*scene_->scene);
       const std::optional<dvec3> center =
           *middle || bounds.is_empty() ? *middle : std::optional(dvec3(bounds.center()));
       if (std::exchange(wants_orbit_, false) && center) control_.orbit(*center);
-      frames_to_draw_ = kSettlingFrames;
+      draw_again();
     }
   } catch (const RunError& error) {
     wants_orbit_ = wants_orbit_ && asker_.is_looking_for_middle();
@@ -282,7 +203,7 @@ void Viewer::update_answers() {
 }
 
 bool Viewer::awaits_look() const {
-  return look_ != asked_look() && (maker_.is_busy() || last_asked_look_ != asked_look());
+  return look_ != asked_look() && maker_.will_show(asked_look());
 }
 
 std::string Viewer::describe_awaited() const {
@@ -291,6 +212,12 @@ std::string Viewer::describe_awaited() const {
 }
 
 bool Viewer::fit_window() {
+  if (window_.take_change_of_place() && follows_display_) target_ms_ = window_.refresh_interval_ms();
+  if (imgui_ && window_.overlay_scale() != imgui_->scale()) {
+    finish_frames();
+    imgui_->set_scale(window_.overlay_scale());
+    draw_again();
+  }
   const uvec2 size = window_.framebuffer_size();
   if (size.x == 0 || size.y == 0) return false;
   // The surface may have given another size than it was asked for.
@@ -300,7 +227,7 @@ bool Viewer::fit_window() {
   if (!swapchain_.recreate(size)) return false;
   asked_size_ = size;
   if (swapchain_.size() != before) fit_picture();
-  frames_to_draw_ = kSettlingFrames;
+  draw_again();
   return true;
 }
 
@@ -319,7 +246,13 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   statistics_.add(finished);
   if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
-  if (finished.has_cut_loops && !is_failure_) report_failure(make_cut_loops_error("lower the depth").what());
+  if (finished.has_cut_loops) {
+    if (finished.most_samples_a_lane > 1) {
+      picture_->shorten_loops();
+    } else if (!is_failure_) {
+      report_failure(make_cut_loops_error("lower the depth").what());
+    }
+  }
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   picture_->learn(finished.units, trace_ms);
   picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
@@ -348,13 +281,20 @@ void Viewer::record_tracing(Frame& frame) {
   using Stage = vk::PipelineStageFlagBits;
   // Of the film that is traced now the frame before may have taken a screenshot.
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
+  frame.most_samples_a_lane = picture_->most_samples_a_lane();
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
   if (wants_screenshot_ && picture_->is_complete() && !awaits_look() && !screenshot_.is_busy()) {
     View view = picture_->wanted();
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
-    frame.on_finished = [this, view] {
+    frame.on_finished = [this, view](const FinishedFrame& finished) {
+      // It is traced again, and taken then.
+      if (finished.has_cut_loops && finished.most_samples_a_lane > 1) {
+        screenshot_.drop();
+        wants_screenshot_ = true;
+        return;
+      }
       stats_.view = view;
       screenshot_.write(describe_picture(stats_));
     };
@@ -400,20 +340,14 @@ void Viewer::report(const std::string& text) {
   message_ = text;
   is_failure_ = false;
   console_.note(text);
-  frames_to_draw_ = kSettlingFrames;
+  draw_again();
 }
 
 void Viewer::report_failure(const std::string& text) {
   message_ = text;
   is_failure_ = true;
   console_.warn(text);
-  frames_to_draw_ = kSettlingFrames;
-}
-
-DescribedScene Viewer::described_scene(const View& view) const {
-  const SceneChoice& on = scene_->choice;
-  const std::optional<size_t> camera = find_half_height(*scene_->scene, view.camera);
-  return {file_, look_.has_shadows, on.lights_off, camera, on.builder, on.bvh};
+  draw_again();
 }
 
 View Viewer::current_view() const {

@@ -27,13 +27,13 @@ namespace promin::app {
 /// What a viewer starts with.
 struct ViewerStart {
   std::filesystem::path file;
-  /// What the scene was read from.
-  std::vector<SourceFile> sources;
   SceneChoice choice;
   View view;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
   std::optional<double> target_ms;
+  /// As LivePicture::fix_scale.
+  std::optional<double> scale;
 
   /// What of a flight to play, and whether the window stays open after it.
   std::optional<PathPictures> replay;
@@ -70,10 +70,8 @@ class Viewer {
   void update_replay();
   /// Says what has become of screenshots.
   void update_screenshot();
-  /// Has pictures made that changed switches and files ask for.
-  void ask_for_picture();
-  /// Takes in a picture that is ready.
-  void take_picture();
+  /// Takes in a picture that is ready, and has those made that changed switches and files ask for.
+  void update_picture();
   void show_picture(ReadyPicture ready);
   /// Says what has become of questions about pixels.
   void update_answers();
@@ -93,6 +91,8 @@ class Viewer {
   void record_tracing(Frame& frame);
   void record_display(const Frame& frame);
   void build_overlay();
+  /// Shows what has changed beside the picture.
+  void draw_again() { frames_to_draw_ = kSettlingFrames; }
   void report(const std::string& text);
   void report_failure(const std::string& text);
   /// Of the command that gives a view's picture.
@@ -101,23 +101,23 @@ class Viewer {
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
 
+  /// ImGui settles its windows within so many frames.
+  static constexpr int kSettlingFrames = 3;
+
   Window& window_;
   const gpu::Device& device_;
   const Console& console_;
   PictureMaker& maker_;
   std::filesystem::path file_;
   RunStats stats_;
+  /// Whether the target is the refresh interval of the display that the window is on.
+  bool follows_display_;
   double target_ms_;
 
   std::shared_ptr<const ShownScene> scene_;
   /// Of the picture.
   Look look_;
   Switches switches_;
-  /// What the maker was asked for last: what failed is not asked for again.
-  SceneChoice asked_choice_;
-  Look last_asked_look_;
-  SceneWatch watch_;
-  double next_file_check_ = 0.0;
   PixelAsker asker_;
   /// Whether an orbit begins when its center is found.
   bool wants_orbit_ = false;

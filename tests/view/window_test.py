@@ -13,6 +13,7 @@ import pathlib
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -81,6 +82,17 @@ class Session:
         expect(done.returncode == 0, f"{command}: {done.stderr}")
         return self.folder / output
 
+    def find_middle(self, command):
+        """The point that the camera of a command looks at."""
+        words = shlex.split(command)[1:]
+        words[words.index("--size") + 1 : words.index("--size") + 3] = ["1", "1"]
+        place = words.index("-o")
+        words[place : place + 2] = ["--explain", "0", "0"]
+        words[words.index("--spp") + 1] = "1"
+        done = subprocess.run([self.bin / "promin", *words], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        expect(done.returncode == 0, done.stderr)
+        return json.loads(done.stdout)["samples"][0]["rays"][0]["hit"]["position"]
+
     def expect_same_picture(self, number, command):
         """The screenshot is what the command renders."""
         png = self.render(command, "view.png")
@@ -131,8 +143,15 @@ def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
         reset = session.print_command()
         expect(eye_of(reset) == eye_of(start), f"the camera was not reset: {reset}")
 
+        # An orbit turns around what is in the middle: it stays there, and the camera needs not turn to it.
+        middle = session.find_middle(reset)
         viewer.press("o")
-        viewer.hold("d", 0.2)
+        wait_for(lambda: viewer.hold("d", 0.05) or look_of(session.print_command()) != look_of(reset), "orbit")
+        eye, look = eye_of(session.print_command()), look_of(session.print_command())
+        way = [float(m) - float(e) for m, e in zip(middle, eye)]
+        ahead = sum(w * float(l) for w, l in zip(way, look))
+        beside = math.dist(way, [ahead * float(l) for l in look])
+        expect(ahead > 0 and beside < 1e-3 * ahead, f"the orbit left {middle} by {beside}")
         viewer.press("o", "2", "b", "h", "Tab")
         session.take_screenshot(4)
         session.expect_same_picture(4, session.print_command())
@@ -204,12 +223,12 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
 
     # By time, it takes its time.
     begin = time.monotonic()
-    session = Session(bin_folder, scenes, folder, "--replay", "flight.json")
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10")
     with session as viewer:
         code = viewer.wait_for_end()
     seconds = path[-1]["time_s"]
-    expect(code == 0 and time.monotonic() - begin >= seconds - 1 / flight["fps"], f"{seconds} s went by too fast")
-    count = math.floor(seconds * flight["fps"] + 1e-6) + 1
+    expect(code == 0 and time.monotonic() - begin >= seconds - 0.1, f"{seconds} s went by too fast")
+    count = math.floor(seconds * 10 + 1e-6) + 1
     expect(viewer.out.startswith(f"{count} frames: "), f"{count} frames are due: {viewer.out}")
 
     # Between frames window and renderer have the same cameras.
@@ -226,7 +245,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         session.quit()
 
     # The flight ends where the last screenshot was taken.
-    last = count - 1
+    last = math.floor(seconds * flight["fps"] + 1e-6)
     words = ["--size", *SIZE, "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
     done = run(bin_folder / "promin", "render", session.scene, *words, "-o", folder / "last.png")
     expect(done.returncode == 0, done.stderr)
@@ -234,6 +253,35 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         (folder / "last.png").read_bytes() == (folder / "promin-0002.png").read_bytes(),
         "the flight does not end where the camera did",
     )
+
+
+def stops_at_a_signal(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
+    with session as viewer:
+        session.take_screenshot(1)
+        viewer.hold("w", 0.2)
+        viewer.press("F12")
+        viewer.process.terminate()
+        code = viewer.wait_for_end()
+        expect(code == -signal.SIGTERM, f"it ended with {code}: {viewer.err}")
+    frames = json.loads((folder / "flight.json").read_text())["frames"]
+    expect(frames[0]["eye"] != frames[-1]["eye"], f"the flight was lost: {frames}")
+    names = sorted(file.name for file in folder.iterdir() if "showcase" not in file.name)
+    pairs = [f"promin-{number:04}.{ending}" for number in (1, 2) for ending in ("exr", "png")]
+    expect(names in (["flight.json", *pairs[:2]], ["flight.json", *pairs]), f"files are left half written: {names}")
+
+    # No option of `promin render` takes the size of what an orthographic camera sees.
+    flight = {"format": "promin camera path", "version": 1, "frames": [{**frames[0], "ymag": 2.5}]}
+    del flight["frames"][0]["fov_deg"]
+    (folder / "flight.json").write_text(json.dumps(flight))
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--keep-open")
+    with session as viewer:
+        viewer.wait_for_line("^1 frames: ", 0, "end of the replay")
+        viewer.focus()
+        viewer.press("c")
+        viewer.wait_for_line("warning: no command of promin render .* 2.5 ", 1, "refusal")
+        expect("promin render" not in viewer.out, viewer.out)
+        session.quit()
 
 
 def survives_its_window(bin_folder, scenes, folder):
@@ -284,6 +332,15 @@ def reads_a_changed_scene(bin_folder, scenes, folder):
             "the new scene is not shown",
         )
         session.expect_same_picture(3, after)
+
+        # The files beside it are watched, too, and what the loader warns of is said.
+        warned = changed.replace('"type": "plain"', '"type": "gradient"')
+        expect(warned != changed, "the showcase has another sky now: change this test")
+        session.scene.write_text(warned)
+        viewer.wait_for_line("warning: .*sky", 1, "warning")
+        binary = session.scene.with_suffix(".bin")
+        binary.write_bytes(binary.read_bytes())
+        wait_for(lambda: viewer.err.count("note: read showcase.gltf") == 3, "scene with its changed buffer")
         session.quit()
 
 
