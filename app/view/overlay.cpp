@@ -37,9 +37,9 @@ void show_times(const OverlayContent& content) {
   const double ms = statistics.frame_ms();
   show_text("{:.1f} fps, {:.1f} ms a frame", ms > 0.0 ? 1e3 / ms : 0.0, ms);
   const StageTimes& stages = statistics.stages();
-  show_text("trace {:.1f}, display {:.1f}, overlay {:.1f} ms", stages.trace, stages.display, stages.overlay);
+  show_text("trace {:.1f} ms,\ndisplay {:.1f}, overlay {:.1f} ms", stages.trace, stages.display, stages.overlay);
   const dvec3& rays = statistics.mrays_per_s();
-  show_text("Mrays/s: {:.2f} primary, {:.2f} shadow,\n         {:.2f} mirror", rays.x, rays.y, rays.z);
+  show_text("Mrays/s: {:.2f} primary,\n{:.2f} shadow, {:.2f} mirror", rays.x, rays.y, rays.z);
 }
 
 void show_picture(const LivePicture& picture) {

@@ -36,7 +36,7 @@ def run(*words, environment=None):
 class Session:
     """A window on the showcase, in a folder that holds a copy of it."""
 
-    def __init__(self, bin_folder, scenes, folder, *arguments, **environment):
+    def __init__(self, bin_folder, scenes, folder, *arguments, takes_keys=True, **environment):
         self.bin = bin_folder
         self.folder = folder
         for name in ("showcase.gltf", "showcase.bin"):
@@ -47,7 +47,7 @@ class Session:
             words = ["showcase.gltf", "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
             self.viewer = Viewer(self.display, bin_folder / "promin-view", words, folder, **environment)
             # A replay takes no keys, and may be over before the window is found.
-            if "--replay" not in arguments:
+            if takes_keys and "--replay" not in arguments:
                 self.viewer.focus()
         except BaseException:
             self.display.close()
@@ -174,11 +174,35 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         expect(" --max-depth 1 --no-shadows --lights-off 1,3 " in command, f"not what is shown: {command}")
         session.expect_same_picture(1, command)
 
-        viewer.press("F7")
+        def has_shadows_soon():
+            try:
+                return wait_for(lambda: " --no-shadows" not in session.print_command(), "shadows", 5.0)
+            except Failure:
+                return False
+
+        # The overlay's first switch is for shadows: what it changes is traced.
+        size = f"--size {SIZE[0]} {SIZE[1]}"
+        viewer.press("Tab")
+        viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
+        wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
+        # Where it is depends on how many lines the driver's name takes, and the message that a screenshot was written.
+        for y in (229, 216, 242):
+            viewer.xdotool("mousemove", "--window", viewer.window, 25, y, "sleep", 0.1, "click", 1)
+            if has_shadows_soon():
+                break
+        viewer.xdotool("windowsize", "--sync", viewer.window, *SIZE, "mousemove", "--window", viewer.window, 150, 5)
+        viewer.press("Tab")
+        wait_for(lambda: size in session.print_command(), "old size")
         session.take_screenshot(2)
         command = session.print_command()
-        expect(" --shading steps " in command, f"not what is shown: {command}")
+        expect(" --no-shadows" not in command, "no click in the overlay turned the shadows on")
         session.expect_same_picture(2, command)
+
+        viewer.press("F7")
+        session.take_screenshot(3)
+        command = session.print_command()
+        expect(" --shading steps " in command, f"not what is shown: {command}")
+        session.expect_same_picture(3, command)
 
         # A click explains a pixel with the scene's numbers of lights, and moves nothing.
         viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
@@ -187,10 +211,10 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         expect("2" in lights and not lights & {"1", "3"}, f"lights 1 and 3 are off, these are explained: {lights}")
         viewer.press("F1")
         wait_for(lambda: " --shading " not in session.print_command(), "light")
-        session.take_screenshot(3)
+        session.take_screenshot(4)
         after = session.print_command()
         expect(look_of(after) == look_of(command), f"the camera turned: {after}")
-        session.expect_same_picture(3, after)
+        session.expect_same_picture(4, after)
         session.quit()
 
 
@@ -292,8 +316,16 @@ def survives_its_window(bin_folder, scenes, folder):
             viewer.xdotool("windowsize", viewer.window, SIZE[0] + 37 * (i % 5) - 60, SIZE[1] + 23 * (i % 7) - 40)
             viewer.hold("w" if i % 2 else "s", 0.02)
             viewer.check_alive()
-        viewer.xdotool("windowunmap", "--sync", viewer.window)
-        viewer.xdotool("windowmap", "--sync", viewer.window)
+        # Minimised it has no pixels, and traces none although a key is down and there is refining to do.
+        viewer.xdotool("keydown", "w")
+        viewer.minimise(True)
+        time.sleep(0.3)
+        before = viewer.processor_seconds()
+        time.sleep(0.5)
+        taken = viewer.processor_seconds() - before
+        expect(taken < 0.2, f"minimised it took {taken} s of 0.5 s")
+        viewer.minimise(False)
+        viewer.xdotool("keyup", "w")
         viewer.xdotool("windowsize", "--sync", viewer.window, 120, 70)
         viewer.xdotool("windowfocus", "--sync", viewer.window)
         wait_for(lambda: "--size 120 70" in session.print_command(), "new size")
@@ -342,6 +374,25 @@ def reads_a_changed_scene(bin_folder, scenes, folder):
         binary.write_bytes(binary.read_bytes())
         wait_for(lambda: viewer.err.count("note: read showcase.gltf") == 3, "scene with its changed buffer")
         session.quit()
+
+
+def fails_in_a_sentence(bin_folder, scenes, folder):
+    """What the driver answers when a device is lost or its memory is short: at the start, and when the window flies."""
+    lost, no_memory = -4, -2
+    for call, number, result, sentence in (
+        ("vkAllocateMemory", 3, no_memory, "out of device memory, "),
+        ("vkQueueSubmit", 12, lost, "the device was lost, "),
+    ):
+        layer = {"VK_LAYER_PATH": os.environ["PROMIN_TEST_LAYERS"], "VK_INSTANCE_LAYERS": "VK_LAYER_PROMIN_fault"}
+        fault = {"PROMIN_TEST_FAULT": f"{call} {number} {result}"}
+        session = Session(bin_folder, scenes, folder, "--record", "flight.json", takes_keys=False, **layer, **fault)
+        with session as viewer:
+            code = viewer.wait_for_end()
+            expect(code == 1, f"{fault} ended with {code}: {viewer.err}")
+            errors = [line for line in viewer.err.splitlines() if "error: " in line]
+            expect(len(errors) == 1 and errors[0].startswith(f"promin-view: error: {sentence}"), viewer.err)
+    # The flight until then is kept.
+    expect(json.loads((folder / "flight.json").read_text())["frames"], "the flight was lost")
 
 
 def only_the_window_links_glfw(bin_folder, *_):
