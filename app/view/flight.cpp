@@ -4,21 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "camera.h"
+#include "quantiles.h"
 
 namespace promin::app {
-namespace {
-
-/// The smallest value that is not exceeded by that share of them.
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-}  // namespace
 
 void FlightRecorder::add(double time_s, const Camera& camera) {
   std::vector<TimedCamera>& frames = path_.frames;
@@ -48,7 +37,7 @@ void FlightReplay::add(const FinishedFrame& frame) {
 
 std::string FlightReplay::summarize() const {
   return fmt::format("{} frames: median {:.2f} ms, 99th percentile {:.2f} ms, tracing {:.1f} % of the time",
-                     frame_ms_.size(), percentile(frame_ms_, 0.5), percentile(frame_ms_, 0.99),
+                     frame_ms_.size(), median(frame_ms_), percentile(frame_ms_, 0.99),
                      total_ms_ > 0.0 ? 100.0 * trace_ms_ / total_ms_ : 0.0);
 }
 

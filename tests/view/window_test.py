@@ -89,7 +89,8 @@ class Session:
         place = words.index("-o")
         words[place : place + 2] = ["--explain", "0", "0"]
         words[words.index("--spp") + 1] = "1"
-        done = subprocess.run([self.bin / "promin", *words], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        words[words.index("showcase.gltf")] = self.scene
+        done = run(self.bin / "promin", *words)
         expect(done.returncode == 0, done.stderr)
         return json.loads(done.stdout)["samples"][0]["rays"][0]["hit"]["position"]
 
@@ -415,6 +416,8 @@ def refuses_what_is_wrong(bin_folder, scenes, folder):
         (2, ["--present-mode", "soon", scenes / "sphere.gltf"]),
         (2, ["--lights-off", "7", scenes / "sphere.gltf"]),
         (2, ["--keep-open", scenes / "sphere.gltf"]),
+        (2, ["--fps", "25", scenes / "sphere.gltf"]),
+        (2, ["--scale", "2", scenes / "sphere.gltf"]),
         (3, ["--replay", folder / "missing.json", scenes / "sphere.gltf"]),
         (2, []),
         (3, [folder / "missing.gltf"]),
