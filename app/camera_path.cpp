@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
 #include "camera.h"
+#include "core/error.h"
 #include "core/file.h"
 #include "scene/json_rule.h"
 #include "scene/load_scene.h"
@@ -31,6 +33,7 @@ const std::array kRules{
     rules::object(""),
     rules::needed(rules::choice("format", "promin camera path")),
     rules::needed(rules::integer("version", 1, 1)),
+    rules::number("fps", PathPictures::kMinFps, PathPictures::kMaxFps),
     rules::needed(rules::array("frames")),
     rules::object("frames[]"),
     rules::needed(rules::number("frames[].time_s", 0.0, kMaxTime)),
@@ -92,6 +95,8 @@ glm::dquat rotation_of(const Camera& camera) {
 
 /// `share` in (0, 1).
 Camera interpolate(const Camera& from, const Camera& to, double share) {
+  // A camera that rests keeps its bits.
+  if (shows_same(from, to)) return from;
   const auto mix = [&](const auto& a, const auto& b) { return a + share * (b - a); };
   const auto mix_real = [&](float a, float b) { return static_cast<float>(mix(double{a}, double{b})); };
   Camera camera = from;
@@ -117,32 +122,56 @@ CameraPath read_camera_path(const std::filesystem::path& file) {
 
   CameraPath path;
   for (const json& frame : document["frames"]) {
-    const std::string place = fmt::format("frames[{}]", path.size());
+    const std::string place = fmt::format("frames[{}]", path.frames.size());
     const TimedCamera next = read_frame(frame, place, report);
-    if (!path.empty() && !(next.time_s > path.back().time_s)) {
+    if (!path.frames.empty() && !(next.time_s > path.frames.back().time_s)) {
       report.refuse("time_s does not grow from frame to frame", place, "order the frames by their times");
     }
-    path.push_back(next);
+    path.frames.push_back(next);
   }
-  if (path.empty()) report.refuse("there are no frames", "frames", kWriteAnew);
+  if (document.contains("fps")) path.fps = document["fps"].get<double>();
+  if (path.frames.empty()) report.refuse("there are no frames", "frames", kWriteAnew);
   report.throw_if_refused();
   return path;
 }
 
 void write_camera_path(const std::filesystem::path& file, const CameraPath& path) {
-  std::string text = "{\n  \"format\": \"promin camera path\",\n  \"version\": 1,\n  \"frames\": [";
-  for (size_t i = 0; i < path.size(); ++i) text += (i == 0 ? "\n    " : ",\n    ") + write_frame(path[i]);
+  std::string text = "{\n  \"format\": \"promin camera path\",\n  \"version\": 1,\n";
+  if (path.fps) text += fmt::format("  \"fps\": {},\n", *path.fps);
+  text += "  \"frames\": [";
+  for (size_t i = 0; i < path.frames.size(); ++i) text += (i == 0 ? "\n    " : ",\n    ") + write_frame(path.frames[i]);
   write_text_file(file, text + "\n  ]\n}\n");
 }
 
 Camera camera_at(const CameraPath& path, double time_s) {
-  assert(!path.empty());
-  const auto next = std::upper_bound(path.begin(), path.end(), time_s,
+  const std::vector<TimedCamera>& frames = path.frames;
+  assert(!frames.empty());
+  const auto next = std::upper_bound(frames.begin(), frames.end(), time_s,
                                      [](double time, const TimedCamera& frame) { return time < frame.time_s; });
-  if (next == path.begin()) return path.front().camera;
+  if (next == frames.begin()) return frames.front().camera;
   const TimedCamera& last = *(next - 1);
-  if (next == path.end() || last.time_s == time_s) return last.camera;
+  if (next == frames.end() || last.time_s == time_s) return last.camera;
   return interpolate(last.camera, next->camera, (time_s - last.time_s) / (next->time_s - last.time_s));
+}
+
+PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
+    : path_(std::move(path)), fps_(fps.value_or(path_.fps.value_or(kStored))), count_(path_.frames.size()) {
+  if (fps_ == kStored) return;
+  // The last frame's time may be a hair before its picture's: 0.3 s at 10 a second.
+  constexpr double kRounding = 1e-6;
+  const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
+  if (count > static_cast<double>(kMaxCount)) {
+    throw UsageError({fmt::format("{:.0f} pictures are more than {}", count, kMaxCount),
+                      fmt::format("of a path of {:g} s at {:g} a second", path_.frames.back().time_s, fps_),
+                      "give a smaller --fps"});
+  }
+  count_ = static_cast<size_t>(count);
+}
+
+Camera PathPictures::camera(size_t picture) const {
+  assert(picture < count_);
+  if (fps_ == kStored) return path_.frames[picture].camera;
+  return camera_at(path_, static_cast<double>(picture) / fps_);
 }
 
 }  // namespace promin

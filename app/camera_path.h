@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "scene/scene.h"
@@ -15,8 +16,13 @@ struct TimedCamera {
   Camera camera;
 };
 
-/// A flight: at least one frame, times finite, not negative and strictly increasing.
-using CameraPath = std::vector<TimedCamera>;
+/// A flight of the camera over time.
+struct CameraPath {
+  /// At least one, times finite, not negative and strictly increasing.
+  std::vector<TimedCamera> frames;
+  /// Pictures a second that the flight is meant to be played with; none: each frame is a picture.
+  std::optional<double> fps;
+};
 
 /// Reads a file of docs/camera_path.md. Throws InputError with all that is wrong with it.
 CameraPath read_camera_path(const std::filesystem::path& file);
@@ -28,5 +34,29 @@ void write_camera_path(const std::filesystem::path& file, const CameraPath& path
 /// The camera at a time: a stored frame's at its time, to the bit, and the first and the last beyond the ends. Between,
 /// rotations follow the shortest great arc, all else straight lines; a change of projection waits for its frame.
 Camera camera_at(const CameraPath& path, double time_s);
+
+/// The pictures that a path is played as, for whoever renders or shows it: both get the same cameras, to the bit.
+class PathPictures {
+ public:
+  /// `fps` pictures a second, picture i at the time i / fps, until the last frame's time; with kStored the frames as
+  /// they are stored; none: as the path says. Throws UsageError for more pictures than kMaxCount.
+  explicit PathPictures(CameraPath path, std::optional<double> fps = std::nullopt);
+
+  /// At least one.
+  size_t count() const { return count_; }
+  Camera camera(size_t picture) const;
+  /// Seconds from picture to picture; 0 where they are the stored frames.
+  double interval_s() const { return fps_ == kStored ? 0.0 : 1.0 / fps_; }
+
+  static constexpr double kStored = 0.0;
+  static constexpr double kMinFps = 0.001;
+  static constexpr double kMaxFps = 1000.0;
+  static constexpr size_t kMaxCount = 10'000'000;
+
+ private:
+  CameraPath path_;
+  double fps_;
+  size_t count_;
+};
 
 }  // namespace promin

@@ -35,11 +35,11 @@ std::filesystem::path number_file(const std::filesystem::path& file, uint32_t nu
 
 std::vector<PlannedFrame> plan_frames(const RenderOptions& options) {
   if (!options.path) return {{std::nullopt, std::nullopt, options.pictures}};
-  const CameraPath path = read_camera_path(*options.path);
-  const FrameRange range = choose_frames(options, path.size());
+  const PathPictures path(read_camera_path(*options.path), options.fps);
+  const FrameRange range = choose_frames(options, path.count());
   std::vector<PlannedFrame> frames;
   for (uint32_t number = range.first; number <= range.last; ++number) {
-    PlannedFrame frame{number, path[number].camera, {}};
+    PlannedFrame frame{number, path.camera(number), {}};
     for (const std::filesystem::path& file : options.pictures) frame.pictures.push_back(number_file(file, number));
     frames.push_back(std::move(frame));
   }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "arguments.h"
+#include "camera_path.h"
 #include "core/error.h"
 #include "image/image.h"
 #include "render/sampling.h"
@@ -127,6 +128,17 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
             [&](const Words& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
 }
 
+void add_fps_option(OptionTable& table, std::optional<double>& fps) {
+  table.add(
+      "--fps", "N|stored",
+      fmt::format("Pictures a second of the path, {} to {}, or its frames as stored [as the path says, else stored]",
+                  PathPictures::kMinFps, PathPictures::kMaxFps),
+      [&](const Words& w) {
+        const bool is_stored = w.text() == "stored";
+        fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps);
+      });
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
@@ -146,6 +158,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const Words& w) { options.path = w.text(); });
   table.add("--frames", "A-B", "Of the path, the frames A to B, both included; the first is 0 [all]",
             [&](const Words& w) { options.frames = read_frames(w); });
+  add_fps_option(table, options.fps);
 
   table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(kAovNames, ",")),
             [&](const Words& w) { options.aovs = read_aovs(w); });
@@ -172,6 +185,9 @@ void check_render_options(const RenderOptions& options) {
   }
   if (options.frames && !options.path) {
     throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});
+  }
+  if (options.fps && !options.path) {
+    throw UsageError({"--fps has no path to play", "on the command line", "give --path as well"});
   }
   const auto& pictures = options.pictures;
   if (options.aovs.any() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {

@@ -76,6 +76,8 @@ struct RenderOptions {
   /// A camera path, and which of its frames; all where empty.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
+  /// As PathPictures takes it.
+  std::optional<double> fps;
   /// A pixel to explain instead of writing a picture.
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
@@ -84,6 +86,9 @@ struct RenderOptions {
 /// The rows of what a window takes as well: what of the scene is shown, and the camera. `view` must outlive the
 /// parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
+
+/// The row of --fps, for whatever plays a path. `fps` must outlive the parsing.
+void add_fps_option(OptionTable& table, std::optional<double>& fps);
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);

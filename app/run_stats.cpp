@@ -48,13 +48,6 @@ Json json_of_frames(const RunStats& stats) {
 
 }  // namespace
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 double RunStats::median_trace_ms() const {
   return median(trace_ms);
 }

@@ -8,13 +8,11 @@
 
 #include "gpu/device_info.h"
 #include "image/image.h"
+#include "quantiles.h"
 #include "render/renderer.h"
 #include "scene_counts.h"
 
 namespace promin::app {
-
-/// Of any number of values; 0 of none.
-double median(std::vector<double> values);
 
 /// What one run over a scene made and cost: the content of `--stats`. Times in milliseconds.
 struct RunStats {

@@ -11,8 +11,14 @@
 namespace promin::app {
 
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console) {
+  std::vector<SourceFile> sources;
+  return load_for(options, stats, console, sources);
+}
+
+Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
+               std::vector<SourceFile>& sources) {
   const Stopwatch load;
-  Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene, sources);
   stats.load_ms = load.ms();
   for (const std::string& warning : scene.warnings) console.warn(warning);
   stats.scene_file = options.scene.filename().string();

@@ -6,6 +6,7 @@
 #include "gpu/open_device.h"
 #include "run_stats.h"
 #include "scene/scene.h"
+#include "scene/source_file.h"
 #include "tracing_options.h"
 
 namespace promin::app {
@@ -14,6 +15,9 @@ namespace promin::app {
 
 /// Throws InputError.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console);
+/// As much, and tells of the scene's files as load_scene does.
+Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
+               std::vector<SourceFile>& sources);
 
 /// Throws DeviceError.
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Console& console);

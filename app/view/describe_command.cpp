@@ -29,6 +29,10 @@ std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera)
   return std::nullopt;
 }
 
+bool can_describe(const DescribedScene& scene, const View& view) {
+  return view.camera.projection == Projection::kPerspective || scene.camera_index;
+}
+
 std::string describe_command(const DescribedScene& scene, const View& view) {
   const Camera& camera = view.camera;
   std::string command =

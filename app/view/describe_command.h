@@ -26,6 +26,9 @@ struct DescribedScene {
 /// The scene's camera that has an orthographic camera's half height, which no option gives.
 std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera);
 
+/// Whether there is such a command: not for an orthographic view whose half height no camera of the scene has.
+bool can_describe(const DescribedScene& scene, const View& view);
+
 /// The `promin render` command that gives the picture of a view, to the bit, for a shell.
 std::string describe_command(const DescribedScene& scene, const View& view);
 

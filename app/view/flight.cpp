@@ -4,32 +4,29 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "camera.h"
+#include "quantiles.h"
 
 namespace promin::app {
-namespace {
-
-/// The smallest value that is not exceeded by that share of them.
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-}  // namespace
 
 void FlightRecorder::add(double time_s, const Camera& camera) {
-  if (path_.empty()) start_s_ = time_s;
+  std::vector<TimedCamera>& frames = path_.frames;
+  if (frames.empty()) start_s_ = time_s;
   const double time = time_s - start_s_;
   // Frames of one camera are as good as their first and last.
-  const size_t count = path_.size();
-  if (count >= 2 && shows_same(path_[count - 2].camera, camera) && shows_same(path_[count - 1].camera, camera)) {
-    path_.pop_back();
+  const size_t count = frames.size();
+  if (count >= 2 && shows_same(frames[count - 2].camera, camera) && shows_same(frames[count - 1].camera, camera)) {
+    frames.pop_back();
   }
-  if (!path_.empty() && time <= path_.back().time_s) return;
-  path_.push_back({time, camera});
+  if (!frames.empty() && time <= frames.back().time_s) return;
+  frames.push_back({time, camera});
+}
+
+Camera FlightReplay::next_camera(double time_s) {
+  const double interval_s = pictures_.interval_s();
+  // What is late by less than a picture is made up for; the time of a slow picture or of a pause is not.
+  due_s_ = time_s - due_s_ < interval_s ? due_s_ + interval_s : time_s + interval_s;
+  return pictures_.camera(next_++);
 }
 
 void FlightReplay::add(const FinishedFrame& frame) {
@@ -40,7 +37,7 @@ void FlightReplay::add(const FinishedFrame& frame) {
 
 std::string FlightReplay::summarize() const {
   return fmt::format("{} frames: median {:.2f} ms, 99th percentile {:.2f} ms, tracing {:.1f} % of the time",
-                     frame_ms_.size(), percentile(frame_ms_, 0.5), percentile(frame_ms_, 0.99),
+                     frame_ms_.size(), median(frame_ms_), percentile(frame_ms_, 0.99),
                      total_ms_ > 0.0 ? 100.0 * trace_ms_ / total_ms_ : 0.0);
 }
 

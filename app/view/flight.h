@@ -13,32 +13,39 @@ namespace promin::app {
 /// Keeps a flight of the camera for a file.
 class FlightRecorder {
  public:
-  /// The camera of a frame at a time in seconds; the first frame is at 0. A camera that stands still is kept where it
-  /// begins and ends to.
+  /// The camera at a time in seconds; the first is at 0. Between two calls the camera is taken to move evenly: a call
+  /// belongs to each frame and to the end of each rest. Of a rest the beginning and the end are kept.
   void add(double time_s, const Camera& camera);
   const CameraPath& path() const { return path_; }
 
+  /// What a recorded flight is meant to be played with.
+  static constexpr double kFps = 30.0;
+
  private:
   double start_s_ = 0.0;
-  CameraPath path_;
+  CameraPath path_{{}, kFps};
 };
 
-/// Plays a flight frame by frame, however long each takes, and measures that.
+/// Plays a flight picture by picture, none left out, however long each takes, and measures that.
 class FlightReplay {
  public:
-  explicit FlightReplay(CameraPath path) : path_(std::move(path)) {}
+  explicit FlightReplay(PathPictures pictures) : pictures_(std::move(pictures)) {}
 
-  /// The camera of the next frame; not when done.
-  const Camera& next_camera() { return path_[next_++].camera; }
-  bool is_done() const { return next_ == path_.size(); }
+  /// Whether it is time for the next picture: none comes earlier than its interval after the one before. Never when
+  /// done. Times are in seconds.
+  bool is_due(double time_s) const { return !is_done() && time_s >= due_s_; }
+  /// The next picture's camera; not when done.
+  Camera next_camera(double time_s);
+  bool is_done() const { return next_ == pictures_.count(); }
 
   void add(const FinishedFrame& frame);
   /// One line: how many frames, the median and the 99th percentile of their times, and what of it was tracing.
   std::string summarize() const;
 
  private:
-  CameraPath path_;
+  PathPictures pictures_;
   size_t next_ = 0;
+  double due_s_ = 0.0;
   std::vector<double> frame_ms_;
   double total_ms_ = 0.0;
   double trace_ms_ = 0.0;

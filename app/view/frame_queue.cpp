@@ -64,7 +64,8 @@ void FrameQueue::submit(Frame& frame) {
   const vk::PipelineStageFlags wait_stage = Stage::eColorAttachmentOutput;
   const vk::CommandBuffer commands = *frame.commands;
   const vk::Semaphore rendered = swapchain_->rendered(frame.image);
-  device_->queue().submit(vk::SubmitInfo(wait, wait_stage, commands, rendered), *frame.fence);
+  const vk::SubmitInfo info(wait, wait_stage, commands, rendered);
+  device_->use_queue([&](const vk::raii::Queue& queue) { queue.submit(info, *frame.fence); });
   frame.is_in_flight = true;
   frame.is_presented = !presents_late_;
   if (!presents_late_) swapchain_->present(frame.image);
@@ -87,10 +88,10 @@ void FrameQueue::poll(const std::function<void(const FinishedFrame&)>& on_finish
 }
 
 void FrameQueue::finish(const std::function<void(const FinishedFrame&)>& on_finished) {
-  device_->handle().waitIdle();
+  device_->wait_idle();
   poll(on_finished);
   // What was presented last belongs to the queue until it is idle again.
-  device_->handle().waitIdle();
+  device_->wait_idle();
 }
 
 FinishedFrame FrameQueue::take(Frame& frame) {
@@ -99,6 +100,7 @@ FinishedFrame FrameQueue::take(Frame& frame) {
                      stage_ms(frame, FrameMark::kTraced, FrameMark::kDisplayed),
                      stage_ms(frame, FrameMark::kDisplayed, FrameMark::kEnd)};
   finished.units = frame.units;
+  finished.most_samples_a_lane = frame.most_samples_a_lane;
   finished.is_of_flight = frame.is_of_flight;
   if (frame.units > 0.0) {
     finished.rays = sum_counts(frame.counters->mapped());
@@ -109,7 +111,7 @@ FinishedFrame FrameQueue::take(Frame& frame) {
   last_end_time_ = end_time;
   device_->handle().resetFences({*frame.fence});
   frame.is_in_flight = false;
-  if (frame.on_finished) std::exchange(frame.on_finished, {})();
+  if (frame.on_finished) std::exchange(frame.on_finished, {})(finished);
   return finished;
 }
 

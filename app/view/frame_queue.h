@@ -25,6 +25,8 @@ struct FinishedFrame {
   RayCounts rays;
   /// The driver cut the tracing short (render/film.h): pixels are wrong.
   bool has_cut_loops = false;
+  /// With which it was traced, as PieceOptions has it.
+  uint32_t most_samples_a_lane = 0;
   /// Units of tracing (LivePicture::record).
   double units = 0.0;
   /// As Frame::is_of_flight.
@@ -48,11 +50,12 @@ struct Frame {
   bool is_in_flight = false;
   bool is_presented = false;
   double begin_time = 0.0;
+  uint32_t most_samples_a_lane = 0;
   double units = 0.0;
   /// Whether it shows the next camera of a flight.
   bool is_of_flight = false;
   /// Called when the device has finished the frame.
-  std::function<void()> on_finished;
+  std::function<void(const FinishedFrame&)> on_finished;
 
   void mark(FrameMark mark) const;
 };

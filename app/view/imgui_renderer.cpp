@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include "view/overlay.h"
+
 namespace promin::app {
 namespace {
 
@@ -25,7 +27,8 @@ vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
 
 void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 #if IMGUI_VERSION_NUM >= 19000
-  ImGui_ImplVulkan_CreateFontsTexture();
+  // It submits by itself.
+  device.use_queue([](const vk::raii::Queue&) { ImGui_ImplVulkan_CreateFontsTexture(); });
 #else
   device.run([](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
@@ -35,28 +38,40 @@ void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 }  // namespace
 
 ImguiRenderer::ImguiRenderer(const gpu::Device& device, const Window& window, const Swapchain& swapchain)
-    : pool_(make_pool(device)) {
+    : device_(&device), swapchain_(&swapchain), scale_(window.overlay_scale()) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
-  ImGui::StyleColorsDark();
-  ImGui::GetStyle().WindowRounding = 4.0F;
   ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
+  start_backend();
+}
+
+void ImguiRenderer::set_scale(const OverlayScale& scale) {
+  // Its textures, and the fonts in them, are made at its start, in every version.
+  ImGui_ImplVulkan_Shutdown();
+  scale_ = scale;
+  start_backend();
+}
+
+void ImguiRenderer::start_backend() {
+  const gpu::Device& device = *device_;
+  scale_overlay(scale_);
+  pool_ = make_pool(device);
   ImGui_ImplVulkan_InitInfo info = {};
   info.Instance = *device.instance();
   info.PhysicalDevice = *device.physical();
   info.Device = *device.handle();
   info.QueueFamily = device.queue_family();
-  info.Queue = *device.queue();
+  info.Queue = device.use_queue([](const vk::raii::Queue& queue) { return static_cast<VkQueue>(*queue); });
   info.DescriptorPool = *pool_;
   info.MinImageCount = 2;
-  info.ImageCount = std::max(info.MinImageCount, swapchain.image_count());
+  info.ImageCount = std::max(info.MinImageCount, swapchain_->image_count());
   info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   info.CheckVkResultFn = throw_failure;
 #if IMGUI_VERSION_NUM >= 19030
-  info.RenderPass = *swapchain.render_pass();
+  info.RenderPass = *swapchain_->render_pass();
   ImGui_ImplVulkan_Init(&info);
 #else
-  ImGui_ImplVulkan_Init(&info, *swapchain.render_pass());
+  ImGui_ImplVulkan_Init(&info, *swapchain_->render_pass());
 #endif
   upload_fonts(device);
 }

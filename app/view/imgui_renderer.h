@@ -16,6 +16,10 @@ class ImguiRenderer {
   ImguiRenderer(const ImguiRenderer&) = delete;
   ImguiRenderer& operator=(const ImguiRenderer&) = delete;
 
+  /// Of all that is drawn; the device must be idle.
+  void set_scale(const OverlayScale& scale);
+  const OverlayScale& scale() const { return scale_; }
+
   /// Between these calls ImGui is told what to show.
   void begin_frame();
   void end_frame();
@@ -26,7 +30,12 @@ class ImguiRenderer {
   bool wants_pointer() const;
 
  private:
-  vk::raii::DescriptorPool pool_;
+  void start_backend();
+
+  const gpu::Device* device_;
+  const Swapchain* swapchain_;
+  OverlayScale scale_;
+  vk::raii::DescriptorPool pool_{nullptr};
 };
 
 }  // namespace promin::app

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "camera.h"
+#include "core/divide_up.h"
 
 namespace promin::app {
 namespace {
@@ -22,8 +23,7 @@ uvec2 scale_size(const uvec2& size, double scale) {
 }
 
 double count_blocks(const uvec2& size) {
-  const uvec2 blocks = (size + layout::BLOCK_SIZE - 1U) / layout::BLOCK_SIZE;
-  return static_cast<double>(blocks.x) * blocks.y;
+  return static_cast<double>(divide_up(size.x, layout::BLOCK_SIZE)) * divide_up(size.y, layout::BLOCK_SIZE);
 }
 
 }  // namespace
@@ -94,7 +94,9 @@ uvec2 LivePicture::first_size() const {
 void LivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
-  picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options());
+  PieceOptions options = films_[film].piece_options();
+  options.most_samples_a_lane = most_samples_a_lane_;
+  picture_ = films_[film].cut(view, {uvec2(0), view.size}, options);
   picture_when_done_ = {film, view.size, view.samples_per_pixel};
   picture_version_ = wanted_version_;
   films_[film].record_begin(commands, *picture_);
@@ -134,6 +136,12 @@ void LivePicture::record_take_counts(const vk::raii::CommandBuffer& commands, co
 void LivePicture::set_budget(double budget_ms) {
   budget_ms_ = budget_ms;
   pacer_.aim(budget_ms);
+}
+
+void LivePicture::shorten_loops() {
+  most_samples_a_lane_ = 1;
+  picture_.reset();
+  ++wanted_version_;
 }
 
 void LivePicture::learn(double units, double time_ms) {

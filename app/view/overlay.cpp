@@ -15,8 +15,17 @@ namespace promin::app {
 namespace {
 
 const ImVec4 kFailureColor(1.0F, 0.45F, 0.35F, 1.0F);
+// Lengths on an ordinary display.
+constexpr float kFontSize = 13.0F;
 constexpr float kMargin = 10.0F;
 constexpr float kPanelWidth = 270.0F;
+constexpr float kBarHeight = 4.0F;
+constexpr float kRounding = 4.0F;
+
+/// Such a length here.
+float scaled(float length) {
+  return length * ImGui::GetFontSize() / kFontSize;
+}
 
 template <typename... Arguments>
 void show_text(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -28,9 +37,9 @@ void show_times(const OverlayContent& content) {
   const double ms = statistics.frame_ms();
   show_text("{:.1f} fps, {:.1f} ms a frame", ms > 0.0 ? 1e3 / ms : 0.0, ms);
   const StageTimes& stages = statistics.stages();
-  show_text("trace {:.1f}, display {:.1f}, overlay {:.1f} ms", stages.trace, stages.display, stages.overlay);
+  show_text("trace {:.1f} ms,\ndisplay {:.1f}, overlay {:.1f} ms", stages.trace, stages.display, stages.overlay);
   const dvec3& rays = statistics.mrays_per_s();
-  show_text("Mrays/s: {:.2f} primary, {:.2f} shadow,\n         {:.2f} mirror", rays.x, rays.y, rays.z);
+  show_text("Mrays/s: {:.2f} primary,\n{:.2f} shadow, {:.2f} mirror", rays.x, rays.y, rays.z);
 }
 
 void show_picture(const LivePicture& picture) {
@@ -38,7 +47,7 @@ void show_picture(const LivePicture& picture) {
   if (!shown) return show_text("no picture yet");
   show_text("{} x {} of {} x {}, {} spp", shown->size.x, shown->size.y, picture.full_size().x, picture.full_size().y,
             shown->samples_per_pixel);
-  ImGui::ProgressBar(static_cast<float>(picture.fraction_done()), ImVec2(-1.0F, 4.0F), "");
+  ImGui::ProgressBar(static_cast<float>(picture.fraction_done()), ImVec2(-1.0F, scaled(kBarHeight)), "");
 }
 
 void choose_scale(std::optional<double>& scale) {
@@ -49,7 +58,8 @@ void choose_scale(std::optional<double>& scale) {
   static constexpr std::array kRows = {Row{"auto", std::nullopt}, Row{"1/8", 0.125}, Row{"1/4", 0.25}, Row{"1/2", 0.5},
                                        Row{"full", 1.0}};
   const auto current = std::find_if(kRows.begin(), kRows.end(), [&](const Row& row) { return row.scale == scale; });
-  if (!ImGui::BeginCombo("resolution", current->name)) return;
+  const std::string name = current == kRows.end() ? fmt::format("{:g}", *scale) : current->name;
+  if (!ImGui::BeginCombo("resolution", name.c_str())) return;
   for (const Row& row : kRows) {
     if (ImGui::Selectable(row.name, row.scale == scale)) scale = row.scale;
   }
@@ -140,9 +150,23 @@ void FrameStatistics::add(const FinishedFrame& frame) {
   mrays_per_s_ += share * (1e-3 / frame.stages.trace * rays - mrays_per_s_);
 }
 
+void scale_overlay(const OverlayScale& scale) {
+  ImGuiIO& io = ImGui::GetIO();
+  ImFontConfig font;
+  font.SizePixels = kFontSize * static_cast<float>(scale.content);
+  io.Fonts->Clear();
+  io.Fonts->AddFontDefault(&font);
+  io.FontGlobalScale = static_cast<float>(1.0 / scale.pixel_ratio);
+  ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();
+  ImGui::StyleColorsDark();
+  style.WindowRounding = kRounding;
+  style.ScaleAllSizes(static_cast<float>(scale.content / scale.pixel_ratio));
+}
+
 std::optional<Camera> show_overlay(const OverlayContent& content, Switches& switches) {
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize(ImVec2(kPanelWidth, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize(ImVec2(scaled(kPanelWidth), 0.0F));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("promin  (H: help, Tab: hide)", nullptr,
                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoFocusOnAppearing);
@@ -150,8 +174,8 @@ std::optional<Camera> show_overlay(const OverlayContent& content, Switches& swit
   show_text("{}", content.device);
   show_times(content);
   show_picture(*content.picture);
-  show_text("{}, speed {:.3g} a second{}", content.is_orbiting ? "orbiting" : "flying", content.speed,
-            content.is_loading ? ", loading" : "");
+  show_text("{}, speed {:.3g} a second", content.is_orbiting ? "orbiting" : "flying", content.speed);
+  if (!content.awaited.empty()) show_text("{} ...", content.awaited);
   if (content.is_failure) ImGui::PushStyleColor(ImGuiCol_Text, kFailureColor);
   if (!content.message.empty()) show_text("{}", content.message);
   if (content.is_failure) ImGui::PopStyleColor();
@@ -165,7 +189,8 @@ std::optional<Camera> show_overlay(const OverlayContent& content, Switches& swit
 
 void show_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x - kMargin, kMargin), ImGuiCond_FirstUseEver, ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(size.x - scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver,
+                          ImVec2(1.0F, 0.0F));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
   for (const KeyBinding& binding : key_bindings()) {
@@ -178,7 +203,8 @@ void show_help() {
 bool show_explanation(const std::string& title, const std::string& text) {
   bool is_open = true;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x - kMargin, size.y - kMargin), ImGuiCond_FirstUseEver, ImVec2(1.0F, 1.0F));
+  ImGui::SetNextWindowPos(ImVec2(size.x - scaled(kMargin), size.y - scaled(kMargin)), ImGuiCond_FirstUseEver,
+                          ImVec2(1.0F, 1.0F));
   ImGui::SetNextWindowSize(ImVec2(0.55F * size.x, 0.5F * size.y), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowBgAlpha(0.85F);
   ImGui::Begin((title + "###explanation").c_str(), &is_open,

@@ -8,6 +8,7 @@
 
 #include "view/frame_queue.h"
 #include "view/live_picture.h"
+#include "view/overlay_scale.h"
 #include "view/scene_loader.h"
 
 namespace promin::app {
@@ -53,12 +54,16 @@ struct OverlayContent {
   std::string device;
   double speed = 0.0;
   bool is_orbiting = false;
-  bool is_loading = false;
+  /// What is under way beside; empty where nothing is.
+  std::string awaited;
   /// What happened last; a failure stands out.
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
 };
+
+/// Makes ImGui's fonts and sizes anew; not within a frame.
+void scale_overlay(const OverlayScale& scale);
 
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, lets the user change the switches, and returns
 /// the camera that was picked from the lists.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +10,7 @@
 
 #include "render/pack_scene.h"
 #include "scene/features.h"
-#include "scene/scene.h"
+#include "scene/source_file.h"
 
 namespace promin::app {
 
@@ -26,48 +25,34 @@ struct SceneChoice {
 };
 
 /// A scene that is ready to be copied to the device.
-struct LoadedScene {
-  /// As the file has it, lit up.
-  std::shared_ptr<const Scene> scene;
+struct PackedChoice {
   /// What of it is packed, with only those lights off that the scene has.
   SceneChoice choice;
   PackedScene packed;
   FeatureMask features = 0;
 };
 
-/// Reads a file and packs what is chosen of it. Throws InputError, UsageError, RunError.
-LoadedScene load_chosen_scene(const std::filesystem::path& file, const SceneChoice& choice);
-/// Packs another choice of a scene that has been read.
-LoadedScene pack_chosen_scene(std::shared_ptr<const Scene> scene, const SceneChoice& choice);
+/// Packs what is chosen of a scene that is lit up. Throws InputError, UsageError, RunError, and what `progress` throws
+/// that the tree's builder calls.
+PackedChoice pack_choice(const Scene& scene, const SceneChoice& choice, const ProgressCallback& progress = {});
 
-/// Loads scenes on a thread of its own, one at a time, and watches a file for changes.
-class SceneLoader {
+/// Watches the files that a scene is read from.
+class SceneWatch {
  public:
-  explicit SceneLoader(std::filesystem::path file);
+  explicit SceneWatch(std::vector<SourceFile> sources) { follow(std::move(sources)); }
 
-  /// Notices by its time and size that the file was written, and has been left alone since the last call.
-  bool has_file_changed();
-
-  bool is_busy() const { return result_.valid(); }
-  /// Not while busy.
-  void load(const SceneChoice& choice);
-  void pack(std::shared_ptr<const Scene> scene, const SceneChoice& choice);
-  /// What it was asked for last, once it is there. Throws what loading threw.
-  std::optional<LoadedScene> take();
+  /// From now on these, as they were when they were read.
+  void follow(std::vector<SourceFile> sources);
+  /// Whether one has been written, or has appeared, since it was read, and all have been left alone since the last
+  /// call. Says so once for each change.
+  bool has_changed();
 
  private:
-  struct Stamp {
-    std::filesystem::file_time_type time;
-    uintmax_t size = 0;
-    bool operator==(const Stamp&) const = default;
-  };
-  /// None while there is no such file: editors replace it.
-  std::optional<Stamp> read_stamp() const;
+  using Stamps = std::vector<std::optional<FileStamp>>;
 
-  std::filesystem::path file_;
-  std::optional<Stamp> loaded_;
-  std::optional<Stamp> last_;
-  std::future<LoadedScene> result_;
+  std::vector<SourceFile> sources_;
+  /// Of the last call.
+  Stamps last_;
 };
 
 }  // namespace promin::app

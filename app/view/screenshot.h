@@ -24,6 +24,8 @@ class Screenshot {
   void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view);
   /// To be called when the device has done that; writes on a thread of its own.
   void write(const Metadata& metadata);
+  /// Instead of writing: the copy was not worth it.
+  void drop() { copy_.reset(); }
   /// Until it is written; the device has finished.
   void wait() const;
   /// What was written, as a sentence, once it is. Throws RunError.

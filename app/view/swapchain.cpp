@@ -118,7 +118,8 @@ void Swapchain::present(uint32_t image) {
   info.setSwapchains(*chain_);
   info.setImageIndices(image);
   try {
-    if (device_->queue().presentKHR(info) == vk::Result::eSuboptimalKHR) is_out_of_date_ = true;
+    const vk::Result result = device_->use_queue([&](const vk::raii::Queue& queue) { return queue.presentKHR(info); });
+    if (result == vk::Result::eSuboptimalKHR) is_out_of_date_ = true;
   } catch (const vk::OutOfDateKHRError&) {
     is_out_of_date_ = true;
   }

@@ -21,14 +21,17 @@ namespace {
 /// Drivers of GPUs kill what takes seconds.
 constexpr double kMinTargetMs = 1.0;
 constexpr double kMaxTargetMs = 1000.0;
+constexpr double kMinScale = 0.01;
 
 struct WindowOptions {
   TracingOptions tracing;
   ViewOptions view;
   std::optional<std::string> present_mode;
   std::optional<double> target_ms;
+  std::optional<double> scale;
   std::optional<std::filesystem::path> record;
   std::optional<std::filesystem::path> replay;
+  std::optional<double> fps;
   bool stays_open = false;
 };
 
@@ -40,14 +43,19 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
             fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
                         kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
             [&](const Words& w) { options.target_ms = w.real(0, kMinTargetMs, kMaxTargetMs); });
+  table.add("--scale", "S",
+            fmt::format("Pixels of a moving picture for one of the window on a side, {} to 1 [as the target allows]",
+                        kMinScale),
+            [&](const Words& w) { options.scale = w.real(0, kMinScale, 1.0); });
   table.add("--present-mode", "MODE",
             fmt::format("How frames go to the display: {}; fifo where it has no other [fifo]",
                         fmt::join(present_mode_names(), ", ")),
             [&](const Words& w) { options.present_mode = w.choice(present_mode_names()); });
   table.add("--record", "FILE.json", "Write the camera's flight, a camera path, when the window closes",
             [&](const Words& w) { options.record = w.text(); });
-  table.add("--replay", "FILE.json", "Play a camera path frame by frame, print what its frames took, and close",
+  table.add("--replay", "FILE.json", "Play a camera path, print what its frames took, and close",
             [&](const Words& w) { options.replay = w.text(); });
+  add_fps_option(table, options.fps);
   table.add_flag("--keep-open", "After --replay let the user fly on", options.stays_open);
   add_tracing_options(table, options.tracing);
 }
@@ -58,9 +66,24 @@ void check_window_options(const WindowOptions& options) {
   if (options.stays_open && !options.replay) {
     throw UsageError({"--keep-open has no replay to end", "on the command line", "give --replay as well"});
   }
+  if (options.fps && !options.replay) {
+    throw UsageError({"--fps has no path to play", "on the command line", "give --replay as well"});
+  }
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);
   if (options.replay) inputs.push_back(*options.replay);
   if (options.record) check_outputs(inputs, {*options.record}, std::nullopt);
+}
+
+/// Waits for it while the window answers; none where the user closes that.
+std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, PictureMaker& maker) {
+  constexpr double kWait = 0.02;
+  while (!maker.is_ready()) {
+    window.set_title(title + " (" + maker.describe() + ")");
+    window.wait(kWait);
+    if (window.wants_to_close()) return std::nullopt;
+  }
+  window.set_title(title);
+  return maker.take();
 }
 
 void view(const WindowOptions& options) {
@@ -69,13 +92,14 @@ void view(const WindowOptions& options) {
   const Console console(tracing.verbosity(), "promin-view");
 
   RunStats stats;
+  std::vector<SourceFile> sources;
   ViewerStart start;
   start.file = tracing.scene;
-  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console));
+  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
   ViewOptions view_options = options.view;
   if (options.replay) {
-    start.replay = read_camera_path(*options.replay);
-    view_options.given_camera = start.replay->front().camera;
+    start.replay.emplace(read_camera_path(*options.replay), options.fps);
+    view_options.given_camera = start.replay->camera(0);
   }
   start.view = make_view(*scene, view_options, console);
   light_up(*scene, console);
@@ -83,20 +107,26 @@ void view(const WindowOptions& options) {
   start.choice.bvh = tracing.bvh;
   check_lights(*scene, options.view.lights_off);
   start.choice.lights_off = options.view.lights_off;
-  start.has_shadows = !options.view.has_no_shadows;
   start.present_mode = options.present_mode;
   start.target_ms = options.target_ms;
+  start.scale = options.scale;
   start.stays_open = options.stays_open;
   start.record = options.record;
 
-  Window window(start.view.size, "promin - " + start.file.filename().string());
+  const std::string title = "promin - " + start.file.filename().string();
+  Window window(start.view.size, title);
   const gpu::Presentation presentation = window.presentation();
   const gpu::Device device(tracing.device, &presentation);
   stats.device = device.info();
   console.detail(device.choice());
+  PictureMaker maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
   // The longest last: without a window it would be in vain.
-  start.scene = pack_chosen_scene(scene, start.choice);
-  gpu::translate_vulkan_errors([&] { Viewer(window, device, console, std::move(start), stats).run(); });
+  const Look look{!options.view.has_no_shadows, start.view.shading};
+  maker.begin(scene, {start.choice, look, window.framebuffer_size()});
+  std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
+  if (!picture) return;
+  gpu::translate_vulkan_errors(
+      [&] { Viewer(window, device, console, maker, std::move(*picture), std::move(start), stats).run(); });
   check_validation(device, stats);
 }
 

@@ -9,34 +9,31 @@
 
 #include "core/error.h"
 #include "deferred_signals.h"
-#include "explanation.h"
-#include "render/explain_pixel.h"
 
 namespace promin::app {
 namespace {
 
 /// While there is something to do but no frame is free.
 constexpr double kShortWait = 1e-3;
-/// While there is nothing to do, in seconds; the scene's file is looked at as often.
+/// While there is nothing to do, in seconds; the scene's files are looked at as often.
 constexpr double kLongWait = 0.1;
 /// What a frame spends on tracing at least, of its target.
 constexpr double kLeastTraceShare = 0.5;
-/// ImGui settles its windows within so many frames.
-constexpr int kSettlingFrames = 3;
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats)
+Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, PictureMaker& maker,
+               ReadyPicture picture, ViewerStart start, RunStats stats)
     : window_(window),
       device_(device),
       console_(console),
+      maker_(maker),
       file_(start.file),
       stats_(std::move(stats)),
-      target_ms_(start.target_ms.value_or(device.is_cpu() ? ViewerStart::kCpuTargetMs : window.refresh_interval_ms())),
-      scene_(start.scene.scene),
-      asked_choice_(start.choice),
-      loader_(start.file),
-      control_(start.replay ? start.replay->front().camera : start.view.camera, speed_to_cross(bounds_of(*scene_))),
+      follows_display_(!start.target_ms && !device.is_cpu()),
+      target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
+      asker_(device),
+      control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
       stays_open_(start.stays_open),
       record_file_(start.record),
       swapchain_(device, start.present_mode),
@@ -49,32 +46,54 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
   }
   if (start.replay) replay_.emplace(std::move(*start.replay));
   switches_.scene = start.choice;
-  switches_.has_shadows = start.has_shadows;
-  switches_.shading = start.view.shading;
+  switches_.scale = start.scale;
+  switches_.has_shadows = picture.look.has_shadows;
+  switches_.shading = picture.look.shading;
   switches_.max_depth = start.view.max_depth;
-  show_scene(start.scene);
+  show_picture(std::move(picture));
   fit_window();
   imgui_ = std::make_unique<ImguiRenderer>(device, window, swapchain_);
 }
 
 Viewer::~Viewer() {
   try {
-    device_.handle().waitIdle();
+    device_.wait_idle();
   } catch (const vk::SystemError&) {
     // A lost device: what threw before says so.
   }
 }
 
 void Viewer::run() {
-  while (!is_quitting_ && !window_.should_close()) {
+  const DeferredSignals signals;
+  try {
+    show_frames(signals);
+  } catch (...) {
+    // The flight up to here is whole, whatever happened to the device.
+    if (record_file_) write_camera_path(*record_file_, recorder_.path());
+    throw;
+  }
+  if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
+  if (record_file_) write_camera_path(*record_file_, recorder_.path());
+  screenshot_.wait();
+  update_screenshot();
+}
+
+void Viewer::show_frames(const DeferredSignals& signals) {
+  keep_camera();
+  while (!is_quitting_ && !window_.should_close() && !signals.is_pending()) {
     window_.poll();
     frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
     handle_input();
-    update_scene();
+    update_picture();
+    update_answers();
     update_screenshot();
     update_replay();
     if (!fit_window() || !has_work()) {
-      window_.wait(frames_.is_idle() && !loader_.is_busy() && !screenshot_.is_busy() ? kLongWait : kShortWait);
+      const bool is_at_rest =
+          frames_.is_idle() && !maker_.is_busy() && !asker_.is_busy() && !screenshot_.is_busy() && !is_replaying();
+      window_.wait(is_at_rest ? kLongWait : kShortWait);
+      // The rest lasts until the event that ends it.
+      keep_camera();
       continue;
     }
     Frame* frame = frames_.begin();
@@ -85,86 +104,28 @@ void Viewer::run() {
     record(*frame);
     frames_.submit(*frame);
   }
+  keep_camera();
   finish_frames();
-  if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
-  if (record_file_ && !recorder_.path().empty()) {
-    const DeferredSignals while_writing;
-    write_camera_path(*record_file_, recorder_.path());
-  }
-  screenshot_.wait();
-  update_screenshot();
-}
-
-void Viewer::handle_input() {
-  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
-  for (const Press press : window_.take_presses()) handle_press(press);
-  for (const dvec2& place : window_.take_clicks()) {
-    const dvec2 full_size(picture_->full_size());
-    const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
-    explain(uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
-  }
-  if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
-  if (window_.take_activity()) frames_to_draw_ = kSettlingFrames;
-}
-
-void Viewer::handle_press(Press press) {
-  switch (press) {
-    case Press::kHelp:
-      has_help_ = !has_help_;
-      return;
-    case Press::kOverlay:
-      has_overlay_ = !has_overlay_;
-      return;
-    case Press::kFullscreen:
-      return window_.toggle_fullscreen();
-    case Press::kReset:
-      return control_.reset();
-    case Press::kPause:
-      switches_.is_paused = !switches_.is_paused;
-      return;
-    case Press::kOrbit: {
-      const Bounds bounds = bounds_of(*scene_);
-      if (control_.is_orbiting()) return control_.fly();
-      if (!bounds.is_empty()) control_.orbit(bounds.center());
-      return;
-    }
-    case Press::kBookmark:
-      bookmarks_.push_back(control_.camera());
-      bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
-      return;
-    case Press::kPrintCommand: {
-      const View view = reproducible_view();
-      fmt::print("{}\n", describe_command(described_scene(view), view));
-      std::fflush(stdout);
-      return;
-    }
-    case Press::kScreenshot:
-      wants_screenshot_ = true;
-      return;
-    case Press::kQuit:
-      is_quitting_ = true;
-      return;
-    default:
-      break;
-  }
-  if (press >= Press::kFirstShading) {
-    switches_.shading = static_cast<Shading>(static_cast<int>(press) - static_cast<int>(Press::kFirstShading));
-    return;
-  }
-  const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
-  if (index < scene_->cameras.size()) control_.place(scene_->cameras[index]);
 }
 
 void Viewer::move_camera(Frame& frame) {
   const Motion motion = window_.take_motion();
   if (is_replaying()) {
-    frame.is_of_flight = !replay_->is_done() && !switches_.is_paused;
-    if (frame.is_of_flight) control_.place(replay_->next_camera());
+    frame.is_of_flight = is_picture_due();
+    if (frame.is_of_flight) control_.place(replay_->next_camera(Window::now()));
   } else if (!wants_screenshot_) {
     // While a screenshot waits the camera holds still.
     control_.apply(motion, window_.framebuffer_size().y);
   }
+  keep_camera();
+}
+
+void Viewer::keep_camera() {
   if (record_file_) recorder_.add(Window::now(), control_.camera());
+}
+
+bool Viewer::is_picture_due() const {
+  return !switches_.is_paused && replay_->is_due(Window::now());
 }
 
 void Viewer::update_replay() {
@@ -188,75 +149,75 @@ void Viewer::update_screenshot() {
   }
 }
 
-void Viewer::update_scene() {
-  if (features_ != (light_features(scene_features_) | features_of(switches_.shading))) {
-    finish_frames();
-    make_picture(device_scene_, scene_features_);
-  }
-  if (loader_.is_busy()) {
+void Viewer::update_picture() {
+  // A frame in flight traces the picture that would go.
+  if (maker_.is_ready() && frames_.is_idle()) {
     try {
-      if (const std::optional<LoadedScene> loaded = loader_.take()) {
-        finish_frames();
-        gpu::translate_vulkan_errors([&] { show_scene(*loaded); });
-      }
+      show_picture(std::move(*maker_.take()));
     } catch (const std::exception& error) {
       // Whatever it is, memory that is too short too: the old picture stays.
       report_failure(error.what());
     }
-    return;
   }
-  if (asked_choice_ != switches_.scene) {
-    asked_choice_ = switches_.scene;
-    return loader_.pack(scene_, asked_choice_);
-  }
-  if (Window::now() < next_file_check_) return;
-  next_file_check_ = Window::now() + kLongWait;
-  if (loader_.has_file_changed()) loader_.load(asked_choice_);
+  const PictureRequest request{switches_.scene, asked_look(), swapchain_.size()};
+  if (maker_.update(scene_, request, Window::now())) draw_again();
 }
 
-void Viewer::show_scene(const LoadedScene& loaded) {
-  const bool is_new = scene_ && scene_ != loaded.scene;
-  const auto device_scene = std::make_shared<const DeviceScene>(device_, loaded.packed);
-  make_picture(device_scene, loaded.features);
-  device_scene_ = device_scene;
-  numbers_ = loaded.packed.numbers;
-  scene_features_ = loaded.features;
-  scene_ = loaded.scene;
-  shown_choice_ = loaded.choice;
-  explanation_.clear();
-  if (is_new) report("read " + file_.filename().string());
-}
-
-void Viewer::make_picture(std::shared_ptr<const DeviceScene> scene, FeatureMask scene_features) {
-  const FeatureMask features = light_features(scene_features) | features_of(switches_.shading);
-  // What fails leaves the picture before.
-  LivePicture picture(device_, std::move(scene), features, target_ms_);
-  if (asked_size_ != uvec2(0)) picture.resize(swapchain_.size());
-  picture_.emplace(std::move(picture));
-  features_ = features;
+void Viewer::show_picture(ReadyPicture ready) {
+  const bool is_new = scene_ && scene_->scene != ready.scene->scene;
+  if (!scene_ || scene_ != ready.scene) explanation_.text.clear();
+  picture_.emplace(std::move(ready.picture));
+  scene_ = std::move(ready.scene);
+  look_ = ready.look;
   // Before the window has images it has no size.
   if (asked_size_ != uvec2(0)) fit_picture();
+  draw_again();
+  if (!is_new) return;
+  std::string text = "read " + file_.filename().string();
+  report(text);
+  for (const std::string& warning : scene_->scene->warnings) {
+    console_.warn(warning);
+    text += "\nwarning: " + warning;
+  }
+  message_ = text;
 }
 
-FeatureMask Viewer::light_features(FeatureMask scene_features) const {
-  return scene_features & ~(switches_.has_shadows ? 0 : layout::FEATURE_SHADOWS);
-}
-
-void Viewer::explain(const uvec2& pixel) {
-  finish_frames();
+void Viewer::update_answers() {
   try {
-    Explanation explanation =
-        explain_pixel(device_, *device_scene_, numbers_, light_features(scene_features_), current_view(), pixel);
-    number_lights_of_whole(explanation, shown_choice_.lights_off);
-    explanation_title_ = fmt::format("pixel {}, {} at 1 spp", pixel.x, pixel.y);
-    explanation_ = explain_text(explanation, *scene_);
-    console_.detail(explanation_);
+    if (std::optional<PixelText> answer = asker_.take_text()) {
+      explanation_ = std::move(*answer);
+      console_.detail(explanation_.text);
+      draw_again();
+    }
+    if (const std::optional<std::optional<dvec3>> middle = asker_.take_middle()) {
+      const Bounds bounds = bounds_of(*scene_->scene);
+      const std::optional<dvec3> center =
+          *middle || bounds.is_empty() ? *middle : std::optional(dvec3(bounds.center()));
+      if (std::exchange(wants_orbit_, false) && center) control_.orbit(*center);
+      draw_again();
+    }
   } catch (const RunError& error) {
+    wants_orbit_ = wants_orbit_ && asker_.is_looking_for_middle();
     report_failure(error.what());
   }
 }
 
+bool Viewer::awaits_look() const {
+  return look_ != asked_look() && maker_.will_show(asked_look());
+}
+
+std::string Viewer::describe_awaited() const {
+  if (maker_.is_busy()) return maker_.describe();
+  return asker_.is_busy() ? "tracing a pixel" : "";
+}
+
 bool Viewer::fit_window() {
+  if (window_.take_change_of_place() && follows_display_) target_ms_ = window_.refresh_interval_ms();
+  if (imgui_ && window_.overlay_scale() != imgui_->scale()) {
+    finish_frames();
+    imgui_->set_scale(window_.overlay_scale());
+    draw_again();
+  }
   const uvec2 size = window_.framebuffer_size();
   if (size.x == 0 || size.y == 0) return false;
   // The surface may have given another size than it was asked for.
@@ -266,7 +227,7 @@ bool Viewer::fit_window() {
   if (!swapchain_.recreate(size)) return false;
   asked_size_ = size;
   if (swapchain_.size() != before) fit_picture();
-  frames_to_draw_ = kSettlingFrames;
+  draw_again();
   return true;
 }
 
@@ -285,14 +246,22 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   statistics_.add(finished);
   if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
-  if (finished.has_cut_loops && !is_failure_) report_failure(make_cut_loops_error("lower the depth").what());
+  if (finished.has_cut_loops) {
+    if (finished.most_samples_a_lane > 1) {
+      picture_->shorten_loops();
+    } else if (!is_failure_) {
+      report_failure(make_cut_loops_error("lower the depth").what());
+    }
+  }
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   picture_->learn(finished.units, trace_ms);
   picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
 }
 
 bool Viewer::has_work() const {
-  if (is_replaying() && !switches_.is_paused) return !replay_->is_done();
+  // It is taken in when the last frame is done.
+  if (maker_.is_ready()) return false;
+  if (is_replaying() && !switches_.is_paused) return is_picture_due();
   return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
 }
 
@@ -312,13 +281,20 @@ void Viewer::record_tracing(Frame& frame) {
   using Stage = vk::PipelineStageFlagBits;
   // Of the film that is traced now the frame before may have taken a screenshot.
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
+  frame.most_samples_a_lane = picture_->most_samples_a_lane();
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
-  if (wants_screenshot_ && picture_->is_complete() && !screenshot_.is_busy()) {
+  if (wants_screenshot_ && picture_->is_complete() && !awaits_look() && !screenshot_.is_busy()) {
     View view = picture_->wanted();
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
-    frame.on_finished = [this, view] {
+    frame.on_finished = [this, view](const FinishedFrame& finished) {
+      // It is traced again, and taken then.
+      if (finished.has_cut_loops && finished.most_samples_a_lane > 1) {
+        screenshot_.drop();
+        wants_screenshot_ = true;
+        return;
+      }
       stats_.view = view;
       screenshot_.write(describe_picture(stats_));
     };
@@ -345,18 +321,18 @@ void Viewer::build_overlay() {
     OverlayContent content;
     content.statistics = &statistics_;
     content.picture = &*picture_;
-    content.scene = scene_.get();
+    content.scene = scene_->scene.get();
     content.device = fmt::format("{} ({})", device_.info().name, device_.info().type);
     content.speed = control_.speed();
     content.is_orbiting = control_.is_orbiting();
-    content.is_loading = loader_.is_busy();
+    content.awaited = describe_awaited();
     content.message = message_;
     content.is_failure = is_failure_;
     content.bookmarks = bookmarks_;
     if (const std::optional<Camera> picked = show_overlay(content, switches_)) control_.place(*picked);
   }
   if (has_help_) show_help();
-  if (!explanation_.empty() && !show_explanation(explanation_title_, explanation_)) explanation_.clear();
+  if (!explanation_.text.empty() && !show_explanation(explanation_.title, explanation_.text)) explanation_.text.clear();
   imgui_->end_frame();
 }
 
@@ -364,19 +340,14 @@ void Viewer::report(const std::string& text) {
   message_ = text;
   is_failure_ = false;
   console_.note(text);
-  frames_to_draw_ = kSettlingFrames;
+  draw_again();
 }
 
 void Viewer::report_failure(const std::string& text) {
   message_ = text;
   is_failure_ = true;
   console_.warn(text);
-  frames_to_draw_ = kSettlingFrames;
-}
-
-DescribedScene Viewer::described_scene(const View& view) const {
-  const SceneChoice& on = shown_choice_;
-  return {file_, switches_.has_shadows, on.lights_off, find_half_height(*scene_, view.camera), on.builder, on.bvh};
+  draw_again();
 }
 
 View Viewer::current_view() const {
@@ -384,7 +355,7 @@ View Viewer::current_view() const {
   view.camera = control_.camera();
   view.size = picture_->full_size();
   view.max_depth = switches_.effective_depth();
-  view.shading = switches_.shading;
+  view.shading = look_.shading;
   return view;
 }
 

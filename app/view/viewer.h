@@ -7,6 +7,7 @@
 #include <string>
 
 #include "console.h"
+#include "deferred_signals.h"
 #include "run_stats.h"
 #include "view/camera_control.h"
 #include "view/describe_command.h"
@@ -16,6 +17,8 @@
 #include "view/imgui_renderer.h"
 #include "view/live_picture.h"
 #include "view/overlay.h"
+#include "view/picture_maker.h"
+#include "view/pixel_asker.h"
 #include "view/screenshot.h"
 #include "view/window.h"
 
@@ -24,16 +27,16 @@ namespace promin::app {
 /// What a viewer starts with.
 struct ViewerStart {
   std::filesystem::path file;
-  LoadedScene scene;
   SceneChoice choice;
-  bool has_shadows = true;
   View view;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
   std::optional<double> target_ms;
+  /// As LivePicture::fix_scale.
+  std::optional<double> scale;
 
-  /// A flight to play, and whether the window stays open after it.
-  std::optional<CameraPath> replay;
+  /// What of a flight to play, and whether the window stays open after it.
+  std::optional<PathPictures> replay;
   bool stays_open = false;
   /// Where the camera's flight goes when the window closes.
   std::optional<std::filesystem::path> record;
@@ -45,29 +48,38 @@ struct ViewerStart {
 class Viewer {
  public:
   /// Throws RunError, vk::SystemError.
-  Viewer(Window& window, const gpu::Device& device, const Console& console, ViewerStart start, RunStats stats);
+  Viewer(Window& window, const gpu::Device& device, const Console& console, PictureMaker& maker, ReadyPicture picture,
+         ViewerStart start, RunStats stats);
   ~Viewer();
 
-  /// Throws RunError where the flight cannot be written, vk::SystemError.
+  /// SIGINT, SIGTERM and SIGHUP end it as the user does, and the program when what was recorded is written. Throws
+  /// RunError where the flight cannot be written, vk::SystemError.
   void run();
 
  private:
+  void show_frames(const DeferredSignals& signals);
   void handle_input();
   void handle_press(Press press);
   void move_camera(Frame& frame);
+  /// Takes the camera down for the flight that is recorded, if one is.
+  void keep_camera();
   bool is_replaying() const { return replay_ && has_replay_started_; }
+  /// Of a replay.
+  bool is_picture_due() const;
   /// Begins the replay when its first camera is shown, and ends it.
   void update_replay();
   /// Says what has become of screenshots.
   void update_screenshot();
-  /// Starts what changed switches ask for, takes in what has been loaded.
-  void update_scene();
-  void show_scene(const LoadedScene& loaded);
-  /// A picture of a scene with the pipeline that the switches ask for.
-  void make_picture(std::shared_ptr<const DeviceScene> scene, FeatureMask scene_features);
-  /// Of a scene with its shadows on or off.
-  FeatureMask light_features(FeatureMask scene_features) const;
-  void explain(const uvec2& pixel);
+  /// Takes in a picture that is ready, and has those made that changed switches and files ask for.
+  void update_picture();
+  void show_picture(ReadyPicture ready);
+  /// Says what has become of questions about pixels.
+  void update_answers();
+  Look asked_look() const { return {switches_.has_shadows, switches_.shading}; }
+  /// Whether another look than the one shown is on its way.
+  bool awaits_look() const;
+  /// What is under way beside the picture, in words.
+  std::string describe_awaited() const;
   /// Fits everything to the window. False while it has no pixels.
   bool fit_window();
   /// Fits the picture to the window's images.
@@ -79,6 +91,8 @@ class Viewer {
   void record_tracing(Frame& frame);
   void record_display(const Frame& frame);
   void build_overlay();
+  /// Shows what has changed beside the picture.
+  void draw_again() { frames_to_draw_ = kSettlingFrames; }
   void report(const std::string& text);
   void report_failure(const std::string& text);
   /// Of the command that gives a view's picture.
@@ -87,25 +101,26 @@ class Viewer {
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
 
+  /// ImGui settles its windows within so many frames.
+  static constexpr int kSettlingFrames = 3;
+
   Window& window_;
   const gpu::Device& device_;
   const Console& console_;
+  PictureMaker& maker_;
   std::filesystem::path file_;
   RunStats stats_;
+  /// Whether the target is the refresh interval of the display that the window is on.
+  bool follows_display_;
   double target_ms_;
 
-  std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const DeviceScene> device_scene_;
-  PrimitiveNumbers numbers_;
-  FeatureMask scene_features_ = 0;
+  std::shared_ptr<const ShownScene> scene_;
+  /// Of the picture.
+  Look look_;
   Switches switches_;
-  SceneChoice asked_choice_;
-  /// What of scene_ is on the device.
-  SceneChoice shown_choice_;
-  /// Of the picture's pipeline.
-  FeatureMask features_ = 0;
-  SceneLoader loader_;
-  double next_file_check_ = 0.0;
+  PixelAsker asker_;
+  /// Whether an orbit begins when its center is found.
+  bool wants_orbit_ = false;
   CameraControl control_;
   std::vector<Camera> bookmarks_;
   std::optional<FlightReplay> replay_;
@@ -129,9 +144,8 @@ class Viewer {
   FrameStatistics statistics_;
   std::string message_;
   bool is_failure_ = false;
-  /// Of a pixel; empty where none is shown.
-  std::string explanation_title_;
-  std::string explanation_;
+  /// Without a text where none is shown.
+  PixelText explanation_;
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;

@@ -7,9 +7,11 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/error.h"
+#include "view/screen_area.h"
 
 namespace promin::app {
 namespace {
@@ -22,6 +24,26 @@ constexpr double kClickSlack = 3.0;
   glfwGetError(&reason);
   throw DeviceError({what + (reason == nullptr ? "" : " (" + std::string(reason) + ")"), "for the window",
                      "render pictures without one with promin render"});
+}
+
+/// The one that most of the window is on; null where there is none.
+GLFWmonitor* find_monitor(GLFWwindow* window) {
+  if (GLFWmonitor* full_screen = glfwGetWindowMonitor(window); full_screen != nullptr) return full_screen;
+  ScreenArea place;
+  glfwGetWindowPos(window, &place.x, &place.y);
+  glfwGetWindowSize(window, &place.width, &place.height);
+  int count = 0;
+  GLFWmonitor* const* monitors = glfwGetMonitors(&count);
+  std::vector<ScreenArea> areas;
+  for (int i = 0; i < count; ++i) {
+    ScreenArea& area = areas.emplace_back();
+    glfwGetMonitorPos(monitors[i], &area.x, &area.y);
+    if (const GLFWvidmode* mode = glfwGetVideoMode(monitors[i]); mode != nullptr) {
+      area.width = mode->width;
+      area.height = mode->height;
+    }
+  }
+  return areas.empty() ? nullptr : monitors[find_display(areas, place)];
 }
 
 }  // namespace
@@ -44,7 +66,9 @@ struct Window::Callbacks {
       if (is_focused == GLFW_FALSE) of(w).release();
     });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).is_active_ = true; });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).is_active_ = true; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).change_place(); });
+    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).change_place(); });
+    glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { of(w).change_place(); });
   }
 };
 
@@ -96,9 +120,16 @@ double Window::pixel_ratio() const {
   return width > 0 ? static_cast<double>(framebuffer_size().x) / width : 1.0;
 }
 
+OverlayScale Window::overlay_scale() const {
+  float scale = 1.0F;
+  glfwGetWindowContentScale(window_, &scale, nullptr);
+  // Minimised it has no pixels.
+  return {scale > 0.0F ? static_cast<double>(scale) : 1.0, std::max(pixel_ratio(), 0.1)};
+}
+
 double Window::refresh_interval_ms() const {
   constexpr int kUsualRate = 60;
-  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  GLFWmonitor* monitor = find_monitor(window_);
   const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
   const int rate = mode == nullptr || mode->refreshRate <= 0 ? kUsualRate : mode->refreshRate;
   return 1e3 / rate;
@@ -120,12 +151,20 @@ bool Window::should_close() const {
   return glfwWindowShouldClose(window_) != 0;
 }
 
+bool Window::wants_to_close() const {
+  return should_close() || std::find(presses_.begin(), presses_.end(), Press::kQuit) != presses_.end();
+}
+
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
+}
+
 void Window::toggle_fullscreen() {
   if (glfwGetWindowMonitor(window_) != nullptr) {
     glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
     return;
   }
-  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  GLFWmonitor* monitor = find_monitor(window_);
   const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
   if (mode == nullptr) return;
   glfwGetWindowPos(window_, &windowed_[0], &windowed_[1]);
@@ -196,6 +235,11 @@ void Window::on_pointer(const dvec2& place) {
     }
     motion_.turn(pixel_ratio() * way);
   }
+}
+
+void Window::change_place() {
+  is_active_ = true;
+  may_have_moved_ = true;
 }
 
 void Window::release() {

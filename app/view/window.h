@@ -3,10 +3,12 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu/device.h"
 #include "view/keys.h"
+#include "view/overlay_scale.h"
 
 struct GLFWwindow;
 
@@ -29,7 +31,9 @@ class Window {
   uvec2 framebuffer_size() const;
   /// Pixels of the framebuffer for a unit of screen coordinates.
   double pixel_ratio() const;
-  /// Of the display that the window is on, in milliseconds.
+  /// How large the overlay is to be.
+  OverlayScale overlay_scale() const;
+  /// Of the display that most of the window is on, in milliseconds.
   double refresh_interval_ms() const;
   /// A clock in seconds.
   static double now();
@@ -39,6 +43,9 @@ class Window {
   void wait(double seconds);
 
   bool should_close() const;
+  /// Whether that, or the key to quit is among the presses to take.
+  bool wants_to_close() const;
+  void set_title(const std::string& title);
   void toggle_fullscreen();
 
   // What happened since it was last taken.
@@ -47,6 +54,8 @@ class Window {
   double take_wheel();
   /// Places where the pointer was clicked without being dragged, in pixels.
   std::vector<dvec2> take_clicks();
+  /// Whether the window may be on another display; at first it may.
+  bool take_change_of_place() { return std::exchange(may_have_moved_, false); }
   /// Whether anything happened at all.
   bool take_activity();
 
@@ -62,6 +71,7 @@ class Window {
   void on_key(int key, int action);
   void on_button(int button, int action);
   void on_pointer(const dvec2& place);
+  void change_place();
   void release();
   void capture_pointer(bool is_captured);
 
@@ -71,6 +81,7 @@ class Window {
   std::vector<dvec2> clicks_;
   double wheel_ = 0.0;
   bool is_active_ = true;
+  bool may_have_moved_ = true;
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
   bool is_dragging_ = false;

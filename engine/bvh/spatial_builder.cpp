@@ -351,6 +351,8 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
       subtrees->push_back(std::move(task));
       continue;
     }
+    // Nothing is done yet, but the callback may end the build.
+    if (subtrees != nullptr && progress_) progress_(0.0);
     std::optional<Sides> sides = split(task, thread_count);
     const Bounds bounds = task.side.extent.box.bounds();
     if (!sides) {

@@ -3,6 +3,7 @@
 #include "core/file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,6 +32,14 @@ fs::file_status find_input(const fs::path& file) {
   }
   if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
   return status;
+}
+
+std::optional<FileStamp> stamp_of(const fs::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return std::nullopt;
+  constexpr int64_t kNsPerSecond = 1'000'000'000;
+  return FileStamp{status.st_mtim.tv_sec * kNsPerSecond + status.st_mtim.tv_nsec, static_cast<uint64_t>(status.st_size),
+                   status.st_ino};
 }
 
 std::vector<std::byte> read_file(const fs::path& file) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +19,16 @@ std::string lower_case_ending(const std::filesystem::path& file);
 
 /// What a file is, for a reader. Throws InputError if it is missing or cannot be reached.
 std::filesystem::file_status find_input(const std::filesystem::path& file);
+
+/// What changes when a file is written or another takes its place.
+struct FileStamp {
+  int64_t written_ns = 0;
+  uint64_t size_bytes = 0;
+  uint64_t inode = 0;
+  bool operator==(const FileStamp&) const = default;
+};
+/// None where there is no such file.
+std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
 /// The whole of a regular file. Throws InputError, with the place and the cure, if it is missing, a folder, not
 /// readable or empty.

@@ -240,14 +240,21 @@ std::optional<uint32_t> Device::find_memory_type(uint32_t allowed_types, vk::Mem
   return std::nullopt;
 }
 
+void Device::wait_idle() const {
+  // Vulkan counts it as a use of all queues.
+  const std::lock_guard lock(queue_mutex_);
+  device_.waitIdle();
+}
+
 void Device::run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
+  const std::lock_guard lock(run_mutex_);
   commands_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
   record(commands_);
   commands_.end();
   vk::SubmitInfo submit;
   const vk::CommandBuffer buffer = *commands_;
   submit.setCommandBuffers(buffer);
-  queue_.submit(submit, *fence_);
+  use_queue([&](const vk::raii::Queue& queue) { queue.submit(submit, *fence_); });
   // Work is cut into short dispatches: a device that is silent for this long is gone.
   constexpr uint64_t kTimeoutNs = 120'000'000'000;
   const vk::Result result = device_.waitForFences({*fence_}, VK_TRUE, kTimeoutNs);

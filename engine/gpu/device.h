@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +27,8 @@ struct Presentation {
 void translate_vulkan_errors(const std::function<void()>& work);
 
 /// A Vulkan instance and one logical device with one queue that computes; for a window it draws and presents as well.
-/// Needs nothing beyond Vulkan 1.1's required minima. One thread uses a device at a time.
+/// Needs nothing beyond Vulkan 1.1's required minima. Several threads may use a device, each its own buffers and
+/// pipelines.
 class Device {
  public:
   /// See open_device (gpu/open_device.h); with `presentation` of the devices that can present to its surface. Throws
@@ -47,7 +49,14 @@ class Device {
   const vk::raii::Device& handle() const { return device_; }
   const vk::raii::Instance& instance() const { return instance_; }
   const vk::raii::PhysicalDevice& physical() const { return physical_; }
-  const vk::raii::Queue& queue() const { return queue_; }
+  /// Calls `use` with the queue while no other thread uses it.
+  template <typename Use>
+  auto use_queue(const Use& use) const {
+    const std::lock_guard lock(queue_mutex_);
+    return use(queue_);
+  }
+  /// Waits until nothing that was submitted is left to do.
+  void wait_idle() const;
   uint32_t queue_family() const { return queue_family_; }
   /// Null without a window.
   const vk::raii::SurfaceKHR& surface() const { return surface_; }
@@ -61,7 +70,7 @@ class Device {
   /// Index of the first memory type in `allowed_types` that has all of `wanted`, or none.
   std::optional<uint32_t> find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const;
 
-  /// Records one command buffer, submits it and waits until the device has finished.
+  /// Records one command buffer, submits it and waits until the device has finished; one thread after the other.
   void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
  private:
@@ -80,6 +89,8 @@ class Device {
   mutable CompiledPipelines compiled_pipelines_;
   uint32_t queue_family_ = 0;
   vk::raii::Queue queue_{nullptr};
+  mutable std::mutex queue_mutex_;
+  mutable std::mutex run_mutex_;
   vk::raii::CommandPool pool_{nullptr};
   vk::raii::CommandBuffer commands_{nullptr};
   vk::raii::Fence fence_{nullptr};

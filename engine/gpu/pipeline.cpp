@@ -35,7 +35,10 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
   for (const SpecializationConstant& constant : constants) key.insert(key.end(), {constant.id, constant.value});
   key.insert(key.end(), {static_cast<uint32_t>(bindings.size()), static_cast<uint32_t>(constants.size())});
   key.insert(key.end(), spirv.begin(), spirv.end());
-  if (const auto found = compiled_.find(key); found != compiled_.end()) return found->second;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = compiled_.find(key); found != compiled_.end()) return found->second;
+  }
 
   std::vector<vk::SpecializationMapEntry> entries;
   std::vector<uint32_t> values;
@@ -56,7 +59,14 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
       device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));
   made.layout = vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo({}, *made.set_layout));
   made.pipeline = vk::raii::Pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *made.layout));
+  // Where two threads have compiled the same, one's is kept.
+  const std::lock_guard lock(mutex_);
   return compiled_.emplace(std::move(key), std::move(made)).first->second;
+}
+
+size_t CompiledPipelines::size() const {
+  const std::lock_guard lock(mutex_);
+  return compiled_.size();
 }
 
 ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t> spirv,

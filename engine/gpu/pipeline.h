@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <span>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -41,6 +42,7 @@ struct CompiledPipeline {
 
 /// What a device has compiled: the same shader with the same constants and bindings is compiled once. VkPipelineCache
 /// does not see to that: lavapipe's is empty, and SwiftShader's takes pipelines of two layout objects for different.
+/// For several threads: none waits while another compiles.
 class CompiledPipelines {
  public:
   /// Compiles where needed. The pipeline lives as long as this. Throws vk::SystemError, and std::logic_error if the
@@ -48,9 +50,10 @@ class CompiledPipelines {
   const CompiledPipeline& get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                               std::span<const SpecializationConstant> constants,
                               std::span<const vk::DescriptorSetLayoutBinding> bindings);
-  size_t size() const { return compiled_.size(); }
+  size_t size() const;
 
  private:
+  mutable std::mutex mutex_;
   /// By all words that `get` was told.
   std::map<std::vector<uint32_t>, CompiledPipeline> compiled_;
 };

@@ -110,8 +110,7 @@ class SceneReader {
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& file) {
-  LoadReport report(file);
+Scene load_gltf(LoadReport& report) {
   const GltfDocument document = read_gltf_document(report);
   return SceneReader(document, report).read();
 }

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-
+#include "scene/load_report.h"
 #include "scene/scene.h"
 
 namespace promin {
 
 /// Reads glTF 2.0, as text or GLB whichever the file holds. See load_scene for what is promised.
-Scene load_gltf(const std::filesystem::path& file);
+Scene load_gltf(LoadReport& report);
 
 }  // namespace promin

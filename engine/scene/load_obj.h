@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-
+#include "scene/load_report.h"
 #include "scene/scene.h"
 
 namespace promin {
 
 /// Reads Wavefront OBJ and its MTL. See load_scene for what is promised. A file with vertices but no faces is refused
 /// (a point cloud: there is nothing to draw); one with neither is an empty scene, with a warning.
-Scene load_obj(const std::filesystem::path& file);
+Scene load_obj(LoadReport& report);
 
 }  // namespace promin

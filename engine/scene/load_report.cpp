@@ -38,6 +38,11 @@ void LoadReport::warn(const std::string& sentence) {
   if (said_.insert(sentence).second) warnings_.push_back(make_visible(sentence));
 }
 
+void LoadReport::add_source(const std::filesystem::path& file) {
+  const auto is_same = [&](const SourceFile& source) { return source.file == file; };
+  if (std::none_of(sources_.begin(), sources_.end(), is_same)) sources_.push_back({file, stamp_of(file)});
+}
+
 void LoadReport::throw_if_refused() const {
   if (problems_.empty()) return;
   std::vector<Problem> problems = problems_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "scene/source_file.h"
 
 namespace promin {
 
@@ -30,6 +31,10 @@ class LoadReport {
 
   bool has_problems() const { return problem_count_ > 0; }
 
+  /// To be told of each file before it is read, or found missing.
+  void add_source(const std::filesystem::path& file);
+  const std::vector<SourceFile>& sources() const { return sources_; }
+
   /// Throws InputError with all problems so far, if there are any.
   void throw_if_refused() const;
 
@@ -40,6 +45,7 @@ class LoadReport {
   std::vector<Problem> problems_;
   size_t problem_count_ = 0;
   std::vector<std::string> warnings_;
+  std::vector<SourceFile> sources_;
   std::set<std::string> said_;
 };
 

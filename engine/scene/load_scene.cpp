@@ -16,7 +16,7 @@ namespace {
 
 struct SceneFormat {
   const char* ending;
-  Scene (*load)(const std::filesystem::path&);
+  Scene (*load)(LoadReport&);
 };
 
 bool has_anything_to_draw(const Scene& scene) {
@@ -41,21 +41,36 @@ void warn_of_tiny_meshes(Scene& scene) {
 
 constexpr SceneFormat kFormats[] = {{".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}};
 
-}  // namespace
-
-Scene load_scene(const std::filesystem::path& file) {
+const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
   std::string known;
   for (const SceneFormat& format : kFormats) {
-    if (ending == format.ending) {
-      Scene scene = format.load(file);
-      warn_of_tiny_meshes(scene);
-      if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
-      return scene;
-    }
+    if (ending == format.ending) return format;
     known += known.empty() ? format.ending : std::string(", ") + format.ending;
   }
   throw InputError({"unknown scene format " + quote(ending), file.string(), "use a file that ends in " + known});
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+  std::vector<SourceFile> sources;
+  return load_scene(file, sources);
+}
+
+Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources) {
+  LoadReport report(file);
+  report.add_source(file);
+  try {
+    Scene scene = find_format(file).load(report);
+    sources = report.sources();
+    warn_of_tiny_meshes(scene);
+    if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
+    return scene;
+  } catch (...) {
+    sources = report.sources();
+    throw;
+  }
 }
 
 }  // namespace promin

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "scene/scene.h"
+#include "scene/source_file.h"
 
 namespace promin {
 
@@ -12,6 +13,8 @@ namespace promin {
 /// and within kMinSize...kMaxCoordinate, no cycles. A scene without lights stays without: the caller adds a headlight.
 /// Throws InputError with every problem found, each with place and cure; warnings lie in Scene::warnings.
 Scene load_scene(const std::filesystem::path& file);
+/// As much, and tells of each file that was read or missed, the scene's own first, also where this throws.
+Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources);
 
 /// Coordinates and sizes beyond this, and sizes under kMinSize, are refused (fp32 would overflow).
 inline constexpr double kMaxCoordinate = 1e15;

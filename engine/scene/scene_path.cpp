@@ -53,6 +53,7 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
   const fs::path file = folder / relative;
   if (leaves_folder(folder, file)) return refuse(quoted + " leaves the scene's folder through a link", keep_inside);
   std::error_code error;
+  report.add_source(file);
   const fs::file_status status = fs::status(file, error);
   if (fs::is_directory(status)) return refuse(quoted + " is a folder", "name a file");
   if (fs::exists(status) && !fs::is_regular_file(status)) return refuse(quoted + " is no regular file", "name a file");

@@ -30,7 +30,7 @@ CameraPath make_path(size_t count) {
     TimedCamera frame{static_cast<double>(i) + uniform(), camera.camera()};
     frame.camera.yfov = static_cast<float>(0.01 + 3.0 * uniform());
     frame.camera.near = static_cast<float>(uniform());
-    path.push_back(frame);
+    path.frames.push_back(frame);
   }
   return path;
 }
@@ -61,29 +61,33 @@ class CameraPathTest : public TempFolder {
 
 TEST_F(CameraPathTest, AFileKeepsEveryBit) {
   CameraPath path = make_path(1000);
-  path[1].camera.projection = Projection::kOrthographic;
-  path[1].camera.ymag = 0.1F;
-  path[1].camera.yfov = Camera().yfov;
-  write_camera_path(file(), path);
+  path.frames[1].camera.projection = Projection::kOrthographic;
+  path.frames[1].camera.ymag = 0.1F;
+  path.frames[1].camera.yfov = Camera().yfov;
+  for (const std::optional<double> fps : {std::optional(29.97), std::optional<double>()}) {
+    path.fps = fps;
+    write_camera_path(file(), path);
+    EXPECT_EQ(read_camera_path(file()).fps, fps);
+  }
   const CameraPath read = read_camera_path(file());
-  ASSERT_EQ(read.size(), path.size());
-  for (size_t i = 0; i < path.size(); ++i) {
+  ASSERT_EQ(read.frames.size(), path.frames.size());
+  for (size_t i = 0; i < path.frames.size(); ++i) {
     SCOPED_TRACE(i);
-    EXPECT_EQ(read[i].time_s, path[i].time_s);
-    expect_same_bits(read[i].camera, path[i].camera);
+    EXPECT_EQ(read.frames[i].time_s, path.frames[i].time_s);
+    expect_same_bits(read.frames[i].camera, path.frames[i].camera);
   }
 }
 
 TEST_F(CameraPathTest, StoredFramesComeBackToTheBitAndEndsHold) {
   const CameraPath path = make_path(100);
-  for (const TimedCamera& frame : path) expect_same_bits(camera_at(path, frame.time_s), frame.camera);
-  expect_same_bits(camera_at(path, -1.0), path.front().camera);
-  expect_same_bits(camera_at(path, 1e9), path.back().camera);
+  for (const TimedCamera& frame : path.frames) expect_same_bits(camera_at(path, frame.time_s), frame.camera);
+  expect_same_bits(camera_at(path, -1.0), path.frames.front().camera);
+  expect_same_bits(camera_at(path, 1e9), path.frames.back().camera);
 }
 
 TEST_F(CameraPathTest, BetweenFramesTheBasisStaysOrthonormal) {
   const CameraPath path = make_path(100);
-  for (double time = path.front().time_s; time < path.back().time_s; time += 0.037) {
+  for (double time = path.frames.front().time_s; time < path.frames.back().time_s; time += 0.037) {
     const Camera camera = camera_at(path, time);
     EXPECT_NEAR(glm::length(dvec3(camera.look)), 1.0, 1.2e-7);
     EXPECT_NEAR(glm::length(dvec3(camera.up)), 1.0, 1.2e-7);
@@ -98,8 +102,8 @@ TEST_F(CameraPathTest, HalfWayIsHalfTheTurnAndHalfTheWay) {
     FreeCamera turned(start);
     turned.move(4.0, 2.0, 0.0);
     turned.rotate(0.0, angle, 0.0);
-    CameraPath path{{1.0, start}, {3.0, turned.camera()}};
-    path[1].camera.yfov = 0.5F;
+    CameraPath path{{{1.0, start}, {3.0, turned.camera()}}, std::nullopt};
+    path.frames[1].camera.yfov = 0.5F;
     const Camera half = camera_at(path, 2.0);
     EXPECT_EQ(half.eye, vec3(0, 1, -2));
     EXPECT_FLOAT_EQ(half.yfov, 0.75F);
@@ -107,6 +111,44 @@ TEST_F(CameraPathTest, HalfWayIsHalfTheTurnAndHalfTheWay) {
     EXPECT_NEAR(half.look.z, -std::cos(0.5 * angle), 1e-6);
     EXPECT_NEAR(half.up.y, 1.0, 1e-6);
   }
+}
+
+// As slerp of a rotation by itself would not.
+TEST_F(CameraPathTest, ARestKeepsItsBits) {
+  CameraPath path = make_path(100);
+  for (size_t i = 1; i < path.frames.size(); i += 2) path.frames[i].camera = path.frames[i - 1].camera;
+  for (size_t i = 1; i < path.frames.size(); i += 2) {
+    const double between = 0.7 * path.frames[i - 1].time_s + 0.3 * path.frames[i].time_s;
+    expect_same_bits(camera_at(path, between), path.frames[i].camera);
+  }
+}
+
+TEST_F(CameraPathTest, PicturesAreTakenBySecondsOrAsStored) {
+  CameraPath path = make_path(3);
+  path.frames[0].time_s = 0.1;
+  path.frames[1].time_s = 0.2;
+  path.frames[2].time_s = 0.7;  // times 10, a hair less than 7
+  const PathPictures stored(path);
+  ASSERT_EQ(stored.count(), 3U);
+  EXPECT_EQ(stored.interval_s(), 0.0);
+  for (size_t i = 0; i < 3; ++i) expect_same_bits(stored.camera(i), path.frames[i].camera);
+
+  const PathPictures timed(path, 10.0);
+  ASSERT_EQ(timed.count(), 8U);
+  EXPECT_EQ(timed.interval_s(), 0.1);
+  for (const size_t i : {0U, 1U}) expect_same_bits(timed.camera(i), path.frames[0].camera);
+  expect_same_bits(timed.camera(2), path.frames[1].camera);
+  expect_same_bits(timed.camera(4), camera_at(path, 0.4));
+  EXPECT_NE(timed.camera(4).eye, path.frames[1].camera.eye);
+  expect_same_bits(timed.camera(7), path.frames[2].camera);
+  EXPECT_EQ(PathPictures(path, 9.0).count(), 7U) << "the last at 6/9 s";
+
+  path.fps = 20.0;
+  EXPECT_EQ(PathPictures(path).count(), 15U);
+  EXPECT_EQ(PathPictures(path, 10.0).count(), 8U);
+  EXPECT_EQ(PathPictures(path, PathPictures::kStored).count(), 3U);
+  path.frames[2].time_s = 1e9;
+  EXPECT_THROW(PathPictures{path}, UsageError);
 }
 
 TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
@@ -124,6 +166,8 @@ TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
       {"7", "7 stands where an object belongs"},
   };
   for (const auto& [frames, part] : cases) EXPECT_THAT(refusal_of_frames(frames), HasSubstr(part)) << frames;
+  EXPECT_THAT(refusal(R"({"format": "promin camera path", "version": 1, "fps": 0, "frames": []})"),
+              HasSubstr("path.json: fps; use a number from 0.001 to 1000"));
   EXPECT_THAT(refusal("{"), HasSubstr("the JSON cannot be read"));
   EXPECT_THAT(refusal("[]"), HasSubstr("a JSON array stands where an object belongs"));
   EXPECT_THAT(refusal(std::string(1000, '[')), HasSubstr("nests 1000 deep"));

@@ -33,6 +33,28 @@ class ObjTest : public SceneFolder {
   }
 };
 
+TEST_F(ObjTest, TellsOfItsFilesAsTheyWereBeforeReading) {
+  write("m.mtl", "newmtl m\n");
+  write("scene.obj", kSquare + "mtllib m.mtl\nmtllib missing.mtl\nf 1 2 3\n");
+  const auto names_of = [](const std::vector<SourceFile>& sources) {
+    std::vector<std::string> names;
+    for (const SourceFile& source : sources) names.push_back(source.file.filename().string());
+    return names;
+  };
+  std::vector<SourceFile> sources;
+  load_scene(folder_ / "scene.obj", sources);
+  ASSERT_THAT(names_of(sources), ElementsAre("scene.obj", "m.mtl", "missing.mtl"));
+  for (const SourceFile& source : sources) EXPECT_EQ(source.stamp, stamp_of(source.file));
+  EXPECT_TRUE(sources[1].stamp);
+  EXPECT_FALSE(sources[2].stamp);
+  write("m.mtl", "newmtl n\nKd 1 1 1\n");
+  EXPECT_NE(sources[1].stamp, stamp_of(sources[1].file));
+
+  write("scene.obj", kSquare + "mtllib m.mtl\nf 1 2 300\n");
+  EXPECT_THROW(load_scene(folder_ / "scene.obj", sources), InputError);
+  EXPECT_THAT(names_of(sources), Contains("scene.obj")) << "also of a broken scene";
+}
+
 // Faces
 
 TEST_F(ObjTest, FacesCountFromTheFrontOrTheBack) {

@@ -71,6 +71,26 @@ TEST_F(PathCliTest, RangesPickFramesAndNamesTakeTheirNumbers) {
   EXPECT_EQ(app::number_file("a#/f.exr", 1), "a#/f.exr");
 }
 
+TEST_F(PathCliTest, FpsTakesThePathByTime) {
+  EXPECT_EQ(render_path({"--fps", "10", "-o", "t#.exr", "--quiet"}).exit_code, 0);
+  EXPECT_THAT(files(), UnorderedElementsAre("path.json", "t0.exr", "t1.exr", "t2.exr", "t3.exr"));
+  EXPECT_EQ(render_path({"--frames", "0-2", "-o", "s#.exr", "--quiet"}).exit_code, 0);
+  const auto pixels = [&](const char* name) { return read_image(folder() / name).pixels; };
+  EXPECT_EQ(pixels("t0.exr"), pixels("s0.exr"));
+  EXPECT_EQ(pixels("t1.exr"), pixels("s1.exr"));
+  EXPECT_NE(pixels("t2.exr"), pixels("s1.exr")) << "half way between";
+  EXPECT_NE(pixels("t2.exr"), pixels("s2.exr"));
+  EXPECT_EQ(pixels("t3.exr"), pixels("s2.exr"));
+
+  std::string path = kPath;
+  path.insert(path.find("\"frames\""), "\"fps\": 10, ");
+  write("path.json", path);
+  expect_failure(render_path({"-o", "f#.exr", "--frames", "4"}), 2,
+                 "there is no frame 4, path.json; the path has the frames 0-3");
+  EXPECT_EQ(render_path({"--fps", "stored", "-o", "f#.exr", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(pixels("f2.exr"), pixels("s2.exr"));
+}
+
 TEST_F(PathCliTest, StatsTellOfEachFrame) {
   const ProcessResult result = render_path({"--repeat", "2", "-o", "f#.exr", "--stats", "s.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -100,6 +120,8 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
       {{"-o", "f#.exr", "--frames", "2-1"}, "--frames is empty"},
       {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number"},
       {{"-o", "f#.exr", "--frames", "-1"}, "--frames takes a whole number"},
+      {{"-o", "f#.exr", "--fps", "0"}, "--fps takes"},
+      {{"-o", "f#.exr", "--fps", "often"}, "--fps takes"},
       {{"-o", "f0.exr", "-o", "f#.exr", "--frames", "0"}, "the same output file is named twice"},
       {{"-o", "f#.exr", "--stats", "path.json"}, "overwrite an input"},
   };
@@ -109,6 +131,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
     EXPECT_THAT(files(), testing::ElementsAre("path.json"));
   }
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames has no path");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps has no path");
   write("path.json", "{}");
   const ProcessResult bad = render_path({"-o", "f#.exr"});
   EXPECT_EQ(bad.exit_code, 3);

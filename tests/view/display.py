@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A window on an X server without a screen, and a user's hands for it."""
 
+import ctypes
 import os
 import pathlib
 import re
@@ -82,6 +83,25 @@ class Viewer:
         # It fails where there is none yet.
         found = self.run_xdotool("search", "--onlyvisible", "--name", "^promin").stdout.strip()
         return found.split("\n")[0] if found else None
+
+    def minimise(self, is_minimised):
+        """As a window manager does it: by the property that tells the window, and its mapping."""
+        states = {True: 3, False: 1}  # IconicState, NormalState of ICCCM 4.1.3.1
+        x11 = ctypes.CDLL("libX11.so.6")
+        for name in ("XOpenDisplay", "XInternAtom"):
+            getattr(x11, name).restype = ctypes.c_void_p
+        server = ctypes.c_void_p(x11.XOpenDisplay(self.display.environment["DISPLAY"].encode()))
+        state = ctypes.c_ulong(x11.XInternAtom(server, b"WM_STATE", 0))
+        window = ctypes.c_ulong(int(self.window))
+        value = (ctypes.c_ulong * 2)(states[is_minimised], 0)
+        x11.XChangeProperty(server, window, state, state, 32, 0, value, 2)
+        x11.XCloseDisplay(server)
+        self.xdotool("windowunmap" if is_minimised else "windowmap", "--sync", self.window)
+
+    def processor_seconds(self):
+        """What the program has taken so far."""
+        words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return sum(map(int, words[11:13])) / os.sysconf("SC_CLK_TCK")
 
     def read(self, stream):
         # A handle of its own: the program writes where this one stands.

@@ -142,6 +142,20 @@ TEST_F(LivePictureTest, RestsWhenPausedWhileItIsRefined) {
   EXPECT_FALSE(picture.is_settled());
 }
 
+TEST_F(LivePictureTest, IsTracedAgainWhereLoopsWereCut) {
+  LivePicture picture = make_picture();
+  View view = test::make_view(kSize);
+  picture.want(view);
+  while (!picture.is_complete()) trace(picture);
+  trace(picture);  // refining is under way
+  picture.shorten_loops();
+  EXPECT_EQ(picture.most_samples_a_lane(), 1U);
+  EXPECT_FALSE(picture.is_complete());
+  view.samples_per_pixel = 4;
+  while (!picture.is_complete() || picture.shown()->samples_per_pixel != 4) trace(picture);
+  EXPECT_TRUE(test::has_same_bits(read(picture), Renderer(device(), scene_).render(view).image));
+}
+
 TEST_F(LivePictureTest, AFasterDeviceGetsMorePixels) {
   LivePicture picture = make_picture();
   View view = test::make_view(kSize);

@@ -5,10 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "view/describe_command.h"
 #include "view/flight.h"
 #include "view/keys.h"
+#include "view/scene_loader.h"
+#include "view/screen_area.h"
 #include "view/screenshot.h"
 
 namespace promin::app {
@@ -45,6 +48,18 @@ TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
   EXPECT_THAT(describe_command({.file = "s", .bvh = "a tree"}, view), testing::EndsWith(" --bvh 'a tree'"));
 }
 
+TEST(DescribeCommand, HasNoneForAnOrthographicViewOfNoCamera) {
+  Scene scene;
+  View view;
+  EXPECT_TRUE(can_describe({.file = "s"}, view));
+  view.camera.projection = Projection::kOrthographic;
+  view.camera.ymag = 3.0F;
+  EXPECT_FALSE(can_describe({.file = "s", .camera_index = find_half_height(scene, view.camera)}, view));
+  scene.cameras = {Camera{}, view.camera};
+  EXPECT_EQ(find_half_height(scene, view.camera), 1U);
+  EXPECT_TRUE(can_describe({.file = "s", .camera_index = 1}, view));
+}
+
 // Every float's angle comes back from nine digits of degrees.
 TEST(DescribeCommand, AnglesComeBackToTheBit) {
   View view;
@@ -76,13 +91,13 @@ TEST(FlightRecorder, KeepsTheEndsOfARest) {
   camera.eye.x = 1.0F;
   recorder.add(12.5, camera);
   std::vector<double> times;
-  for (const TimedCamera& frame : recorder.path()) times.push_back(frame.time_s);
+  for (const TimedCamera& frame : recorder.path().frames) times.push_back(frame.time_s);
   EXPECT_EQ(times, (std::vector<double>{0.0, 2.0, 2.5}));
-  EXPECT_EQ(recorder.path().back().camera.eye.x, 1.0F);
+  EXPECT_EQ(recorder.path().frames.back().camera.eye.x, 1.0F);
 }
 
 TEST(FlightReplay, TellsMedianAndPercentile) {
-  FlightReplay replay(CameraPath(2));
+  FlightReplay replay(PathPictures({{{0.0, Camera{}}, {1.0, Camera{}}}, std::nullopt}));
   for (int i = 1; i <= 101; ++i) {
     FinishedFrame frame;
     frame.time_ms = i;
@@ -90,10 +105,89 @@ TEST(FlightReplay, TellsMedianAndPercentile) {
     replay.add(frame);
   }
   EXPECT_EQ(replay.summarize(), "101 frames: median 51.00 ms, 99th percentile 100.00 ms, tracing 50.0 % of the time");
-  replay.next_camera();
+  EXPECT_TRUE(replay.is_due(7.0));
+  replay.next_camera(7.0);
+  EXPECT_TRUE(replay.is_due(7.0)) << "stored frames wait for nothing";
   EXPECT_FALSE(replay.is_done());
-  replay.next_camera();
+  replay.next_camera(7.0);
   EXPECT_TRUE(replay.is_done());
+  EXPECT_FALSE(replay.is_due(8.0));
+}
+
+TEST(FlightReplay, PlaysSecondsInSeconds) {
+  FlightReplay replay(PathPictures({{{0.0, Camera{}}, {10.0, Camera{}}}, 4.0}));
+  ASSERT_TRUE(replay.is_due(100.0));
+  replay.next_camera(100.0);
+  EXPECT_FALSE(replay.is_due(100.24));
+  ASSERT_TRUE(replay.is_due(100.25));
+  replay.next_camera(100.3);  // late, but the next is in time
+  EXPECT_FALSE(replay.is_due(100.49));
+  ASSERT_TRUE(replay.is_due(100.5));
+  replay.next_camera(107.0);  // much too late: those after it are not hurried
+  EXPECT_FALSE(replay.is_due(107.24));
+  EXPECT_TRUE(replay.is_due(107.25));
+}
+
+TEST(FindDisplay, TakesTheOneWithMostOfTheWindow) {
+  const ScreenArea displays[] = {{0, 0, 1000, 800}, {1000, 0, 2000, 1000}, {0, 800, 1000, 200}};
+  EXPECT_EQ(find_display(displays, {100, 100, 300, 200}), 0U);
+  EXPECT_EQ(find_display(displays, {900, 100, 300, 200}), 1U);
+  EXPECT_EQ(find_display(displays, {800, 100, 300, 200}), 0U);
+  EXPECT_EQ(find_display(displays, {100, 750, 100, 200}), 2U);
+  EXPECT_EQ(find_display(displays, {-500, -500, 100, 100}), 0U);
+}
+
+TEST(SceneWatch, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
+  const fs::path folder = fs::path(testing::TempDir()) / "promin_scene_watch";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const auto write = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
+  write("a", "1");
+  const auto read = [&] {
+    return std::vector<SourceFile>{{folder / "a", stamp_of(folder / "a")}, {folder / "b", stamp_of(folder / "b")}};
+  };
+  SceneWatch watch(read());
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(watch.has_changed());
+  write("b", "appears");
+  EXPECT_FALSE(watch.has_changed()) << "it may still be written";
+  write("b", "appears whole");
+  EXPECT_FALSE(watch.has_changed());
+  EXPECT_TRUE(watch.has_changed());
+  EXPECT_FALSE(watch.has_changed()) << "once is enough";
+  fs::remove(folder / "a");
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(watch.has_changed()) << "an editor replaces it";
+  write("a", "new");
+  watch.has_changed();
+  EXPECT_TRUE(watch.has_changed());
+  // Written between the reading and its end.
+  const std::vector<SourceFile> sources = read();
+  write("a", "newer");
+  watch.follow(sources);
+  watch.has_changed();
+  EXPECT_TRUE(watch.has_changed());
+  fs::remove_all(folder);
+}
+
+// The window gives up a tree by what its progress throws: no builder may go on then.
+TEST(PackChoice, EndsByWhatItsProgressThrows) {
+  Scene scene;
+  scene.materials.resize(1);
+  Mesh mesh;
+  for (uint32_t i = 0; i < 30000; ++i) {
+    const auto x = static_cast<float>(i);
+    for (const vec3& corner : {vec3(x, 0, 0), vec3(x + 1, 0, 0), vec3(x, 1, x)}) mesh.positions.push_back(corner);
+    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  scene.objects.push_back({"", mesh, 0});
+  for (const std::string_view builder : builder_names()) {
+    int calls = 0;
+    const auto stop = [&](double) {
+      ++calls;
+      throw std::domain_error("stop");
+    };
+    EXPECT_THROW(pack_choice(scene, {std::string(builder), std::nullopt, {}}, stop), std::domain_error) << builder;
+    EXPECT_LE(calls, 8) << builder << ": of each thread one at most";
+  }
 }
 
 TEST(Keys, NoneHasTwoEffects) {

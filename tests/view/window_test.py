@@ -7,14 +7,17 @@ window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the 
 """
 
 import json
+import math
 import os
 import pathlib
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 from display import Display, Failure, Viewer, wait_for
 
@@ -33,7 +36,7 @@ def run(*words, environment=None):
 class Session:
     """A window on the showcase, in a folder that holds a copy of it."""
 
-    def __init__(self, bin_folder, scenes, folder, *arguments, **environment):
+    def __init__(self, bin_folder, scenes, folder, *arguments, takes_keys=True, **environment):
         self.bin = bin_folder
         self.folder = folder
         for name in ("showcase.gltf", "showcase.bin"):
@@ -44,7 +47,7 @@ class Session:
             words = ["showcase.gltf", "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
             self.viewer = Viewer(self.display, bin_folder / "promin-view", words, folder, **environment)
             # A replay takes no keys, and may be over before the window is found.
-            if "--replay" not in arguments:
+            if takes_keys and "--replay" not in arguments:
                 self.viewer.focus()
         except BaseException:
             self.display.close()
@@ -78,6 +81,18 @@ class Session:
         )
         expect(done.returncode == 0, f"{command}: {done.stderr}")
         return self.folder / output
+
+    def find_middle(self, command):
+        """The point that the camera of a command looks at."""
+        words = shlex.split(command)[1:]
+        words[words.index("--size") + 1 : words.index("--size") + 3] = ["1", "1"]
+        place = words.index("-o")
+        words[place : place + 2] = ["--explain", "0", "0"]
+        words[words.index("--spp") + 1] = "1"
+        words[words.index("showcase.gltf")] = self.scene
+        done = run(self.bin / "promin", *words)
+        expect(done.returncode == 0, done.stderr)
+        return json.loads(done.stdout)["samples"][0]["rays"][0]["hit"]["position"]
 
     def expect_same_picture(self, number, command):
         """The screenshot is what the command renders."""
@@ -129,8 +144,15 @@ def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
         reset = session.print_command()
         expect(eye_of(reset) == eye_of(start), f"the camera was not reset: {reset}")
 
+        # An orbit turns around what is in the middle: it stays there, and the camera needs not turn to it.
+        middle = session.find_middle(reset)
         viewer.press("o")
-        viewer.hold("d", 0.2)
+        wait_for(lambda: viewer.hold("d", 0.05) or look_of(session.print_command()) != look_of(reset), "orbit")
+        eye, look = eye_of(session.print_command()), look_of(session.print_command())
+        way = [float(m) - float(e) for m, e in zip(middle, eye)]
+        ahead = sum(w * float(l) for w, l in zip(way, look))
+        beside = math.dist(way, [ahead * float(l) for l in look])
+        expect(ahead > 0 and beside < 1e-3 * ahead, f"the orbit left {middle} by {beside}")
         viewer.press("o", "2", "b", "h", "Tab")
         session.take_screenshot(4)
         session.expect_same_picture(4, session.print_command())
@@ -153,11 +175,35 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         expect(" --max-depth 1 --no-shadows --lights-off 1,3 " in command, f"not what is shown: {command}")
         session.expect_same_picture(1, command)
 
-        viewer.press("F7")
+        def has_shadows_soon():
+            try:
+                return wait_for(lambda: " --no-shadows" not in session.print_command(), "shadows", 5.0)
+            except Failure:
+                return False
+
+        # The overlay's first switch is for shadows: what it changes is traced.
+        size = f"--size {SIZE[0]} {SIZE[1]}"
+        viewer.press("Tab")
+        viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
+        wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
+        # Where it is depends on how many lines the driver's name takes, and the message that a screenshot was written.
+        for y in (229, 216, 242):
+            viewer.xdotool("mousemove", "--window", viewer.window, 25, y, "sleep", 0.1, "click", 1)
+            if has_shadows_soon():
+                break
+        viewer.xdotool("windowsize", "--sync", viewer.window, *SIZE, "mousemove", "--window", viewer.window, 150, 5)
+        viewer.press("Tab")
+        wait_for(lambda: size in session.print_command(), "old size")
         session.take_screenshot(2)
         command = session.print_command()
-        expect(" --shading steps " in command, f"not what is shown: {command}")
+        expect(" --no-shadows" not in command, "no click in the overlay turned the shadows on")
         session.expect_same_picture(2, command)
+
+        viewer.press("F7")
+        session.take_screenshot(3)
+        command = session.print_command()
+        expect(" --shading steps " in command, f"not what is shown: {command}")
+        session.expect_same_picture(3, command)
 
         # A click explains a pixel with the scene's numbers of lights, and moves nothing.
         viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
@@ -166,10 +212,10 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         expect("2" in lights and not lights & {"1", "3"}, f"lights 1 and 3 are off, these are explained: {lights}")
         viewer.press("F1")
         wait_for(lambda: " --shading " not in session.print_command(), "light")
-        session.take_screenshot(3)
+        session.take_screenshot(4)
         after = session.print_command()
         expect(look_of(after) == look_of(command), f"the camera turned: {after}")
-        session.expect_same_picture(3, after)
+        session.expect_same_picture(4, after)
         session.quit()
 
 
@@ -179,13 +225,19 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         # Paused, a screenshot is of one sample a pixel, as what `promin render` gives below.
         viewer.press("p")
         session.take_screenshot(1)
-        viewer.hold("w", 0.4)
+        viewer.hold("w", 0.2)
+        time.sleep(1.0)
+        viewer.hold("w", 0.2)
         session.take_screenshot(2)
         session.quit()
-    path = json.loads((folder / "flight.json").read_text())["frames"]
+    flight = json.loads((folder / "flight.json").read_text())
+    path = flight["frames"]
     expect(len(path) > 2, f"the flight has {len(path)} frames")
+    rests = [b["time_s"] - a["time_s"] for a, b in zip(path, path[1:]) if a["eye"] == b["eye"]]
+    expect(sum(rest > 0.8 for rest in rests[1:]) > 0, f"a rest of a second became {rests}")
 
-    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", PROMIN_VALIDATION="core")
+    words = ["--replay", "flight.json", "--fps", "stored"]
+    session = Session(bin_folder, scenes, folder, *words, PROMIN_VALIDATION="core")
     with session as viewer:
         code = viewer.wait_for_end()
         expect(code == 0, f"the replay ended with {code}: {viewer.err}")
@@ -194,8 +246,31 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
             f"{len(path)} frames were recorded, and replayed: {viewer.out}",
         )
 
+    # By time, it takes its time.
+    begin = time.monotonic()
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10")
+    with session as viewer:
+        code = viewer.wait_for_end()
+    seconds = path[-1]["time_s"]
+    expect(code == 0 and time.monotonic() - begin >= seconds - 0.1, f"{seconds} s went by too fast")
+    count = math.floor(seconds * 10 + 1e-6) + 1
+    expect(viewer.out.startswith(f"{count} frames: "), f"{count} frames are due: {viewer.out}")
+
+    # Between frames window and renderer have the same cameras.
+    half_way = {**flight, "fps": 7, "frames": [{**path[0], "time_s": 0}, {**path[-1], "time_s": 0.2}]}
+    (folder / "half_way.json").write_text(json.dumps(half_way))
+    session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open")
+    with session as viewer:
+        viewer.wait_for_line("^2 frames: ", 0, "end of the replay")
+        viewer.focus()
+        viewer.press("p")
+        session.take_screenshot(3)
+        command = f"promin render showcase.gltf --path half_way.json --frames 1 --size {SIZE[0]} {SIZE[1]} -o x"
+        session.expect_same_picture(3, command)
+        session.quit()
+
     # The flight ends where the last screenshot was taken.
-    last = len(path) - 1
+    last = math.floor(seconds * flight["fps"] + 1e-6)
     words = ["--size", *SIZE, "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
     done = run(bin_folder / "promin", "render", session.scene, *words, "-o", folder / "last.png")
     expect(done.returncode == 0, done.stderr)
@@ -203,6 +278,35 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         (folder / "last.png").read_bytes() == (folder / "promin-0002.png").read_bytes(),
         "the flight does not end where the camera did",
     )
+
+
+def stops_at_a_signal(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
+    with session as viewer:
+        session.take_screenshot(1)
+        viewer.hold("w", 0.2)
+        viewer.press("F12")
+        viewer.process.terminate()
+        code = viewer.wait_for_end()
+        expect(code == -signal.SIGTERM, f"it ended with {code}: {viewer.err}")
+    frames = json.loads((folder / "flight.json").read_text())["frames"]
+    expect(frames[0]["eye"] != frames[-1]["eye"], f"the flight was lost: {frames}")
+    names = sorted(file.name for file in folder.iterdir() if "showcase" not in file.name)
+    pairs = [f"promin-{number:04}.{ending}" for number in (1, 2) for ending in ("exr", "png")]
+    expect(names in (["flight.json", *pairs[:2]], ["flight.json", *pairs]), f"files are left half written: {names}")
+
+    # No option of `promin render` takes the size of what an orthographic camera sees.
+    flight = {"format": "promin camera path", "version": 1, "frames": [{**frames[0], "ymag": 2.5}]}
+    del flight["frames"][0]["fov_deg"]
+    (folder / "flight.json").write_text(json.dumps(flight))
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--keep-open")
+    with session as viewer:
+        viewer.wait_for_line("^1 frames: ", 0, "end of the replay")
+        viewer.focus()
+        viewer.press("c")
+        viewer.wait_for_line("warning: no command of promin render .* 2.5 ", 1, "refusal")
+        expect("promin render" not in viewer.out, viewer.out)
+        session.quit()
 
 
 def survives_its_window(bin_folder, scenes, folder):
@@ -213,8 +317,16 @@ def survives_its_window(bin_folder, scenes, folder):
             viewer.xdotool("windowsize", viewer.window, SIZE[0] + 37 * (i % 5) - 60, SIZE[1] + 23 * (i % 7) - 40)
             viewer.hold("w" if i % 2 else "s", 0.02)
             viewer.check_alive()
-        viewer.xdotool("windowunmap", "--sync", viewer.window)
-        viewer.xdotool("windowmap", "--sync", viewer.window)
+        # Minimised it has no pixels, and traces none although a key is down and there is refining to do.
+        viewer.xdotool("keydown", "w")
+        viewer.minimise(True)
+        time.sleep(0.3)
+        before = viewer.processor_seconds()
+        time.sleep(0.5)
+        taken = viewer.processor_seconds() - before
+        expect(taken < 0.2, f"minimised it took {taken} s of 0.5 s")
+        viewer.minimise(False)
+        viewer.xdotool("keyup", "w")
         viewer.xdotool("windowsize", "--sync", viewer.window, 120, 70)
         viewer.xdotool("windowfocus", "--sync", viewer.window)
         wait_for(lambda: "--size 120 70" in session.print_command(), "new size")
@@ -253,7 +365,35 @@ def reads_a_changed_scene(bin_folder, scenes, folder):
             "the new scene is not shown",
         )
         session.expect_same_picture(3, after)
+
+        # The files beside it are watched, too, and what the loader warns of is said.
+        warned = changed.replace('"type": "plain"', '"type": "gradient"')
+        expect(warned != changed, "the showcase has another sky now: change this test")
+        session.scene.write_text(warned)
+        viewer.wait_for_line("warning: .*sky", 1, "warning")
+        binary = session.scene.with_suffix(".bin")
+        binary.write_bytes(binary.read_bytes())
+        wait_for(lambda: viewer.err.count("note: read showcase.gltf") == 3, "scene with its changed buffer")
         session.quit()
+
+
+def fails_in_a_sentence(bin_folder, scenes, folder):
+    """What the driver answers when a device is lost or its memory is short: at the start, and when the window flies."""
+    lost, no_memory = -4, -2
+    for call, number, result, sentence in (
+        ("vkAllocateMemory", 3, no_memory, "out of device memory, "),
+        ("vkQueueSubmit", 12, lost, "the device was lost, "),
+    ):
+        layer = {"VK_LAYER_PATH": os.environ["PROMIN_TEST_LAYERS"], "VK_INSTANCE_LAYERS": "VK_LAYER_PROMIN_fault"}
+        fault = {"PROMIN_TEST_FAULT": f"{call} {number} {result}"}
+        session = Session(bin_folder, scenes, folder, "--record", "flight.json", takes_keys=False, **layer, **fault)
+        with session as viewer:
+            code = viewer.wait_for_end()
+            expect(code == 1, f"{fault} ended with {code}: {viewer.err}")
+            errors = [line for line in viewer.err.splitlines() if "error: " in line]
+            expect(len(errors) == 1 and errors[0].startswith(f"promin-view: error: {sentence}"), viewer.err)
+    # The flight until then is kept.
+    expect(json.loads((folder / "flight.json").read_text())["frames"], "the flight was lost")
 
 
 def only_the_window_links_glfw(bin_folder, *_):
@@ -276,6 +416,8 @@ def refuses_what_is_wrong(bin_folder, scenes, folder):
         (2, ["--present-mode", "soon", scenes / "sphere.gltf"]),
         (2, ["--lights-off", "7", scenes / "sphere.gltf"]),
         (2, ["--keep-open", scenes / "sphere.gltf"]),
+        (2, ["--fps", "25", scenes / "sphere.gltf"]),
+        (2, ["--scale", "2", scenes / "sphere.gltf"]),
         (3, ["--replay", folder / "missing.json", scenes / "sphere.gltf"]),
         (2, []),
         (3, [folder / "missing.gltf"]),

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <optional>
+#include <utility>
+
+namespace promin::app {
+
+/// Work on a thread of its own, one piece at a time. The destructor waits for it.
+template <typename Result>
+class Background {
+ public:
+  /// Not while busy.
+  template <typename Work>
+  void start(Work work) {
+    result_ = std::async(std::launch::async, std::move(work));
+  }
+
+  /// Until its result is taken.
+  bool is_busy() const { return result_.valid(); }
+  bool is_ready() const { return is_busy() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+  /// The result, once it is there. Throws what the work threw.
+  std::optional<Result> take() { return is_ready() ? std::optional<Result>(result_.get()) : std::nullopt; }
+  void wait() const {
+    if (is_busy()) result_.wait();
+  }
+
+ private:
+  std::future<Result> result_;
+};
+
+}  // namespace promin::app

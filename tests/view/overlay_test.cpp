@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// The overlay without a window: its panel is laid out and clicked in memory.
+
+#include "view/overlay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include "gpu/device.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+
+namespace promin::app {
+namespace {
+
+class OverlayTest : public test::DeviceTest {
+ protected:
+  void SetUp() override {
+    picture_.emplace(device(), std::make_shared<const DeviceScene>(device(), pack_scene(scene_, "sah")),
+                     features_of(scene_), 1.0);
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui::GetIO().DisplaySize = ImVec2(1000.0F, 1000.0F);
+    use_scale({});
+    switches_.scene.builder = "sah";
+  }
+  void TearDown() override { ImGui::DestroyContext(); }
+
+  void use_scale(const OverlayScale& scale) {
+    scale_overlay(scale);
+    unsigned char* pixels = nullptr;
+    int width = 0;
+    int height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    for (int i = 0; i < 3; ++i) show({-1.0F, -1.0F}, false);  // it settles
+  }
+
+  void show(const ImVec2& pointer, bool is_down) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DeltaTime = 0.1F;
+    io.MousePos = pointer;
+    io.MouseDown[0] = is_down;
+    ImGui::NewFrame();
+    OverlayContent content;
+    content.statistics = &statistics_;
+    content.picture = &*picture_;
+    content.scene = &scene_;
+    content.device = "device";
+    show_overlay(content, switches_);
+    ImGui::Render();
+  }
+
+  void click(const ImVec2& place) {
+    for (const bool is_down : {false, true, false, false}) show(place, is_down);
+  }
+
+  /// Clicks down the panel's left side until that has an effect.
+  template <typename Effect>
+  bool click_until(const Effect& has_effect) {
+    for (float y = 20.0F; y < 400.0F && !has_effect(); y += 5.0F) click({25.0F, y});
+    return has_effect();
+  }
+
+  /// How far what is drawn reaches to the right.
+  static float drawn_width() {
+    float width = 0.0F;
+    const ImDrawData& data = *ImGui::GetDrawData();
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+      for (const ImDrawVert& vertex : data.CmdLists[i]->VtxBuffer) width = std::max(width, vertex.pos.x);
+    }
+    return width;
+  }
+
+  const Scene scene_ = test::make_scene_of_everything();
+  FrameStatistics statistics_;
+  std::optional<LivePicture> picture_;
+  Switches switches_;
+};
+
+TEST_F(OverlayTest, AClickTurnsASwitch) {
+  ASSERT_TRUE(click_until([&] { return !switches_.has_shadows; }));
+  ASSERT_TRUE(click_until([&] { return switches_.has_shadows; }));
+  EXPECT_TRUE(switches_.has_mirrors);
+}
+
+TEST_F(OverlayTest, ASliderChangesTheDepth) {
+  const uint32_t before = switches_.max_depth;
+  EXPECT_TRUE(click_until([&] { return switches_.max_depth != before; }));
+}
+
+TEST_F(OverlayTest, AScaleOfTheCommandLineHasAName) {
+  switches_.scale = 0.3;
+  show({-1.0F, -1.0F}, false);
+  EXPECT_EQ(switches_.scale, 0.3);
+}
+
+TEST_F(OverlayTest, GrowsWithTheDisplaysScale) {
+  const float width = drawn_width();
+  EXPECT_GT(width, 200.0F);
+  // A display where a unit of the window's coordinates is a pixel.
+  use_scale({2.0, 1.0});
+  EXPECT_NEAR(drawn_width(), 2.0F * width, 0.05F * width);
+  // One where it is two: the window grows by itself, the overlay's fonts get finer.
+  use_scale({2.0, 2.0});
+  EXPECT_NEAR(drawn_width(), width, 0.05F * width);
+}
+
+}  // namespace
+}  // namespace promin::app
