@@ -25,8 +25,8 @@ struct FinishedFrame {
   RayCounts rays;
   /// The driver cut the tracing short (render/film.h): pixels are wrong.
   bool has_cut_loops = false;
-  /// With which it was traced, as PieceOptions has it.
-  uint32_t most_samples_a_lane = 0;
+  /// How it was traced, as LivePicture has it.
+  bool takes_many_paths = false;
   /// Units of tracing (LivePicture::record).
   double units = 0.0;
   /// As Frame::is_of_flight.
@@ -50,7 +50,7 @@ struct Frame {
   bool is_in_flight = false;
   bool is_presented = false;
   double begin_time = 0.0;
-  uint32_t most_samples_a_lane = 0;
+  bool takes_many_paths = false;
   double units = 0.0;
   /// Whether it shows the next camera of a flight.
   bool is_of_flight = false;

@@ -95,7 +95,7 @@ void LivePicture::begin(const vk::raii::CommandBuffer& commands, const View& vie
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
   PieceOptions options = films_[film].piece_options();
-  options.most_samples_a_lane = most_samples_a_lane_;
+  if (!takes_many_paths_) options.most_paths_a_lane = 1;
   picture_ = films_[film].cut(view, {uvec2(0), view.size}, options);
   picture_when_done_ = {film, view.size, view.samples_per_pixel};
   picture_version_ = wanted_version_;
@@ -139,7 +139,7 @@ void LivePicture::set_budget(double budget_ms) {
 }
 
 void LivePicture::shorten_loops() {
-  most_samples_a_lane_ = 1;
+  takes_many_paths_ = false;
   picture_.reset();
   ++wanted_version_;
 }

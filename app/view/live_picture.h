@@ -51,9 +51,9 @@ class LivePicture {
   void learn(double units, double time_ms);
   void set_budget(double budget_ms);
 
-  /// As PieceOptions has it.
-  uint32_t most_samples_a_lane() const { return most_samples_a_lane_; }
-  /// After the driver cut loops short: what is shown is wrong, and all is traced again with one sample a lane.
+  /// Whether lanes may take several paths (PieceOptions::most_paths_a_lane).
+  bool takes_many_paths() const { return takes_many_paths_; }
+  /// After the driver cut loops short: what is shown is wrong, and all is traced again with one path a lane.
   void shorten_loops();
 
   static constexpr uint32_t kMostSamples = 64;
@@ -71,7 +71,7 @@ class LivePicture {
   double budget_ms_;
   Pacer pacer_;
   bool is_warm_ = false;
-  uint32_t most_samples_a_lane_ = PieceOptions{}.most_samples_a_lane;
+  bool takes_many_paths_ = true;
   uvec2 full_size_{1};
   std::optional<double> fixed_scale_;
   bool is_paused_ = false;

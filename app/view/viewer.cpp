@@ -247,7 +247,7 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
   if (finished.has_cut_loops) {
-    if (finished.most_samples_a_lane > 1) {
+    if (finished.takes_many_paths) {
       picture_->shorten_loops();
     } else if (!is_failure_) {
       report_failure(make_cut_loops_error("lower the depth").what());
@@ -281,7 +281,7 @@ void Viewer::record_tracing(Frame& frame) {
   using Stage = vk::PipelineStageFlagBits;
   // Of the film that is traced now the frame before may have taken a screenshot.
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
-  frame.most_samples_a_lane = picture_->most_samples_a_lane();
+  frame.takes_many_paths = picture_->takes_many_paths();
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
   if (wants_screenshot_ && picture_->is_complete() && !awaits_look() && !screenshot_.is_busy()) {
@@ -290,7 +290,7 @@ void Viewer::record_tracing(Frame& frame) {
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
     frame.on_finished = [this, view](const FinishedFrame& finished) {
       // It is traced again, and taken then.
-      if (finished.has_cut_loops && finished.most_samples_a_lane > 1) {
+      if (finished.has_cut_loops && finished.takes_many_paths) {
         screenshot_.drop();
         wants_screenshot_ = true;
         return;

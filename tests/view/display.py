@@ -29,6 +29,15 @@ class Display:
     """An X server of its own, on a display number that is free."""
 
     def __init__(self, size="1024x768x24"):
+        # Another server that ends just now may take this one's socket along.
+        for _ in range(3):
+            self._start(size)
+            if self._answers():
+                return
+            self.close()
+        raise Failure("Xvfb does not answer")
+
+    def _start(self, size):
         reader, writer = os.pipe()
         self.process = subprocess.Popen(
             ["Xvfb", "-displayfd", str(writer), "-screen", "0", size, "-nolisten", "tcp"],
@@ -42,6 +51,10 @@ class Display:
             raise Failure("Xvfb does not start")
         self.environment = {**os.environ, "DISPLAY": f":{number}"}
         self.environment.pop("WAYLAND_DISPLAY", None)
+
+    def _answers(self):
+        done = subprocess.run(["xdotool", "getdisplaygeometry"], env=self.environment, capture_output=True)
+        return done.returncode == 0
 
     def close(self):
         self.process.terminate()

@@ -149,7 +149,7 @@ TEST_F(LivePictureTest, IsTracedAgainWhereLoopsWereCut) {
   while (!picture.is_complete()) trace(picture);
   trace(picture);  // refining is under way
   picture.shorten_loops();
-  EXPECT_EQ(picture.most_samples_a_lane(), 1U);
+  EXPECT_FALSE(picture.takes_many_paths());
   EXPECT_FALSE(picture.is_complete());
   view.samples_per_pixel = 4;
   while (!picture.is_complete() || picture.shown()->samples_per_pixel != 4) trace(picture);
