@@ -15,7 +15,7 @@
 #include "measure/meshes.h"
 #include "measure/ray_sets.h"
 #include "measure/samples.h"
-#include "plain_cast.spv.h"
+#include "textbook_cast.spv.h"
 #include "render/caster.h"
 #include "scene/load_scene.h"
 
@@ -90,7 +90,7 @@ void compare_all(const std::string& file, const std::string& output, uint32_t ru
   const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
   Caster robust(*device, scene);
   CasterOptions options;
-  options.spirv = k_plain_cast_spirv;
+  options.spirv = k_textbook_cast_spirv;
   Caster plain(*device, scene, options);
 
   std::vector<RaySet> sets = {make_camera_rays(camera, kSide)};
