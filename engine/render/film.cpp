@@ -45,13 +45,18 @@ uint64_t bytes_for(uint64_t pixel_count, uint32_t records_per_pixel) {
 const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
 const vk::DeviceSize Film::kCountersBytes = sizeof(Counters);
 
-Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features)
+std::span<const uint32_t> render_spirv() {
+  return k_render_spirv;
+}
+
+Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+           std::span<const uint32_t> spirv)
     : device_(&device),
       scene_(std::move(scene)),
       features_(features),
       frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
-  kernel_.emplace(make_picture_kernel(device, *scene_, features_, frame_, *buffer_));
+  kernel_.emplace(make_picture_kernel(device, *scene_, features_, frame_, *buffer_, spirv));
 }
 
 void Film::reserve(uint32_t pixel_count) {
@@ -126,7 +131,7 @@ uint32_t Film::max_capacity() const {
 }
 
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  const gpu::Buffer& frame, const gpu::Buffer& film) {
+                                  const gpu::Buffer& frame, const gpu::Buffer& film, std::span<const uint32_t> spirv) {
   const std::array constants{
       gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
       gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
@@ -135,7 +140,7 @@ TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& 
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
   buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});
   buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
-  return {device, k_render_spirv, constants, buffers};
+  return {device, spirv, constants, buffers};
 }
 
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {

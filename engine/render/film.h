@@ -21,13 +21,18 @@ struct FilmCounts {
   bool has_cut_loops = false;
 };
 
+/// SPIR-V of shaders/render.comp.
+std::span<const uint32_t> render_spirv();
+
 /// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
 /// (shaders/render.comp). A picture is begun, then all of its pieces run; nothing of that waits unless it says so.
 class Film {
  public:
   /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
-  /// (render/shading.h), and FEATURE_AOVS.
-  Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features);
+  /// (render/shading.h), and FEATURE_AOVS. `spirv` may be another kernel with the bindings of shaders/render.comp, for
+  /// measurements.
+  Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+       std::span<const uint32_t> spirv = render_spirv());
 
   /// Makes room for so many pixels; the device is idle with respect to the film.
   void reserve(uint32_t pixel_count);
@@ -74,7 +79,8 @@ class Film {
 
 /// The pipeline of shaders/render.comp for a scene's `features`, bound to the scene and to these buffers.
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  const gpu::Buffer& frame, const gpu::Buffer& film);
+                                  const gpu::Buffer& frame, const gpu::Buffer& film,
+                                  std::span<const uint32_t> spirv = render_spirv());
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);
