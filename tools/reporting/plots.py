@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Panels of the report's page: matplotlib's SVG, made fit for a page that may be light or dark.
+
+Colours are the page's CSS variables (--c0...--c7), text is currentColor; the same figures give the same bytes."""
+
+import io
+import re
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402 - the backend comes first
+
+# What stands for the page's variables until the SVG is written; nothing else has these.
+_SERIES = [f"#0{i}fe0{i}" for i in range(8)]
+_TEXT, _GRID = "#08fe08", "#09fe09"
+_MARKERS = "osD^vPX*"
+WIDTH_IN, HEIGHT_IN = 4.2, 3.1
+
+
+def color(index):
+    return _SERIES[index % len(_SERIES)]
+
+
+def marker(index):
+    return _MARKERS[index % len(_MARKERS)]
+
+
+def _style(name):
+    return {
+        "svg.hashsalt": name,
+        "svg.fonttype": "none",
+        "font.family": "sans-serif",
+        "font.size": 9,
+        "axes.titlesize": 10,
+        "axes.edgecolor": _TEXT,
+        "axes.labelcolor": _TEXT,
+        "axes.titlecolor": _TEXT,
+        "text.color": _TEXT,
+        "xtick.color": _TEXT,
+        "ytick.color": _TEXT,
+        "grid.color": _GRID,
+        "axes.grid": True,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "lines.linewidth": 1.3,
+        "lines.markersize": 5,
+    }
+
+
+def _to_page(svg, title):
+    """Without prologue and fixed size, with the page's colours, and a name for who cannot see it."""
+    svg = svg[svg.index("<svg") :]
+    for i, code in enumerate(_SERIES):
+        svg = svg.replace(code, f"var(--c{i})")
+    svg = svg.replace(_TEXT, "currentColor").replace(_GRID, "var(--grid)")
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"font: ([^;\"]*?)'?(sans-serif|DejaVu Sans)[^;\"]*", r"font: \1sans-serif", svg)
+    label = title.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
+    return re.sub(r'<svg ([^>]*?)width="[^"]*"', rf'<svg role="img" aria-label="{label}" \1', svg, count=1).replace(
+        re.search(r' height="[^"]*pt"', svg).group(0), "", 1
+    )
+
+
+def panel(name, title, draw, x_label="", y_label="", x_log=True, y_log=True):
+    """One plot as an inline SVG; `draw` gets the axes. `name` is unique on the page."""
+    with plt.rc_context(_style(name)):
+        figure, axes = plt.subplots(figsize=(WIDTH_IN, HEIGHT_IN))
+        if x_log:
+            axes.set_xscale("log")
+        if y_log:
+            axes.set_yscale("log")
+        draw(axes)
+        axes.set_title(title, loc="left")
+        axes.set_xlabel(x_label)
+        axes.set_ylabel(y_label)
+        figure.patch.set_visible(False)
+        axes.patch.set_visible(False)
+        figure.tight_layout(pad=0.4)
+        out = io.StringIO()
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+        plt.close(figure)
+    return _to_page(out.getvalue(), title)
+
+
+def draw_curve(axes, index, xs, ys, x_spread=None, y_spread=None, line="-", is_marked=True):
+    """A series; spreads are (lower, upper) quartiles a point."""
+
+    def bars(values, spread):
+        if spread is None:
+            return None
+        return [
+            [max(0.0, value - low) for value, (low, high) in zip(values, spread)],
+            [max(0.0, high - value) for value, (low, high) in zip(values, spread)],
+        ]
+
+    axes.errorbar(
+        xs,
+        ys,
+        xerr=bars(xs, x_spread),
+        yerr=bars(ys, y_spread),
+        color=color(index),
+        marker=marker(index) if is_marked else None,
+        linestyle=line,
+        elinewidth=0.8,
+    )
+
+
+def ring(axes, x, y):
+    """Around what promin ships."""
+    axes.plot([x], [y], marker="o", markersize=12, markerfacecolor="none", markeredgecolor=_TEXT, linestyle="none")
+
+
+def front_line(axes, points):
+    """The steps of a Pareto front, points in its order."""
+    axes.step(*zip(*points), where="post", color=_TEXT, linewidth=0.8, linestyle=":")
+
+
+def legend(names):
+    """(index, name) pairs as HTML for all panels of a figure."""
+    shapes = {"o": "●", "s": "■", "D": "◆", "^": "▲", "v": "▼", "P": "✚", "X": "✖", "*": "★"}
+    keys = [f'<span style="color:var(--c{i % 8})">{shapes[marker(i)]}</span> {name}' for i, name in names]
+    return '<p class="legend">' + " &ensp; ".join(keys) + "</p>"
