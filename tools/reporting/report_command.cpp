@@ -26,7 +26,13 @@ struct Section {
 };
 
 /// In the page's order.
-constexpr Section kSections[] = {{"kernels", measure_kernels}, {"boxes", measure_boxes}};
+constexpr Section kSections[] = {{"kernels", measure_kernels},
+                                 {"boxes", measure_boxes},
+                                 {"frames", measure_frames},
+                                 {"robustness", measure_robustness},
+                                 {"specialisation", measure_specialisation},
+                                 {"scaling", measure_scaling},
+                                 {"peers", measure_peers}};
 
 /// A folder that is there and can be written, and an older report that can be read: before hours of measuring.
 void check_options(const ReportOptions& options) {
