@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
+#include <array>
+#include <cmath>
 
 #include "cancelling_boxes.spv.h"
 #include "full_boxes.spv.h"
@@ -148,6 +149,7 @@ class BoxBench {
       const Method& method = methods()[i];
       const auto tests = static_cast<double>(counts[i].tests);
       rows.push_back({{"id", "box/" + method.name},
+                      {"scene", "generated, seeds 5 and 6"},
                       {"primitive", "box"},
                       {"method", method.name},
                       {"what", method.what},

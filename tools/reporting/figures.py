@@ -55,9 +55,13 @@ def table(head, rows, caption=""):
     return "\n".join(lines)
 
 
+# Of the medians; quartiles of so few runs may part by chance.
+_LEAST_DIFFERENCE = 1.02
+
+
 def is_slower(a, b):
-    """Whether times `a` are beyond the noise above `b`: their quartiles do not meet."""
-    return a["lower_quartile"] > b["upper_quartile"]
+    """Whether times `a` are beyond the noise above `b`: their quartiles do not meet, and the medians are 2 % apart."""
+    return a["lower_quartile"] > b["upper_quartile"] and a["median"] > _LEAST_DIFFERENCE * b["median"]
 
 
 def pareto_front(points):

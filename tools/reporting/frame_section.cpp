@@ -20,6 +20,11 @@ namespace fs = std::filesystem;
 /// Bounces that stand for all: what is beyond is weaker than the last bit of an ordinary mirror's picture.
 constexpr uint32_t kDeep = 64;
 
+/// Many beside those of the settings.
+uint32_t truth_samples(const Session& session) {
+  return session.pick(256U, 64U);
+}
+
 struct Setting {
   std::string knob;
   std::string setting;
@@ -34,7 +39,7 @@ std::vector<Setting> list_settings(const Session& session, const View& view) {
   const auto add = [&](const std::string& knob, const std::string& setting) -> Setting& {
     return settings.emplace_back(Setting{knob, setting, view});
   };
-  for (const uint32_t samples : session.pick<std::vector<uint32_t>>({2, 4, 8, 16, 32}, {4})) {
+  for (const uint32_t samples : session.pick<std::vector<uint32_t>>({2, 4, 8, 16}, {4})) {
     add("samples", std::to_string(samples)).view.samples_per_pixel = samples;
   }
   for (const uint32_t depth : session.pick<std::vector<uint32_t>>({0, 1, 2, 3, 8, 16}, {0, 8})) {
@@ -108,13 +113,14 @@ class FrameBench {
   }
 
   void measure_knobs(Json& rows) {
-    const View view = view_of(scene_, session_.pick(uvec2(320, 180), uvec2(128, 72)));
+    const View view = view_of(scene_, session_.pick(uvec2(256, 144), uvec2(128, 72)));
     const std::vector<Setting> settings = list_settings(session_, view);
     View best = view;
-    best.samples_per_pixel = session_.pick(1024U, 64U);
+    best.samples_per_pixel = truth_samples(session_);
     best.max_depth = kDeep;
     truth_ = picture_of(settings[0].method, settings[0].builder).render(best).image;
     default_view_ = view;
+    hash_ = picture_of("promin", "sah").scene_hash();
 
     std::vector<Image> images(settings.size());
     std::vector<std::function<double()>> contestants;
@@ -184,7 +190,7 @@ class FrameBench {
     Picture& picture = picture_of("promin", "sah");
     const Image shipped = picture.render(default_view_).image;
     View many = default_view_;
-    many.samples_per_pixel = session_.pick(1024U, 64U);
+    many.samples_per_pixel = truth_samples(session_);
     add_error(errors, "sampling", "promin", many.size, {{"rmse", rmse_of(shipped, picture.render(many).image)}});
     View deep = default_view_;
     deep.max_depth = kDeep;
@@ -196,6 +202,7 @@ class FrameBench {
                  const Json& figures) const {
     Json row = {{"id", fmt::format("{}/{}/{}", name_of(scene_), error, method)},
                 {"scene", name_of(scene_)},
+                {"scene_hash", hash_},
                 {"error", error},
                 {"method", method},
                 {"width", size.x},
@@ -208,6 +215,7 @@ class FrameBench {
   const Scene& scene_;
   std::map<std::pair<std::string, std::string>, Picture> pictures_;
   View default_view_;
+  std::string hash_;
   Image truth_;
 };
 
@@ -219,7 +227,7 @@ Json measure_frames(const Session& session) {
   const auto scenes = session.load_scenes(session.pick<std::vector<std::string>>(
       {"all_primitives.gltf", "mirrors.gltf", "showcase.gltf"}, {"mirrors.gltf"}));
   for (const Scene& scene : scenes) FrameBench(session, scene).run(rows, errors);
-  return {{"truth_samples", session.pick(1024, 64)}, {"truth_depth", kDeep}, {"rows", rows}, {"errors", errors}};
+  return {{"truth_samples", truth_samples(session)}, {"truth_depth", kDeep}, {"rows", rows}, {"errors", errors}};
 }
 
 }  // namespace promin::report

@@ -3,7 +3,7 @@
 """The page's sections on single intersections: the table of methods, error against time, error over range."""
 
 import plots
-from figures import join, number, pareto_front, plain, quartiles, ratio, spread, table
+from figures import join, number, pareto_front, quartiles, ratio, spread, table
 
 # So that what has no error at all has a place on a logarithmic axis.
 _LEAST_K = 0.1
@@ -65,8 +65,8 @@ def _kernel_text(rows):
         front = [of_primitive[i]["method"] for i in pareto_front(points)]
         where = "on the front" if "promin" in front else f"behind {join(front)}"
         sentence = (
-            f"A {primitive} takes {plain(own['ns_per_test']['median'], 2)} ns, {cost:.2f} of the textbook's time, with an "
-            f"error of at most {plain(own['max_k'], 2)} u S where the textbook's reaches {plain(plain_row['max_k'], 2)}"
+            f"A {primitive} takes {number(own['ns_per_test']['median'], 2)} ns, {cost:.2f} of the textbook's time, with an "
+            f"error of at most {number(own['max_k'], 2)} u S where the textbook's reaches {number(plain_row['max_k'], 2)}"
         )
         if "leaks" in own:
             sentence += f"; {own['leaks']:,} rays leak instead of {plain_row['leaks']:,}"
@@ -155,7 +155,7 @@ def boxes(report):
     text = (
         "Rays aimed at faces, edges and corners of boxes, half of them flat, up to 10<sup>5</sup> from the origin: a box "
         "that an exact ray meets must be met. "
-        f"The shipped test takes {plain(own['ns_per_test']['median'], 2)} ns a box and hides {own['leaks']:,} of "
+        f"The shipped test takes {number(own['ns_per_test']['median'], 2)} ns a box and hides {own['leaks']:,} of "
         f"{own['leak_rays']:,}; boxes in fp32 take {ratio(full['ns_per_test']['median'], own['ns_per_test']['median'])} "
         f"of its time and twice its memory, and without padding hide {bare['leaks']:,}. What is opened needlessly costs "
         "time and no error."
@@ -195,12 +195,12 @@ def error_range(report):
     worst = {m: max(r.get("max_k", 0) for r in rows if r["method"] == m) for m in methods}
     shipped = next(r["method"] for r in rows if r["is_shipped"])
     missed = {m: max(r["misclassified_per_million"] for r in rows if r["method"] == m) for m in methods}
-    others = [f"{m} {plain(worst[m], 2)}" for m in methods if m != shipped]
+    others = [f"{m} {number(worst[m], 2)}" for m in methods if m != shipped]
     text = (
         f"From a distance of 3 to 10<sup>6</sup> sizes, and 10 sizes away up to 10<sup>7</sup> from the world's origin, "
-        f"the shipped methods' K never passes {plain(worst[shipped], 2)} (bound 8, dashed); the others reach "
-        f"{join(others)}. At the worst of these places {plain(missed['textbook'] / 1e4, 2)} % of the textbook's rays are "
-        f"misclassified and {plain(missed[shipped] / 1e4, 2)} % of the shipped ones', which S explains: far away u S comes "
+        f"the shipped methods' K never passes {number(worst[shipped], 2)} (bound 8, dashed); the others reach "
+        f"{join(others)}. At the worst of these places {number(missed['textbook'] / 1e4, 2)} % of the textbook's rays are "
+        f"misclassified and {number(missed[shipped] / 1e4, 2)} % of the shipped ones', which S explains: far away u S comes "
         "to the primitive's size. Where a method has no point, no ray hit both by it and the oracle."
     )
     panels = _range_panels(rows, methods, "distance", "distance / size")

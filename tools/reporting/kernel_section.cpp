@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "fp64_tests.spv.h"
 #include "gpu/device.h"
@@ -85,6 +86,7 @@ class KernelBench {
       for (size_t i = 0; i < methods_.size(); ++i) {
         const Method& method = methods_[i];
         Json row = {{"id", name + "/" + method.name},
+                    {"scene", "generated, seeds 1 to 3"},
                     {"primitive", name},
                     {"method", method.name},
                     {"what", name == "triangle" ? method.of_triangles

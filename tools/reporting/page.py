@@ -19,12 +19,23 @@ except ImportError:
     )
     sys.exit(0)
 
+import compare
+import frame_page
 import kernel_page
+import plots
+import price_page
+import scaling_page
 
 _SECTIONS = (
+    ("frames", frame_page.frames),
+    ("frames", frame_page.errors_apart),
     ("kernels", kernel_page.kernels),
     ("kernels", kernel_page.error_range),
     ("boxes", kernel_page.boxes),
+    ("robustness", price_page.robustness),
+    ("specialisation", price_page.specialisation),
+    ("scaling", scaling_page.scaling),
+    ("peers", price_page.peers),
 )
 
 
@@ -53,8 +64,6 @@ def _section(content):
     parts = [f"<section><h2>{content['title']}</h2>"]
     parts += [f"<p>{text}</p>" for text in content["text"] if text]
     if content["legend"]:
-        import plots
-
         parts.append(plots.legend(content["legend"]))
     if content["panels"]:
         parts.append(
@@ -67,7 +76,8 @@ def _section(content):
 
 def make_page(report, old=None):
     """The page as text."""
-    sections = [make(report) for name, make in _SECTIONS if report.get(name)]
+    sections = [compare.section(old, report)] if old else []
+    sections += [make(report) for name, make in _SECTIONS if report.get(name)]
     style = (pathlib.Path(__file__).parent / "page.css").read_text(encoding="utf-8")
     p = report["provenance"]
     title = f"promin: speed against error on {p['device']}"
@@ -94,6 +104,8 @@ def main():
     temporary = arguments.folder / f".report.{os.getpid()}.html"
     temporary.write_text(make_page(report, old), encoding="utf-8")
     temporary.replace(arguments.folder / "report.html")
+    if old:
+        print(compare.summary(old, report))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 // Beside other renderers: Embree's rays, Tachyon's and POV-Ray's pictures.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "measure/embree.h"
@@ -71,6 +72,7 @@ void compare_pictures(const Session& session, Json& rows) {
   for (const auto& [name, peer] : found["peers"].items()) {
     rows.push_back({{"id", fmt::format("sphereflake:{}/picture/{}", level, name)},
                     {"scene", fmt::format("sphereflake:{}", level)},
+                    {"scene_hash", found["scene_hash"]},
                     {"peer", peer["version"]},
                     {"what", fmt::format("a picture of {} by {} pixels, 6 bounces", side, side)},
                     {"promin_ms", with_runs(found["trace_ms"])},

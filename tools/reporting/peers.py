@@ -4,6 +4,7 @@
 """Whole pictures of the sphereflake beside Tachyon and POV-Ray, as tools/bench_driver.py measures them; prints JSON."""
 
 import argparse
+import hashlib
 import json
 import pathlib
 import sys
@@ -25,9 +26,12 @@ def main():
     options = ("--device", arguments.device) if arguments.device else ()
     with tempfile.TemporaryDirectory() as folder:
         try:
+            programs = arguments.programs.resolve()
             figures = measure_frames(
-                arguments.programs, pathlib.Path(folder), arguments.runs, arguments.side, arguments.level, options
+                programs, pathlib.Path(folder), arguments.runs, arguments.side, arguments.level, options
             )
+            scene = (pathlib.Path(folder) / "flake.gltf").read_bytes()
+            figures["scene_hash"] = hashlib.sha256(scene).hexdigest()[:16]
         except RuntimeError as problem:
             sys.exit(f"peers.py: error: {problem}")
     print(json.dumps(figures))

@@ -23,10 +23,10 @@ const std::vector<PictureMethod>& picture_methods() {
   static const std::vector<PictureMethod> kMethods = {
       {"promin", "as shipped"},
       {"full boxes", "boxes in fp32 instead of bytes", k_full_boxes_render_spirv, true},
-      {"fixed offset", "secondary rays start 10^-4 off the surface", k_fixed_offset_render_spirv},
+      {"fixed offset", "secondary rays start 10⁻⁴ off the surface", k_fixed_offset_render_spirv},
       {"integer offset", "secondary rays start some floats off the surface (Wächter and Binder)",
        k_integer_offset_render_spirv},
-      {"textbook", "the textbook's intersections, boxes as they are, offset 10^-4", k_textbook_render_spirv}};
+      {"textbook", "the textbook's intersections, boxes as they are, offset 10⁻⁴", k_textbook_render_spirv}};
   return kMethods;
 }
 

@@ -81,4 +81,11 @@ std::string hash_of(const PackedScene& packed) {
   return fmt::format("{:016x}", hash.value());
 }
 
+std::string hash_of(const Mesh& mesh) {
+  Hash64 hash;
+  hash.add(std::as_bytes(std::span(mesh.positions)));
+  hash.add(std::as_bytes(std::span(mesh.triangles)));
+  return fmt::format("{:016x}", hash.value());
+}
+
 }  // namespace promin::report

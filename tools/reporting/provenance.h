@@ -18,5 +18,7 @@ void end_run(Json& report);
 
 /// 16 hexadecimal digits over a scene's primitives, surfaces, materials and lights.
 std::string hash_of(const PackedScene& packed);
+/// Likewise over a mesh's positions and triangles.
+std::string hash_of(const Mesh& mesh);
 
 }  // namespace promin::report

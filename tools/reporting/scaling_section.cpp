@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
@@ -62,6 +63,7 @@ class ScalingBench {
       Scene scene = measure::make_wavy_sphere(wanted);
       scene.file = fmt::format("wavy:{}", wanted);
       const auto count = static_cast<double>(std::get<Mesh>(scene.objects[0].shape).triangles.size());
+      const std::string hash = hash_of(std::get<Mesh>(scene.objects[0].shape));
       Caster caster(session_.device(), scene);
       const uint32_t side = session_.pick(512U, 96U);
       const std::vector<measure::RaySet> sets =
@@ -81,7 +83,8 @@ class ScalingBench {
         const double node_steps = static_cast<double>(counts.node_steps) / rays;
         rows_.push_back({{"id", fmt::format("triangles/{}/{}", sets[i].name, wanted)},
                          {"variable", "triangles"},
-                         {"scene", name_of_mesh(wanted)},
+                         {"scene", name_of(scene)},
+                         {"scene_hash", hash},
                          {"curve", sets[i].name},
                          {"value", count},
                          {"ns_per_ray", ns},
@@ -93,7 +96,8 @@ class ScalingBench {
       const SetupStats& setup = caster.setup_stats();
       rows_.push_back({{"id", fmt::format("triangles/build/{}", wanted)},
                        {"variable", "triangles"},
-                       {"scene", name_of_mesh(wanted)},
+                       {"scene", name_of(scene)},
+                       {"scene_hash", hash},
                        {"curve", "build"},
                        {"value", count},
                        {"build_ms_once", setup.bvh_ms},
@@ -106,8 +110,6 @@ class ScalingBench {
     fit("triangles/build/build_ms_once", builds);
     fit("triangles/build/device_bytes", bytes);
   }
-
-  static std::string name_of_mesh(uint32_t wanted) { return fmt::format("wavy:{}", wanted); }
 
   struct Frame {
     double value = 0.0;
