@@ -129,6 +129,18 @@ def frames(report):
     }
 
 
+def write_picture(report, file):
+    """The plots of RMSE as a PNG."""
+    rows, p = report["frames"]["rows"], report["provenance"]
+    knobs = knobs_of(rows)
+    panels = []
+    for scene in _scenes(rows):
+        of_scene = [row for row in rows if row["scene"] == scene]
+        panels.append((scene, _draw_knobs(of_scene, "rmse", knobs), "ms a picture", "RMSE"))
+    device = "a CPU" if p["device_type"] == "CPU" else p["device"]
+    plots.write_picture(file, f"Error against time on {device}, {p['driver']}; ringed: the default", panels, knobs)
+
+
 def _knob_text(rows):
     parts = []
     for scene in _scenes(rows):

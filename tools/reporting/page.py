@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 """Makes the page of a report: page.py FOLDER [--compare OLD.json] reads FOLDER/report.json and writes
-FOLDER/report.html, one file that needs nothing else. Without matplotlib it says so in one sentence and writes nothing."""
+FOLDER/report.html, one file that needs nothing else, and its main plot as FOLDER/frames.png. Without matplotlib it says
+so in one sentence and writes nothing."""
 
 import argparse
 import html
@@ -103,7 +104,10 @@ def main():
     # Whole or not at all.
     temporary = arguments.folder / f".report.{os.getpid()}.html"
     temporary.write_text(make_page(report, old), encoding="utf-8")
+    picture = temporary.with_suffix(".png")
+    frame_page.write_picture(report, picture)
     temporary.replace(arguments.folder / "report.html")
+    picture.replace(arguments.folder / "frames.png")
     if old:
         print(compare.summary(old, report))
 

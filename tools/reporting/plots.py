@@ -63,18 +63,22 @@ def _to_page(svg, title):
     )
 
 
+def _draw_axes(axes, title, draw, x_label, y_label, x_log, y_log):
+    if x_log:
+        axes.set_xscale("log")
+    if y_log:
+        axes.set_yscale("log")
+    draw(axes)
+    axes.set_title(title, loc="left")
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+
+
 def panel(name, title, draw, x_label="", y_label="", x_log=True, y_log=True):
     """One plot as an inline SVG; `draw` gets the axes. `name` is unique on the page."""
     with plt.rc_context(_style(name)):
         figure, axes = plt.subplots(figsize=(WIDTH_IN, HEIGHT_IN))
-        if x_log:
-            axes.set_xscale("log")
-        if y_log:
-            axes.set_yscale("log")
-        draw(axes)
-        axes.set_title(title, loc="left")
-        axes.set_xlabel(x_label)
-        axes.set_ylabel(y_label)
+        _draw_axes(axes, title, draw, x_label, y_label, x_log, y_log)
         figure.patch.set_visible(False)
         axes.patch.set_visible(False)
         figure.tight_layout(pad=0.4)
@@ -82,6 +86,33 @@ def panel(name, title, draw, x_label="", y_label="", x_log=True, y_log=True):
         figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
         plt.close(figure)
     return _to_page(out.getvalue(), title)
+
+
+_LIGHT = ("#0b62c4", "#c4420b", "#14805e", "#8a3fc0", "#a8730a", "#c21f6b", "#3b7a9e", "#6b7280")
+
+
+def write_picture(file, title, panels, names):
+    """Plots side by side as a PNG on white, for pages that show no SVG. A panel is (title, draw, x label, y label);
+    `names` are the legend's, by colour."""
+    global _SERIES, _TEXT
+    kept = _SERIES, _TEXT
+    _SERIES, _TEXT = _LIGHT, "#1b1f24"
+    try:
+        with plt.rc_context({**_style("picture"), "grid.color": "#e4e8ec"}):
+            figure, all_axes = plt.subplots(1, len(panels), figsize=(3.6 * len(panels), 3.6), squeeze=False)
+            for axes, (name, draw, x_label, y_label) in zip(all_axes[0], panels):
+                _draw_axes(axes, name, draw, x_label, y_label, True, True)
+            handles = [
+                plt.Line2D([], [], color=color(i), marker=marker(i), linestyle="-", label=name)
+                for i, name in enumerate(names)
+            ]
+            figure.legend(handles=handles, loc="lower center", ncol=len(names), frameon=False)
+            figure.suptitle(title, fontsize=11)
+            figure.tight_layout(rect=(0, 0.07, 1, 1))
+            figure.savefig(file, format="png", dpi=110, facecolor="white", metadata={"Software": None})
+            plt.close(figure)
+    finally:
+        _SERIES, _TEXT = kept
 
 
 def draw_curve(axes, index, xs, ys, x_spread=None, y_spread=None, line="-", is_marked=True):

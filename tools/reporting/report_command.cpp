@@ -14,6 +14,7 @@
 #include "reporting/scripts.h"
 #include "reporting/session.h"
 #include "reporting/write_csv.h"
+#include "scene/load_scene.h"
 
 namespace promin::report {
 namespace {
@@ -34,15 +35,23 @@ constexpr Section kSections[] = {{"kernels", measure_kernels},
                                  {"scaling", measure_scaling},
                                  {"peers", measure_peers}};
 
-/// A folder that is there and can be written, and an older report that can be read: before hours of measuring.
+void check_old_report(const fs::path& file) {
+  const std::vector<std::byte> bytes = read_file(file);
+  const auto* text = reinterpret_cast<const char*>(bytes.data());
+  const Json old = Json::parse(text, text + bytes.size(), nullptr, false);
+  if (old.is_object() && old.value("format", 0) == kReportFormat) return;
+  throw InputError({"no report of this version's format", file.string(), "give a report.json of promin-report"});
+}
+
+/// What would make the work useless, before it begins.
 void check_options(const ReportOptions& options) {
+  if (options.compare) check_old_report(*options.compare);
+  for (const fs::path& scene : options.scenes) load_scene(scene);
   std::error_code error;
   fs::create_directories(options.output, error);
   if (error || !fs::is_directory(options.output)) {
     throw RunError({"cannot make the folder", options.output.string(), "give another with -o"});
   }
-  if (options.compare) find_input(*options.compare);
-  for (const fs::path& scene : options.scenes) find_input(scene);
 }
 
 void report(const ReportOptions& options) {
