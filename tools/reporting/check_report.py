@@ -131,7 +131,7 @@ def _find_frame_faults(report):
         if row["error"] != "precision" or row["method"] not in ("promin", "full boxes"):
             continue
         if row["mean_absolute"] > _BOUND_COLOR_MEAN or row["non_finite_pixels"]:
-            yield f"{row['id']}: a mean of {row['mean_absolute']} is beyond {_BOUND_COLOR_MEAN}, or pixels are not finite"
+            yield f"{row['id']}: {row['mean_absolute']} is beyond {_BOUND_COLOR_MEAN}, or pixels are not finite"
         if row["id_mismatches"] > max(1, _BOUND_IDS * row["pixels"]):
             yield f"{row['id']}: {row['id_mismatches']} other ids of {row['pixels']}"
 

@@ -81,7 +81,8 @@ def section(old, new):
         faster = sum(after < before for *_, before, after in times)
         text.append(
             f"Beyond noise {len(changes)} figures changed: {faster} times are shorter and {len(times) - faster} longer "
-            f"(their quartiles do not meet, and the medians are 2 % apart or more), {len(changes) - len(times)} are errors, counts and sizes."
+            "(their quartiles do not meet, and the medians are 2 % apart or more), "
+            f"{len(changes) - len(times)} are errors, counts and sizes."
         )
     else:
         text.append("Nothing changed beyond noise.")

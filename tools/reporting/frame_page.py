@@ -103,10 +103,11 @@ def frames(report):
             draw = _draw_knobs(of_scene, error, knobs)
             panels.append(plots.panel(f"frames-{scene}-{error}", title, draw, "ms a picture", label))
     text = [
-        "What each knob takes and brings, all others at their defaults (1 sample, depth 5, builder <em>sah</em>, boxes in "
-        f"bytes, promin's offset and methods). The truth is a picture of {report['frames']['truth_samples']} samples and "
-        f"{report['frames']['truth_depth']} bounces; smaller pictures are enlarged by repetition, larger ones averaged. A "
-        "Whitted tracer has no noise: what is left is bias. Dotted is the Pareto front, ringed the default."
+        "What each knob takes and brings, all others at their defaults (1 sample, depth 5, builder <em>sah</em>, "
+        "boxes in bytes, promin's offset and methods). The truth is a picture of "
+        f"{report['frames']['truth_samples']} samples and {report['frames']['truth_depth']} bounces; smaller pictures "
+        "are enlarged by repetition, larger ones averaged. A Whitted tracer has no noise: what is left is bias. Dotted "
+        "is the Pareto front, ringed the default."
         + ("" if len(errors) > 1 else " FLIP is not measured: PyPI's flip-evaluator is not installed."),
         " ".join(_front_text([row for row in rows if row["scene"] == scene]) for scene in _scenes(rows)),
         _knob_text(rows),
@@ -149,8 +150,9 @@ def _knob_text(rows):
         most = max((r for r in of_scene if r["knob"] == "samples"), key=lambda r: r["ms"]["median"], default=None)
         if most:
             parts.append(
-                f"In <em>{scene}</em> {most['setting']} samples take {most['ms']['median'] / default['ms']['median']:.1f} "
-                f"times as long and leave {100 * most['rmse'] / default['rmse']:.0f} % of the error."
+                f"In <em>{scene}</em> {most['setting']} samples take "
+                f"{most['ms']['median'] / default['ms']['median']:.1f} times as long and leave "
+                f"{100 * most['rmse'] / default['rmse']:.0f} % of the error."
             )
     noise = sorted(noise_percent(r["ms"]) for r in rows)
     parts.append(f"Half the quartiles' distance is {number(noise[len(noise) // 2], 2)} % of a median, typically.")
@@ -211,8 +213,8 @@ def errors_apart(report):
 
 def _errors_text(rows, precision, scenes):
     parts = [
-        "Precision is what fp32 takes from a picture, against brute force in long double with the same samples (smaller "
-        "pictures of larger scenes, as brute force takes its time); sampling what few samples do; truncation what the "
+        "Precision is what fp32 takes from a picture, against brute force in long double with the same samples "
+        "(smaller pictures of larger scenes, as brute force takes its time); sampling what few samples do; truncation what the "
         "depth cuts off."
     ]
     for scene in scenes:

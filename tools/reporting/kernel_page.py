@@ -63,14 +63,14 @@ def _kernel_text(rows):
         points = [(r["ns_per_test"]["median"], r["max_k"]) for r in rows if r["primitive"] == primitive]
         of_primitive = [r for r in rows if r["primitive"] == primitive]
         front = [of_primitive[i]["method"] for i in pareto_front(points)]
-        where = "on the front" if "promin" in front else f"behind {join(front)}"
+        where = "it is on the front" if "promin" in front else f"by K alone {join(front)} are the front"
         sentence = (
-            f"A {primitive} takes {number(own['ns_per_test']['median'], 2)} ns, {cost:.2f} of the textbook's time, with an "
-            f"error of at most {number(own['max_k'], 2)} u S where the textbook's reaches {number(plain_row['max_k'], 2)}"
+            f"A {primitive} takes {number(own['ns_per_test']['median'], 2)} ns, {cost:.2f} of the textbook's time, "
+            f"with K up to {number(own['max_k'], 2)} where the textbook's reaches {number(plain_row['max_k'], 2)}"
         )
         if "leaks" in own:
             sentence += f"; {own['leaks']:,} rays leak instead of {plain_row['leaks']:,}"
-        sentences.append(f"{sentence}; it is {where} by K.")
+        sentences.append(f"{sentence}; {where}.")
     return " ".join(sentences)
 
 
@@ -118,10 +118,10 @@ def kernels(report):
     ]
     text = [
         "Each ray is tested against each primitive, without tree or boxes, so that nothing else takes time. K is the "
-        "error in units of u S (u = 2<sup>−24</sup>; S is the distance plus the primitive's size), against an oracle in "
-        "long double, over all distances and offsets of the next plot; misclassified rays hit where they should miss or "
-        "the other way round; leaks are rays from inside of a closed surface, most of them at edges and rims, that find "
-        "no way out. Dotted is the Pareto front, ringed what promin ships.",
+        "error in units of u S (u = 2<sup>−24</sup>; S is the distance plus the primitive's size), against an oracle "
+        "in long double, over all distances and offsets of the next plot; misclassified rays hit where they should "
+        "miss or the other way round; leaks are rays from inside of a closed surface, most of them at edges and rims, "
+        "that find no way out. Dotted is the Pareto front, ringed what promin ships.",
         _kernel_text(rows),
         _front_gaps(rows),
     ]
@@ -153,12 +153,12 @@ def boxes(report):
         for row in rows
     ]
     text = (
-        "Rays aimed at faces, edges and corners of boxes, half of them flat, up to 10<sup>5</sup> from the origin: a box "
-        "that an exact ray meets must be met. "
+        "Rays aimed at faces, edges and corners of boxes, half of them flat, up to 10<sup>5</sup> from the origin: a "
+        "box that an exact ray meets must be met. "
         f"The shipped test takes {number(own['ns_per_test']['median'], 2)} ns a box and hides {own['leaks']:,} of "
-        f"{own['leak_rays']:,}; boxes in fp32 take {ratio(full['ns_per_test']['median'], own['ns_per_test']['median'])} "
-        f"of its time and twice its memory, and without padding hide {bare['leaks']:,}. What is opened needlessly costs "
-        "time and no error."
+        f"{own['leak_rays']:,}; boxes in fp32 take "
+        f"{ratio(full['ns_per_test']['median'], own['ns_per_test']['median'])} of its time and twice its memory, and "
+        f"without padding hide {bare['leaks']:,}. What is opened needlessly costs time and no error."
     )
     head = ["method", "ns a box", "bytes a node", "boxes hidden", "opened needlessly per million"]
     return {"title": "Boxes", "panels": [], "legend": [], "text": [text], "table": table(head, body)}
@@ -197,11 +197,11 @@ def error_range(report):
     missed = {m: max(r["misclassified_per_million"] for r in rows if r["method"] == m) for m in methods}
     others = [f"{m} {number(worst[m], 2)}" for m in methods if m != shipped]
     text = (
-        f"From a distance of 3 to 10<sup>6</sup> sizes, and 10 sizes away up to 10<sup>7</sup> from the world's origin, "
-        f"the shipped methods' K never passes {number(worst[shipped], 2)} (bound 8, dashed); the others reach "
-        f"{join(others)}. At the worst of these places {number(missed['textbook'] / 1e4, 2)} % of the textbook's rays are "
-        f"misclassified and {number(missed[shipped] / 1e4, 2)} % of the shipped ones', which S explains: far away u S comes "
-        "to the primitive's size. Where a method has no point, no ray hit both by it and the oracle."
+        "From a distance of 3 to 10<sup>6</sup> sizes, and 10 sizes away up to 10<sup>7</sup> from the world's "
+        f"origin, the shipped methods' K never passes {number(worst[shipped], 2)} (bound 8, dashed); the others reach "
+        f"{join(others)}. At the worst of these places {number(missed['textbook'] / 1e4, 2)} % of the textbook's rays "
+        f"are misclassified and {number(missed[shipped] / 1e4, 2)} % of the shipped ones', which S explains: far away "
+        "u S comes to the primitive's size. Where a method has no point, no ray hit both by it and the oracle."
     )
     panels = _range_panels(rows, methods, "distance", "distance / size")
     panels += _range_panels(rows, methods, "offset", "offset from the origin / size")

@@ -43,16 +43,17 @@ _SECTIONS = (
 def _device_sentence(p):
     kind = "a CPU driver: the device is the host's processor" if p["device_type"] == "CPU" else f"a {p['device_type']}"
     quick = (
-        " <strong>This is a quick report: so few runs and so small sizes tell that it works, not how fast it is.</strong>"
+        " <strong>This is a quick report: its few runs and small sizes tell that it works, not how fast.</strong>"
         if p["is_quick"]
         else ""
     )
     load = ""
     if p.get("load_before") is not None:
         busy = max(p["load_before"], p.get("load_after") or 0)
-        load = f" {p['threads']} threads; load average {p['load_before']:.1f} before and {p.get('load_after') or 0:.1f} after."
+        after = p.get("load_after") or 0
+        load = f" {p['threads']} threads; load average {p['load_before']:.1f} before and {after:.1f} after."
         if p["load_before"] > 0.5 * p["threads"]:
-            load += f" <strong>The machine was busy with other work as well (up to {busy:.1f} processes at a time).</strong>"
+            load += f" <strong>The machine was busy with other work as well (load up to {busy:.1f}).</strong>"
     return (
         f"{html.escape(p['device'])}, {html.escape(p['driver'])}, {kind}. {html.escape(p['cpu'])}.{load} "
         f"{p['runs']} timed runs of each after a warm-up, in turns; medians with quartiles; times are "
@@ -86,7 +87,8 @@ def make_page(report, old=None):
         [
             '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{html.escape(title)}</title><link rel='icon' href='data:,'><style>{style}</style></head><body><main>",
+            f"<title>{html.escape(title)}</title><link rel='icon' href='data:,'>",
+            f"<style>{style}</style></head><body><main>",
             f"<h1>Speed against error</h1><p class='device'>{_device_sentence(p)}</p>",
             *[_section(section) for section in sections],
             "</main></body></html>\n",

@@ -31,10 +31,10 @@ def robustness(report):
     ratios = sorted(r["robust_ms"]["median"] / r["plain_ms"]["median"] for r in rows)
     lost = [r for r in rows if r["lost"] or r["invented"]]
     text = (
-        "The same rays through the same tree: promin's intersections, boxes and rays against the textbook's (quadratics, "
-        "Möller and Trumbore, boxes without padding). "
-        f"Robustness takes {ratios[0]:.2f} to {ratios[-1]:.2f} times the textbook's time, {ratios[len(ratios) // 2]:.2f} in "
-        "the middle. "
+        "The same rays through the same tree: promin's intersections, boxes and rays against the textbook's "
+        "(quadratics, Möller and Trumbore, boxes without padding). "
+        f"Robustness takes {ratios[0]:.2f} to {ratios[-1]:.2f} times the textbook's time, "
+        f"{ratios[len(ratios) // 2]:.2f} in the middle. "
         + (
             "For that "
             + join(
@@ -116,8 +116,8 @@ def specialisation(report):
     text = (
         "A pipeline is specialised to what its scene uses. Beside one with all features compiled in, tracing takes "
         f"{min(gains):.2f} to {max(gains):.2f} of the time and compiling {min(compiles):.2f} to {max(compiles):.2f}; "
-        f"{same} of {len(rows)} pictures have the same bits either way. Compiling is timed on a device that has compiled "
-        f"nothing, {rows[0]['compile_ms']['runs']} runs, without the driver's cache on disk."
+        f"{same} of {len(rows)} pictures have the same bits either way. Compiling is timed on a device that has "
+        f"compiled nothing, {rows[0]['compile_ms']['runs']} runs, without the driver's cache on disk."
     )
     head = ["scene", "features", "ms", "with all, ms", "ratio", "compiling, ms", "with all, ms", "ratio", "bits"]
     body = [
@@ -163,8 +163,8 @@ def peers(report):
         f"{r['what'][0].upper() + r['what'][1:]} ({r['scene']}) take{'s' if 'picture' in r['what'] else ''} promin "
         f"{r['promin_ms']['median'] / r['peer_ms']['median']:.2f} times as long as {r['peer'].split(',')[0]}"
         + (
-            f", whose picture is {number(r['mean_difference'], 2)} away on average, {number(r['different_pixels_percent'], 2)} "
-            "% of its pixels by more than 0.02."
+            f", whose picture is {number(r['mean_difference'], 2)} away on average, "
+            f"{number(r['different_pixels_percent'], 2)} % of its pixels by more than 0.02."
             if "mean_difference" in r
             else f"; {r['differing_hits']:,} of {r['count']:,} hit in one and miss in the other."
         )

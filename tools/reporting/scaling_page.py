@@ -70,10 +70,10 @@ def scaling(report):
     )
     depth = _rows(rows, "depth", "picture")
     text = (
-        f"From {first['value']:,.0f} to {last['value']:,.0f} triangles a ray takes that many times longer: {growth}; it would "
-        f"be {last['value'] / first['value']:,.0f} without a tree. Steps grow as n to the powers of the table, with 95 % "
-        f"intervals; a logarithm's power falls with n. A triangle takes {last['device_bytes'] / last['value']:.1f} bytes on "
-        f"the device. A picture grows with its pixels as {_power(fits, 'pixels/ms')}, with sources as "
+        f"From {first['value']:,.0f} to {last['value']:,.0f} triangles a ray takes that many times longer: {growth}; "
+        f"it would be {last['value'] / first['value']:,.0f} without a tree. Steps grow as n to the powers of the "
+        "table, with 95 % intervals; a logarithm's power falls with n. A triangle takes "
+        f"{last['device_bytes'] / last['value']:.1f} bytes on the device. A picture grows with its pixels as {_power(fits, 'pixels/ms')}, with sources as "
         f"{_power(fits, 'sources/ms')}; at a depth of {depth[-1]['value']:.0f} it takes "
         f"{depth[-1]['ms']['median'] / depth[0]['ms']['median']:.1f} times what it does without mirror rays, and "
         f"{depth[-1]['rays'] / depth[0]['rays']:.1f} times the rays."
