@@ -214,8 +214,8 @@ def errors_apart(report):
 def _errors_text(rows, precision, scenes):
     parts = [
         "Precision is what fp32 takes from a picture, against brute force in long double with the same samples "
-        "(smaller pictures of larger scenes, as brute force takes its time); sampling what few samples do; truncation what the "
-        "depth cuts off."
+        "(smaller pictures of larger scenes, as brute force takes its time); sampling what few samples do; truncation what "
+        "the depth cuts off."
     ]
     for scene in scenes:
         own = {r["error"]: r["rmse"] for r in rows if r["scene"] == scene and r["method"] == "promin"}
