@@ -5,12 +5,14 @@
 Colours are the page's CSS variables (--c0...--c7), text is currentColor; the same figures give the same bytes."""
 
 import io
+import math
 import re
 
 import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402 - the backend comes first
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 # What stands for the page's variables until the SVG is written; nothing else has these.
 _SERIES = [f"#0{i}fe0{i}" for i in range(8)]
@@ -63,12 +65,38 @@ def _to_page(svg, title):
     )
 
 
+def _label(value):
+    """A tick's number as people write it: 0.05, 20, 5000, 10⁶."""
+    if value == 0 or 1e-4 < abs(value) < 1e5:
+        return f"{value:g}"
+    exponent = math.floor(math.log10(abs(value)) + 1e-9)
+    power = "10" + str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    mantissa = value / 10**exponent
+    return power if abs(mantissa - 1) < 1e-9 else f"{mantissa:g}·{power}"
+
+
+def _set_log_ticks(axis):
+    """Decades; 2 and 5 of each beside where there are less than two."""
+    low, high = sorted(axis.get_view_interval())
+    is_short = low > 0 and high / low < 100
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _label(value)))
+    # Unless the plot has ticks of its own.
+    if is_short and not isinstance(axis.get_major_locator(), FixedLocator):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def _draw_axes(axes, title, draw, x_label, y_label, x_log, y_log):
     if x_log:
         axes.set_xscale("log")
     if y_log:
         axes.set_yscale("log")
     draw(axes)
+    for axis, scale in ((axes.xaxis, axes.get_xscale()), (axes.yaxis, axes.get_yscale())):
+        if scale == "log":
+            _set_log_ticks(axis)
+        elif scale == "symlog":
+            axis.set_major_formatter(FuncFormatter(lambda value, _: _label(value)))
     axes.set_title(title, loc="left")
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
@@ -99,7 +127,7 @@ def write_picture(file, title, panels, names):
     _SERIES, _TEXT = _LIGHT, "#1b1f24"
     try:
         with plt.rc_context({**_style("picture"), "grid.color": "#e4e8ec"}):
-            figure, all_axes = plt.subplots(1, len(panels), figsize=(3.6 * len(panels), 3.6), squeeze=False)
+            figure, all_axes = plt.subplots(1, len(panels), figsize=(max(8.4, 3.6 * len(panels)), 3.8), squeeze=False)
             for axes, (name, draw, x_label, y_label) in zip(all_axes[0], panels):
                 _draw_axes(axes, name, draw, x_label, y_label, True, True)
             handles = [

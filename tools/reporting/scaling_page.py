@@ -30,6 +30,8 @@ def _draw_pictures(rows, variable):
         plots.draw_curve(axes, 3, [r["value"] for r in curve], times, y_spread=[quartiles(r["ms"]) for r in curve])
         if variable == "depth":
             axes.set_xscale("symlog", linthresh=1)
+        if variable != "pixels":
+            axes.set_xticks([r["value"] for r in curve])
 
     return draw
 
@@ -44,7 +46,7 @@ def _draw_build(rows, key):
 
 def _power(fits, key):
     fit = next((f for f in fits if f["id"] == key), None)
-    return f"n^{fit['exponent']:.2f} ({fit['lower']:.2f}…{fit['upper']:.2f})" if fit else "–"
+    return f"n<sup>{fit['exponent']:.2f}</sup> ({fit['lower']:.2f}…{fit['upper']:.2f})" if fit else "–"
 
 
 def scaling(report):
