@@ -170,6 +170,7 @@ def refuses_what_is_wrong(folder):
         (2, ("--quick", *out, "--nonsense"), None),
         (3, ("--quick", *out, folder / "missing.gltf"), None),
         (3, ("--quick", *out, folder / "bad.gltf"), None),
+        (3, ("--quick", *out, scene, folder / "missing.gltf"), None),
         (3, ("--quick", *out, scene, "--compare", folder / "missing.json"), None),
         (3, ("--quick", *out, scene, "--compare", folder / "old.json"), None),
         (1, ("--quick", "-o", folder / "file" / "out"), None),

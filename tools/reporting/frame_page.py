@@ -68,9 +68,8 @@ def _front_text(rows):
         if default in front:
             return text + " and lies on the front."
         ahead = [r for r in rows if r["rmse"] <= default["rmse"] and r["ms"]["median"] < default["ms"]["median"]]
-        return (
-            text + f" and lies on the front within the noise: {join(_name(r) for r in ahead)} differ by less than that."
-        )
+        names = join(_name(r) for r in ahead)
+        return text + f" and lies on the front within the noise, by less than which {names} would be ahead."
     reasons = []
     for r in better:
         gain = f"{_name(r)} is as exact here and takes {r['ms']['median'] / default['ms']['median']:.2f} of the time"

@@ -75,6 +75,7 @@ app::Command add_report_command(CLI::App& program) {
   app::OptionTable table(program);
   table.add_repeated("SCENE", "SCENE", "Scenes: .gltf, .glb or .obj [the project's own]",
                      [=](const app::Words& words) { options->scenes.assign(words.all().begin(), words.all().end()); });
+  program.get_option("SCENE")->expected(-1);  // one or more
   table.add_required("-o,--output", "FOLDER", "Where report.json, CSV files and report.html go",
                      [=](const app::Words& words) { options->output = words.text(); });
   table.add("--compare", "OLD.json", "Say what changed since this report beyond noise",
