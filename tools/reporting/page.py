@@ -47,6 +47,8 @@ def _device_sentence(p):
         if p["is_quick"]
         else ""
     )
+    if p.get("is_validated"):
+        quick += " <strong>Vulkan's validation layers watched, which takes time.</strong>"
     load = ""
     if p.get("load_before") is not None:
         busy = max(p["load_before"], p.get("load_after") or 0)

@@ -46,6 +46,12 @@ std::string compiler_name() {
 #endif
 }
 
+/// Whether Vulkan's validation layers watch (engine/gpu/open_device.h), which takes time.
+bool is_validated() {
+  const char* layers = std::getenv("PROMIN_VALIDATION");
+  return layers != nullptr && *layers != '\0';
+}
+
 }  // namespace
 
 Json describe_run(const Session& session) {
@@ -65,6 +71,7 @@ Json describe_run(const Session& session) {
           {"threads", std::thread::hardware_concurrency()},
           {"runs", session.runs()},
           {"is_quick", session.is_quick()},
+          {"is_validated", is_validated()},
           {"load_before", load_average()}};
 }
 

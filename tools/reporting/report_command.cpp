@@ -54,6 +54,13 @@ void check_options(const ReportOptions& options) {
   }
 }
 
+void check_validation(const gpu::Device& device) {
+  const uint64_t count = gpu::validation_message_count(device);
+  if (count == 0) return;
+  throw RunError({fmt::format("the Vulkan validation layers reported {} problems", count), gpu::info_of(device).name,
+                  "report them as a bug of promin"});
+}
+
 void report(const ReportOptions& options) {
   check_options(options);
   const Session session(options);
@@ -62,6 +69,7 @@ void report(const ReportOptions& options) {
   Json json = {{"format", kReportFormat}};
   json["provenance"] = describe_run(session);
   for (const Section& section : kSections) json[section.name] = section.measure(session);
+  check_validation(session.device());
   end_run(json);
   write_text_file(options.output / "report.json", json.dump(1) + "\n");
   write_csv_files(json, options.output);
