@@ -43,4 +43,11 @@ inline std::vector<std::vector<double>> time_in_turns(std::span<const std::funct
   return times_ms;
 }
 
+/// Of each turn, one contestant's time over another's: what falls on both alike is no longer in it.
+inline std::vector<double> ratios_of(std::span<const double> times, std::span<const double> others) {
+  std::vector<double> ratios;
+  for (size_t i = 0; i < times.size(); ++i) ratios.push_back(times[i] / others[i]);
+  return ratios;
+}
+
 }  // namespace promin::measure

@@ -109,7 +109,7 @@ def section(old, new):
 
 
 def _is_time_name(figure):
-    return figure.endswith("ms") or "_ms" in figure or figure.startswith("ns_")
+    return figure.endswith("ms") or "_ms" in figure or "time" in figure or figure.startswith("ns_")
 
 
 def summary(old, new):

@@ -39,10 +39,6 @@ def quartiles(times):
     return times["lower_quartile"], times["upper_quartile"]
 
 
-def ratio(a, b):
-    return f"{a / b:.2f}" if b else "–"
-
-
 def table(head, rows, caption=""):
     lines = ["<div class='table'><table>"]
     if caption:
@@ -62,6 +58,18 @@ _LEAST_DIFFERENCE = 1.02
 def is_slower(a, b):
     """Whether times `a` are beyond the noise above `b`: their quartiles do not meet, and the medians are 2 % apart."""
     return a["lower_quartile"] > b["upper_quartile"] and a["median"] > _LEAST_DIFFERENCE * b["median"]
+
+
+def time_ratio(row, own, other, key="time_ratio"):
+    """Of each turn the one time over the other, as quartiles; without such, the least that the times' quartiles say."""
+    if key in row:
+        return row[key]
+    a, b = row[own], row[other]
+    return {
+        "median": a["median"] / b["median"],
+        "lower_quartile": a["lower_quartile"] / b["upper_quartile"],
+        "upper_quartile": a["upper_quartile"] / b["lower_quartile"],
+    }
 
 
 def pareto_front(points):

@@ -149,6 +149,7 @@ class FrameBench {
                   {"width", s.view.size.x},
                   {"height", s.view.size.y},
                   {"ms", json_of_times(times[i])},
+                  {"time_ratio", json_of_times(measure::ratios_of(times[i], times[0]))},
                   {"rmse", rmse_of(images[i], truth_)},
                   {"device_bytes", picture_of(s.method, s.builder).device_bytes()}};
       if (!flips[i].is_null()) row["flip"] = flips[i];

@@ -49,6 +49,7 @@ void compare_with_embree(const Session& session, const Scene& scene, Json& rows)
                     {"promin_ms", json_of_times(ms[0])},
                     {"peer_ms", json_of_times(ms[1])},
                     {"peer_packets_ms", json_of_times(ms[2])},
+                    {"time_ratio", json_of_times(measure::ratios_of(ms[0], ms[1]))},
                     {"differing_hits", count_differences(own, single)}});
   }
 }
@@ -77,6 +78,7 @@ void compare_pictures(const Session& session, Json& rows) {
                     {"what", fmt::format("a picture of {} by {} pixels, 6 bounces", side, side)},
                     {"promin_ms", with_runs(found["trace_ms"])},
                     {"peer_ms", with_runs(peer["trace_ms"])},
+                    {"time_ratio", with_runs(peer["time_ratio"])},
                     {"mean_difference", peer["picture_difference"]["mean_absolute"]},
                     {"different_pixels_percent", peer["picture_difference"]["different_percent"]}});
   }

@@ -3,19 +3,17 @@
 """The page's sections on what robustness and specialisation cost and bring."""
 
 import plots
-from figures import join, number, ratio, spread, table
+from figures import join, number, quartiles, spread, table, time_ratio
 
 
-def _draw_pairs(names, pairs):
-    """Ratios as points over their names, with the quartiles that the two times' quartiles allow."""
+def _draw_ratios(names, ratios):
+    """Ratios as points over their names, with their quartiles."""
 
     def draw(axes):
-        ys = [a["median"] / b["median"] for a, b in pairs]
-        bars = [
-            (a["lower_quartile"] / b["upper_quartile"], a["upper_quartile"] / b["lower_quartile"]) for a, b in pairs
-        ]
+        values = [ratio["median"] for ratio in ratios]
+        bars = [quartiles(ratio) for ratio in ratios]
         places = list(range(len(names)))[::-1]
-        plots.draw_curve(axes, 0, ys, places, x_spread=bars, line="none")
+        plots.draw_curve(axes, 0, values, places, x_spread=bars, line="none")
         axes.set_yticks(places, names)
         axes.set_ylim(-0.6, len(names) - 0.4)
         axes.axvline(1, color=plots.color(7), linewidth=0.8, linestyle="--")
@@ -26,9 +24,10 @@ def _draw_pairs(names, pairs):
 def robustness(report):
     rows = report["robustness"]["rows"]
     names = [f"{r['scene']}, {r['rays']}" for r in rows]
-    draw = _draw_pairs(names, [(r["robust_ms"], r["plain_ms"]) for r in rows])
+    by_row = [time_ratio(r, "robust_ms", "plain_ms") for r in rows]
+    draw = _draw_ratios(names, by_row)
     panel = plots.panel("robustness", "time over the textbook's", draw, "ratio of times", "", x_log=False, y_log=False)
-    ratios = sorted(r["robust_ms"]["median"] / r["plain_ms"]["median"] for r in rows)
+    ratios = sorted(ratio["median"] for ratio in by_row)
     lost = [r for r in rows if r["lost"] or r["invented"]]
     text = (
         "The same rays through the same tree: promin's intersections, boxes and rays against the textbook's "
@@ -71,14 +70,14 @@ def robustness(report):
                 f"{r['count']:,}",
                 spread(r["robust_ms"]),
                 spread(r["plain_ms"]),
-                ratio(r["robust_ms"]["median"], r["plain_ms"]["median"]),
+                spread(ratio),
                 number(r["robust_mrays_per_s"]),
                 f"{r['lost']:,}",
                 f"{r['invented']:,}",
             ],
             False,
         )
-        for r in rows
+        for r, ratio in zip(rows, by_row)
     ]
     return {
         "title": "The price of robustness",
@@ -92,11 +91,13 @@ def robustness(report):
 def specialisation(report):
     rows = report["specialisation"]["rows"]
     names = [r["scene"] for r in rows]
+    tracing = [time_ratio(r, "ms", "ms_with_all") for r in rows]
+    compiling = [time_ratio(r, "compile_ms", "compile_ms_with_all", "compile_time_ratio") for r in rows]
     panels = [
         plots.panel(
             "specialisation-ms",
             "tracing, of all features' time",
-            _draw_pairs(names, [(r["ms"], r["ms_with_all"]) for r in rows]),
+            _draw_ratios(names, tracing),
             "ratio of times",
             x_log=False,
             y_log=False,
@@ -104,14 +105,14 @@ def specialisation(report):
         plots.panel(
             "specialisation-compile",
             "compiling, likewise",
-            _draw_pairs(names, [(r["compile_ms"], r["compile_ms_with_all"]) for r in rows]),
+            _draw_ratios(names, compiling),
             "ratio of times",
             x_log=False,
             y_log=False,
         ),
     ]
-    gains = [r["ms"]["median"] / r["ms_with_all"]["median"] for r in rows]
-    compiles = [r["compile_ms"]["median"] / r["compile_ms_with_all"]["median"] for r in rows]
+    gains = [ratio["median"] for ratio in tracing]
+    compiles = [ratio["median"] for ratio in compiling]
     same = sum(r["is_bit_identical"] for r in rows)
     text = (
         "A pipeline is specialised to what its scene uses. Beside one with all features compiled in, tracing takes "
@@ -127,10 +128,10 @@ def specialisation(report):
                 f"{r['features']} of {r['all_features']}",
                 spread(r["ms"]),
                 spread(r["ms_with_all"]),
-                ratio(r["ms"]["median"], r["ms_with_all"]["median"]),
+                spread(time_ratio(r, "ms", "ms_with_all")),
                 spread(r["compile_ms"]),
                 spread(r["compile_ms_with_all"]),
-                ratio(r["compile_ms"]["median"], r["compile_ms_with_all"]["median"]),
+                spread(time_ratio(r, "compile_ms", "compile_ms_with_all", "compile_time_ratio")),
                 "the same" if r["is_bit_identical"] else "<strong>differ</strong>",
             ],
             False,
@@ -157,18 +158,19 @@ def peers(report):
     names = [
         name.replace("a picture of ", "") + (" px²" if "picture" in r["what"] else "") for name, r in zip(names, rows)
     ]
-    draw = _draw_pairs(names, [(r["promin_ms"], r["peer_ms"]) for r in rows])
+    ratios = [time_ratio(r, "promin_ms", "peer_ms") for r in rows]
+    draw = _draw_ratios(names, ratios)
     panel = plots.panel("peers", "promin's time over the peer's", draw, "ratio of times", "", y_log=False)
     sentences = [
         f"{r['what'][0].upper() + r['what'][1:]} ({r['scene']}) take{'s' if 'picture' in r['what'] else ''} promin "
-        f"{r['promin_ms']['median'] / r['peer_ms']['median']:.2f} times as long as {r['peer'].split(',')[0]}"
+        f"{ratio['median']:.2f} times as long as {r['peer'].split(',')[0]}"
         + (
             f", whose picture is {number(r['mean_difference'], 2)} away on average, "
             f"{number(r['different_pixels_percent'], 2)} % of its pixels by more than 0.02."
             if "mean_difference" in r
             else f"; {r['differing_hits']:,} of {r['count']:,} hit in one and miss in the other."
         )
-        for r in rows
+        for r, ratio in zip(rows, ratios)
     ]
     head = ["scene", "what", "peer", "promin, ms", "peer, ms", "ratio", "in packets of 8, ms", "difference"]
     body = [
@@ -179,7 +181,7 @@ def peers(report):
                 r["peer"],
                 spread(r["promin_ms"]),
                 spread(r["peer_ms"]),
-                ratio(r["promin_ms"]["median"], r["peer_ms"]["median"]),
+                spread(ratio),
                 spread(r.get("peer_packets_ms")),
                 (
                     f"mean {number(r['mean_difference'], 2)}, {number(r['different_pixels_percent'], 2)} % of pixels"
@@ -189,7 +191,7 @@ def peers(report):
             ],
             False,
         )
-        for r in rows
+        for r, ratio in zip(rows, ratios)
     ]
     text = "The same scene in the same run, in turns, on the same cores. " + " ".join(sentences) + gap
     return {

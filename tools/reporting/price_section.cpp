@@ -37,6 +37,7 @@ void compare_casters(const Session& session, const Scene& scene, bool is_closed,
                     {"count", pair.count},
                     {"robust_ms", json_of_times(pair.robust_ms)},
                     {"plain_ms", json_of_times(pair.plain_ms)},
+                    {"time_ratio", json_of_times(measure::ratios_of(pair.robust_ms, pair.plain_ms))},
                     {"robust_mrays_per_s", pair.robust_mrays_per_s()},
                     {"plain_mrays_per_s", pair.plain_mrays_per_s()},
                     {"lost", pair.lost},
@@ -85,8 +86,10 @@ Json compare_specialisation(const Session& session, const Scene& scene) {
           {"all_features", feature_names(all_features()).size()},
           {"ms", json_of_times(ms[0])},
           {"ms_with_all", json_of_times(ms[1])},
+          {"time_ratio", json_of_times(measure::ratios_of(ms[0], ms[1]))},
           {"compile_ms", json_of_times(compile_ms[0])},
           {"compile_ms_with_all", json_of_times(compile_ms[1])},
+          {"compile_time_ratio", json_of_times(measure::ratios_of(compile_ms[0], compile_ms[1]))},
           {"is_bit_identical", has_same_bits(of_scene, of_all)}};
 }
 
