@@ -75,7 +75,9 @@ std::string describe_commit() {
 
 Json run_script(const std::string& name, const std::vector<std::string>& arguments) {
   const std::optional<std::string> output = read_output(script_words(name, arguments));
-  return output ? Json::parse(*output, nullptr, false) : Json();
+  if (!output) return {};
+  Json json = Json::parse(*output, nullptr, false);
+  return json.is_discarded() ? Json() : json;
 }
 
 void make_page(const Session& session) {
