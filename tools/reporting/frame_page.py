@@ -72,7 +72,7 @@ def _front_text(rows):
             return text + " and lies on the front."
         ahead = [r for r in rows if r["rmse"] <= default["rmse"] and r["ms"]["median"] < default["ms"]["median"]]
         names = join(_name(r) for r in ahead)
-        return text + f" and lies on the front within the noise, by less than which {names} would be ahead."
+        return text + f" and lies on the front within the noise: {names} would be ahead by less than that."
     reasons = []
     for r in better:
         gain = f"{_name(r)} is as exact here and takes {_ratio_text(r, default)} of the time"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 #include <map>
 
 #include "measure/samples.h"
@@ -24,6 +24,23 @@ constexpr uint32_t kDeep = 64;
 uint32_t truth_samples(const Session& session) {
   return session.pick(256U, 64U);
 }
+
+/// A folder for the time of its life.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
+  ~ScratchFolder() {
+    std::error_code error;
+    fs::remove_all(folder_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  fs::path folder_;
+};
 
 struct Setting {
   std::string knob;
@@ -160,16 +177,14 @@ class FrameBench {
   /// By PyPI's flip-evaluator against the truth; null where that is not installed.
   std::vector<Json> measure_flip(const std::vector<Image>& images) const {
     std::vector<Json> flips(images.size());
-    const fs::path folder = session_.options().output / ".flip";
-    fs::create_directories(folder);
-    std::vector<std::string> arguments = {(folder / "truth.exr").string()};
+    const ScratchFolder folder(session_.options().output / ".flip");
+    std::vector<std::string> arguments = {folder.file("truth.exr")};
     write_image(arguments[0], truth_);
     for (size_t i = 0; i < images.size(); ++i) {
-      arguments.push_back((folder / fmt::format("{}.exr", i)).string());
+      arguments.push_back(folder.file(fmt::format("{}.exr", i)));
       write_image(arguments.back(), images[i]);
     }
     const Json found = run_script("flip.py", arguments);
-    fs::remove_all(folder);
     for (size_t i = 0; i < images.size() && i < found.size(); ++i) flips[i] = found[i];
     return flips;
   }

@@ -3,7 +3,6 @@
 #include "reporting/picture.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 
