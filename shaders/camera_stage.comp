@@ -78,7 +78,6 @@ void arrive() {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     is_lit[i] = false;
     if (!is_inside[i]) continue;
-    // A copy: glslang 12 fails where packets are made of points that are made of packets.
     Ray ray = packet[i];
     put_record(paths[i], ray, found[i]);
     if (SHADING != SHADING_FULL) {
@@ -105,7 +104,9 @@ void aim_at_source(LightRecord light) {
     LightSample sampled = sample_light(light, points[i].position);
     shares[i] = unshadowed_share(points[i], -paths[i].direction, light, sampled);
     if (!has(FEATURE_SHADOWS) || !(max_abs(shares[i]) > 0.0)) continue;
-    packet[i] = shadow_ray(points[i], light, sampled);
+    // Copies here and in `arrive`: glslang 12 fails where packets are made of points that are made of packets.
+    Ray ray = shadow_ray(points[i], light, sampled);
+    packet[i] = ray;
     ++ray_count.y;
   }
 }

@@ -129,6 +129,8 @@ uvec4 least_where(uvec4 keys, bvec4 condition, uvec4 candidates) {
                          condition.z ? candidates.z : NOT_MET, condition.w ? candidates.w : NOT_MET));
 }
 
+// A kernel to compare with may bring boxes of its own (tools/plain).
+#ifndef OTHER_BOXES
 // The children of a node that a ray of the packet meets, as its family. A box is met if entry <= exit; <=, so that one
 // at the distance of the hit so far is still opened: its primitive may have a lower number. (origin - ray's origin)
 // comes first, never byte * scale * inverse - origin * inverse, which cancels. No hit hidden in 3.6e5 rays at edges and
@@ -175,6 +177,7 @@ uint meet_children(uint index) {
   uint others = uint(keys.y != NOT_MET) + uint(keys.z != NOT_MET) + uint(keys.w != NOT_MET);
   return (index << 8) | (others << 6) | ((keys.z & 3u) << 4) | ((keys.y & 3u) << 2) | (keys.x & 3u);
 }
+#endif
 
 bool any_takes_part() {
   bool result = false;

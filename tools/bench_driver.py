@@ -69,39 +69,40 @@ class Peer:
         return 1e3 * float(seconds.group(1))
 
 
-def find_peers(folder, scene):
+def find_peers(folder, scene, side):
     """Those that are installed, with the scene in their languages."""
     peers = []
     threads = os.cpu_count()
     if shutil.which("tachyon"):
-        (folder / "flake.dat").write_text(write_tachyon(scene, "0", _MAX_DEPTH), encoding="utf-8")
+        (folder / "flake.dat").write_text(write_tachyon(scene, "0", _MAX_DEPTH, side), encoding="utf-8")
         command = f"tachyon flake.dat -fullshade -shade_phong -format PPM48 -numthreads {threads} -o tachyon.ppm"
         peers.append(Peer("Tachyon", command, "tachyon.ppm", r"Ray Tracing Time:\s*([\d.]+)"))
     if shutil.which("povray"):
         (folder / "flake.pov").write_text(write_pov(scene, "0", _MAX_DEPTH), encoding="utf-8")
-        command = f"povray +Iflake.pov +Opovray.exr +FE -A -D +W{_SIDE} +H{_SIDE} +WT{threads}"
+        command = f"povray +Iflake.pov +Opovray.exr +FE -A -D +W{side} +H{side} +WT{threads}"
         peers.append(Peer("POV-Ray", command, "povray.exr", r"Trace Time:.*\(([\d.]+) seconds\)"))
     return peers
 
 
-def render(programs, folder, scene, picture, side):
+def render(programs, folder, scene, picture, side, options=()):
     """Device milliseconds of the tracing, and of the whole process by the clock on the wall; and the rays."""
     command = (programs / "promin", "render", scene, "-o", picture, "--size", side, side)
-    settings = ("--max-depth", _MAX_DEPTH, "--quiet", "--stats", "stats.json")
+    settings = ("--max-depth", _MAX_DEPTH, "--quiet", "--stats", "stats.json", *options)
     _, seconds = run(*command, *settings, folder=folder)
     stats = json.loads((folder / "stats.json").read_text(encoding="utf-8"))
     return stats["times_ms"]["trace"], 1e3 * seconds, stats["rays"]
 
 
-def measure_frames(programs, folder, runs):
-    """The sphereflake and one sphere, in turns with the peers; the round before the first only warms caches."""
-    for name, level in (("flake", 4), ("ball", 0)):
-        sphereflake(level, has_endless_ground=True).write(folder / f"{name}.gltf")
-    peers = find_peers(folder, folder / "flake.gltf")
+def measure_frames(programs, folder, runs, side=_SIDE, level=4, options=()):
+    """The sphereflake and one sphere, in turns with the peers; the round before the first only warms caches. `options`
+    are further ones of `promin render`."""
+    for name, depth in (("flake", level), ("ball", 0)):
+        sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
+    peers = find_peers(folder, folder / "flake.gltf", side)
     trace_ms, process_ms, small_ms = [], [], []
     for turn in range(runs + 1):
-        trace, process, rays = render(programs, folder, "flake.gltf", "flake.exr", _SIDE)
-        _, small, _ = render(programs, folder, "ball.gltf", "ball.exr", 16)
+        trace, process, rays = render(programs, folder, "flake.gltf", "flake.exr", side, options)
+        _, small, _ = render(programs, folder, "ball.gltf", "ball.exr", 16, options)
         for peer in peers:
             peer.trace_ms.append(peer.render(folder))
         if turn == 0:

@@ -74,12 +74,12 @@ class TachyonWriter(SceneReader):
         )
 
 
-def camera_block(camera, max_depth):
+def camera_block(camera, max_depth, side):
     if camera.is_orthographic:
         raise Unsupported("orthographic cameras")
     # Tachyon's rays go through the corners of pixels, so what it sees is shifted by half of one.
     half = camera.height / 2
-    shift = half / _SIDE
+    shift = half / side
     low, high = -half - shift, half - shift
     return (
         f"CAMERA PROJECTION PERSPECTIVE ZOOM {1 / camera.height:.9g} ASPECTRATIO 1 ANTIALIASING 0 "
@@ -88,12 +88,13 @@ def camera_block(camera, max_depth):
     )
 
 
-def write_tachyon(file, camera, max_depth):
-    """The scene as text. max_depth is the number of bounces, as promin counts them."""
+def write_tachyon(file, camera, max_depth, side=_SIDE):
+    """The scene as text. max_depth is the number of bounces, as promin counts them; `side` the picture's pixels each
+    way."""
     scene = TachyonWriter(file)
     scene.read()
     background = f"BACKGROUND {numbers(scene.sky()[0])}"
-    head = [f"BEGIN_SCENE RESOLUTION {_SIDE} {_SIDE}", camera_block(scene.camera(camera), max_depth), background]
+    head = [f"BEGIN_SCENE RESOLUTION {side} {side}", camera_block(scene.camera(camera), max_depth, side), background]
     return "\n".join([*head, *scene.lines, "END_SCENE", ""])
 
 

@@ -221,7 +221,11 @@ Device::Device(const std::optional<std::string>& selection, const Presentation* 
       extensions.push_back("VK_KHR_portability_subset");
     }
     if (presentation != nullptr) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions));
+    // For measurements against double alone (tools/reporting): nothing else needs an optional feature.
+    has_fp64_ = physical_.getFeatures().shaderFloat64 == VK_TRUE;
+    vk::PhysicalDeviceFeatures features;
+    features.shaderFloat64 = has_fp64_ ? VK_TRUE : VK_FALSE;
+    device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions, &features));
     queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));

@@ -41,6 +41,8 @@ class Device {
   const std::string& choice() const { return choice_; }
   /// Whether the host's processor does the device's work.
   bool is_cpu() const { return is_cpu_; }
+  /// Whether its shaders compute in double too; promin's own never do.
+  bool has_fp64() const { return has_fp64_; }
   /// Whether it is Mesa's llvmpipe, which compiles large kernels in a fraction of a second where SwiftShader takes
   /// minutes.
   bool is_lavapipe() const { return is_lavapipe_; }
@@ -96,6 +98,7 @@ class Device {
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
   bool is_cpu_ = false;
+  bool has_fp64_ = false;
   bool is_lavapipe_ = false;
   std::string choice_;
 };

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -110,24 +109,6 @@ Polygon polygon_of(const Primitive& p) {
   return {corners.begin(), corners.end()};
 }
 
-Bounds bounds_of(const Primitive& p) {
-  const vec3 center(p.a);
-  const vec3 axis(p.b);
-  switch (p.c.z) {
-    case layout::KIND_SPHERE:
-      return bounds_of(Sphere{center, p.a.w});
-    case layout::KIND_CYLINDER:
-      return bounds_of(Cylinder{center, axis, p.b.w, p.a.w});
-    case layout::KIND_CONE:
-      return bounds_of(Cone{center, axis, p.b.w, p.a.w, std::bit_cast<float>(p.c.x)});
-    default: {
-      Bounds bounds;
-      for (const vec3& corner : triangle_corners(p)) bounds.extend(corner);
-      return bounds;
-    }
-  }
-}
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Box kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
 
@@ -204,7 +185,7 @@ class Inspection {
   void inspect(uint32_t index, TreeFaults& faults) const {
     const auto slots = std::span(slots_).subspan(first_slot_[index], first_slot_[index + 1] - first_slot_[index]);
     const Primitive& primitive = packed_.primitives[slots.front()];
-    const Bounds bounds = bounds_of(primitive);
+    const Bounds bounds = primitive_bounds(primitive);
     const Box whole{bounds.lo, bounds.hi};
     if (slots.size() == 1) {
       if (contains(box_of(slots.front()), whole)) return;

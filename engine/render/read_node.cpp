@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "scene/shapes.h"
+
 namespace promin {
 namespace {
 
@@ -34,6 +36,24 @@ Box child_box(const layout::Node& node, uint32_t child) {
     box.hi[axis] = origin + step * byte_of(hi_words[axis], child);
   }
   return box;
+}
+
+Bounds primitive_bounds(const layout::Primitive& p) {
+  const vec3 center(p.a);
+  const vec3 axis(p.b);
+  switch (p.c.z) {
+    case layout::KIND_SPHERE:
+      return bounds_of(Sphere{center, p.a.w});
+    case layout::KIND_CYLINDER:
+      return bounds_of(Cylinder{center, axis, p.b.w, p.a.w});
+    case layout::KIND_CONE:
+      return bounds_of(Cone{center, axis, p.b.w, p.a.w, std::bit_cast<float>(p.c.x)});
+    default: {
+      Bounds bounds;
+      for (const vec3& corner : triangle_corners(p)) bounds.extend(corner);
+      return bounds;
+    }
+  }
 }
 
 std::array<vec3, 3> triangle_corners(const layout::Primitive& p) {

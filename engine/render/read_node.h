@@ -36,6 +36,9 @@ NodeChild child_of(const layout::Node& node, uint32_t child);
 /// The box of a child that is there. Bits that are no box (NaN, infinity) come as they are.
 Box child_box(const layout::Node& node, uint32_t child);
 
+/// Of any primitive of the tree, conservative as bounds_of of its shape is.
+Bounds primitive_bounds(const layout::Primitive& primitive);
+
 /// Of a KIND_TRIANGLE.
 std::array<vec3, 3> triangle_corners(const layout::Primitive& primitive);
 

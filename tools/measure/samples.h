@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace promin::measure {
@@ -25,6 +28,26 @@ inline Quartiles quartiles_of(std::vector<double> values) {
     return std::lerp(values[below], values[above], place - static_cast<double>(below));
   };
   return {at(0.25), at(0.5), at(0.75)};
+}
+
+/// The protocol of everything that is timed: each contestant once as a warm-up, whose time is thrown away, then all of
+/// them in turns, so that what else the machine does falls on all alike. A contestant returns its milliseconds; the
+/// result has those of each contestant, `runs` of them.
+inline std::vector<std::vector<double>> time_in_turns(std::span<const std::function<double()>> contestants,
+                                                      uint32_t runs) {
+  for (const std::function<double()>& contestant : contestants) contestant();
+  std::vector<std::vector<double>> times_ms(contestants.size());
+  for (uint32_t run = 0; run < runs; ++run) {
+    for (size_t i = 0; i < contestants.size(); ++i) times_ms[i].push_back(contestants[i]());
+  }
+  return times_ms;
+}
+
+/// Of each turn, one contestant's time over another's: what falls on both alike is no longer in it.
+inline std::vector<double> ratios_of(std::span<const double> times, std::span<const double> others) {
+  std::vector<double> ratios;
+  for (size_t i = 0; i < times.size(); ++i) ratios.push_back(times[i] / others[i]);
+  return ratios;
 }
 
 }  // namespace promin::measure

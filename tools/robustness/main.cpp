@@ -5,19 +5,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "gpu/open_device.h"
+#include "measure/kernel_pair.h"
 #include "measure/meshes.h"
-#include "measure/ray_sets.h"
-#include "measure/samples.h"
-#include "plain_cast.spv.h"
 #include "render/caster.h"
 #include "scene/load_scene.h"
+#include "textbook_cast.spv.h"
 
 namespace {
 
@@ -27,59 +24,11 @@ using namespace promin::measure;
 constexpr uint32_t kSide = 1024;
 constexpr uint32_t kSphereTriangles = 131000;
 
-/// From inside of the generated sphere at its edges: each must hit.
-RaySet make_edge_rays(const Mesh& mesh) {
-  std::mt19937 generator(2);
-  RaySet set{"edges", HitQuery::kNearest, {}};
-  const vec3 origin(0.1F, 0.05F, -0.07F);
-  while (set.rays.size() < size_t{kSide} * kSide) {
-    const uvec3& triangle = mesh.triangles[generator() % mesh.triangles.size()];
-    const double s = static_cast<double>(generator()) * 0x1p-32;
-    const dvec3 target = glm::mix(dvec3(mesh.positions[triangle.x]), dvec3(mesh.positions[triangle.y]), s);
-    set.rays.push_back({origin, 0.0F, vec3(target - dvec3(origin))});
-  }
-  return set;
-}
-
-struct Comparison {
-  std::string rays;
-  size_t count = 0;
-  double robust_mrays = 0.0;
-  double plain_mrays = 0.0;
-  /// Rays with a hit by the robust kernel and none by the plain one, and the other way round.
-  uint64_t lost = 0;
-  uint64_t invented = 0;
-};
-
-Comparison compare(Caster& robust, Caster& plain, const RaySet& set, uint32_t runs) {
-  std::vector<Hit> robust_hits(set.rays.size());
-  std::vector<Hit> plain_hits(set.rays.size());
-  std::vector<double> robust_ms;
-  std::vector<double> plain_ms;
-  robust.prepare(set.query, set.rays);
-  plain.prepare(set.query, set.rays);
-  for (uint32_t i = 0; i < runs; ++i) {
-    robust_ms.push_back(robust.cast(set.rays, robust_hits, set.query));
-    plain_ms.push_back(plain.cast(set.rays, plain_hits, set.query));
-  }
-  const auto mrays = [&](const std::vector<double>& ms) {
-    return static_cast<double>(set.rays.size()) / (1e3 * quartiles_of(ms).median);
-  };
-  Comparison result{set.name, set.rays.size(), mrays(robust_ms), mrays(plain_ms)};
-  for (size_t i = 0; i < set.rays.size(); ++i) {
-    const bool is_robust_hit = std::isfinite(robust_hits[i].t);
-    const bool is_plain_hit = std::isfinite(plain_hits[i].t);
-    result.lost += is_robust_hit && !is_plain_hit ? 1 : 0;
-    result.invented += is_plain_hit && !is_robust_hit ? 1 : 0;
-  }
-  return result;
-}
-
-nlohmann::ordered_json json_of(const Comparison& c) {
+nlohmann::ordered_json json_of(const KernelPair& c) {
   return {{"rays", c.rays},
           {"count", c.count},
-          {"robust_mrays_per_s", c.robust_mrays},
-          {"plain_mrays_per_s", c.plain_mrays},
+          {"robust_mrays_per_s", c.robust_mrays_per_s()},
+          {"plain_mrays_per_s", c.plain_mrays_per_s()},
           {"lost", c.lost},
           {"invented", c.invented}};
 }
@@ -90,15 +39,10 @@ void compare_all(const std::string& file, const std::string& output, uint32_t ru
   const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
   Caster robust(*device, scene);
   CasterOptions options;
-  options.spirv = k_plain_cast_spirv;
+  options.spirv = k_textbook_cast_spirv;
   Caster plain(*device, scene, options);
 
-  std::vector<RaySet> sets = {make_camera_rays(camera, kSide)};
-  std::vector<Hit> hits(sets[0].rays.size());
-  robust.cast(sets[0].rays, hits);
-  sets.push_back(make_shadow_rays(sets[0], hits, scene, camera));
-  sets.push_back(make_random_rays(scene, hits.size()));
-  if (file.empty()) sets.push_back(make_edge_rays(std::get<Mesh>(scene.objects[0].shape)));
+  const std::vector<RaySet> sets = make_ray_sets(robust, scene, camera, kSide, file.empty());
 
   const gpu::DeviceInfo& info = gpu::info_of(*device);
   nlohmann::ordered_json json = {
@@ -107,10 +51,10 @@ void compare_all(const std::string& file, const std::string& output, uint32_t ru
   fmt::print("{:<8}{:>10}{:>16}{:>16}{:>8}{:>8}{:>10}\n", "rays", "count", "robust Mray/s", "plain Mray/s", "ratio",
              "lost", "invented");
   for (const RaySet& set : sets) {
-    const Comparison c = compare(robust, plain, set, runs);
+    const KernelPair c = measure_pair(robust, plain, set, runs);
     json["comparisons"].push_back(json_of(c));
-    fmt::print("{:<8}{:>10}{:>16.3f}{:>16.3f}{:>8.2f}{:>8}{:>10}\n", c.rays, c.count, c.robust_mrays, c.plain_mrays,
-               c.robust_mrays / c.plain_mrays, c.lost, c.invented);
+    fmt::print("{:<8}{:>10}{:>16.3f}{:>16.3f}{:>8.2f}{:>8}{:>10}\n", c.rays, c.count, c.robust_mrays_per_s(),
+               c.plain_mrays_per_s(), c.robust_mrays_per_s() / c.plain_mrays_per_s(), c.lost, c.invented);
   }
   if (!output.empty()) write_text_file(output, json.dump(1) + "\n");
 }

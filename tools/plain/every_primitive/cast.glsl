@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// cast.glsl without a tree: each ray is tested against every primitive, so that nothing but the tests takes time and
+// no box hides what they answer. For a scene of one kind of primitive.
+
+void test_every_primitive(bool any_hit) {
+  found[0] = Hit(packet[0].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
+  limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
+  if (has(FEATURE_PLANES)) intersect_planes(any_hit);
+  if ((FEATURES & SOLID_FEATURES) == 0u) return;
+  uint i = 0u;
+  uint end = dispatch.counts.x;
+  INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle)
+  INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
+  INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
+  INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)
+}
+
+#define trace_packet test_every_primitive
+#include "shaders/cast.glsl"

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// promin's traversal over nodes whose boxes are fp32 planes as they are instead of bytes: two of layout.h's nodes stand
+// for one (tools/reporting/full_boxes.h). Of the first, frame = lower x of the four children, lo = lower y, hi = lower
+// z, children = upper x; of the second upper y, upper z, the children as they were, and how many there are.
+
+#define OTHER_BOXES
+uint meet_children(uint index);
+#define load_children load_full_children
+uvec4 load_full_children(uint index) {
+  if (FETCHES_TEXELS == 0u) return nodes[2u * index + 1u].hi;
+  return texelFetch(node_texels, int(8u * index + 6u));
+}
+#include "shaders/traversal.glsl"
+
+vec4 load_planes(uint index, uint place) {
+  if (FETCHES_TEXELS != 0u) return uintBitsToFloat(texelFetch(node_texels, int(8u * index + place)));
+  uint node = 2u * index + (place >> 2);
+  uint part = place & 3u;
+  if (part == 0u) return uintBitsToFloat(nodes[node].frame);
+  if (part == 1u) return uintBitsToFloat(nodes[node].lo);
+  return uintBitsToFloat(part == 2u ? nodes[node].hi : nodes[node].children);
+}
+
+uint load_child_count(uint index) {
+  if (FETCHES_TEXELS == 0u) return nodes[2u * index + 1u].children.x;
+  return texelFetch(node_texels, int(8u * index + 7u)).x;
+}
+
+// Of one axis, the t of four planes.
+vec4 slab(vec4 planes, float origin, float inverse) {
+#ifdef CANCELLING
+  // What far from the world's origin is the difference of two large numbers.
+  precise vec4 t = planes * inverse - origin * inverse;
+#else
+  precise vec4 t = (planes - origin) * inverse;
+#endif
+  return t;
+}
+
+uint meet_children(uint index) {
+  vec4 lo_x = load_planes(index, 0u);
+  vec4 lo_y = load_planes(index, 1u);
+  vec4 lo_z = load_planes(index, 2u);
+  vec4 hi_x = load_planes(index, 3u);
+  vec4 hi_y = load_planes(index, 4u);
+  vec4 hi_z = load_planes(index, 5u);
+  bvec3 is_backward = lessThan(octant, vec3(0.0));
+  vec4 near_x = is_backward.x ? hi_x : lo_x;
+  vec4 near_y = is_backward.y ? hi_y : lo_y;
+  vec4 near_z = is_backward.z ? hi_z : lo_z;
+  vec4 far_x = is_backward.x ? lo_x : hi_x;
+  vec4 far_y = is_backward.y ? lo_y : hi_y;
+  vec4 far_z = is_backward.z ? lo_z : hi_z;
+
+  uvec4 entries = uvec4(NOT_MET);
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+    vec3 inverse = packet[ray].inverse_direction;
+    vec3 near_origin = packet[ray].near_origin;
+    vec3 far_origin = packet[ray].far_origin;
+    vec4 entry = greater(
+        slab(near_x, near_origin.x, inverse.x),
+        greater(slab(near_y, near_origin.y, inverse.y),
+                greater(slab(near_z, near_origin.z, inverse.z), vec4(packet[ray].tmin))));
+    precise vec4 exit = lesser(slab(far_x, far_origin.x, inverse.x),
+                               lesser(slab(far_y, far_origin.y, inverse.y), slab(far_z, far_origin.z, inverse.z))) *
+                        BOX_WIDENING;
+    entries = least_where(entries, lessThanEqual(entry, lesser(exit, vec4(limits[ray]))), floatBitsToUint(entry));
+  }
+
+  bvec4 is_child = lessThan(uvec4(0u, 1u, 2u, 3u), uvec4(load_child_count(index)));
+  bvec4 is_met = bvec4(is_child.x && entries.x != NOT_MET, is_child.y && entries.y != NOT_MET,
+                       is_child.z && entries.z != NOT_MET, is_child.w && entries.w != NOT_MET);
+  uvec4 keys = sorted(least_where(uvec4(NOT_MET), is_met, (entries & ~3u) | uvec4(0u, 1u, 2u, 3u)));
+  if (keys.x == NOT_MET) return NO_FAMILY;
+  uint others = uint(keys.y != NOT_MET) + uint(keys.z != NOT_MET) + uint(keys.w != NOT_MET);
+  return (index << 8) | (others << 6) | ((keys.z & 3u) << 4) | ((keys.y & 3u) << 2) | (keys.x & 3u);
+}

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "rays/ray.h"
+#include "scene/scene.h"
+
+namespace promin::report {
+
+/// The same numbers on every platform, unlike the standard distributions.
+class Random {
+ public:
+  explicit Random(uint64_t seed) : generator_(seed) {}
+  /// [0, 1)
+  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
+  /// Of unit length, all directions alike.
+  dvec3 direction();
+  /// Of unit length, perpendicular to a unit vector.
+  dvec3 perpendicular(const dvec3& axis);
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// "sphere", "plane", "cylinder", "cone", "triangle".
+const std::vector<std::string>& primitive_names();
+
+/// Such a primitive of about unit size at a centre, turned as it comes, as a scene of its own.
+Scene make_primitive(const std::string& name, const dvec3& center, Random& random);
+/// As many of a quarter of that size in a ball of radius 4.
+Scene make_primitives(const std::string& name, size_t count, Random& random);
+
+/// From `distance` at the primitive of make_primitive, up to 1.05 of its size beside its centre.
+std::vector<Ray> aim_rays(const Scene& scene, const dvec3& center, double distance, size_t count, Random& random);
+/// Chords of the ball of make_primitives.
+std::vector<Ray> make_chords(size_t count, Random& random);
+
+/// A closed surface of this primitive and rays from inside it, most of them at edges, vertices and rims: each must hit.
+struct Enclosure {
+  Scene scene;
+  std::vector<Ray> rays;
+};
+/// Empty rays for a plane, which encloses nothing.
+Enclosure make_enclosure(const std::string& name, size_t ray_count, Random& random);
+
+}  // namespace promin::report

@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What changed between two reports beyond noise.
+
+Rows are the same by section, table and id. A time has changed where figures.is_slower says so; any other
+number where it differs by more than a hundred-thousandth: errors and counts are the same in every run on one device."""
+
+import html
+
+from figures import is_slower, number, plain, table
+
+_SAME = 1e-5
+
+
+def _is_times(value):
+    return isinstance(value, dict) and "median" in value
+
+
+def _tables(report):
+    for section, content in report.items():
+        if not isinstance(content, dict):
+            continue
+        for name, rows in content.items():
+            if isinstance(rows, list) and rows and isinstance(rows[0], dict) and "id" in rows[0]:
+                yield section if name == "rows" else f"{section} {name}", {row["id"]: row for row in rows}
+
+
+def _changed_number(key, old, new):
+    if isinstance(old, bool) or isinstance(new, bool):
+        return old != new
+    # Single runs and what is divided by times say nothing by themselves.
+    if key.endswith("_once") or key.endswith("_per_s") or key in ("exponent", "lower", "upper"):
+        return False
+    return abs(new - old) > _SAME * max(abs(old), abs(new))
+
+
+def find_changes(old, new):
+    """(table, id, figure, old, new) of what changed; then ids that only one of them has."""
+    changes, lonely = [], []
+    old_tables = dict(_tables(old))
+    for name, rows in _tables(new):
+        others = old_tables.pop(name, {})
+        lonely += [f"{name} {key} (only in the new)" for key in rows.keys() - others.keys()]
+        lonely += [f"{name} {key} (only in the old)" for key in others.keys() - rows.keys()]
+        for key, row in rows.items():
+            for figure, value in row.items():
+                before = others.get(key, {}).get(figure)
+                if before is None:
+                    continue
+                if _is_times(value) and _is_times(before):
+                    if is_slower(before, value) or is_slower(value, before):
+                        changes.append((name, key, figure, before["median"], value["median"]))
+                elif isinstance(value, (int, float)) and isinstance(before, (int, float)):
+                    if _changed_number(figure, before, value):
+                        changes.append((name, key, figure, before, value))
+    lonely += [f"{name} (only in the old)" for name in old_tables]
+    return changes, sorted(lonely)
+
+
+def _circumstances(old, new):
+    """Sentences on what else is different."""
+    a, b = old["provenance"], new["provenance"]
+    keys = ("device", "driver", "compiler", "cpu", "threads", "runs", "is_quick")
+    other = [
+        f"{key} ({html.escape(str(a.get(key)))} then, {html.escape(str(b.get(key)))} now)"
+        for key in keys
+        if a.get(key) != b.get(key)
+    ]
+    text = f"Against {html.escape(a['commit'])} of {html.escape(a['date'])}."
+    return text + (
+        " Not alike: " + "; ".join(other) + "." if other else " Device, driver, compiler and runs are alike."
+    )
+
+
+def section(old, new):
+    """The page's section."""
+    changes, lonely = find_changes(old, new)
+    times = [c for c in changes if _is_time_name(c[2])]
+    text = [_circumstances(old, new)]
+    if changes:
+        faster = sum(after < before for *_, before, after in times)
+        text.append(
+            f"Beyond noise {len(changes)} figures changed: {faster} times are shorter and {len(times) - faster} longer "
+            "(their quartiles do not meet, and the medians are 2 % apart or more), "
+            f"{len(changes) - len(times)} are errors, counts and sizes."
+        )
+    else:
+        text.append("Nothing changed beyond noise.")
+    if lonely:
+        text.append(
+            f"In one of the two alone: {html.escape('; '.join(lonely[:20]))}"
+            + (", and more." if len(lonely) > 20 else ".")
+        )
+    body = [
+        (
+            [name, html.escape(key), figure, number(before), number(after), f"{after / before:.2f}" if before else "–"],
+            False,
+        )
+        for name, key, figure, before, after in changes
+    ]
+    head = ["section", "row", "figure", "then", "now", "ratio"]
+    return {
+        "title": "What changed",
+        "panels": [],
+        "legend": [],
+        "text": text,
+        "table": table(head, body) if body else "",
+    }
+
+
+def _is_time_name(figure):
+    return figure.endswith("ms") or "_ms" in figure or "time" in figure or figure.startswith("ns_")
+
+
+def summary(old, new):
+    """One line for the terminal, and one for each change, the largest first."""
+    changes, _ = find_changes(old, new)
+    if not changes:
+        return "nothing changed beyond noise"
+    size = lambda change: abs(change[4] - change[3]) / max(abs(change[3]), 1e-300)  # noqa: E731
+    lines = [f"{len(changes)} figures changed beyond noise; the largest:"]
+    for name, key, figure, before, after in sorted(changes, key=size, reverse=True)[:10]:
+        lines.append(f"  {name} {key}, {figure}: {plain(before)} then, {plain(after)} now")
+    return "\n".join(lines)

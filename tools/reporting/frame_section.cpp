@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Whole pictures: what each knob takes and brings, and the three errors apart.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "measure/samples.h"
+#include "oracle/picture.h"
+#include "reporting/picture.h"
+#include "reporting/scripts.h"
+
+namespace promin::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bounces that stand for all: what is beyond is weaker than the last bit of an ordinary mirror's picture.
+constexpr uint32_t kDeep = 64;
+
+/// Many beside those of the settings.
+uint32_t truth_samples(const Session& session) {
+  return session.pick(256U, 64U);
+}
+
+/// A folder for the time of its life.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
+  ~ScratchFolder() {
+    std::error_code error;
+    fs::remove_all(folder_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  fs::path folder_;
+};
+
+struct Setting {
+  std::string knob;
+  std::string setting;
+  View view;
+  std::string method = "promin";
+  std::string builder = "sah";
+  bool is_default = false;
+};
+
+std::vector<Setting> list_settings(const Session& session, const View& view) {
+  std::vector<Setting> settings = {{"default", "default", view, "promin", "sah", true}};
+  const auto add = [&](const std::string& knob, const std::string& setting) -> Setting& {
+    return settings.emplace_back(Setting{knob, setting, view});
+  };
+  for (const uint32_t samples : session.pick<std::vector<uint32_t>>({2, 4, 8, 16}, {4})) {
+    add("samples", std::to_string(samples)).view.samples_per_pixel = samples;
+  }
+  for (const uint32_t depth : session.pick<std::vector<uint32_t>>({0, 1, 2, 3, 8, 16}, {0, 8})) {
+    add("depth", std::to_string(depth)).view.max_depth = depth;
+  }
+  for (const auto& [name, of_size] : {std::pair("1/4", 0.25), std::pair("1/2", 0.5), std::pair("2", 2.0)}) {
+    add("resolution", name).view.size = uvec2(dvec2(view.size) * of_size);
+  }
+  for (const char* builder : {"median", "spatial"}) add("builder", builder).builder = builder;
+  add("boxes", "full").method = "full boxes";
+  for (const char* method : {"fixed offset", "integer offset"}) add("offset rule", method).method = method;
+  add("methods", "textbook").method = "textbook";
+  return settings;
+}
+
+/// Distances and ids as the device shows them against the host's oracle, and colours; at the same samples.
+Json compare_with_oracle(const oracle::Picture& expected, const RenderResult& result) {
+  uint64_t other_ids = 0;
+  double sum = 0.0;
+  double sum2 = 0.0;
+  uint64_t non_finite = 0;
+  uint64_t finite = 0;
+  for (size_t i = 0; i < expected.pixels.size(); ++i) {
+    const oracle::Pixel& pixel = expected.pixels[i];
+    const bool is_same = static_cast<int32_t>(result.aovs.object[i]) == pixel.hit.object &&
+                         static_cast<int32_t>(result.aovs.primitive[i]) == pixel.hit.primitive;
+    other_ids += is_same ? 0 : 1;
+    const dvec3 difference = dvec3(result.image.pixels[i]) - dvec3(pixel.color);
+    if (!std::isfinite(glm::dot(difference, difference))) {
+      ++non_finite;
+      continue;
+    }
+    ++finite;
+    sum += std::abs(difference.x) + std::abs(difference.y) + std::abs(difference.z);
+    sum2 += glm::dot(difference, difference);
+  }
+  const double channels = 3.0 * static_cast<double>(std::max<uint64_t>(1, finite));
+  return {{"rmse", std::sqrt(sum2 / channels)},
+          {"mean_absolute", sum / channels},
+          {"id_mismatches", other_ids},
+          {"non_finite_pixels", non_finite},
+          {"pixels", expected.pixels.size()}};
+}
+
+/// Brute force takes primitives times rays: smaller pictures of larger scenes.
+uvec2 oracle_size(const Session& session, const Scene& scene) {
+  uint64_t count = 0;
+  for (const Object& object : scene.objects) count += primitive_count(object.shape);
+  if (count > 10000) return session.pick(uvec2(32, 18), uvec2(16, 9));
+  if (count > 1000) return session.pick(uvec2(64, 36), uvec2(32, 18));
+  return session.pick(uvec2(320, 180), uvec2(96, 54));
+}
+
+class FrameBench {
+ public:
+  FrameBench(const Session& session, const Scene& scene) : session_(session), scene_(scene) {}
+
+  void run(Json& rows, Json& errors) {
+    session_.say("frames: " + name_of(scene_));
+    measure_knobs(rows);
+    measure_precision(errors);
+    measure_other_errors(errors);
+  }
+
+ private:
+  Picture& picture_of(const std::string& method, const std::string& builder) {
+    const auto key = std::pair(method, builder);
+    const auto found = pictures_.find(key);
+    if (found != pictures_.end()) return found->second;
+    return pictures_.emplace(key, Picture(session_.device(), scene_, picture_method(method), builder)).first->second;
+  }
+
+  void measure_knobs(Json& rows) {
+    const View view = view_of(scene_, session_.pick(uvec2(256, 144), uvec2(128, 72)));
+    const std::vector<Setting> settings = list_settings(session_, view);
+    View best = view;
+    best.samples_per_pixel = truth_samples(session_);
+    best.max_depth = kDeep;
+    truth_ = picture_of(settings[0].method, settings[0].builder).render(best).image;
+    default_view_ = view;
+    hash_ = picture_of("promin", "sah").scene_hash();
+
+    std::vector<Image> images(settings.size());
+    std::vector<std::function<double()>> contestants;
+    for (size_t i = 0; i < settings.size(); ++i) {
+      Picture& picture = picture_of(settings[i].method, settings[i].builder);
+      contestants.emplace_back([&, i] {
+        RenderResult result = picture.render(settings[i].view);
+        images[i] = std::move(result.image);
+        return result.trace_ms;
+      });
+    }
+    const std::vector<std::vector<double>> times = measure::time_in_turns(contestants, session_.runs());
+    for (Image& image : images) {
+      if (image.size.x < view.size.x) image = enlarge(image, view.size);
+      if (image.size.x > view.size.x) image = reduce(image, view.size);
+    }
+    const std::vector<Json> flips = measure_flip(images);
+    for (size_t i = 0; i < settings.size(); ++i) {
+      const Setting& s = settings[i];
+      Json row = {{"id", fmt::format("{}/{}/{}", name_of(scene_), s.knob, s.setting)},
+                  {"scene", name_of(scene_)},
+                  {"scene_hash", picture_of(s.method, s.builder).scene_hash()},
+                  {"knob", s.knob},
+                  {"setting", s.setting},
+                  {"is_default", s.is_default},
+                  {"width", s.view.size.x},
+                  {"height", s.view.size.y},
+                  {"ms", json_of_times(times[i])},
+                  {"time_ratio", json_of_times(measure::ratios_of(times[i], times[0]))},
+                  {"rmse", rmse_of(images[i], truth_)},
+                  {"device_bytes", picture_of(s.method, s.builder).device_bytes()}};
+      if (!flips[i].is_null()) row["flip"] = flips[i];
+      rows.push_back(std::move(row));
+    }
+  }
+
+  /// By PyPI's flip-evaluator against the truth; null where that is not installed.
+  std::vector<Json> measure_flip(const std::vector<Image>& images) const {
+    std::vector<Json> flips(images.size());
+    const ScratchFolder folder(session_.options().output / ".flip");
+    std::vector<std::string> arguments = {folder.file("truth.exr")};
+    write_image(arguments[0], truth_);
+    for (size_t i = 0; i < images.size(); ++i) {
+      arguments.push_back(folder.file(fmt::format("{}.exr", i)));
+      write_image(arguments.back(), images[i]);
+    }
+    const Json found = run_script("flip.py", arguments);
+    for (size_t i = 0; i < images.size() && i < found.size(); ++i) flips[i] = found[i];
+    return flips;
+  }
+
+  /// Precision: the same samples, by the host's oracle.
+  void measure_precision(Json& errors) {
+    View view = view_of(scene_, oracle_size(session_, scene_));
+    const oracle::Picture expected = oracle::render(scene_, view);
+    for (const PictureMethod& method : picture_methods()) {
+      Picture picture(session_.device(), scene_, method, "sah", layout::FEATURE_AOVS);
+      Json row = compare_with_oracle(expected, picture.render(view));
+      add_error(errors, "precision", method.name, view.size, row);
+      errors.back()["what"] = method.what;
+    }
+  }
+
+  /// Sampling: many samples at the same depth; truncation: the same samples with deep reflection.
+  void measure_other_errors(Json& errors) {
+    Picture& picture = picture_of("promin", "sah");
+    const Image shipped = picture.render(default_view_).image;
+    View many = default_view_;
+    many.samples_per_pixel = truth_samples(session_);
+    add_error(errors, "sampling", "promin", many.size, {{"rmse", rmse_of(shipped, picture.render(many).image)}});
+    View deep = default_view_;
+    deep.max_depth = kDeep;
+    add_error(errors, "truncation", "promin", deep.size, {{"rmse", rmse_of(shipped, picture.render(deep).image)}});
+    add_error(errors, "all", "promin", deep.size, {{"rmse", rmse_of(shipped, truth_)}});
+  }
+
+  void add_error(Json& errors, const std::string& error, const std::string& method, const uvec2& size,
+                 const Json& figures) const {
+    Json row = {{"id", fmt::format("{}/{}/{}", name_of(scene_), error, method)},
+                {"scene", name_of(scene_)},
+                {"scene_hash", hash_},
+                {"error", error},
+                {"method", method},
+                {"width", size.x},
+                {"height", size.y}};
+    row.update(figures);
+    errors.push_back(std::move(row));
+  }
+
+  const Session& session_;
+  const Scene& scene_;
+  std::map<std::pair<std::string, std::string>, Picture> pictures_;
+  View default_view_;
+  std::string hash_;
+  Image truth_;
+};
+
+}  // namespace
+
+Json measure_frames(const Session& session) {
+  Json rows = Json::array();
+  Json errors = Json::array();
+  const auto scenes = session.load_scenes(session.pick<std::vector<std::string>>(
+      {"all_primitives.gltf", "mirrors.gltf", "showcase.gltf"}, {"mirrors.gltf"}));
+  for (const Scene& scene : scenes) FrameBench(session, scene).run(rows, errors);
+  return {{"truth_samples", truth_samples(session)}, {"truth_depth", kDeep}, {"rows", rows}, {"errors", errors}};
+}
+
+}  // namespace promin::report

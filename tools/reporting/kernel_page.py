@@ -1,0 +1,209 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""The page's sections on single intersections: the table of methods, error against time, error over range."""
+
+import plots
+from figures import join, number, pareto_front, quartiles, spread, table
+
+# So that what has no error at all has a place on a logarithmic axis.
+_LEAST_K = 0.1
+
+
+def _methods(rows):
+    return list(dict.fromkeys(row["method"] for row in rows))
+
+
+def _names(rows, key):
+    return list(dict.fromkeys(row[key] for row in rows))
+
+
+def _of(rows, primitive, method):
+    return next((r for r in rows if r["primitive"] == primitive and r["method"] == method), None)
+
+
+def _draw_scatter(rows, methods):
+    def draw(axes):
+        points = [(row["ns_per_test"]["median"], max(row["max_k"], _LEAST_K)) for row in rows]
+        for row, (x, y) in zip(rows, points):
+            plots.draw_curve(axes, methods.index(row["method"]), [x], [y], [quartiles(row["ns_per_test"])])
+            if row["is_shipped"]:
+                plots.ring(axes, x, y)
+        plots.front_line(axes, [points[i] for i in pareto_front(points)])
+
+    return draw
+
+
+def _table(rows):
+    body = []
+    for row in rows:
+        leaks = f'{row["leaks"]:,} of {row["leak_rays"]:,}' if "leaks" in row else "–"
+        body.append(
+            (
+                [
+                    row["primitive"],
+                    row["what"] + (" (shipped)" if row["is_shipped"] else ""),
+                    spread(row["ns_per_test"]),
+                    number(row.get("max_k")),
+                    number(row.get("rms_k")),
+                    number(row["misclassified_per_million"]),
+                    leaks,
+                ],
+                row["is_shipped"],
+            )
+        )
+    head = ["primitive", "method", "ns a test", "K, max", "K, rms", "misclassified per million", "leaks"]
+    return table(head, body)
+
+
+def _kernel_text(rows):
+    sentences = []
+    for primitive in _names(rows, "primitive"):
+        own, plain_row = _of(rows, primitive, "promin"), _of(rows, primitive, "textbook")
+        cost = own["ns_per_test"]["median"] / plain_row["ns_per_test"]["median"]
+        points = [(r["ns_per_test"]["median"], r["max_k"]) for r in rows if r["primitive"] == primitive]
+        of_primitive = [r for r in rows if r["primitive"] == primitive]
+        front = [of_primitive[i]["method"] for i in pareto_front(points)]
+        where = "it is on the front" if "promin" in front else f"by K alone {join(front)} are the front"
+        sentence = (
+            f"A {primitive} takes {number(own['ns_per_test']['median'], 2)} ns, {cost:.2f} of the textbook's time, "
+            f"with K up to {number(own['max_k'], 2)} where the textbook's reaches {number(plain_row['max_k'], 2)}"
+        )
+        if "leaks" in own:
+            sentence += f"; {own['leaks']:,} rays leak instead of {plain_row['leaks']:,}"
+        sentences.append(f"{sentence}; {where}.")
+    return " ".join(sentences)
+
+
+def _front_gaps(rows):
+    """Why a shipped method that others are better than by K alone is shipped."""
+    gaps = []
+    for primitive in _names(rows, "primitive"):
+        of_primitive = [r for r in rows if r["primitive"] == primitive]
+        own = _of(rows, primitive, "promin")
+        better = [
+            r
+            for r in of_primitive
+            if r is not own
+            and r["ns_per_test"]["upper_quartile"] < own["ns_per_test"]["lower_quartile"]
+            and r["max_k"] <= own["max_k"]
+        ]
+        if not better:
+            continue
+        leaky = [r for r in better if r.get("leaks", 0) > own.get("leaks", 0)]
+        if len(leaky) == len(better):
+            gaps.append(
+                f"for the {primitive}, {join(r['method'] for r in better)} would be faster and as exact, but leaks"
+            )
+        else:
+            names = [r["method"] for r in better if r not in leaky]
+            rare = " (not every device has it)" if names == ["fp64"] else ""
+            gaps.append(
+                f"for the {primitive}, {join(names)}{rare} is faster by these figures, as exact and leaks as little"
+            )
+    return "K does not say all: " + "; ".join(gaps) + "." if gaps else ""
+
+
+def kernels(report):
+    rows = report["kernels"]["rows"]
+    methods = _methods(rows)
+    panels = [
+        plots.panel(
+            f"kernel-{primitive}",
+            primitive,
+            _draw_scatter([r for r in rows if r["primitive"] == primitive], methods),
+            "ns a test",
+            "K, max (u S)",
+            x_log=False,
+        )
+        for primitive in _names(rows, "primitive")
+    ]
+    text = [
+        "Each ray is tested against each primitive, without tree or boxes, so that nothing else takes time. K is the "
+        "error in units of u S (u = 2<sup>−24</sup>; S is the distance plus the primitive's size), against an oracle "
+        "in long double, over all distances and offsets of the next plot; misclassified rays hit where they should "
+        "miss or the other way round; leaks are rays from inside of a closed surface, most of them at edges and rims, "
+        "that find no way out. Dotted is the Pareto front, ringed what promin ships.",
+        _kernel_text(rows),
+        _front_gaps(rows),
+    ]
+    return {
+        "title": "Intersections: error against time",
+        "panels": panels,
+        "legend": list(enumerate(methods)),
+        "text": text,
+        "table": _table(rows),
+    }
+
+
+def boxes(report):
+    rows = report["boxes"]["rows"]
+    own = next(r for r in rows if r["is_shipped"])
+    full = next(r for r in rows if r["method"] == "full")
+    bare = next(r for r in rows if r["method"] == "full unpadded")
+    body = [
+        (
+            [
+                row["what"] + (" (shipped)" if row["is_shipped"] else ""),
+                spread(row["ns_per_test"]),
+                str(row["bytes_per_node"]),
+                f'{row["leaks"]:,} of {row["leak_rays"]:,}',
+                number(row["opened_needlessly_per_million"]),
+            ],
+            row["is_shipped"],
+        )
+        for row in rows
+    ]
+    text = (
+        "Rays aimed at faces, edges and corners of boxes, half of them flat, up to 10<sup>5</sup> from the origin: a "
+        "box that an exact ray meets must be met. "
+        f"The shipped test takes {number(own['ns_per_test']['median'], 2)} ns a box and hides {own['leaks']:,} of "
+        f"{own['leak_rays']:,}; boxes in fp32 take "
+        f"{full['ns_per_test']['median'] / own['ns_per_test']['median']:.2f} of its time and twice its memory, and "
+        f"without padding hide {bare['leaks']:,}. What is opened needlessly costs time and no error."
+    )
+    head = ["method", "ns a box", "bytes a node", "boxes hidden", "opened needlessly per million"]
+    return {"title": "Boxes", "panels": [], "legend": [], "text": [text], "table": table(head, body)}
+
+
+def _range_panels(rows, methods, variable, label):
+    panels = []
+    for primitive in _names(rows, "primitive"):
+
+        def draw(axes, primitive=primitive):
+            for index, method in enumerate(methods):
+                points = [
+                    (r["value"], max(r["max_k"], _LEAST_K))
+                    for r in rows
+                    if r["primitive"] == primitive
+                    and r["method"] == method
+                    and r["variable"] == variable
+                    and "max_k" in r
+                ]
+                if points:
+                    plots.draw_curve(axes, index, *zip(*sorted(points)))
+            axes.axhline(8, color=plots.color(7), linewidth=0.8, linestyle="--")
+            if variable == "offset":
+                axes.set_xscale("symlog", linthresh=10)
+
+        title = f"{primitive}, {variable}"
+        panels.append(plots.panel(f"range-{primitive}-{variable}", title, draw, label, "K, max (u S)"))
+    return panels
+
+
+def error_range(report):
+    rows = report["kernels"]["range"]
+    methods = _methods(rows)
+    worst = {m: max(r.get("max_k", 0) for r in rows if r["method"] == m) for m in methods}
+    shipped = next(r["method"] for r in rows if r["is_shipped"])
+    missed = {m: max(r["misclassified_per_million"] for r in rows if r["method"] == m) for m in methods}
+    others = [f"{m} {number(worst[m], 2)}" for m in methods if m != shipped]
+    text = (
+        "From a distance of 3 to 10<sup>6</sup> sizes, and 10 sizes away up to 10<sup>7</sup> from the world's "
+        f"origin, the shipped methods' K never passes {number(worst[shipped], 2)} (bound 8, dashed); the others reach "
+        f"{join(others)}. At the worst of these places {number(missed['textbook'] / 1e4, 2)} % of the textbook's rays "
+        f"are misclassified and {number(missed[shipped] / 1e4, 2)} % of the shipped ones', which S explains: far away "
+        "u S comes to the primitive's size. Where a method has no point, no ray hit both by it and the oracle."
+    )
+    panels = _range_panels(rows, methods, "distance", "distance / size")
+    panels += _range_panels(rows, methods, "offset", "offset from the origin / size")
+    return {"title": "Error over range", "panels": panels, "legend": list(enumerate(methods)), "text": [text]}

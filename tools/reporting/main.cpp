@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "reporting/report_command.h"
+#include "run_program.h"
+
+int main(int argc, char** argv) {
+  using namespace promin;
+  return app::run_program("promin-report",
+                          "Measures speed against error on a device, and writes report.json, CSV files and a page.",
+                          {report::add_report_command}, argc, argv);
+}

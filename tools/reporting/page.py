@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Makes the page of a report: page.py FOLDER [--compare OLD.json] reads FOLDER/report.json and writes
+FOLDER/report.html, one file that needs nothing else, and its main plot as FOLDER/frames.png. Without matplotlib it says
+so in one sentence and writes nothing."""
+
+import argparse
+import html
+import json
+import os
+import pathlib
+import sys
+
+try:
+    import matplotlib  # noqa: F401 - whether it is there
+except ImportError:
+    print(
+        "report.html is not made: this python3 has no matplotlib (Debian's python3-matplotlib); JSON and CSV are there"
+    )
+    sys.exit(0)
+
+import compare
+import frame_page
+import kernel_page
+import plots
+import price_page
+import scaling_page
+
+_SECTIONS = (
+    ("frames", frame_page.frames),
+    ("frames", frame_page.errors_apart),
+    ("kernels", kernel_page.kernels),
+    ("kernels", kernel_page.error_range),
+    ("boxes", kernel_page.boxes),
+    ("robustness", price_page.robustness),
+    ("specialisation", price_page.specialisation),
+    ("scaling", scaling_page.scaling),
+    ("peers", price_page.peers),
+)
+
+
+def _device_sentence(p):
+    kind = "a CPU driver: the device is the host's processor" if p["device_type"] == "CPU" else f"a {p['device_type']}"
+    quick = (
+        " <strong>This is a quick report: its few runs and small sizes tell that it works, not how fast.</strong>"
+        if p["is_quick"]
+        else ""
+    )
+    if p.get("is_validated"):
+        quick += " <strong>Vulkan's validation layers watched, which takes time.</strong>"
+    load = ""
+    if p.get("load_before") is not None:
+        busy = max(p["load_before"], p.get("load_after") or 0)
+        after = p.get("load_after") or 0
+        load = f" {p['threads']} threads; load average {p['load_before']:.1f} before and {after:.1f} after."
+        if p["load_before"] > 0.5 * p["threads"]:
+            load += f" <strong>The machine was busy with other work as well (load up to {busy:.1f}).</strong>"
+    return (
+        f"{html.escape(p['device'])}, {html.escape(p['driver'])}, {kind}. {html.escape(p['cpu'])}.{load} "
+        f"{p['runs']} timed runs of each after a warm-up, in turns; medians with quartiles; times are "
+        f"{html.escape(p['times_are'])}. Commit {html.escape(p['commit'])}, {html.escape(p['compiler'])}, "
+        f"{html.escape(p['date'])}, {p.get('minutes', 0):.0f} minutes.{quick}"
+    )
+
+
+def _section(content):
+    parts = [f"<section><h2>{content['title']}</h2>"]
+    parts += [f"<p>{text}</p>" for text in content["text"] if text]
+    if content["legend"]:
+        parts.append(plots.legend(content["legend"]))
+    if content["panels"]:
+        parts.append(
+            "<div class='panels'>" + "\n".join(f"<figure>{svg}</figure>" for svg in content["panels"]) + "</div>"
+        )
+    if content.get("table"):
+        parts.append(content["table"])
+    return "\n".join(parts + ["</section>"])
+
+
+def make_page(report, old=None):
+    """The page as text."""
+    sections = [compare.section(old, report)] if old else []
+    sections += [make(report) for name, make in _SECTIONS if report.get(name)]
+    style = (pathlib.Path(__file__).parent / "page.css").read_text(encoding="utf-8")
+    p = report["provenance"]
+    title = f"promin: speed against error on {p['device']}"
+    return "\n".join(
+        [
+            '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f"<title>{html.escape(title)}</title><link rel='icon' href='data:,'>",
+            f"<style>{style}</style></head><body><main>",
+            f"<h1>Speed against error</h1><p class='device'>{_device_sentence(p)}</p>",
+            *[_section(section) for section in sections],
+            "</main></body></html>\n",
+        ]
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--compare", type=pathlib.Path, metavar="OLD.json")
+    arguments = parser.parse_args()
+    report = json.loads((arguments.folder / "report.json").read_text(encoding="utf-8"))
+    old = json.loads(arguments.compare.read_text(encoding="utf-8")) if arguments.compare else None
+    # Whole or not at all.
+    temporary = arguments.folder / f".report.{os.getpid()}.html"
+    temporary.write_text(make_page(report, old), encoding="utf-8")
+    picture = temporary.with_suffix(".png")
+    frame_page.write_picture(report, picture)
+    temporary.replace(arguments.folder / "report.html")
+    picture.replace(arguments.folder / "frames.png")
+    if old:
+        print(compare.summary(old, report))
+
+
+if __name__ == "__main__":
+    main()

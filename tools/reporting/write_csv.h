@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "reporting/session.h"
+
+namespace promin::report {
+
+/// A CSV file for each table of a report, SECTION.csv of its "rows" and SECTION_NAME.csv of others; each line carries
+/// device, driver, compiler, commit and date as well. What a row lacks is empty. Throws RunError.
+void write_csv_files(const Json& report, const std::filesystem::path& folder);
+
+}  // namespace promin::report
