@@ -101,11 +101,12 @@ void aim_at_source(LightRecord light) {
     shares[i] = vec3(0.0);
     packet[i].tmax = -1.0;
     if (!is_lit[i]) continue;
-    LightSample sampled = sample_light(light, points[i].position);
-    shares[i] = unshadowed_share(points[i], -paths[i].direction, light, sampled);
+    // Copies of points and rays, here and elsewhere: glslang 12 fails over packets made of points made of packets.
+    ShadingPoint point = points[i];
+    LightSample sampled = sample_light(light, point.position);
+    shares[i] = unshadowed_share(point, -paths[i].direction, light, sampled);
     if (!has(FEATURE_SHADOWS) || !(max_abs(shares[i]) > 0.0)) continue;
-    // Copies here and in `arrive`: glslang 12 fails where packets are made of points that are made of packets.
-    Ray ray = shadow_ray(points[i], light, sampled);
+    Ray ray = shadow_ray(point, light, sampled);
     packet[i] = ray;
     ++ray_count.y;
   }

@@ -23,6 +23,48 @@ bool is_finite(vec3 v) {
 
 bool is_nan(float x) { return (floatBitsToUint(x) & 0x7FFFFFFFu) > 0x7F800000u; }
 
+vec3 signs_of(vec3 v) { return vec3(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0, v.z < 0.0 ? -1.0 : 1.0); }
+
+// For the box test, from the origin and the direction.
+void pad_origin(inout Ray ray) {
+  precise float reach = max_abs(ray.origin - frame.tree_bounds.xyz) + frame.tree_bounds.w;
+  precise vec3 padding =
+      signs_of(ray.direction) * (BOX_PADDING * reach + ORIGIN_PADDING * abs(ray.origin));
+  precise vec3 near_origin = ray.origin + padding;
+  precise vec3 far_origin = ray.origin - padding;
+  ray.near_origin = near_origin;
+  ray.far_origin = far_origin;
+}
+
+// From 7e5 radii of the tree away, which is where a floor may send a mirror ray or a shadow ray from, the padding is as
+// large as the tree: every box would be met. So rays from beyond this many radii start nearer for the tree's sake.
+const float FAR_AWAY = 1024.0;
+
+// How far along the ray that may be, or 0. It leaves 4 radii and a thousandth of the way, and has 12 bits, so that its
+// product with half of the direction's bits is exact.
+float shift_to_tree(Ray ray) {
+  precise float away = max_abs(ray.origin - frame.tree_bounds.xyz);
+  precise float near = FAR_AWAY * frame.tree_bounds.w;
+  if (!(away > near)) return 0.0;
+  precise float shift = 0.999 * (away - 4.0 * frame.tree_bounds.w) / max_abs(ray.direction);
+  shift = uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
+  return shift < ray.tmax ? shift : 0.0;
+}
+
+// The same ray from there on. Where it comes near the tree, so that the origin cancels, it strays from itself by no
+// more than some u times what is left of the way.
+Ray moved_along(Ray ray, float shift) {
+  vec3 upper = uintBitsToFloat(floatBitsToUint(ray.direction) & 0xFFFFF000u);
+  precise vec3 origin = (ray.origin + shift * upper) + shift * (ray.direction - upper);
+  ray.origin = origin;
+  precise float tmin = ray.tmin - shift;
+  ray.tmin = tmin > 0.0 ? tmin : 0.0;
+  precise float tmax = ray.tmax - shift;
+  ray.tmax = tmax;
+  pad_origin(ray);
+  return ray;
+}
+
 // `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Any other
 // direction, NaN anywhere, tmin = +infinity and an origin beyond 10^38 give a ray that misses everything.
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
@@ -44,16 +86,10 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   precise float inverse_length2 = 1.0 / dot3(ray.direction, ray.direction);
   ray.inverse_length2 = inverse_length2;
 
-  vec3 signs = vec3(ray.direction.x < 0.0 ? -1.0 : 1.0, ray.direction.y < 0.0 ? -1.0 : 1.0,
-                    ray.direction.z < 0.0 ? -1.0 : 1.0);
+  vec3 signs = signs_of(ray.direction);
   precise vec3 inverse_direction = 1.0 / (signs * max(abs(ray.direction), vec3(SMALLEST_SLOPE)));
   ray.inverse_direction = inverse_direction;
-  precise float reach = max_abs(ray.origin - frame.tree_bounds.xyz) + frame.tree_bounds.w;
-  precise vec3 padding = signs * (BOX_PADDING * reach + ORIGIN_PADDING * abs(ray.origin));
-  precise vec3 near_origin = ray.origin + padding;
-  precise vec3 far_origin = ray.origin - padding;
-  ray.near_origin = near_origin;
-  ray.far_origin = far_origin;
+  pad_origin(ray);
 
   ray.shear_axis = 2u;
   ray.shear = vec3(0.0);

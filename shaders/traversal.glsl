@@ -225,6 +225,52 @@ void descend_by_octants(bool any_hit) {
   }
 }
 
+void descend_as_they_are(bool any_hit) {
+  if (PACKET_SIZE == 1u) {
+    octant = packet[0].inverse_direction;
+    descend(any_hit);
+  } else {
+    descend_by_octants(any_hit);
+  }
+}
+
+// Rays from far away go down the tree from nearby.
+void descend_from_nearby(bool any_hit) {
+  vec3 origins[PACKET_SIZE];
+  vec2 intervals[PACKET_SIZE];
+  float shifts[PACKET_SIZE];
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+    origins[ray] = packet[ray].origin;
+    intervals[ray] = vec2(packet[ray].tmin, packet[ray].tmax);
+    shifts[ray] = 0.0;
+  }
+  // Each time a thousandth of the way is left, of rays that come near the tree.
+  bool is_any_far = true;
+  for (uint i = 0u; i < 4u && is_any_far; ++i) {
+    is_any_far = false;
+    [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+      float shift = shift_to_tree(packet[ray]);
+      if (!(shift > 0.0)) continue;
+      Ray moved = moved_along(packet[ray], shift);
+      packet[ray] = moved;
+      precise float limit = limits[ray] - shift;
+      limits[ray] = limit;
+      precise float sum = shifts[ray] + shift;
+      shifts[ray] = sum;
+      is_any_far = true;
+    }
+  }
+  descend_as_they_are(any_hit);
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+    packet[ray].origin = origins[ray];
+    packet[ray].tmin = intervals[ray].x;
+    packet[ray].tmax = intervals[ray].y;
+    // Planes are no part of the tree; they come after its primitives.
+    precise float t = found[ray].t + shifts[ray];
+    found[ray].t = found[ray].primitive < dispatch.counts.x ? t : found[ray].t;
+  }
+}
+
 // Fills `found` from `packet`: with the nearest hits, or with `any_hit` some hits; where there is none, `primitive` is
 // NO_PRIMITIVE.
 void trace_packet(bool any_hit) {
@@ -234,12 +280,7 @@ void trace_packet(bool any_hit) {
   }
   if (has(FEATURE_PLANES)) intersect_planes(any_hit);
   if ((FEATURES & SOLID_FEATURES) == 0u) return;
-  octant = packet[0].inverse_direction;
-  if (PACKET_SIZE == 1u) {
-    descend(any_hit);
-  } else {
-    descend_by_octants(any_hit);
-  }
+  descend_from_nearby(any_hit);
 }
 
 // A single ray; for kernels with packets of one.

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <random>
 #include <sstream>
 
 #include "core/file.h"
@@ -135,6 +136,41 @@ TEST_P(StepCountsTest, AreAsStored) {
 INSTANTIATE_TEST_SUITE_P(Scenes, StepCountsTest,
                          testing::Values("all_primitives", "showcase", "sphereflake", "wavy", "needles"),
                          [](const auto& param_info) { return std::string(param_info.param); });
+
+class RaysFromAfarTest : public test::DeviceTest {};
+
+/// At points of the unit ball from a distance, as near as fp32 brings them.
+RaySet make_rays_from(double distance) {
+  RaySet set{"from afar", HitQuery::kNearest, {}};
+  std::mt19937 generator(1);
+  const auto random = [&] { return static_cast<double>(generator()) * 0x1p-31 - 1.0; };
+  while (set.rays.size() < 4096) {
+    const dvec3 target(random(), random(), random());
+    const dvec3 way(random(), random(), random());
+    if (glm::length(target) > 1.0 || glm::length(way) < 0.1) continue;
+    const vec3 direction(glm::normalize(way));
+    set.rays.push_back({vec3(target - distance * dvec3(direction)), 0.0F, direction});
+  }
+  return set;
+}
+
+// A floor without end sends mirror and shadow rays from there, and what a box may hide grows with the distance: once
+// every box was met, and llvmpipe cut the loops.
+TEST_F(RaysFromAfarTest, TakeNoMoreStepsThanOthers) {
+  const measure::StepCounter counter(device(), measure::make_wavy_sphere(20000), "sah");
+  const StepCounts near = counter.count(make_rays_from(10.0));
+  EXPECT_GT(near.hits, near.rays / 2);
+  for (const double distance : {1e3, 1e4, 1e5, 1e6}) {
+    const StepCounts far = counter.count(make_rays_from(distance));
+    EXPECT_LT(static_cast<double>(far.node_steps), 1.5 * static_cast<double>(near.node_steps)) << distance;
+    EXPECT_NEAR(static_cast<double>(far.hits), static_cast<double>(near.hits), 0.03 * near.rays) << distance;
+  }
+  // From there fp32's grid is as coarse as the tree, which most rays miss and others go through the middle of.
+  for (const double distance : {1e7, 1e8, 1e9, 1e12}) {
+    const StepCounts far = counter.count(make_rays_from(distance));
+    EXPECT_LT(static_cast<double>(far.node_steps), 3.0 * static_cast<double>(near.node_steps)) << distance;
+  }
+}
 
 TEST(CompareCountsTest, SeesOneStepMoreAndWhatIsMissing) {
   const Counts stored = {{"sah camera", {100, 50, 1000, 200}}, {"sah random", {100, 50, 1000, 200}}};

@@ -4,6 +4,10 @@
 
 const float BOX_WIDENING = 1.0;
 
+// Rays start where they start.
+float shift_to_tree(Ray ray) { return 0.0; }
+Ray moved_along(Ray ray, float shift) { return ray; }
+
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
   // The scale is the interface's, not a matter of robustness: cast.glsl gives t in its units.
