@@ -37,8 +37,8 @@ Counters lanes_of(std::span<const std::byte> counters) {
   return lanes;
 }
 
-/// Records of the longest queue of paths that a piece may need.
-constexpr uint32_t kQueueRecords = PicturePieces::kMaxBlocks * kLanes * Film::kQueuedPathRecords;
+/// Paths of the longest queue that a piece may need.
+constexpr uint32_t kMostQueuedPaths = PicturePieces::kMaxBlocks * kLanes;
 
 /// GPUs trace pixels alone: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes minutes
 /// to compile packets. Steps and logs are of single rays.
@@ -68,7 +68,7 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
 
 void Film::reserve(uint32_t pixel_count) {
   if (capacity_ >= pixel_count) return;
-  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + queue_records();
+  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + queue_records(pixel_count);
   buffer_.emplace(*device_, sizeof(FilmHead) + records * sizeof(uvec4), vk::BufferUsageFlagBits::eStorageBuffer);
   capacity_ = pixel_count;
   if (kernel_) kernel_->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_});
@@ -141,8 +141,9 @@ uint32_t Film::records_per_pixel() const {
   return (features_ & layout::FEATURE_AOVS) != 0 ? 2 : 1;
 }
 
-uint32_t Film::queue_records() const {
-  return (features_ & layout::FEATURE_MIRRORS) != 0 ? kQueueRecords : 0;
+uint32_t Film::queue_records(uint32_t pixel_count) const {
+  if ((features_ & layout::FEATURE_MIRRORS) == 0) return 0;
+  return kQueuedPathRecords * std::min(pixel_count, kMostQueuedPaths);
 }
 
 layout::Dispatch Film::dispatch_of(const PicturePiece& piece) const {
@@ -153,7 +154,7 @@ layout::Dispatch Film::dispatch_of(const PicturePiece& piece) const {
 
 uint32_t Film::max_capacity() const {
   const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(FilmHead)) / sizeof(uvec4);
-  return static_cast<uint32_t>((records - queue_records()) / records_per_pixel());
+  return static_cast<uint32_t>((records - queue_records(kMostQueuedPaths)) / records_per_pixel());
 }
 
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,

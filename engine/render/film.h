@@ -83,7 +83,8 @@ class Film {
   static constexpr uint32_t kQueuedPathRecords = 4;
 
  private:
-  uint32_t queue_records() const;
+  /// Of the queue of paths, for a film of so many pixels.
+  uint32_t queue_records(uint32_t pixel_count) const;
   layout::Dispatch dispatch_of(const PicturePiece& piece) const;
 
   const gpu::Device* device_;

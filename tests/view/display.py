@@ -29,7 +29,8 @@ class Display:
     """An X server of its own, on a display number that is free."""
 
     def __init__(self, size="1024x768x24"):
-        # Another server that ends just now may take this one's socket along.
+        # Another server that ends just now may take this one's socket along. Without -noreset a server begins anew when
+        # its last client goes, and refuses the next one meanwhile.
         for _ in range(3):
             self._start(size)
             if self._answers():
@@ -40,7 +41,7 @@ class Display:
     def _start(self, size):
         reader, writer = os.pipe()
         self.process = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writer), "-screen", "0", size, "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(writer), "-screen", "0", size, "-nolisten", "tcp", "-noreset"],
             pass_fds=[writer],
             stderr=subprocess.DEVNULL,
         )
