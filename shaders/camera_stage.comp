@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The first stage of a picture: a sample of each pixel, with its camera ray and the shadow rays of its hit. A lane takes
-// PACKET_SIZE pixels that lie side by side; paths that a mirror leads on go to the queue for mirror_stage.comp.
+// The first stage of a picture: a sample of each pixel, with its camera ray and the shadow rays of its hit. A lane
+// takes PACKET_SIZE pixels that lie side by side; paths that a mirror leads on go to the queue for mirror_stage.comp.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
