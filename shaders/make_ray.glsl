@@ -40,29 +40,40 @@ void pad_origin(inout Ray ray) {
 // large as the tree: every box would be met. So rays from beyond this many radii start nearer for the tree's sake.
 const float FAR_AWAY = 1024.0;
 
+float distance_to_tree(Ray ray) {
+  precise float distance = max_abs(ray.origin - frame.tree_bounds.xyz);
+  return distance;
+}
+
 // How far along the ray that may be, or 0. It leaves 4 radii and a thousandth of the way, and has 12 bits, so that its
 // product with half of the direction's bits is exact.
 float shift_to_tree(Ray ray) {
-  precise float away = max_abs(ray.origin - frame.tree_bounds.xyz);
+  precise float away = distance_to_tree(ray);
   precise float near = FAR_AWAY * frame.tree_bounds.w;
   if (!(away > near)) return 0.0;
   precise float shift = 0.999 * (away - 4.0 * frame.tree_bounds.w) / max_abs(ray.direction);
-  shift = uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
-  return shift < ray.tmax ? shift : 0.0;
+  return uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
 }
 
-// The same ray from there on. Where it comes near the tree, so that the origin cancels, it strays from itself by no
-// more than some u times what is left of the way.
+// The same ray from there on, but for its interval. Where it comes near the tree, so that the origin cancels, it strays
+// from itself by no more than some u times what is left of the way.
 Ray moved_along(Ray ray, float shift) {
   vec3 upper = uintBitsToFloat(floatBitsToUint(ray.direction) & 0xFFFFF000u);
   precise vec3 origin = (ray.origin + shift * upper) + shift * (ray.direction - upper);
   ray.origin = origin;
-  precise float tmin = ray.tmin - shift;
-  ray.tmin = tmin > 0.0 ? tmin : 0.0;
-  precise float tmax = ray.tmax - shift;
-  ray.tmax = tmax;
   pad_origin(ray);
   return ray;
+}
+
+// What t has to pass so that t + shift, rounded to nearest even, passes tmin. All that is computed is exact where the
+// tree is: there tmin is between a half and twice the shift, or what is negative counts as 0.
+float shifted_tmin(float tmin, float shift) {
+  uint bits = floatBitsToUint(tmin);
+  precise float half_step = uintBitsToFloat(bits & 0x7F800000u) * UNIT_ROUNDOFF;
+  precise float rounds_to_tmin = (tmin - shift) + half_step;
+  if (!(rounds_to_tmin > 0.0)) return 0.0;
+  // A tie goes to the even one.
+  return (bits & 1u) == 0u ? rounds_to_tmin : uintBitsToFloat(floatBitsToUint(rounds_to_tmin) - 1u);
 }
 
 // `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Any other

@@ -8,6 +8,7 @@
 Ray packet[PACKET_SIZE];
 Hit found[PACKET_SIZE];     // the nearest so far
 float limits[PACKET_SIZE];  // t that a hit may have at most; negative for a ray that takes no part
+float shifts[PACKET_SIZE];  // of the origin along the ray: what intersections call t is so much less
 vec3 octant;                // inverse direction of one of those that do: all have its signs
 
 // What this invocation's rays took: x = node steps, y = primitive tests.
@@ -19,10 +20,10 @@ void count_steps(uint nodes, uint tests) {
 
 // Takes the crossing if it is nearer, or as near and of a lower number: the hit does not depend on the tree.
 void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool any_hit) {
-  if (crossing.t > packet[ray].tmin &&
-      (crossing.t < limits[ray] || (crossing.t == limits[ray] && order < found[ray].order))) {
-    found[ray] = Hit(crossing.t, crossing.u, crossing.v, crossing.part, primitive, order);
-    limits[ray] = any_hit ? -1.0 : crossing.t;
+  precise float t = crossing.t + shifts[ray];
+  if (crossing.t > packet[ray].tmin && (t < limits[ray] || (t == limits[ray] && order < found[ray].order))) {
+    found[ray] = Hit(t, crossing.u, crossing.v, crossing.part, primitive, order);
+    limits[ray] = any_hit ? -1.0 : t;
   }
 }
 
@@ -123,6 +124,7 @@ vec4 lesser(vec4 a, vec4 b) {
 }
 
 const uint NOT_MET = 0xFFFFFFFFu;
+const float SHIFT_TO_CULL_BY = 1.0 - 4.0 * UNIT_ROUNDOFF;
 
 uvec4 least_where(uvec4 keys, bvec4 condition, uvec4 candidates) {
   return min(keys, uvec4(condition.x ? candidates.x : NOT_MET, condition.y ? candidates.y : NOT_MET,
@@ -166,7 +168,9 @@ uint meet_children(uint index) {
     precise vec4 far_t_z = far_z * step.z + far_base.z;
     vec4 entry = greater(near_t_x, greater(near_t_y, greater(near_t_z, vec4(packet[ray].tmin))));
     precise vec4 exit = lesser(far_t_x, lesser(far_t_y, far_t_z)) * BOX_WIDENING;
-    entries = least_where(entries, lessThanEqual(entry, lesser(exit, vec4(limits[ray]))), floatBitsToUint(entry));
+    // A little more than what is left, as t is rounded when the shift comes to it.
+    precise float limit = limits[ray] - SHIFT_TO_CULL_BY * shifts[ray];
+    entries = least_where(entries, lessThanEqual(entry, lesser(exit, vec4(limit))), floatBitsToUint(entry));
   }
 
   bvec4 is_met = lessThan(uvec4(0u, 1u, 2u, 3u), uvec4(node.frame.w >> 24));
@@ -237,25 +241,22 @@ void descend_as_they_are(bool any_hit) {
 // Rays from far away go down the tree from nearby.
 void descend_from_nearby(bool any_hit) {
   vec3 origins[PACKET_SIZE];
-  vec2 intervals[PACKET_SIZE];
-  float shifts[PACKET_SIZE];
+  float tmins[PACKET_SIZE];
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
     origins[ray] = packet[ray].origin;
-    intervals[ray] = vec2(packet[ray].tmin, packet[ray].tmax);
-    shifts[ray] = 0.0;
+    tmins[ray] = packet[ray].tmin;
   }
-  // Each time a thousandth of the way is left, of rays that come near the tree.
+  // Each time a thousandth of the way is left.
   bool is_any_far = true;
   for (uint i = 0u; i < 4u && is_any_far; ++i) {
     is_any_far = false;
     [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
-      float shift = shift_to_tree(packet[ray]);
-      if (!(shift > 0.0)) continue;
-      Ray moved = moved_along(packet[ray], shift);
+      precise float sum = shifts[ray] + shift_to_tree(packet[ray]);
+      if (!(sum > shifts[ray] && sum < packet[ray].tmax)) continue;
+      Ray moved = moved_along(packet[ray], shift_to_tree(packet[ray]));
+      if (!(distance_to_tree(moved) < distance_to_tree(packet[ray]))) continue;
       packet[ray] = moved;
-      precise float limit = limits[ray] - shift;
-      limits[ray] = limit;
-      precise float sum = shifts[ray] + shift;
+      packet[ray].tmin = shifted_tmin(tmins[ray], sum);
       shifts[ray] = sum;
       is_any_far = true;
     }
@@ -263,11 +264,7 @@ void descend_from_nearby(bool any_hit) {
   descend_as_they_are(any_hit);
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
     packet[ray].origin = origins[ray];
-    packet[ray].tmin = intervals[ray].x;
-    packet[ray].tmax = intervals[ray].y;
-    // Planes are no part of the tree; they come after its primitives.
-    precise float t = found[ray].t + shifts[ray];
-    found[ray].t = found[ray].primitive < dispatch.counts.x ? t : found[ray].t;
+    packet[ray].tmin = tmins[ray];
   }
 }
 
@@ -275,6 +272,7 @@ void descend_from_nearby(bool any_hit) {
 // NO_PRIMITIVE.
 void trace_packet(bool any_hit) {
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+    shifts[ray] = 0.0;
     found[ray] = Hit(packet[ray].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
     limits[ray] = packet[ray].tmin < packet[ray].tmax ? packet[ray].tmax : -1.0;
   }

@@ -164,6 +164,8 @@ void Viewer::update_picture() {
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
+  // It may be too large for the memory: before the old one goes.
+  if (asked_size_ != uvec2(0)) ready.picture.resize(swapchain_.size());
   const bool is_new = scene_ && scene_->scene != ready.scene->scene;
   if (!scene_ || scene_ != ready.scene) explanation_.text.clear();
   picture_.emplace(std::move(ready.picture));
@@ -196,7 +198,7 @@ void Viewer::update_answers() {
       if (std::exchange(wants_orbit_, false) && center) control_.orbit(*center);
       draw_again();
     }
-  } catch (const RunError& error) {
+  } catch (const std::exception& error) {
     wants_orbit_ = wants_orbit_ && asker_.is_looking_for_middle();
     report_failure(error.what());
   }

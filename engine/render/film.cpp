@@ -69,7 +69,9 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
 void Film::reserve(uint32_t pixel_count) {
   if (capacity_ >= pixel_count) return;
   const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + queue_records(pixel_count);
-  buffer_.emplace(*device_, sizeof(FilmHead) + records * sizeof(uvec4), vk::BufferUsageFlagBits::eStorageBuffer);
+  // There before the old one goes: where memory is short the film stays whole.
+  gpu::Buffer buffer(*device_, sizeof(FilmHead) + records * sizeof(uvec4), vk::BufferUsageFlagBits::eStorageBuffer);
+  buffer_.emplace(std::move(buffer));
   capacity_ = pixel_count;
   if (kernel_) kernel_->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_});
 }

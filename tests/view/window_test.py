@@ -384,7 +384,9 @@ def fails_in_a_sentence(bin_folder, scenes, folder):
         ("vkAllocateMemory", 3, no_memory, "out of device memory, "),
         ("vkQueueSubmit", 12, lost, "the device was lost, "),
     ):
+        # The path is of no other layers: those of validation are not there.
         layer = {"VK_LAYER_PATH": os.environ["PROMIN_TEST_LAYERS"], "VK_INSTANCE_LAYERS": "VK_LAYER_PROMIN_fault"}
+        layer["PROMIN_VALIDATION"] = ""
         fault = {"PROMIN_TEST_FAULT": f"{call} {number} {result}"}
         session = Session(bin_folder, scenes, folder, "--record", "flight.json", takes_keys=False, **layer, **fault)
         with session as viewer:

@@ -229,7 +229,7 @@ def _errors_text(rows, precision, scenes):
     ]
     for scene in scenes:
         own = {r["error"]: r["rmse"] for r in rows if r["scene"] == scene and r["method"] == "promin"}
-        worst = max((r for r in precision if r["scene"] == scene), key=lambda r: r["rmse"])
+        worst = max((r for r in precision if r["scene"] == scene and r["method"] != "promin"), key=lambda r: r["rmse"])
         share = own["all"] / own["precision"] if own["precision"] else None
         parts.append(
             f"In <em>{scene}</em> precision is {number(own['precision'])}, "

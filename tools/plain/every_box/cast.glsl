@@ -14,11 +14,12 @@ uint children_of(uint met) {
 }
 
 void test_every_box(bool any_hit) {
+  shifts[0] = 0.0;
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
   octant = packet[0].inverse_direction;
   uint children = 0u;
   uint count = 0u;
-  // A scene of boxes has as many nodes as its first plane's index says (tools/reporting/box_tests.cpp).
+  // A scene of boxes has as many nodes as its first plane's index says (tools/reporting/box_section.cpp).
   for (uint i = 0u; i < dispatch.counts.x; ++i) {
     children = children_of(meet_children(i));
     count += uint(bitCount(children));

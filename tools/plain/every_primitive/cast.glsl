@@ -4,6 +4,7 @@
 // no box hides what they answer. For a scene of one kind of primitive.
 
 void test_every_primitive(bool any_hit) {
+  shifts[0] = 0.0;
   found[0] = Hit(packet[0].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
   if (has(FEATURE_PLANES)) intersect_planes(any_hit);

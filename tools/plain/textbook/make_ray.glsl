@@ -5,8 +5,10 @@
 const float BOX_WIDENING = 1.0;
 
 // Rays start where they start.
+float distance_to_tree(Ray ray) { return 0.0; }
 float shift_to_tree(Ray ray) { return 0.0; }
 Ray moved_along(Ray ray, float shift) { return ray; }
+float shifted_tmin(float tmin, float shift) { return tmin; }
 
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
