@@ -94,7 +94,9 @@ def check_that_faults_are_found(report):
         "precision beyond its bound",
     )
     spoil(lambda: find("specialisation", "rows").update(is_bit_identical=False), "bits that differ")
+    spoil(lambda: find("kernels", "rows", is_shipped=True).pop("max_k"), "a shipped kernel that hits nothing")
     spoil(lambda: find("robustness", "rows", rays="edges").update(lost=0), "a plain kernel that is not plain")
+    spoil(lambda: find("robustness", "rows", rays="edges").update(invented=1), "a ray lost at an edge")
     spoil(lambda: find("scaling", "fits").update(exponent=0.9), "an exponent that is not the rows'")
     spoil(lambda: spoilt["peers"].update(rows=[], not_measured=[]), "a gap that is not named")
 
