@@ -98,6 +98,7 @@ def check_that_faults_are_found(report):
     spoil(lambda: find("robustness", "rows", rays="edges").update(lost=0), "a plain kernel that is not plain")
     spoil(lambda: find("robustness", "rows", rays="edges").update(invented=1), "a ray lost at an edge")
     spoil(lambda: find("scaling", "fits").update(exponent=0.9), "an exponent that is not the rows'")
+    spoil(lambda: spoilt["boxes"]["rows"].append(spoilt["boxes"]["rows"][0]), "two rows of one id")
     spoil(lambda: spoilt["peers"].update(rows=[], not_measured=[]), "a gap that is not named")
 
 

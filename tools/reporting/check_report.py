@@ -158,6 +158,15 @@ def _find_other_faults(report):
             yield f"peers: {name} is neither measured nor a gap, or both"
 
 
+def _find_twins(report):
+    """Rows are compared and drawn by their ids: of two scenes of one name they would be mixed up."""
+    for section in report.values():
+        for rows in section.values() if isinstance(section, dict) else []:
+            ids = [row["id"] for row in rows if isinstance(row, dict) and "id" in row] if isinstance(rows, list) else []
+            for twin in sorted({i for i in ids if ids.count(i) > 1}):
+                yield f"{twin}: there is more than one"
+
+
 def _find_fit_faults(report, fit):
     """The exponent once more, from the rows."""
     *path, figure = fit["id"].split("/")
@@ -180,7 +189,7 @@ def find_faults(report):
     faults = find_schema_faults(report, schema, schema)
     if faults:
         return faults
-    rules = (_find_time_faults, _find_kernel_faults, _find_frame_faults, _find_other_faults)
+    rules = (_find_time_faults, _find_kernel_faults, _find_frame_faults, _find_other_faults, _find_twins)
     return [fault for rule in rules for fault in rule(report)]
 
 
