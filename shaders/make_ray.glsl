@@ -45,13 +45,16 @@ float distance_to_tree(Ray ray) {
   return distance;
 }
 
+bool is_far_away(Ray ray) {
+  precise float near = FAR_AWAY * frame.tree_bounds.w;
+  return distance_to_tree(ray) > near;
+}
+
 // How far along the ray that may be, or 0. It leaves 4 radii and a thousandth of the way, and has 12 bits, so that its
 // product with half of the direction's bits is exact.
 float shift_to_tree(Ray ray) {
-  precise float away = distance_to_tree(ray);
-  precise float near = FAR_AWAY * frame.tree_bounds.w;
-  if (!(away > near)) return 0.0;
-  precise float shift = 0.999 * (away - 4.0 * frame.tree_bounds.w) / max_abs(ray.direction);
+  if (!is_far_away(ray)) return 0.0;
+  precise float shift = 0.999 * (distance_to_tree(ray) - 4.0 * frame.tree_bounds.w) / max_abs(ray.direction);
   return uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
 }
 

@@ -246,8 +246,9 @@ void descend_from_nearby(bool any_hit) {
     origins[ray] = packet[ray].origin;
     tmins[ray] = packet[ray].tmin;
   }
+  bool is_any_far = false;
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) is_any_far = is_any_far || is_far_away(packet[ray]);
   // Each time a thousandth of the way is left.
-  bool is_any_far = true;
   for (uint i = 0u; i < 4u && is_any_far; ++i) {
     is_any_far = false;
     [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {

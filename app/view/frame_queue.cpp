@@ -40,11 +40,15 @@ FrameQueue::FrameQueue(const gpu::Device& device, Swapchain& swapchain)
   }
 }
 
+bool FrameQueue::has_room() const {
+  const auto count = std::count_if(frames_.begin(), frames_.end(), [](const Frame& f) { return f.is_in_flight; });
+  return static_cast<size_t>(count) < most_in_flight_ && !frames_[next_].is_in_flight;
+}
+
 Frame* FrameQueue::begin() {
   if (!asked_time_) asked_time_ = Window::now();
-  const auto count = std::count_if(frames_.begin(), frames_.end(), [](const Frame& f) { return f.is_in_flight; });
+  if (!has_room()) return nullptr;
   Frame& frame = frames_[next_];
-  if (static_cast<size_t>(count) >= most_in_flight_ || frame.is_in_flight) return nullptr;
   const std::optional<uint32_t> image = swapchain_->acquire(*frame.ready);
   if (!image) return nullptr;
   frame.image = *image;

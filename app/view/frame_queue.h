@@ -67,6 +67,8 @@ class FrameQueue {
   /// show an older camera.
   FrameQueue(const gpu::Device& device, Swapchain& swapchain);
 
+  /// Whether another frame may begin beside those in flight.
+  bool has_room() const;
   /// The next frame, with an image of the swapchain and its commands begun; null where none is free just now.
   Frame* begin();
   /// Ends the commands and hands the frame to the device.

@@ -88,6 +88,11 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     update_answers();
     update_screenshot();
     update_replay();
+    // Asking the display for the window's size takes as long as drawing the overlay; no frame, no question.
+    if (!frames_.has_room()) {
+      window_.wait(kShortWait);
+      continue;
+    }
     if (!fit_window() || !has_work()) {
       const bool is_at_rest =
           frames_.is_idle() && !maker_.is_busy() && !asker_.is_busy() && !screenshot_.is_busy() && !is_replaying();

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "core/unset_vector.h"
 #include "rays/ray.h"
 
 // In which order rays are best traced. No answer depends on it.
@@ -22,9 +22,24 @@ struct SceneCube {
 /// by a sample of the pairs.
 bool are_side_by_side(std::span<const Ray> rays, const SceneCube& cube);
 
-/// The rays' indices, those together that enter the cube near each other in similar directions: along a space-filling
-/// curve through where and whither (Aila & Karras, "Architecture Considerations for Tracing Incoherent Rays", HPG
-/// 2010). Rays that miss the cube, and such as have no direction, come last. At most 2^32 - 1 rays; stable.
-std::vector<uint32_t> sort_rays(std::span<const Ray> rays, const SceneCube& cube);
+/// Sorts rays; keeps its memory for the next ones.
+class RaySorter {
+ public:
+  /// The rays' indices, those together that enter the cube near each other in similar directions: along a space-filling
+  /// curve through where and whither (Aila & Karras, "Architecture Considerations for Tracing Incoherent Rays", HPG
+  /// 2010). Rays that miss the cube, and such as have no direction, come last. At most 2^32 - 1 rays; stable, and the
+  /// same with any number of threads. Valid until the next call.
+  std::span<const uint32_t> sort(std::span<const Ray> rays, const SceneCube& cube);
+
+ private:
+  struct KeyedRay {
+    uint32_t key;
+    uint32_t index;
+  };
+
+  UnsetVector<KeyedRay> keyed_;
+  UnsetVector<KeyedRay> scattered_;
+  UnsetVector<uint32_t> order_;
+};
 
 }  // namespace promin

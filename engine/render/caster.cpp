@@ -32,7 +32,9 @@ constexpr uint32_t kPacketSize = 4;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
-  const float size = max_abs_component(direction);
+  // Not max_abs_component: a library's call for every ray would take as long as tracing it.
+  const vec3 sizes = glm::abs(direction);
+  const float size = std::max(std::max(sizes.x, sizes.y), sizes.z);
   if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;
   if (size >= 0x1p127F && std::isfinite(size)) return 0x1p-64F;
   return 1.0F;
@@ -112,7 +114,7 @@ struct Caster::Impl {
     RayKernel& kernel = kernel_for(query, order);
     const bool is_sorted = order == Order::kSorted;
     const Stopwatch sorting;
-    if (is_sorted) permutation = sort_rays(rays, cube);
+    const std::span<const uint32_t> permutation = is_sorted ? sorter.sort(rays, cube) : std::span<const uint32_t>();
     double time_ms = is_sorted ? sorting.ms() : 0.0;
     const auto place_of = [&](size_t i) { return is_sorted ? permutation[i] : i; };
     requests.resize(rays.size());
@@ -134,8 +136,8 @@ struct Caster::Impl {
   SetupStats stats;
   SceneCube cube;
   std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
-  /// Of the rays at hand: the one that is traced i-th where they are sorted, and what is asked and answered for it.
-  std::vector<uint32_t> permutation;
+  RaySorter sorter;
+  /// What is asked and answered for the rays at hand, in the order in which they are traced.
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;
 };

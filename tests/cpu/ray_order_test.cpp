@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <vector>
 
 namespace promin {
 namespace {
@@ -35,6 +37,12 @@ std::vector<Ray> shuffle(std::vector<Ray> rays) {
 
 constexpr SceneCube kCube{vec3(0.0F), 1.0F};
 
+std::vector<uint32_t> sort(const std::vector<Ray>& rays, const SceneCube& cube) {
+  RaySorter sorter;
+  const std::span<const uint32_t> order = sorter.sort(rays, cube);
+  return {order.begin(), order.end()};
+}
+
 TEST(RayOrder, PixelsAreSideBySideAtAnyWidth) {
   // Widths for which samples at even steps would all fall on the ends of rows.
   for (const uint32_t width : {16U, 100U, 1023U, 1024U, 1025U}) {
@@ -54,7 +62,7 @@ TEST(RayOrder, FewRaysAreSideBySide) {
 TEST(RayOrder, SortedRaysAreSideBySide) {
   const std::vector<Ray> rays = shuffle(make_camera_rays(256, 256));
   std::vector<Ray> sorted;
-  for (const uint32_t i : sort_rays(rays, kCube)) sorted.push_back(rays[i]);
+  for (const uint32_t i : sort(rays, kCube)) sorted.push_back(rays[i]);
   EXPECT_TRUE(are_side_by_side(sorted, kCube));
 }
 
@@ -64,10 +72,10 @@ TEST(RayOrder, IsAPermutation) {
   rays[6].direction = vec3(0.0F);
   rays[7].direction = vec3(kInfinity, 1.0F, 0.0F);
   rays[8].origin = vec3(1e38F);
-  std::vector<uint32_t> order = sort_rays(rays, kCube);
+  std::vector<uint32_t> order = sort(rays, kCube);
   std::sort(order.begin(), order.end());
   for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
-  EXPECT_TRUE(sort_rays({}, kCube).empty());
+  EXPECT_TRUE(sort({}, kCube).empty());
 }
 
 TEST(RayOrder, RaysThatMissTheCubeComeLastInTheirOrder) {
@@ -76,12 +84,38 @@ TEST(RayOrder, RaysThatMissTheCubeComeLastInTheirOrder) {
   const Ray beside{vec3(2.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F), kInfinity};
   const Ray invalid{vec3(kNan), 0.0F, vec3(0.0F, 0.0F, -1.0F), kInfinity};
   const std::vector<Ray> rays = {away, hit, invalid, beside, hit};
-  EXPECT_EQ(sort_rays(rays, kCube), (std::vector<uint32_t>{1, 4, 0, 2, 3}));
+  EXPECT_EQ(sort(rays, kCube), (std::vector<uint32_t>{1, 4, 0, 2, 3}));
+}
+
+TEST(RayOrder, RaysThatAreTheSameKeepTheirOrderWhichThreadEverTakesThem) {
+  // Enough for several threads and for no whole number of blocks.
+  const std::vector<Ray> kinds = shuffle(make_camera_rays(5, 5));
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < 70'001; ++i) rays.push_back(kinds[(i * i + i / 7) % kinds.size()]);
+  const std::vector<uint32_t> order = sort(rays, kCube);
+  ASSERT_EQ(order.size(), rays.size());
+  size_t changes = 0;
+  for (size_t i = 1; i < order.size(); ++i) {
+    if (rays[order[i]].direction == rays[order[i - 1]].direction) {
+      ASSERT_LT(order[i - 1], order[i]);
+    } else {
+      ++changes;
+    }
+  }
+  EXPECT_LT(changes, kinds.size());
+}
+
+TEST(RayOrder, ASorterForgetsWhatItSortedBefore) {
+  RaySorter sorter;
+  sorter.sort(make_camera_rays(64, 64), kCube);
+  const std::vector<Ray> rays = shuffle(make_camera_rays(20, 10));
+  const std::span<const uint32_t> order = sorter.sort(rays, kCube);
+  EXPECT_EQ(std::vector<uint32_t>(order.begin(), order.end()), sort(rays, kCube));
 }
 
 TEST(RayOrder, AScenelessCubeIsNoTrouble) {
   const std::vector<Ray> rays = make_camera_rays(4, 4);
-  EXPECT_EQ(sort_rays(rays, SceneCube{}).size(), rays.size());
+  EXPECT_EQ(sort(rays, SceneCube{}).size(), rays.size());
 }
 
 }  // namespace
