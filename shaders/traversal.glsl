@@ -41,11 +41,51 @@ void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool 
     ++i;                                                              \
   }
 
+// A kernel to compare with may bring triangles of its own (tools/plain).
+#ifdef OTHER_TRIANGLES
+void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) { INTERSECT_PACKET(intersect_triangle) }
+#else
+// Few of a packet's rays meet a triangle whose box they meet: first whether they do, then where, one after the other.
+void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) {
+  ShearedTriangle sheared[PACKET_SIZE];
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+    sheared[ray] = shear_triangle(packet[ray], p);
+    sheared[ray].is_met = sheared[ray].is_met && limits[ray] >= 0.0;
+  }
+  bool is_another_met;
+  do {
+    uint next = 0u;
+    ShearedTriangle of_next = sheared[0];
+    float shear_z = packet[0].shear.z;
+    float tmin = packet[0].tmin;
+    [[unroll]] for (uint ray = 1u; ray < PACKET_SIZE; ++ray) {
+      if (of_next.is_met || !sheared[ray].is_met) continue;
+      next = ray;
+      of_next = sheared[ray];
+      shear_z = packet[ray].shear.z;
+      tmin = packet[ray].tmin;
+    }
+    Crossing crossing = cross_triangle(of_next, shear_z, tmin);
+    is_another_met = false;
+    [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+      if (ray == next) {
+        keep_nearest(ray, crossing, i, p.c.y, any_hit);
+        sheared[ray].is_met = false;
+      }
+      is_another_met = is_another_met || sheared[ray].is_met;
+    }
+  } while (is_another_met);
+}
+#endif
+
 void intersect_leaf(uint child, bool any_hit) {
   uint i = child & CHILD_FIRST_MASK;
   uint end = i + ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
   count_steps(0u, end - i);
-  INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle)
+  while (i < end && is_kind(load_primitive_kind(i), KIND_TRIANGLE, FEATURE_TRIANGLES)) {
+    intersect_packet_with_triangle(load_primitive(i), i, any_hit);
+    ++i;
+  }
   INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
   INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
   INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)

@@ -15,6 +15,40 @@ float dot2(vec2 a, vec2 b) {
   return sum;
 }
 
+// A triangle in the plane that the ray pierces at its origin.
+struct ShearedTriangle {
+  bool is_met;
+  vec2 a;
+  vec2 b;
+  vec2 c;
+  vec3 areas;   // weights of the corners, not yet divided by their sum
+  vec3 depths;  // of the corners along the ray
+};
+
+ShearedTriangle shear_triangle(Ray ray, Primitive p) {
+  precise vec3 a = permute_axes(corner0(p) - ray.origin, ray.shear_axis);
+  precise vec3 b = permute_axes(corner1(p) - ray.origin, ray.shear_axis);
+  precise vec3 c = permute_axes(corner2(p) - ray.origin, ray.shear_axis);
+  precise vec2 a2 = a.xy - ray.shear.xy * a.z;
+  precise vec2 b2 = b.xy - ray.shear.xy * b.z;
+  precise vec2 c2 = c.xy - ray.shear.xy * c.z;
+
+  // Each is the difference of two rounded products: its sign is that of the exact difference, or it is 0 (an edge
+  // belongs to the triangle).
+  precise float u = c2.x * b2.y - c2.y * b2.x;
+  precise float v = a2.x * c2.y - a2.y * c2.x;
+  precise float w = b2.x * a2.y - b2.y * a2.x;
+  bool is_outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
+  // On the line of a triangle seen edge-on, but beyond its corners, they may all round to 0 or to one sign. Where the
+  // corners lie tells, without rounding. Comparisons, as min and max take three instructions each on lavapipe.
+  bool is_beyond = (a2.x > 0.0 && b2.x > 0.0 && c2.x > 0.0) || (a2.y > 0.0 && b2.y > 0.0 && c2.y > 0.0) ||
+                   (a2.x < 0.0 && b2.x < 0.0 && c2.x < 0.0) || (a2.y < 0.0 && b2.y < 0.0 && c2.y < 0.0);
+  precise float determinant = u + v + w;
+  // Edge-on, or an area whose inverse is no longer a float.
+  bool has_area = abs(determinant) >= SMALLEST_NORMAL;
+  return ShearedTriangle(!is_outside && !is_beyond && has_area, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
+}
+
 // The weights' point should be the origin of the sheared plane. Of slivers and of triangles seen edge-on the weights
 // are rounding and little else, but only along the triangle: a step along its longest side brings the point back; where
 // that leads out of the triangle, the point is the nearest of the side that it would cross. Without this such a hit may
@@ -30,13 +64,13 @@ vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   vec3 step = is_ab ? vec3(-1.0, 1.0, 0.0) : (is_bc ? vec3(0.0, -1.0, 1.0) : vec3(1.0, 0.0, -1.0));
   precise vec2 point = weights.x * a + weights.y * b + weights.z * c;
   // No less than the determinant, so not 0.
-  precise float shift = dot2(point, longest) / max(squares.x, max(squares.y, squares.z));
+  float longest_square = is_ab ? squares.x : (is_bc ? squares.y : squares.z);
+  precise float shift = dot2(point, longest) / longest_square;
   precise vec3 centered = weights - shift * step;
+  if (centered.x >= 0.0 && centered.y >= 0.0 && centered.z >= 0.0) return centered;
 
-  float least = min(centered.x, min(centered.y, centered.z));
-  if (least >= 0.0) return centered;
-  bool beyond_a = centered.x == least;
-  bool beyond_b = !beyond_a && centered.y == least;
+  bool beyond_a = centered.x <= centered.y && centered.x <= centered.z;
+  bool beyond_b = !beyond_a && centered.y <= centered.z;
   vec2 start = beyond_a ? b : (beyond_b ? c : a);
   vec2 side = beyond_a ? bc : (beyond_b ? ca : ab);
   precise float part = clamp(-dot2(start, side) / max(dot2(side, side), SMALLEST_NORMAL), 0.0, 1.0);
@@ -44,36 +78,21 @@ vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   return beyond_a ? vec3(0.0, rest, part) : (beyond_b ? vec3(part, 0.0, rest) : vec3(rest, part, 0.0));
 }
 
-Crossing intersect_triangle(Ray ray, Primitive p) {
-  precise vec3 a = permute_axes(corner0(p) - ray.origin, ray.shear_axis);
-  precise vec3 b = permute_axes(corner1(p) - ray.origin, ray.shear_axis);
-  precise vec3 c = permute_axes(corner2(p) - ray.origin, ray.shear_axis);
-  precise vec2 a2 = a.xy - ray.shear.xy * a.z;
-  precise vec2 b2 = b.xy - ray.shear.xy * b.z;
-  precise vec2 c2 = c.xy - ray.shear.xy * c.z;
-
-  // Each is the difference of two rounded products: its sign is that of the exact difference, or it is 0 (an edge
-  // belongs to the triangle).
-  precise float u = c2.x * b2.y - c2.y * b2.x;
-  precise float v = a2.x * c2.y - a2.y * c2.x;
-  precise float w = b2.x * a2.y - b2.y * a2.x;
-  bool is_outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
-  // On the line of a triangle seen edge-on, but beyond its corners, they may all round to 0 or to one sign. Where the
-  // corners lie tells, without rounding.
-  vec2 lo = min(min(a2, b2), c2);
-  vec2 hi = max(max(a2, b2), c2);
-  bool is_beyond = max(lo.x, lo.y) > 0.0 || min(hi.x, hi.y) < 0.0;
-  precise float determinant = u + v + w;
-  // Edge-on, or an area whose inverse is no longer a float.
-  bool has_area = abs(determinant) >= SMALLEST_NORMAL;
-  if (is_outside || is_beyond || !has_area) return NO_CROSSING;
-
+// `tmin` and `shear_z` are the ray's.
+Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
+  if (!sheared.is_met) return NO_CROSSING;
+  precise float determinant = sheared.areas.x + sheared.areas.y + sheared.areas.z;
   precise float inverse = 1.0 / determinant;
-  precise vec3 raw_weights = vec3(u, v, w) * inverse;
-  vec3 weights = center_weights(raw_weights, a2, b2, c2);
-  precise float t = (weights.x * a.z + weights.y * b.z + weights.z * c.z) * ray.shear.z;
-  if (!(t > ray.tmin)) return NO_CROSSING;
+  precise vec3 raw_weights = sheared.areas * inverse;
+  vec3 weights = center_weights(raw_weights, sheared.a, sheared.b, sheared.c);
+  vec3 depths = sheared.depths;
+  precise float t = (weights.x * depths.x + weights.y * depths.y + weights.z * depths.z) * shear_z;
+  if (!(t > tmin)) return NO_CROSSING;
   return Crossing(t, weights.y, weights.z, PART_SIDE);
+}
+
+Crossing intersect_triangle(Ray ray, Primitive p) {
+  return cross_triangle(shear_triangle(ray, p), ray.shear.z, ray.tmin);
 }
 
 // P from the corners, not from the ray: the error does not grow with the ray's length.

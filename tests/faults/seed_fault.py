@@ -40,7 +40,7 @@ FAULTS = {
     "fixed_epsilon": {"secondary.glsl": [(r"position \+ lift \*", "position + 1e-4 *")]},
     "one_sided_fma": {
         "primitives/triangle.glsl": [
-            (r"(Crossing intersect_triangle)", FUSED + r"\1"),
+            (r"(ShearedTriangle shear_triangle)", FUSED + r"\1"),
             (r"= c2\.x \* b2\.y - c2\.y \* b2\.x;", "= fused(c2.x, b2.y, -(c2.y * b2.x));"),
             (r"= a2\.x \* c2\.y - a2\.y \* c2\.x;", "= fused(a2.x, c2.y, -(a2.y * c2.x));"),
             (r"= b2\.x \* a2\.y - b2\.y \* a2\.x;", "= fused(b2.x, a2.y, -(b2.y * a2.x));"),
