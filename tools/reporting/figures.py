@@ -41,6 +41,15 @@ def quartiles(times):
     return times["lower_quartile"], times["upper_quartile"]
 
 
+_LONGEST_LINE = 24
+
+
+def _cell(text):
+    """Sentences take lines of their own; numbers do not."""
+    is_long = len(str(text)) > _LONGEST_LINE and "<" not in str(text)
+    return f"<td class='long'>{text}</td>" if is_long else f"<td>{text}</td>"
+
+
 def table(head, rows, caption=""):
     lines = ["<div class='table'><table>"]
     if caption:
@@ -48,7 +57,7 @@ def table(head, rows, caption=""):
     lines.append("<thead><tr>" + "".join(f"<th>{cell}</th>" for cell in head) + "</tr></thead><tbody>")
     for cells, is_shipped in rows:
         mark = ' class="shipped"' if is_shipped else ""
-        lines.append(f"<tr{mark}>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+        lines.append(f"<tr{mark}>" + "".join(map(_cell, cells)) + "</tr>")
     lines.append("</tbody></table></div>")
     return "\n".join(lines)
 

@@ -86,6 +86,11 @@ def _kernel_text(rows):
     return "<ul>" + "\n".join(sentences) + "</ul>"
 
 
+def _bargain(row):
+    leaks = f" and {row['leaks']:,} leaks" if row.get("leaks") else ""
+    return f"{row['method']} ({row['time_ratio']['median']:.2f} of the time, K {number(row['max_k'], 2)}{leaks})"
+
+
 def _front_gaps(rows):
     """Why a shipped method that others are better than by K alone is shipped."""
     gaps = []
@@ -100,16 +105,12 @@ def _front_gaps(rows):
         if not better:
             continue
         leaky = [r for r in better if r.get("leaks", 0) > own.get("leaks", 0)]
-        if len(leaky) == len(better):
-            gaps.append(
-                f"for the {primitive}, {join(r['method'] for r in better)} would be faster and as exact, but leaks"
-            )
-        else:
-            names = [r["method"] for r in better if r not in leaky]
-            rare = " (not every device has it)" if names == ["fp64"] else ""
-            gaps.append(
-                f"for the {primitive}, {join(names)}{rare} is faster by these figures, as exact and leaks as little"
-            )
+        sound = [r for r in better if r not in leaky]
+        if leaky:
+            gaps.append(f"for the {primitive}, {join(map(_bargain, leaky))} would be as exact, but leaks")
+        if sound:
+            rare = " (not every device has fp64)" if all(r["method"] == "fp64" for r in sound) else ""
+            gaps.append(f"for the {primitive}, {join(map(_bargain, sound))} is as exact and leaks as little{rare}")
     return "K does not say all: " + "; ".join(gaps) + "." if gaps else ""
 
 

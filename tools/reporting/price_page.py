@@ -26,7 +26,7 @@ def _truth_text(rows):
     if inside:
         rays = sum(r["judged"] for r in inside)
         parts.append(
-            f"Of {rays:,} rays from inside of a closed mesh at its edges, each of which must hit, promin loses "
+            f"Of {rays:,} rays from inside of a closed mesh (<em>wavy:N</em>, of about N triangles) at its edges, each of which must hit, promin loses "
             f"{number(sum(r['promin_lost'] for r in inside))} and the textbook "
             f"{sum(r['textbook_lost'] for r in inside):,}."
         )
@@ -75,10 +75,8 @@ def robustness(report):
         "ratio",
         "Mrays/s",
         "judged",
-        "lost: promin",
-        "textbook",
-        "invented: promin",
-        "textbook",
+        "lost, invented by promin",
+        "by the textbook",
     ]
     body = [
         (
@@ -91,10 +89,7 @@ def robustness(report):
                 interval(ratio),
                 number(r["robust_mrays_per_s"]),
                 f"{r['judged']:,}" + (", each hits" if r["truth"] == "each hits" else ""),
-                f"{r['promin_lost']:,}",
-                f"{r['textbook_lost']:,}",
-                f"{r['promin_invented']:,}",
-                f"{r['textbook_invented']:,}",
+                *(f"{r[f'{kernel}_lost']:,}, {r[f'{kernel}_invented']:,}" for kernel in ("promin", "textbook")),
             ],
             False,
         )
@@ -219,11 +214,14 @@ def peers(report):
         )
         for r, ratio in zip(rows, ratios)
     ]
-    text = "The same scene in the same run, in turns, on the same cores. " + " ".join(sentences) + gap
+    text = [
+        f"The same scene in the same run, in {rows[0]['promin_ms']['runs']} turns, on the same cores." + gap,
+        "<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>",
+    ]
     return {
         "title": "Beside other renderers",
         "panels": [panel],
         "legend": [],
-        "text": [text],
+        "text": text,
         "table": table(head, body),
     }
