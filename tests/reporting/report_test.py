@@ -74,6 +74,11 @@ def check_page(folder):
     distances = [row["value"] for row in report["kernels"]["range"] if row["variable"] == "distance"]
     said = f"From a distance of {number(min(distances), 2)} to {number(max(distances), 2)} sizes"
     expect(said in page, f"the page does not say: {said}")
+    expect(page.count("<svg") >= 20, "the page has too few plots")
+    expect("<metadata" not in page and "<dc:date" not in page, "the plots carry metadata")
+    expect((folder / "frames.png").stat().st_size > 10_000, "there is no picture of the main plot")
+    for section in re.findall(r"<section>.*?</section>", page, flags=re.DOTALL):
+        expect(re.search(r"<(p|li)>[^<]*\d", section), f"a section's text has no figure: {section[:200]}")
 
 
 GAP = {"name": "FLIP", "is_installed": True, "reason": "it failed"}
