@@ -122,6 +122,10 @@ TEST(ReportSceneNames, AreAsLongAsTellsThemApart) {
 /// A ray that hits the ball and one that does not, and answers to them.
 class ReportMisjudged : public testing::Test {
  protected:
+  Misjudged judge(const std::vector<Hit>& hits, const std::vector<size_t>& chosen) const {
+    return judge_by_oracle(scene_, rays_, hits, chosen, ask_oracle(scene_, rays_, chosen));
+  }
+
   Scene scene_ = measure::scene_of({Sphere{vec3(0.0F), 1.0F}});
   std::vector<Ray> rays_ = {{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F)},
                             {vec3(0.0F, 2.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F)}};
@@ -131,14 +135,14 @@ class ReportMisjudged : public testing::Test {
 };
 
 TEST_F(ReportMisjudged, AsksTheOracleAndNotTheOtherKernel) {
-  const Misjudged right = judge_by_oracle(scene_, rays_, std::vector{hit_, miss_}, all_);
+  const Misjudged right = judge(std::vector{hit_, miss_}, all_);
   EXPECT_EQ(right.lost + right.invented, 0);
   EXPECT_EQ(right.worst_margin, 0.0);
-  const Misjudged wrong = judge_by_oracle(scene_, rays_, std::vector{miss_, hit_}, all_);
+  const Misjudged wrong = judge(std::vector{miss_, hit_}, all_);
   EXPECT_EQ(wrong.lost, 1);
   EXPECT_EQ(wrong.invented, 1);
   EXPECT_GT(wrong.worst_margin, 1e5);
-  const Misjudged first = judge_by_oracle(scene_, rays_, std::vector{miss_, hit_}, std::vector<size_t>{0});
+  const Misjudged first = judge(std::vector{miss_, hit_}, {0});
   EXPECT_EQ(first.lost, 1);
   EXPECT_EQ(first.invented, 0);
 }

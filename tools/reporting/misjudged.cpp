@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "core/parallel.h"
 #include "oracle/verdict.h"
@@ -16,6 +15,10 @@ constexpr size_t kFewest = 64;
 
 bool is_hit(const Hit& hit) {
   return std::isfinite(hit.t);
+}
+
+oracle::Ray exact_ray(const Ray& ray) {
+  return {oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
 }
 
 /// `count` of the values, evenly.
@@ -40,30 +43,27 @@ std::vector<size_t> choose_rays(std::span<const Hit> a, std::span<const Hit> b, 
   return chosen;
 }
 
-Misjudged judge_by_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                          std::span<const size_t> chosen) {
-  Misjudged total;
-  std::mutex mutex;
+std::vector<uint8_t> ask_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const size_t> chosen) {
+  std::vector<uint8_t> is_there(chosen.size());
   for_each_chunk(chosen.size(), 64, 0, [&](size_t begin, size_t end) {
-    Misjudged part;
-    for (const size_t index : chosen.subspan(begin, end - begin)) {
-      const Ray& ray = rays[index];
-      const Hit& hit = hits[index];
-      const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
-      const bool is_there = oracle::is_occluded(scene, exact);
-      if (is_there == is_hit(hit)) continue;
-      ++(is_there ? part.lost : part.invented);
-      // An any-hit ray names no primitive: how far it is off is not known.
-      if (is_hit(hit) && hit.object < 0) continue;
-      const oracle::Verdict verdict = oracle::judge(scene, exact, {hit.t, hit.object, hit.primitive});
-      part.worst_margin = std::max(part.worst_margin, static_cast<double>(verdict.margin));
-    }
-    const std::lock_guard lock(mutex);
-    total.lost += part.lost;
-    total.invented += part.invented;
-    total.worst_margin = std::max(total.worst_margin, part.worst_margin);
+    for (size_t i = begin; i < end; ++i) is_there[i] = oracle::is_occluded(scene, exact_ray(rays[chosen[i]])) ? 1 : 0;
   });
-  return total;
+  return is_there;
+}
+
+Misjudged judge_by_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+                          std::span<const size_t> chosen, std::span<const uint8_t> is_there) {
+  Misjudged result;
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const Hit& hit = hits[chosen[i]];
+    if ((is_there[i] != 0) == is_hit(hit)) continue;
+    ++(is_hit(hit) ? result.invented : result.lost);
+    if (is_hit(hit) && hit.object < 0) continue;
+    const oracle::Verdict verdict =
+        oracle::judge(scene, exact_ray(rays[chosen[i]]), {hit.t, hit.object, hit.primitive});
+    result.worst_margin = std::max(result.worst_margin, static_cast<double>(verdict.margin));
+  }
+  return result;
 }
 
 Misjudged judge_in_closed_mesh(std::span<const Hit> hits) {

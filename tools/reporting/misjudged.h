@@ -15,7 +15,8 @@ struct Misjudged {
   uint64_t lost = 0;
   uint64_t invented = 0;
   /// Of both: the least k for which surfaces off by k u S make the worst answer true (oracle::Verdict::margin, u =
-  /// 2^-24). Rays that pass so near to a silhouette are nobody's to decide in fp32.
+  /// 2^-24). Rays that pass so near to a silhouette are nobody's to decide in fp32. Of any-hit rays that are invented
+  /// it is not known, as they name no primitive.
   double worst_margin = 0.0;
 };
 
@@ -24,10 +25,13 @@ struct Misjudged {
 std::vector<size_t> choose_rays(std::span<const Hit> a, std::span<const Hit> b, uint64_t primitive_count,
                                 uint64_t most_tests);
 
-/// By the oracle of the tests (tests/oracle, long double, brute force), which shares no formula with the kernels; on
-/// all cores.
+/// Whether there is a hit, of each chosen ray: by the oracle of the tests (tests/oracle, long double, brute force),
+/// which shares no formula with the kernels; on all cores.
+std::vector<uint8_t> ask_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const size_t> chosen);
+
+/// A kernel's hits by what the oracle said of the chosen rays.
 Misjudged judge_by_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                          std::span<const size_t> chosen);
+                          std::span<const size_t> chosen, std::span<const uint8_t> is_there);
 
 /// Of rays from inside of a closed mesh: each hits. No oracle is asked, as at an edge two triangles are near enough for
 /// its rounding, too.

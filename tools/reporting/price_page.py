@@ -26,8 +26,8 @@ def _truth_text(rows):
     if inside:
         rays = sum(r["judged"] for r in inside)
         parts.append(
-            f"Of {rays:,} rays from inside of a closed mesh (<em>wavy:N</em>, of about N triangles) at its edges, each of which must hit, promin loses "
-            f"{number(sum(r['promin_lost'] for r in inside))} and the textbook "
+            f"Of {rays:,} rays from inside of a closed mesh (<em>wavy:N</em>, of about N triangles) at its edges, each "
+            f"of which must hit, promin loses {number(sum(r['promin_lost'] for r in inside))} and the textbook "
             f"{sum(r['textbook_lost'] for r in inside):,}."
         )
     if others:
@@ -36,14 +36,17 @@ def _truth_text(rows):
             for kernel in ("promin", "textbook")
         }
         own, plain = wrong["promin"], wrong["textbook"]
+        differing = sum(r["differing"] for r in others)
+        all_or_some = "all" if all(r["differing"] <= r["judged"] for r in others) else "some of the"
         judged, count = sum(r["judged"] for r in others), sum(r["count"] for r in others)
         parts.append(
-            f"Of the other {count:,} rays {judged:,} were held against the oracle, brute force in long double: all on "
-            f"which the two differ, and of the rest as many as time allows. Promin loses {own[0]:,} and invents "
-            f"{own[1]:,}, the textbook {plain[0]:,} and {plain[1]:,}."
+            f"Of the other {count:,} rays {judged:,} were held against the oracle, brute force in long double: "
+            f"{all_or_some} {differing:,} on which the two differ, and of the rest as many as time allows. Promin loses "
+            f"{own[0]:,} and invents {own[1]:,}, the textbook {plain[0]:,} and {plain[1]:,}."
         )
         margin = max((r.get("promin_worst_margin", 0) for r in others), default=0)
-        if sum(own):
+        # Of any-hit rays that are invented it is not known.
+        if margin:
             parts.append(
                 f"Where promin is wrong, surfaces {number(margin, 2)} u S away would make it right: "
                 "rays that graze a silhouette as near are within its bound of 2 u S."

@@ -41,11 +41,12 @@ void judge_pair(const Session& session, const Scene& scene, const measure::RaySe
   uint64_t primitives = 0;
   for (const Object& object : scene.objects) primitives += primitive_count(object.shape);
   const std::vector<size_t> chosen =
-      choose_rays(pair.robust_hits, pair.plain_hits, primitives, session.pick(200'000'000U, 2'000'000U));
+      choose_rays(pair.robust_hits, pair.plain_hits, primitives, session.pick(50'000'000U, 2'000'000U));
   row["truth"] = "oracle";
   row["judged"] = chosen.size();
-  put_misjudged(row, "promin", judge_by_oracle(scene, set.rays, pair.robust_hits, chosen));
-  put_misjudged(row, "textbook", judge_by_oracle(scene, set.rays, pair.plain_hits, chosen));
+  const std::vector<uint8_t> is_there = ask_oracle(scene, set.rays, chosen);
+  put_misjudged(row, "promin", judge_by_oracle(scene, set.rays, pair.robust_hits, chosen, is_there));
+  put_misjudged(row, "textbook", judge_by_oracle(scene, set.rays, pair.plain_hits, chosen, is_there));
 }
 
 void compare_casters(const Session& session, const Scene& scene, bool is_closed, Json& rows) {
@@ -66,6 +67,7 @@ void compare_casters(const Session& session, const Scene& scene, bool is_closed,
                 {"scene_hash", hash},
                 {"rays", pair.rays},
                 {"count", pair.count},
+                {"differing", pair.count_only_robust() + pair.count_only_plain()},
                 {"robust_ms", json_of_times(pair.robust_ms)},
                 {"plain_ms", json_of_times(pair.plain_ms)},
                 {"time_ratio", json_of_times(measure::ratios_of(pair.robust_ms, pair.plain_ms))},

@@ -55,7 +55,8 @@ void compare_all(const std::string& file, const std::string& output, uint32_t ru
     const KernelPair c = measure_pair(robust, plain, set, runs);
     json["comparisons"].push_back(json_of(c));
     fmt::print("{:<8}{:>10}{:>16.3f}{:>16.3f}{:>8.2f}{:>8}{:>10}\n", c.rays, c.count, c.robust_mrays_per_s(),
-               c.plain_mrays_per_s(), c.robust_mrays_per_s() / c.plain_mrays_per_s(), c.count_only_robust(), c.count_only_plain());
+               c.plain_mrays_per_s(), c.robust_mrays_per_s() / c.plain_mrays_per_s(), c.count_only_robust(),
+               c.count_only_plain());
   }
   if (!output.empty()) write_text_file(output, json.dump(1) + "\n");
 }
