@@ -41,8 +41,8 @@ def _truth_text(rows):
         judged, count = sum(r["judged"] for r in others), sum(r["count"] for r in others)
         parts.append(
             f"Of the other {count:,} rays {judged:,} were held against the oracle, brute force in long double: "
-            f"{all_or_some} {differing:,} on which the two differ, and of the rest as many as time allows. Promin loses "
-            f"{own[0]:,} and invents {own[1]:,}, the textbook {plain[0]:,} and {plain[1]:,}."
+            f"{all_or_some} {differing:,} on which the two differ, and of the rest as many as time allows. Promin "
+            f"loses {own[0]:,} and invents {own[1]:,}, the textbook {plain[0]:,} and {plain[1]:,}."
         )
         margin = max((r.get("promin_worst_margin", 0) for r in others), default=0)
         # Of any-hit rays that are invented it is not known.
