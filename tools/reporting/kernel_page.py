@@ -107,10 +107,11 @@ def _front_gaps(rows):
         leaky = [r for r in better if r.get("leaks", 0) > own.get("leaks", 0)]
         sound = [r for r in better if r not in leaky]
         if leaky:
-            gaps.append(f"for the {primitive}, {join(map(_bargain, leaky))} would be as exact, but leaks")
+            gaps.append(f"for the {primitive}, {join(map(_bargain, leaky))} would be as exact, but leak")
+            gaps[-1] += "s" if len(leaky) == 1 else ""
         if sound:
             rare = " (not every device has fp64)" if all(r["method"] == "fp64" for r in sound) else ""
-            gaps.append(f"for the {primitive}, {join(map(_bargain, sound))} is as exact and leaks as little{rare}")
+            gaps.append(f"for the {primitive}, {join(map(_bargain, sound))} would be as exact without more leaks{rare}")
     return "K does not say all: " + "; ".join(gaps) + "." if gaps else ""
 
 
