@@ -93,47 +93,70 @@ def render(programs, folder, scene, picture, side, options=()):
     return stats["times_ms"]["trace"], 1e3 * seconds, stats["rays"]
 
 
-def measure_frames(programs, folder, runs, side=_SIDE, level=4, options=()):
+def time_frames(programs, folder, runs, side=_SIDE, level=4, options=()):
     """The sphereflake and one sphere, in turns with the peers; the round before the first only warms caches. `options`
-    are further ones of `promin render`."""
+    are further ones of `promin render`. Milliseconds of each run; of a peer that fails the last line that it said under
+    "failures", and nothing else."""
     for name, depth in (("flake", level), ("ball", 0)):
         sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
     peers = find_peers(folder, folder / "flake.gltf", side)
-    trace_ms, process_ms, small_ms = [], [], []
+    times = {"trace_ms": [], "process_ms": [], "one_sphere_process_ms": [], "peers": {}, "failures": {}}
     for turn in range(runs + 1):
-        trace, process, rays = render(programs, folder, "flake.gltf", "flake.exr", side, options)
+        trace, process, times["rays"] = render(programs, folder, "flake.gltf", "flake.exr", side, options)
         _, small, _ = render(programs, folder, "ball.gltf", "ball.exr", 16, options)
-        for peer in peers:
-            peer.trace_ms.append(peer.render(folder))
+        for peer in [peer for peer in peers if peer.name not in times["failures"]]:
+            try:
+                peer.trace_ms.append(peer.render(folder))
+            except RuntimeError as problem:
+                times["failures"][peer.name] = str(problem).strip().splitlines()[-1]
         if turn == 0:
             for peer in peers:
                 peer.trace_ms.clear()
             continue
-        trace_ms.append(trace)
-        process_ms.append(process)
-        small_ms.append(small)
+        for name, time_ms in (("trace_ms", trace), ("process_ms", process), ("one_sphere_process_ms", small)):
+            times[name].append(time_ms)
+    for peer in [peer for peer in peers if peer.name not in times["failures"]]:
+        try:
+            output, _ = run(programs / "promin-compare", "flake.exr", peer.picture, folder=folder)
+        except RuntimeError as problem:
+            times["failures"][peer.name] = str(problem).strip().splitlines()[-1]
+            continue
+        difference = json.loads(output)
+        times["peers"][peer.name] = {
+            "version": peer.version,
+            "trace_ms": peer.trace_ms,
+            "picture_difference": difference,
+        }
+    return times
+
+
+def measure_frames(programs, folder, runs):
+    """Quartiles of what time_frames tells, and of ratios of the same turn. A peer that fails is an error."""
+    times = time_frames(programs, folder, runs)
+    for name, line in times["failures"].items():
+        raise RuntimeError(f"{name} failed: {line}")
+    process_ms, small_ms = times["process_ms"], times["one_sphere_process_ms"]
     # What the first picture may take: its tracing and twice a whole process that does next to nothing.
-    allowed_ms = [trace + 2 * small for trace, small in zip(trace_ms, small_ms)]
-    figures = {
-        "rays": rays,
-        "trace_ms": quartiles(trace_ms),
+    allowed_ms = [trace + 2 * small for trace, small in zip(times["trace_ms"], small_ms)]
+    return {
+        "rays": times["rays"],
+        "trace_ms": quartiles(times["trace_ms"]),
         "first_image": {
             "process_ms": quartiles(process_ms),
             "one_sphere_process_ms": quartiles(small_ms),
             "allowed_ms": quartiles(allowed_ms),
             "ratio": quartiles([p / a for p, a in zip(process_ms, allowed_ms)]),
         },
-        "peers": {},
+        "peers": {
+            name: {
+                "version": peer["version"],
+                "trace_ms": quartiles(peer["trace_ms"]),
+                "time_ratio": quartiles([own / other for own, other in zip(times["trace_ms"], peer["trace_ms"])]),
+                "picture_difference": peer["picture_difference"],
+            }
+            for name, peer in times["peers"].items()
+        },
     }
-    for peer in peers:
-        output, _ = run(programs / "promin-compare", "flake.exr", peer.picture, folder=folder)
-        figures["peers"][peer.name] = {
-            "version": peer.version,
-            "trace_ms": quartiles(peer.trace_ms),
-            "time_ratio": quartiles([own / other for own, other in zip(trace_ms, peer.trace_ms)]),
-            "picture_difference": json.loads(output),
-        }
-    return figures
 
 
 def measure_rates(programs, folder, scenes, runs, side, name):

@@ -9,6 +9,7 @@
 #include "gpu/buffer.h"
 #include "render/device_scene.h"
 #include "render/picture_pieces.h"
+#include "render/picture_shaders.h"
 #include "render/ray_counts.h"
 #include "render/tracing_kernel.h"
 #include "scene/features.h"
@@ -20,15 +21,6 @@ struct FilmCounts {
   /// See were_loops_cut.
   bool has_cut_loops = false;
 };
-
-/// SPIR-V of both stages of a picture.
-struct PictureShaders {
-  std::span<const uint32_t> camera_stage;
-  std::span<const uint32_t> mirror_stage;
-};
-
-/// shaders/camera_stage.comp and shaders/mirror_stage.comp.
-PictureShaders picture_shaders();
 
 struct FilmOptions {
   /// Pixels that a lane of the camera stage takes together, 1, 2 or 4; empty: as suits the device.

@@ -36,6 +36,7 @@ struct Renderer::Impl {
         pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), PicturePieces::kMinBlocks) {
     PackedScene packed =
         options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
+    if (options.repack) packed = options.repack(std::move(packed));
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = packed.size_bytes();
@@ -54,7 +55,7 @@ struct Renderer::Impl {
 
   void make_film(Shading of) {
     const FeatureMask features = stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0);
-    film.emplace(device, scene, features, FilmOptions{.packet_size = options.packet_size});
+    film.emplace(device, scene, features, FilmOptions{.packet_size = options.packet_size, .shaders = options.shaders});
     film->warm_up();
     shading = of;
   }

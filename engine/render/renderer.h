@@ -11,6 +11,7 @@
 
 #include "image/image.h"
 #include "render/explain.h"
+#include "render/picture_shaders.h"
 #include "render/ray_counts.h"
 #include "render/setup_stats.h"
 #include "render/view.h"
@@ -21,6 +22,7 @@ namespace promin {
 namespace gpu {
 class Device;
 }
+struct PackedScene;
 
 /// What each pixel's middle sample shows, that of index samples / 2: with an odd number of samples the pixel's centre.
 /// Row by row, as the image.
@@ -65,6 +67,10 @@ struct RendererOptions {
   std::optional<uint32_t> packet_size = std::nullopt;
   /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
   uint32_t blocks_per_dispatch = 0;
+  /// Others with the same bindings are for measurements of pictures; Renderer::explain does not take them.
+  PictureShaders shaders = picture_shaders();
+  /// What such shaders make of the scene before it is uploaded, where they read another layout of it; empty: nothing.
+  std::function<PackedScene(PackedScene)> repack = {};
 };
 
 /// A scene in device memory with the pipeline that its features ask for. Keeps no reference to the Scene.

@@ -86,27 +86,6 @@ Tally Tally::without_t_errors() const {
   return rest;
 }
 
-dvec3 Random::direction() {
-  const double z = uniform(-1.0, 1.0);
-  const double angle = uniform(0.0, 6.283185307179586);
-  const double radius = std::sqrt(1.0 - z * z);
-  return {radius * std::cos(angle), radius * std::sin(angle), z};
-}
-
-dvec3 Random::perpendicular(const dvec3& axis) {
-  for (;;) {
-    const dvec3 cross = glm::cross(axis, direction());
-    if (glm::length(cross) > 0.1) return glm::normalize(cross);
-  }
-}
-
-dvec3 Random::inside(const dvec3& a, const dvec3& b, const dvec3& c) {
-  double u = uniform();
-  double v = uniform();
-  if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
-  return a + u * (b - a) + v * (c - a);
-}
-
 double Lab::rounding_factor() const {
   // On the CPU they are the processor's own.
   return gpu::info_of(device_).type == "CPU" ? 1.0 : 2.0;
@@ -191,14 +170,6 @@ std::string label(const char* what, double value) {
   return text.data();
 }
 
-Scene scene_of(std::vector<Shape> shapes) {
-  Scene scene;
-  scene.file = "hard case";
-  scene.materials.resize(1);
-  for (Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
-  return scene;
-}
-
 PackedScene with_infinite_boxes(PackedScene packed) {
   // From -2^127 in 255 steps of 2^120 on every axis.
   const uint32_t origin = std::bit_cast<uint32_t>(-0x1p127F);
@@ -214,22 +185,6 @@ uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const
   uint64_t count = 0;
   for (size_t i = 0; i < a.size(); ++i) count += a[i].a.x != b[i].a.x || a[i].a.y != b[i].a.y ? 1 : 0;
   return count;
-}
-
-Ray ray_towards(const dvec3& origin, const dvec3& target) {
-  const vec3 start(origin);
-  return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), std::numeric_limits<float>::infinity()};
-}
-
-Mesh random_triangle(const dvec3& center, Random& random) {
-  const dvec3 right = random.direction();
-  const dvec3 up = random.perpendicular(right);
-  Mesh mesh;
-  for (const dvec2& corner : {dvec2(-1.0, -0.5), dvec2(1.0, -0.5), dvec2(0.2, 0.7)}) {
-    mesh.positions.emplace_back(center + corner.x * right + corner.y * up);
-  }
-  mesh.triangles = {{0, 1, 2}};
-  return mesh;
 }
 
 Ray ray_grazing(const Mesh& mesh, const uvec3& triangle, Random& random) {

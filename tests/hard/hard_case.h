@@ -5,19 +5,26 @@
 
 #include <cstdint>
 #include <iosfwd>
-#include <random>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "gpu/open_device.h"
 #include "layout.h"
+#include "measure/meshes.h"
+#include "measure/random.h"
+#include "measure/ray_sets.h"
 #include "oracle/verdict.h"
 #include "rays/ray.h"
 #include "render/ray_kernel.h"
 #include "scene/scene.h"
 
 namespace promin::hard {
+
+using measure::make_triangle;
+using measure::Random;
+using measure::ray_towards;
+using measure::scene_of;
 
 class Lab;
 
@@ -68,24 +75,6 @@ struct Tally {
   Tally without_t_errors() const;
 };
 
-/// Deterministic on every platform, unlike the standard distributions.
-class Random {
- public:
-  explicit Random(uint64_t seed) : generator_(seed) {}
-  /// [0, 1).
-  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
-  double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
-  /// A unit vector, all directions alike.
-  dvec3 direction();
-  /// A unit vector perpendicular to a unit vector.
-  dvec3 perpendicular(const dvec3& axis);
-  /// In the triangle, all places alike.
-  dvec3 inside(const dvec3& a, const dvec3& b, const dvec3& c);
-
- private:
-  std::mt19937_64 generator_;
-};
-
 /// What a hard case works with: the device, the oracle, and where figures go.
 class Lab {
  public:
@@ -127,9 +116,6 @@ class Lab {
   int row_;
 };
 
-/// A scene of these shapes with one material.
-Scene scene_of(std::vector<Shape> shapes);
-
 /// "distance 1e+04" and the like.
 std::string label(const char* what, double value);
 
@@ -139,12 +125,6 @@ PackedScene with_infinite_boxes(PackedScene packed);
 
 /// Rays whose records differ in order or in the bits of t.
 uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const layout::HitRecord> b);
-
-/// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
-Ray ray_towards(const dvec3& origin, const dvec3& target);
-
-/// A triangle of its own, of ordinary shape: about 1 in size, turned as it comes.
-Mesh random_triangle(const dvec3& center, Random& random);
 
 /// Across a mesh's triangle from one point of it to another, at a cosine of 1e-9...3e-6 to its plane: the rounding of
 /// origin and direction alone decides where the ray meets the plane.

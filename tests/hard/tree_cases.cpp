@@ -108,7 +108,7 @@ void run_grazed_trees(Lab& lab) {
   Mesh mesh;
   for (uint32_t i = 0; i < 300; ++i) {
     const dvec3 center{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
-    const Mesh one = random_triangle(center, random);
+    const Mesh one = make_triangle(center, random);
     mesh.positions.insert(mesh.positions.end(), one.positions.begin(), one.positions.end());
     mesh.triangles.push_back(uvec3(0, 1, 2) + 3 * i);
   }

@@ -369,7 +369,7 @@ void cast_across(Lab& lab) {
   for (const double offset : {0.0, 100.0}) {
     Stray stray;
     for (int i = 0; i < 32; ++i) {
-      const Mesh mesh = random_triangle(dvec3(offset) + random.direction(), random);
+      const Mesh mesh = make_triangle(dvec3(offset) + random.direction(), random);
       const std::vector<Ray> rays = make_rays(10000, [&] { return ray_grazing(mesh, mesh.triangles.front(), random); });
       stray.add(mesh, rays, lab.cast(scene_of({mesh}), rays));
       tally.rays += rays.size();

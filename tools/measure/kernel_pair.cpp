@@ -28,6 +28,13 @@ double mrays_per_s(size_t count, const std::vector<double>& ms) {
   return static_cast<double>(count) / (1e3 * quartiles_of(ms).median);
 }
 
+/// Rays that hit in `a` and miss in `b`.
+uint64_t count_only(const std::vector<Hit>& a, const std::vector<Hit>& b) {
+  uint64_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) count += std::isfinite(a[i].t) && !std::isfinite(b[i].t) ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
 double KernelPair::robust_mrays_per_s() const {
@@ -38,20 +45,26 @@ double KernelPair::plain_mrays_per_s() const {
   return mrays_per_s(count, plain_ms);
 }
 
+uint64_t KernelPair::count_only_robust() const {
+  return count_only(robust_hits, plain_hits);
+}
+
+uint64_t KernelPair::count_only_plain() const {
+  return count_only(plain_hits, robust_hits);
+}
+
 KernelPair measure_pair(Caster& robust, Caster& plain, const RaySet& set, uint32_t runs) {
-  std::vector<Hit> robust_hits(set.rays.size());
-  std::vector<Hit> plain_hits(set.rays.size());
+  KernelPair pair;
+  pair.rays = set.name;
+  pair.count = set.rays.size();
+  pair.robust_hits.resize(pair.count);
+  pair.plain_hits.resize(pair.count);
   const std::array<std::function<double()>, 2> contestants = {
-      [&] { return robust.cast(set.rays, robust_hits, set.query); },
-      [&] { return plain.cast(set.rays, plain_hits, set.query); }};
-  const std::vector<std::vector<double>> times = time_in_turns(contestants, runs);
-  KernelPair pair{set.name, set.rays.size(), times[0], times[1]};
-  for (size_t i = 0; i < set.rays.size(); ++i) {
-    const bool is_robust_hit = std::isfinite(robust_hits[i].t);
-    const bool is_plain_hit = std::isfinite(plain_hits[i].t);
-    pair.lost += is_robust_hit && !is_plain_hit ? 1 : 0;
-    pair.invented += is_plain_hit && !is_robust_hit ? 1 : 0;
-  }
+      [&] { return robust.cast(set.rays, pair.robust_hits, set.query); },
+      [&] { return plain.cast(set.rays, pair.plain_hits, set.query); }};
+  std::vector<std::vector<double>> times = time_in_turns(contestants, runs);
+  pair.robust_ms = std::move(times[0]);
+  pair.plain_ms = std::move(times[1]);
   return pair;
 }
 

@@ -18,12 +18,16 @@ struct KernelPair {
   /// Of each run.
   std::vector<double> robust_ms;
   std::vector<double> plain_ms;
-  /// Rays with a hit by the robust kernel and none by the plain one, and the other way round.
-  uint64_t lost = 0;
-  uint64_t invented = 0;
+  /// Of the last run; to any-hit rays only t.
+  std::vector<Hit> robust_hits;
+  std::vector<Hit> plain_hits;
 
   double robust_mrays_per_s() const;
   double plain_mrays_per_s() const;
+
+  /// Rays with a hit by the one kernel and none by the other, whichever is right.
+  uint64_t count_only_robust() const;
+  uint64_t count_only_plain() const;
 };
 
 KernelPair measure_pair(Caster& robust, Caster& plain, const RaySet& set, uint32_t runs);

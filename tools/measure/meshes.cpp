@@ -9,15 +9,33 @@
 namespace promin::measure {
 namespace {
 
-Scene scene_of(const char* name, Mesh mesh) {
-  Scene scene;
-  scene.file = name;
-  scene.materials.resize(1);
-  scene.objects = {{"", std::move(mesh), 0}};
-  return scene;
+/// As scene_of, without a copy of the mesh.
+Scene scene_of_mesh(Mesh mesh, const std::string& name) {
+  std::vector<Shape> shapes;
+  shapes.emplace_back(std::move(mesh));
+  return scene_of(std::move(shapes), name);
 }
 
 }  // namespace
+
+Scene scene_of(std::vector<Shape> shapes, const std::string& name) {
+  Scene scene;
+  scene.file = name;
+  scene.materials.resize(1);
+  for (Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
+  return scene;
+}
+
+Mesh make_triangle(const dvec3& center, Random& random, double size) {
+  const dvec3 right = random.direction();
+  const dvec3 up = random.perpendicular(right);
+  Mesh mesh;
+  for (const dvec2& corner : {dvec2(-1.0, -0.5), dvec2(1.0, -0.5), dvec2(0.2, 0.7)}) {
+    mesh.positions.emplace_back(center + size * (corner.x * right + corner.y * up));
+  }
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
 
 Scene make_wavy_sphere(uint32_t triangle_count) {
   const auto rings = std::max(2U, static_cast<uint32_t>(std::lround(0.5 * std::sqrt(triangle_count))));
@@ -45,7 +63,7 @@ Scene make_wavy_sphere(uint32_t triangle_count) {
     }
     mesh.triangles.emplace_back(last, last - columns + j, last - columns + next);
   }
-  return scene_of("wavy sphere", std::move(mesh));
+  return scene_of_mesh(std::move(mesh), "wavy sphere");
 }
 
 Scene make_needles(uint32_t triangle_count) {
@@ -68,7 +86,7 @@ Scene make_needles(uint32_t triangle_count) {
     for (const dvec3& corner : {start, start + along, start + across}) mesh.positions.emplace_back(corner);
     mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
   }
-  return scene_of("needles", std::move(mesh));
+  return scene_of_mesh(std::move(mesh), "needles");
 }
 
 }  // namespace promin::measure

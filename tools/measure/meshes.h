@@ -3,10 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
+#include "measure/random.h"
 #include "scene/scene.h"
 
 namespace promin::measure {
+
+/// A scene of these shapes with one material, without camera or light.
+Scene scene_of(std::vector<Shape> shapes, const std::string& name = "shapes");
+
+/// A triangle of its own, of ordinary shape: about `size` across, turned as it comes.
+Mesh make_triangle(const dvec3& center, Random& random, double size = 1.0);
 
 // Meshes of any size to measure with, each a scene of one object without camera or light; the same bits every time.
 

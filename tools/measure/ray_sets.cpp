@@ -19,6 +19,11 @@ float size_of(const Scene& scene) {
 
 }  // namespace
 
+Ray ray_towards(const dvec3& origin, const dvec3& target) {
+  const vec3 start(origin);
+  return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), kInfinity};
+}
+
 RaySet make_camera_rays(const Camera& camera, uint32_t side) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   const double half = is_orthographic ? static_cast<double>(camera.ymag)  //

@@ -18,6 +18,9 @@ struct RaySet {
   std::vector<Ray> rays;
 };
 
+/// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
+Ray ray_towards(const dvec3& origin, const dvec3& target);
+
 /// A ray through the centre of each pixel of a square picture, row by row.
 RaySet make_camera_rays(const Camera& camera, uint32_t side);
 

@@ -5,11 +5,14 @@
 #include <cmath>
 
 #include "measure/meshes.h"
+#include "measure/ray_sets.h"
 
 namespace promin::report {
+
+using measure::ray_towards;
+
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
 /// Of the enclosing mesh.
 constexpr uint32_t kMeshTriangles = 1024;
 
@@ -20,27 +23,7 @@ Shape make_shape(const std::string& name, const dvec3& center, double size, Rand
   if (name == "plane") return Plane{vec3(center), axis};
   if (name == "cylinder") return Cylinder{vec3(center), axis, radius, 0.5F * radius};
   if (name == "cone") return Cone{vec3(center), axis, radius, 0.8F * radius, 0.0F};
-  const dvec3 right = random.direction();
-  const dvec3 up = random.perpendicular(right);
-  Mesh mesh;
-  for (const dvec2& corner : {dvec2(-1.0, -0.5), dvec2(1.0, -0.5), dvec2(0.2, 0.7)}) {
-    mesh.positions.emplace_back(center + size * (corner.x * right + corner.y * up));
-  }
-  mesh.triangles = {{0, 1, 2}};
-  return mesh;
-}
-
-Ray ray_towards(const dvec3& origin, const dvec3& target) {
-  const vec3 start(origin);
-  return {start, 0.0F, vec3(glm::normalize(target - dvec3(start)))};
-}
-
-Scene scene_of(const std::string& name, std::vector<Shape> shapes) {
-  Scene scene;
-  scene.file = name;
-  scene.materials.resize(1);
-  for (Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
-  return scene;
+  return measure::make_triangle(center, random, size);
 }
 
 /// A point of a cylinder's or cone's rim, or of a sphere.
@@ -59,27 +42,13 @@ dvec3 point_at_rim(const Shape& shape, Random& random) {
 
 }  // namespace
 
-dvec3 Random::direction() {
-  const double z = 2.0 * uniform() - 1.0;
-  const double angle = kTurn * uniform();
-  const double radius = std::sqrt(1.0 - z * z);
-  return {radius * std::cos(angle), radius * std::sin(angle), z};
-}
-
-dvec3 Random::perpendicular(const dvec3& axis) {
-  for (;;) {
-    const dvec3 cross = glm::cross(axis, direction());
-    if (glm::length(cross) > 0.1) return glm::normalize(cross);
-  }
-}
-
 const std::vector<std::string>& primitive_names() {
   static const std::vector<std::string> kNames = {"sphere", "plane", "cylinder", "cone", "triangle"};
   return kNames;
 }
 
 Scene make_primitive(const std::string& name, const dvec3& center, Random& random) {
-  return scene_of(name, {make_shape(name, center, 1.0, random)});
+  return measure::scene_of({make_shape(name, center, 1.0, random)}, name);
 }
 
 Scene make_primitives(const std::string& name, size_t count, Random& random) {
@@ -87,7 +56,7 @@ Scene make_primitives(const std::string& name, size_t count, Random& random) {
   for (size_t i = 0; i < count; ++i) {
     shapes.push_back(make_shape(name, 4.0 * std::cbrt(random.uniform()) * random.direction(), 0.25, random));
   }
-  return scene_of(name, std::move(shapes));
+  return measure::scene_of(std::move(shapes), name);
 }
 
 std::vector<Ray> aim_rays(const Scene& scene, const dvec3& center, double distance, size_t count, Random& random) {

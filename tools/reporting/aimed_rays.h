@@ -2,29 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <random>
 #include <string>
 #include <vector>
 
+#include "measure/random.h"
 #include "rays/ray.h"
 #include "scene/scene.h"
 
 namespace promin::report {
 
-/// The same numbers on every platform, unlike the standard distributions.
-class Random {
- public:
-  explicit Random(uint64_t seed) : generator_(seed) {}
-  /// [0, 1)
-  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
-  /// Of unit length, all directions alike.
-  dvec3 direction();
-  /// Of unit length, perpendicular to a unit vector.
-  dvec3 perpendicular(const dvec3& axis);
-
- private:
-  std::mt19937_64 generator_;
-};
+using measure::Random;
 
 /// "sphere", "plane", "cylinder", "cone", "triangle".
 const std::vector<std::string>& primitive_names();

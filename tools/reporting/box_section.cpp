@@ -156,6 +156,7 @@ class BoxBench {
                       {"is_shipped", method.name == "promin"},
                       {"bytes_per_node", (method.has_full_boxes ? 2 : 1) * sizeof(layout::Node)},
                       {"ns_per_test", json_of_times(times[i])},
+                      {"time_ratio", json_of_times(measure::ratios_of(times[i], times[0]))},
                       {"rays", counts[i].tests / kChildren},
                       {"misclassified_per_million", 1e6 * static_cast<double>(counts[i].missed) / tests},
                       {"opened_needlessly_per_million", 1e6 * static_cast<double>(counts[i].needless) / tests},

@@ -2,22 +2,28 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 """Holds a report against report.schema.json and rules that any report of a sound promin keeps; needs nothing beyond
-Python's own library. check_report.py REPORT.json prints what is wrong, a line each; exit code 1 if anything is."""
+Python's own library, and nothing of what made the report. check_report.py REPORT.json prints what is wrong, a line
+each; exit code 1 if anything is. Where runs.csv and report.html lie beside it, the figures are held against the single
+runs, and what the page says of the default against the figures."""
 
+import csv
+import html
 import json
 import math
 import pathlib
+import re
 import statistics
 import sys
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-
-from figures import pareto_front
 
 # Bounds of docs/accuracy.md and of tests/oracle (compare_picture.h).
 _BOUND_K = 8
 _BOUND_COLOR_MEAN = 1e-4
 _BOUND_IDS = 0.0005
+_BOUND_MARGIN = 2
+
+_CONFIDENCE = 0.95
+# A setting is ahead of another where it takes less than this of its time.
+_FASTER = 1 / 1.02
 
 _TYPES = {
     "object": dict,
@@ -71,14 +77,51 @@ def _times_in(value, place=""):
             yield from _times_in(part, f"{place}[{part.get('id', '?')}]" if isinstance(part, dict) else place)
 
 
+def _interval_rank(count):
+    """(k, confidence): the median is between the k-th least and the k-th largest of so many values that often."""
+    best = (1, 1 - 2 / 2**count)
+    for k in range(1, (count + 1) // 2 + 1):
+        confidence = 1 - 2 * sum(math.comb(count, i) for i in range(k)) / 2**count
+        if confidence >= _CONFIDENCE:
+            best = (k, confidence)
+    return best
+
+
 def _find_time_faults(report):
+    runs = report["provenance"]["runs"]
     for place, times in _times_in(report):
+        if "least" in times:
+            if not 0 < times["least"] <= times["median"] <= times["most"] or times["runs"] > runs:
+                yield f"{place}: least, median and most out of order, or too many runs: {times}"
+            continue
         if not 0 < times["lower_quartile"] <= times["median"] <= times["upper_quartile"]:
             yield f"{place}: quartiles out of order: {times}"
-        if times["runs"] != report["provenance"]["runs"] and "compile" not in place:
+        if not 0 < times["interval_lower"] <= times["median"] <= times["interval_upper"]:
+            yield f"{place}: the median is not in its interval: {times}"
+        if times["runs"] != runs:
             yield f"{place}: of {times['runs']} runs"
-    if report["provenance"]["runs"] < 20 and not report["provenance"]["is_quick"]:
-        yield f"{report['provenance']['runs']} runs are fewer than the 20 of a full report"
+        if abs(times["confidence"] - max(0, _interval_rank(times["runs"])[1])) > 1e-9:
+            yield f"{place}: {times['runs']} runs give no interval of {times['confidence']}"
+    if runs < 20 and not report["provenance"]["is_quick"]:
+        yield f"{runs} runs are fewer than the 20 of a full report"
+
+
+def _find_front_faults(rows, times, error, mark):
+    """Marks of a Pareto front against all that was measured."""
+    points = [(row[times]["median"], row[error], row[mark], row["id"]) for row in rows if error in row and mark in row]
+    if any((error in row) != (mark in row) for row in rows):
+        yield f"{rows[0]['id']}: {mark} is not there where {error} is, or the other way round"
+    for time, wrong, is_marked, name in points:
+        ahead = [p for p in points if p[0] <= time and p[1] <= wrong and (p[0] < time or p[1] < wrong)]
+        if is_marked and ahead:
+            yield f"{name}: marked as on the front ({mark}), but {ahead[0][3]} is ahead of it"
+        if not is_marked and not ahead:
+            yield f"{name}: nothing is ahead of it, and it is not marked as on the front ({mark})"
+    front = sorted(set(p[:2] for p in points if p[2]))
+    if not front:
+        yield f"{rows[0]['id']}: there is no front ({mark})"
+    if any(not a[1] > b[1] for a, b in zip(front, front[1:])):
+        yield f"{rows[0]['id']}: the front is not monotone ({mark}): {front}"
 
 
 def _find_kernel_faults(report):
@@ -94,6 +137,9 @@ def _find_kernel_faults(report):
             yield f"{row['id']}: K of {row.get('max_k', 'no hit')} is beyond {bound}"
         if row.get("leaks"):
             yield f"{row['id']}: {row['leaks']} leaks"
+    for primitive in {row["primitive"] for row in rows}:
+        of_primitive = [row for row in rows if row["primitive"] == primitive]
+        yield from _find_front_faults(of_primitive, "ns_per_test", "max_k", "is_on_front")
     for row in report["boxes"]["rows"]:
         if row["is_shipped"] and row["leaks"]:
             yield f"{row['id']}: {row['leaks']} boxes hidden"
@@ -115,13 +161,9 @@ def _find_frame_faults(report):
             yield f"{scene}: {len(defaults)} defaults"
             continue
         default = defaults[0]
-        points = [(row["ms"]["median"], row["rmse"]) for row in of_scene]
-        # What the page draws: these hold for any figures, and fail where pareto_front does.
-        front = [points[i] for i in pareto_front(points)]
-        if any(not (a[0] <= b[0] and a[1] > b[1]) for a, b in zip(front, front[1:])):
-            yield f"{scene}: the Pareto front is not monotone: {front}"
-        if any(p[0] < f[0] and p[1] <= f[1] for p in points for f in front):
-            yield f"{scene}: a point lies beyond the Pareto front"
+        yield from _find_front_faults(of_scene, "ms", "rmse", "is_on_front")
+        if "flip" in default:
+            yield from _find_front_faults(of_scene, "ms", "flip", "is_on_flip_front")
         for row in of_scene:
             if row["knob"] in ("builder", "boxes") and row["rmse"] != default["rmse"]:
                 yield f"{row['id']}: another picture than the default's, where the bits should be the same"
@@ -141,21 +183,34 @@ def _find_other_faults(report):
     for row in report["specialisation"]["rows"]:
         if not row["is_bit_identical"]:
             yield f"specialisation {row['id']}: another picture than with all features"
-    edges = [row for row in report["robustness"]["rows"] if row["rays"] == "edges"]
-    for row in edges:
-        # From inside of a closed mesh at its edges: each ray hits.
-        if row["invented"]:
-            yield f"{row['id']}: promin loses {row['invented']} rays at edges of a closed mesh"
-    if edges and not any(row["lost"] for row in edges):
+    rows = report["robustness"]["rows"]
+    edges = [row for row in rows if row["rays"] == "edges"]
+    # Divisions may be off by more elsewhere, as K.
+    bound = _BOUND_MARGIN if report["provenance"]["device_type"] == "CPU" else 2 * _BOUND_MARGIN
+    for row in rows:
+        if row["judged"] > row["count"] or (row["rays"] == "edges") != (row["truth"] == "each hits"):
+            yield f"{row['id']}: {row['judged']} of {row['count']} rays judged, by '{row['truth']}'"
+        # From inside of a closed mesh each ray hits.
+        if row["truth"] == "each hits" and (row["promin_lost"] or row["judged"] != row["count"]):
+            yield f"{row['id']}: promin loses {row['promin_lost']} of {row['judged']} rays at edges of a closed mesh"
+        if row["truth"] == "oracle" and not row.get("promin_worst_margin", math.inf) <= bound:
+            yield f"{row['id']}: promin is wrong of a ray further than {bound} u S from any silhouette"
+    if edges and not any(row["textbook_lost"] for row in edges):
         yield "robustness: the textbook's kernel loses no ray at edges: it is not what was measured"
     for fit in report["scaling"]["fits"]:
         if not fit["lower"] <= fit["exponent"] <= fit["upper"]:
             yield f"{fit['id']}: the exponent is not in its interval"
         yield from _find_fit_faults(report, fit)
     peers = " ".join(row["peer"] for row in report["peers"]["rows"])
+    gaps = [gap["name"] for gap in report["peers"]["gaps"]]
     for name in ("Embree", "Tachyon", "POV-Ray"):
-        if (name in peers) == (name in report["peers"]["not_measured"]):
+        if (name in peers) == (name in gaps):
             yield f"peers: {name} is neither measured nor a gap, or both"
+    if all("flip" in row for row in report["frames"]["rows"]) != (not report["frames"]["gaps"]):
+        yield "frames: FLIP is neither measured nor a gap, or both"
+    for gap in report["peers"]["gaps"] + report["frames"]["gaps"]:
+        if gap["is_installed"] != (gap["reason"] != "not installed"):
+            yield f"{gap['name']}: installed or not? {gap}"
 
 
 def _find_twins(report):
@@ -183,8 +238,76 @@ def _find_fit_faults(report, fit):
         yield f"{fit['id']}: steps grow as n^{fit['exponent']}"
 
 
+def _tables(report):
+    for section, content in report.items():
+        for key, rows in content.items() if isinstance(content, dict) else []:
+            if isinstance(rows, list):
+                yield section if key == "rows" else f"{section}_{key}", rows
+
+
+def find_run_faults(report, runs):
+    """Medians, intervals and ratios once more, from the single runs: {(table, id, figure): values}."""
+    is_near = lambda a, b: math.isclose(a, b, rel_tol=1e-5)  # noqa: E731
+    for table, rows in _tables(report):
+        for row in rows:
+            for figure, times in row.items():
+                if not isinstance(times, dict) or "median" not in times:
+                    continue
+                values = sorted(runs.get((table, row["id"], figure), []))
+                if len(values) != times["runs"] or not is_near(statistics.median(values), times["median"]):
+                    yield f"{table} {row['id']}, {figure}: the runs give another median than {times['median']}"
+                elif "interval_lower" in times:
+                    k = _interval_rank(len(values))[0]
+                    ends = times["interval_lower"], times["interval_upper"]
+                    if not (is_near(values[k - 1], ends[0]) and is_near(values[-k], ends[1])):
+                        yield f"{table} {row['id']}, {figure}: the runs give another interval than {ends}"
+    rows = report["frames"]["rows"]
+    for row in rows:
+        default = next(r for r in rows if r["is_default"] and r["scene"] == row["scene"])
+        own, other = (runs.get(("frames", r["id"], "ms"), []) for r in (row, default))
+        ratio = statistics.median(a / b for a, b in zip(own, other)) if own and other else math.nan
+        if not is_near(ratio, row["time_ratio"]["median"]):
+            yield f"{row['id']}: {ratio} of the default's time in the same turns, not {row['time_ratio']['median']}"
+
+
+def find_page_faults(report, page):
+    """Whether the page says of each scene's default that it lies on the front, or what is ahead and gives up what."""
+    said = {
+        html.unescape(scene): html.unescape(re.sub("<[^>]*>", "", text))
+        for scene, text in re.findall(r'<span class="front" data-scene="([^"]*)">(.*?)</span>', page, flags=re.DOTALL)
+    }
+    rows = report["frames"]["rows"]
+    for scene in {row["scene"] for row in rows}:
+        text = said.get(scene, "")
+        default = next(row for row in rows if row["is_default"] and row["scene"] == scene)
+        ahead = []
+        for row in rows:
+            ratio = row["time_ratio"]
+            is_sure = ratio["confidence"] >= _CONFIDENCE and ratio["interval_upper"] < 1
+            if row["scene"] == scene and row["rmse"] <= default["rmse"] and is_sure and ratio["median"] < _FASTER:
+                ahead.append(row)
+        if ("off the front" in text) != bool(ahead) or ("on the front" in text) == bool(ahead):
+            names = [row["id"] for row in ahead] or "nothing"
+            yield f"{scene}: {names} is ahead of the default beyond noise, and the page says: {text or 'nothing'}"
+        if not ahead and ("within the noise" in text) == default["is_on_front"]:
+            yield f"{scene}: the default's mark and the page are at odds: {text}"
+        for row in ahead:
+            name = f"{row['knob']} {row['setting']} takes {row['time_ratio']['median']:.2f} of its time"
+            reason = text.lower().partition(name.lower())[2]
+            if not re.match(r"[^.]*(\.\d[^.]*)*; it gives up (this: .*\d|nothing)", reason):
+                yield f"{scene}: the page gives no reason why {row['id']} is not the default: {text}"
+
+
+def read_runs(file):
+    runs = {}
+    with open(file, encoding="utf-8", newline="") as lines:
+        for line in csv.DictReader(lines):
+            runs.setdefault((line["table"], line["id"], line["figure"]), []).append(float(line["value"]))
+    return runs
+
+
 def find_faults(report):
-    """All that is wrong, a sentence each."""
+    """All that is wrong with the figures themselves, a sentence each."""
     schema = json.loads((pathlib.Path(__file__).parent / "report.schema.json").read_text(encoding="utf-8"))
     faults = find_schema_faults(report, schema, schema)
     if faults:
@@ -196,7 +319,13 @@ def find_faults(report):
 def main():
     if len(sys.argv) != 2:
         sys.exit("check_report.py REPORT.json")
-    faults = find_faults(json.loads(pathlib.Path(sys.argv[1]).read_text(encoding="utf-8")))
+    file = pathlib.Path(sys.argv[1])
+    report = json.loads(file.read_text(encoding="utf-8"))
+    faults = find_faults(report)
+    if not faults and file.with_name("runs.csv").exists():
+        faults += find_run_faults(report, read_runs(file.with_name("runs.csv")))
+    if not faults and file.with_name("report.html").exists():
+        faults += find_page_faults(report, file.with_name("report.html").read_text(encoding="utf-8"))
     print("\n".join(faults) or "sound")
     sys.exit(1 if faults else 0)
 

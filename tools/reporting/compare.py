@@ -2,18 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """What changed between two reports beyond noise.
 
-Rows are the same by section, table and id. A time has changed where figures.is_slower says so; any other
+Rows are the same by section, table and id. A time or ratio of times has changed where figures.judge says so; any other
 number where it differs by more than a hundred-thousandth: errors and counts are the same in every run on one device."""
 
 import html
 
-from figures import is_slower, number, plain, table
+from figures import judge, number, plain, ratio_of_few, ratio_of_reports, table
 
 _SAME = 1e-5
 
 
-def _is_times(value):
-    return isinstance(value, dict) and "median" in value
+def _ratio(new, old):
+    """Of two times; none of anything else."""
+    if not isinstance(new, dict) or not isinstance(old, dict):
+        return None
+    if "interval_lower" in new and "interval_lower" in old:
+        return ratio_of_reports(new, old)
+    return ratio_of_few(new, old) if "least" in new and "least" in old else None
 
 
 def _tables(report):
@@ -26,17 +31,18 @@ def _tables(report):
 
 
 def _changed_number(key, old, new):
+    # What is made of times says nothing by itself.
+    if key.endswith("_per_s") or key.startswith("is_on_") or key in ("exponent", "lower", "upper"):
+        return False
     if isinstance(old, bool) or isinstance(new, bool):
         return old != new
-    # Single runs and what is divided by times say nothing by themselves.
-    if key.endswith("_once") or key.endswith("_per_s") or key in ("exponent", "lower", "upper"):
-        return False
     return abs(new - old) > _SAME * max(abs(old), abs(new))
 
 
 def find_changes(old, new):
-    """(table, id, figure, old, new) of what changed; then ids that only one of them has."""
-    changes, lonely = [], []
+    """(table, id, figure, old, new) of what changed; then ids that only one of them has, and how many times both
+    have."""
+    changes, lonely, compared = [], [], 0
     old_tables = dict(_tables(old))
     for name, rows in _tables(new):
         others = old_tables.pop(name, {})
@@ -47,14 +53,16 @@ def find_changes(old, new):
                 before = others.get(key, {}).get(figure)
                 if before is None:
                     continue
-                if _is_times(value) and _is_times(before):
-                    if is_slower(before, value) or is_slower(value, before):
+                ratio = _ratio(value, before)
+                if ratio:
+                    compared += 1
+                    if judge(ratio):
                         changes.append((name, key, figure, before["median"], value["median"]))
                 elif isinstance(value, (int, float)) and isinstance(before, (int, float)):
                     if _changed_number(figure, before, value):
                         changes.append((name, key, figure, before, value))
     lonely += [f"{name} (only in the old)" for name in old_tables]
-    return changes, sorted(lonely)
+    return changes, sorted(lonely), compared
 
 
 def _circumstances(old, new):
@@ -74,18 +82,18 @@ def _circumstances(old, new):
 
 def section(old, new):
     """The page's section."""
-    changes, lonely = find_changes(old, new)
+    changes, lonely, compared = find_changes(old, new)
     times = [c for c in changes if _is_time_name(c[2])]
     text = [_circumstances(old, new)]
     if changes:
         faster = sum(after < before for *_, before, after in times)
         text.append(
-            f"Beyond noise {len(changes)} figures changed: {faster} times are shorter and {len(times) - faster} longer "
-            "(their quartiles do not meet, and the medians are 2 % apart or more), "
-            f"{len(changes) - len(times)} are errors, counts and sizes."
+            f"Beyond noise {len(changes)} figures changed: of {compared} times and ratios {faster} are shorter and "
+            f"{len(times) - faster} longer (the 95 % intervals of their medians do not meet, and the medians are 2 % "
+            f"apart or more); {len(changes) - len(times)} are errors, counts and sizes."
         )
     else:
-        text.append("Nothing changed beyond noise.")
+        text.append(f"Nothing changed beyond noise; {compared} times and ratios were compared.")
     if lonely:
         text.append(
             f"In one of the two alone: {html.escape('; '.join(lonely[:20]))}"
@@ -114,7 +122,7 @@ def _is_time_name(figure):
 
 def summary(old, new):
     """One line for the terminal, and one for each change, the largest first."""
-    changes, _ = find_changes(old, new)
+    changes, _, _ = find_changes(old, new)
     if not changes:
         return "nothing changed beyond noise"
     size = lambda change: abs(change[4] - change[3]) / max(abs(change[3]), 1e-300)  # noqa: E731

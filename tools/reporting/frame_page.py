@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page's sections on whole pictures: error against time, a curve a knob; and the three errors apart."""
 
-import plots
-from figures import is_slower, join, noise_percent, number, pareto_front, quartiles, spread, table
+import html
 
-_FASTER = 0.98
+import plots
+from figures import front_of, gap_text, interval, noise_percent, number, quartiles, spread, table
+from front_text import front_sentence
 
 
 def knobs_of(rows):
@@ -14,12 +15,6 @@ def knobs_of(rows):
 
 def _scenes(rows):
     return list(dict.fromkeys(row["scene"] for row in rows))
-
-
-def front_of(rows, error):
-    """The rows of the Pareto front by median time and this error."""
-    points = [(row["ms"]["median"], row[error]) for row in rows]
-    return [rows[i] for i in pareto_front(points)]
 
 
 def _draw_knobs(rows, error, knobs):
@@ -36,58 +31,24 @@ def _draw_knobs(rows, error, knobs):
                 [r[error] for r in curve],
                 [quartiles(r["ms"]) for r in curve],
             )
-        plots.front_line(axes, [(r["ms"]["median"], r[error]) for r in front_of(rows, error)])
+        front = front_of(rows, "is_on_front" if error == "rmse" else f"is_on_{error}_front")
+        plots.front_line(axes, [(r["ms"]["median"], r[error]) for r in front])
         plots.ring(axes, default["ms"]["median"], default[error])
 
     return draw
 
 
-def _name(row):
-    return f"{row['knob']} {row['setting']}"
-
-
-def dominators(rows, error="rmse"):
-    """Rows that are no worse than the default by this error and faster beyond noise: in three of four turns, by 2 %."""
-    default = next(row for row in rows if row["is_default"])
-    as_exact = [r for r in rows if r is not default and r[error] <= default[error]]
-    if "time_ratio" in default:
-        return [r for r in as_exact if r["time_ratio"]["upper_quartile"] < _FASTER]
-    return [r for r in as_exact if is_slower(default["ms"], r["ms"])]
-
-
-def _ratio_text(row, default):
-    ratio = row["time_ratio"]["median"] if "time_ratio" in row else row["ms"]["median"] / default["ms"]["median"]
-    return f"{ratio:.2f}"
-
-
-def _front_text(rows):
-    """Whether the default lies on the front, and why not where it does not."""
-    default = next(row for row in rows if row["is_default"])
-    better = dominators(rows)
-    front = [r for r in front_of(rows, "rmse")]
-    text = f"In <em>{default['scene']}</em> the default takes {number(default['ms']['median'])} ms with an RMSE of "
-    text += f"{number(default['rmse'])}"
-    if not better:
-        if default in front:
-            return text + " and lies on the front."
-        ahead = [r for r in rows if r["rmse"] <= default["rmse"] and r["ms"]["median"] < default["ms"]["median"]]
-        names = join(_name(r) for r in ahead)
-        return text + f" and lies on the front within the noise: {names} would be ahead by less than that."
-    reasons = []
-    for r in better:
-        gain = f"{_name(r)} is as exact here and takes {_ratio_text(r, default)} of the time"
-        if r["knob"] == "builder":
-            gain += ", but its trees take longer to build"
-        elif r["knob"] == "methods":
-            gain += ", but it is held to no bound on rounding (see the errors apart)"
-        elif r["knob"] == "offset rule":
-            gain += ", but its offset fits only scenes of this size (see the errors apart)"
-        elif r["knob"] == "boxes":
-            gain += ", but a node takes twice the memory, which larger scenes feel"
-        elif r["knob"] == "depth":
-            gain += ", as this scene shows no reflection beyond"
-        reasons.append(gain)
-    return text + " and lies off the front: " + "; ".join(reasons) + "."
+def _same_error_panel(scene, rows):
+    """Times of what lies at one height in the other plots, or nearly."""
+    other = [r for r in rows if r["knob"] in ("builder", "boxes", "offset rule", "methods")]
+    return plots.panel(
+        f"frames-{scene}-ratios",
+        f"{scene}, of the default's time",
+        plots.draw_ratios([f"{r['knob']}: {r['setting']}" for r in other], [r["time_ratio"] for r in other]),
+        "ratio of times",
+        x_log=False,
+        y_log=False,
+    )
 
 
 def frames(report):
@@ -104,25 +65,27 @@ def frames(report):
             title = f"{scene}, {size['width']} × {size['height']}"
             draw = _draw_knobs(of_scene, error, knobs)
             panels.append(plots.panel(f"frames-{scene}-{error}", title, draw, "ms a picture", label))
+        panels.append(_same_error_panel(scene, of_scene))
     text = [
         "What each knob takes and brings, all others at their defaults (1 sample, depth 5, builder <em>sah</em>, "
         "boxes in bytes, promin's offset and methods). The truth is a picture of "
         f"{report['frames']['truth_samples']} samples and {report['frames']['truth_depth']} bounces; smaller pictures "
         "are enlarged by repetition, larger ones averaged. A Whitted tracer has no noise: what is left is bias. Dotted "
         "is the Pareto front, ringed the default."
-        + ("" if len(errors) > 1 else " FLIP is not measured: PyPI's flip-evaluator is not installed."),
-        " ".join(_front_text([row for row in rows if row["scene"] == scene]) for scene in _scenes(rows)),
+        + (" FLIP is that of PyPI's flip-evaluator. " if report["frames"]["gaps"] else "")
+        + gap_text(report["frames"]["gaps"]),
+        " ".join(front_sentence(report, scene) for scene in _scenes(rows)),
         _knob_text(rows),
     ]
     head = ["scene", "knob", "setting", "ms", "over the default's", "RMSE", "FLIP"]
     body = [
         (
             [
-                r["scene"],
+                html.escape(r["scene"]),
                 r["knob"],
                 r["setting"],
                 spread(r["ms"]),
-                spread(r.get("time_ratio")),
+                interval(r["time_ratio"]),
                 number(r["rmse"]),
                 number(r.get("flip")),
             ],
@@ -160,8 +123,8 @@ def _knob_text(rows):
         most = max((r for r in of_scene if r["knob"] == "samples"), key=lambda r: r["ms"]["median"], default=None)
         if most:
             parts.append(
-                f"In <em>{scene}</em> {most['setting']} samples take "
-                f"{most['ms']['median'] / default['ms']['median']:.1f} times as long and leave "
+                f"In <em>{html.escape(scene)}</em> {most['setting']} samples take "
+                f"{most['time_ratio']['median']:.1f} times as long and leave "
                 f"{100 * most['rmse'] / default['rmse']:.0f} % of the error."
             )
     noise = sorted(noise_percent(r["ms"]) for r in rows)
@@ -199,7 +162,7 @@ def errors_apart(report):
     body = [
         (
             [
-                r["scene"],
+                html.escape(r["scene"]),
                 r["error"],
                 r.get("what", "as shipped"),
                 f"{r['width']} × {r['height']}",
@@ -215,7 +178,7 @@ def errors_apart(report):
     return {
         "title": "Precision, sampling and truncation apart",
         "panels": panels,
-        "legend": list(enumerate(scenes)),
+        "legend": list(enumerate(map(html.escape, scenes))),
         "text": [_errors_text(rows, precision, scenes)],
         "table": table(head, body),
     }
@@ -224,16 +187,16 @@ def errors_apart(report):
 def _errors_text(rows, precision, scenes):
     parts = [
         "Precision is what fp32 takes from a picture, against brute force in long double with the same samples "
-        "(smaller pictures of larger scenes, as brute force takes its time); sampling what few samples do; truncation what "
-        "the depth cuts off."
+        "(smaller pictures of larger scenes, as brute force takes its time); sampling what few samples do; truncation "
+        "what the depth cuts off."
     ]
     for scene in scenes:
         own = {r["error"]: r["rmse"] for r in rows if r["scene"] == scene and r["method"] == "promin"}
         worst = max((r for r in precision if r["scene"] == scene and r["method"] != "promin"), key=lambda r: r["rmse"])
         share = own["all"] / own["precision"] if own["precision"] else None
         parts.append(
-            f"In <em>{scene}</em> precision is {number(own['precision'])}, "
-            + (f"{number(share, 2)} times less than all of the error; " if share else "nothing; ")
+            f"In <em>{html.escape(scene)}</em> precision is {number(own['precision'])}, "
+            + (f"1 in {share:,.0f} of all of the error; " if share else "nothing; ")
             + f"the worst of the other methods ({worst['method']}) has {number(worst['rmse'])}."
         )
     return " ".join(parts)

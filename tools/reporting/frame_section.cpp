@@ -9,7 +9,10 @@
 
 #include "measure/samples.h"
 #include "oracle/picture.h"
+#include "render/pack_scene.h"
+#include "reporting/front.h"
 #include "reporting/picture.h"
+#include "reporting/scene_hash.h"
 #include "reporting/scripts.h"
 
 namespace promin::report {
@@ -112,21 +115,38 @@ uvec2 oracle_size(const Session& session, const Scene& scene) {
 
 class FrameBench {
  public:
-  FrameBench(const Session& session, const Scene& scene) : session_(session), scene_(scene) {}
+  FrameBench(const Session& session, const Scene& scene)
+      : session_(session), scene_(scene), name_(session.name_of(scene)), hash_(hash_of(scene)) {}
 
-  void run(Json& rows, Json& errors) {
-    session_.say("frames: " + name_of(scene_));
+  /// A gap where FLIP is not measured, else null.
+  Json run(Json& rows, Json& errors) {
+    session_.say("frames: " + name_);
     measure_knobs(rows);
     measure_precision(errors);
     measure_other_errors(errors);
+    return flip_gap_;
   }
 
  private:
-  Picture& picture_of(const std::string& method, const std::string& builder) {
+  Renderer& renderer_of(const std::string& method, const std::string& builder) {
     const auto key = std::pair(method, builder);
-    const auto found = pictures_.find(key);
-    if (found != pictures_.end()) return found->second;
-    return pictures_.emplace(key, Picture(session_.device(), scene_, picture_method(method), builder)).first->second;
+    const auto found = renderers_.find(key);
+    if (found != renderers_.end()) return found->second;
+    return renderers_.try_emplace(key, session_.device(), scene_, options_for(picture_method(method), builder))
+        .first->second;
+  }
+
+  /// Of each builder.
+  std::map<std::string, Json> time_builds() const {
+    const std::vector<std::string> builders = {"sah", "median", "spatial"};
+    std::vector<std::function<double()>> contestants;
+    for (const std::string& builder : builders) {
+      contestants.emplace_back([&] { return pack_scene(scene_, builder).bvh_ms; });
+    }
+    const std::vector<std::vector<double>> times = measure::time_in_turns(contestants, session_.few_runs());
+    std::map<std::string, Json> build_ms;
+    for (size_t i = 0; i < builders.size(); ++i) build_ms[builders[i]] = json_of_few_times(times[i]);
+    return build_ms;
   }
 
   void measure_knobs(Json& rows) {
@@ -135,16 +155,16 @@ class FrameBench {
     View best = view;
     best.samples_per_pixel = truth_samples(session_);
     best.max_depth = kDeep;
-    truth_ = picture_of(settings[0].method, settings[0].builder).render(best).image;
+    truth_ = renderer_of(settings[0].method, settings[0].builder).render(best).image;
     default_view_ = view;
-    hash_ = picture_of("promin", "sah").scene_hash();
+    std::map<std::string, Json> build_ms = time_builds();
 
     std::vector<Image> images(settings.size());
     std::vector<std::function<double()>> contestants;
     for (size_t i = 0; i < settings.size(); ++i) {
-      Picture& picture = picture_of(settings[i].method, settings[i].builder);
+      Renderer& renderer = renderer_of(settings[i].method, settings[i].builder);
       contestants.emplace_back([&, i] {
-        RenderResult result = picture.render(settings[i].view);
+        RenderResult result = renderer.render(settings[i].view);
         images[i] = std::move(result.image);
         return result.trace_ms;
       });
@@ -157,25 +177,30 @@ class FrameBench {
     const std::vector<Json> flips = measure_flip(images);
     for (size_t i = 0; i < settings.size(); ++i) {
       const Setting& s = settings[i];
-      Json row = {{"id", fmt::format("{}/{}/{}", name_of(scene_), s.knob, s.setting)},
-                  {"scene", name_of(scene_)},
-                  {"scene_hash", picture_of(s.method, s.builder).scene_hash()},
+      Json row = {{"id", fmt::format("{}/{}/{}", name_, s.knob, s.setting)},
+                  {"scene", name_},
+                  {"scene_hash", hash_},
                   {"knob", s.knob},
                   {"setting", s.setting},
+                  {"method", s.method},
+                  {"builder", s.builder},
                   {"is_default", s.is_default},
                   {"width", s.view.size.x},
                   {"height", s.view.size.y},
                   {"ms", json_of_times(times[i])},
                   {"time_ratio", json_of_times(measure::ratios_of(times[i], times[0]))},
                   {"rmse", rmse_of(images[i], truth_)},
-                  {"device_bytes", picture_of(s.method, s.builder).device_bytes()}};
+                  {"build_ms", build_ms[s.builder]},
+                  {"device_bytes", renderer_of(s.method, s.builder).setup_stats().device_bytes}};
       if (!flips[i].is_null()) row["flip"] = flips[i];
       rows.push_back(std::move(row));
     }
+    mark_front(rows, rows.size() - settings.size(), "ms", "rmse", "is_on_front");
+    mark_front(rows, rows.size() - settings.size(), "ms", "flip", "is_on_flip_front");
   }
 
-  /// By PyPI's flip-evaluator against the truth; null where that is not installed.
-  std::vector<Json> measure_flip(const std::vector<Image>& images) const {
+  /// By PyPI's flip-evaluator against the truth; null where that brings none, and a gap that says why.
+  std::vector<Json> measure_flip(const std::vector<Image>& images) {
     std::vector<Json> flips(images.size());
     const ScratchFolder folder(session_.options().output / ".flip");
     std::vector<std::string> arguments = {folder.file("truth.exr")};
@@ -184,8 +209,10 @@ class FrameBench {
       arguments.push_back(folder.file(fmt::format("{}.exr", i)));
       write_image(arguments.back(), images[i]);
     }
-    const Json found = run_script("flip.py", arguments);
-    for (size_t i = 0; i < images.size() && i < found.size(); ++i) flips[i] = found[i];
+    const ScriptResult found = run_script("flip.py", arguments);
+    const Json errors = found.failure ? Json::array() : found.json.value("errors", Json::array());
+    for (size_t i = 0; i < errors.size(); ++i) flips.at(i) = errors[i];
+    if (errors.empty()) flip_gap_ = json_of_gap("FLIP", found.failure);
     return flips;
   }
 
@@ -194,8 +221,9 @@ class FrameBench {
     View view = view_of(scene_, oracle_size(session_, scene_));
     const oracle::Picture expected = oracle::render(scene_, view);
     for (const PictureMethod& method : picture_methods()) {
-      Picture picture(session_.device(), scene_, method, "sah", layout::FEATURE_AOVS);
-      Json row = compare_with_oracle(expected, picture.render(view));
+      RendererOptions options = options_for(method);
+      options.with_aovs = true;
+      Json row = compare_with_oracle(expected, Renderer(session_.device(), scene_, options).render(view));
       add_error(errors, "precision", method.name, view.size, row);
       errors.back()["what"] = method.what;
     }
@@ -203,21 +231,21 @@ class FrameBench {
 
   /// Sampling: many samples at the same depth; truncation: the same samples with deep reflection.
   void measure_other_errors(Json& errors) {
-    Picture& picture = picture_of("promin", "sah");
-    const Image shipped = picture.render(default_view_).image;
+    Renderer& renderer = renderer_of("promin", "sah");
+    const Image shipped = renderer.render(default_view_).image;
     View many = default_view_;
     many.samples_per_pixel = truth_samples(session_);
-    add_error(errors, "sampling", "promin", many.size, {{"rmse", rmse_of(shipped, picture.render(many).image)}});
+    add_error(errors, "sampling", "promin", many.size, {{"rmse", rmse_of(shipped, renderer.render(many).image)}});
     View deep = default_view_;
     deep.max_depth = kDeep;
-    add_error(errors, "truncation", "promin", deep.size, {{"rmse", rmse_of(shipped, picture.render(deep).image)}});
+    add_error(errors, "truncation", "promin", deep.size, {{"rmse", rmse_of(shipped, renderer.render(deep).image)}});
     add_error(errors, "all", "promin", deep.size, {{"rmse", rmse_of(shipped, truth_)}});
   }
 
   void add_error(Json& errors, const std::string& error, const std::string& method, const uvec2& size,
                  const Json& figures) const {
-    Json row = {{"id", fmt::format("{}/{}/{}", name_of(scene_), error, method)},
-                {"scene", name_of(scene_)},
+    Json row = {{"id", fmt::format("{}/{}/{}", name_, error, method)},
+                {"scene", name_},
                 {"scene_hash", hash_},
                 {"error", error},
                 {"method", method},
@@ -229,10 +257,12 @@ class FrameBench {
 
   const Session& session_;
   const Scene& scene_;
-  std::map<std::pair<std::string, std::string>, Picture> pictures_;
-  View default_view_;
+  std::string name_;
   std::string hash_;
+  std::map<std::pair<std::string, std::string>, Renderer> renderers_;
+  View default_view_;
   Image truth_;
+  Json flip_gap_;
 };
 
 }  // namespace
@@ -242,8 +272,16 @@ Json measure_frames(const Session& session) {
   Json errors = Json::array();
   const auto scenes = session.load_scenes(session.pick<std::vector<std::string>>(
       {"all_primitives.gltf", "mirrors.gltf", "showcase.gltf"}, {"mirrors.gltf"}));
-  for (const Scene& scene : scenes) FrameBench(session, scene).run(rows, errors);
-  return {{"truth_samples", truth_samples(session)}, {"truth_depth", kDeep}, {"rows", rows}, {"errors", errors}};
+  Json gaps = Json::array();
+  for (const Scene& scene : scenes) {
+    const Json gap = FrameBench(session, scene).run(rows, errors);
+    if (!gap.is_null() && gaps.empty()) gaps.push_back(gap);
+  }
+  return {{"truth_samples", truth_samples(session)},
+          {"truth_depth", kDeep},
+          {"rows", rows},
+          {"errors", errors},
+          {"gaps", gaps}};
 }
 
 }  // namespace promin::report

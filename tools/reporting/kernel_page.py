@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page's sections on single intersections: the table of methods, error against time, error over range."""
 
+import math
+
 import plots
-from figures import join, number, pareto_front, quartiles, spread, table
+from figures import front_of, interval, join, judge, number, quartiles, spread, table
 
 # So that what has no error at all has a place on a logarithmic axis.
 _LEAST_K = 0.1
@@ -23,12 +25,14 @@ def _of(rows, primitive, method):
 
 def _draw_scatter(rows, methods):
     def draw(axes):
-        points = [(row["ns_per_test"]["median"], max(row["max_k"], _LEAST_K)) for row in rows]
-        for row, (x, y) in zip(rows, points):
+        hitting = [row for row in rows if "max_k" in row]
+        place = lambda row: (row["ns_per_test"]["median"], max(row["max_k"], _LEAST_K))  # noqa: E731
+        for row in hitting:
+            x, y = place(row)
             plots.draw_curve(axes, methods.index(row["method"]), [x], [y], [quartiles(row["ns_per_test"])])
             if row["is_shipped"]:
                 plots.ring(axes, x, y)
-        plots.front_line(axes, [points[i] for i in pareto_front(points)])
+        plots.front_line(axes, [place(row) for row in front_of(rows, times="ns_per_test")])
 
     return draw
 
@@ -43,6 +47,7 @@ def _table(rows):
                     row["primitive"],
                     row["what"] + (" (shipped)" if row["is_shipped"] else ""),
                     spread(row["ns_per_test"]),
+                    interval(row["time_ratio"]),
                     number(row.get("max_k")),
                     number(row.get("rms_k")),
                     number(row["misclassified_per_million"]),
@@ -51,7 +56,16 @@ def _table(rows):
                 row["is_shipped"],
             )
         )
-    head = ["primitive", "method", "ns a test", "K, max", "K, rms", "misclassified per million", "leaks"]
+    head = [
+        "primitive",
+        "method",
+        "ns a test",
+        "of promin's time",
+        "K, max",
+        "K, rms",
+        "misclassified / 10<sup>6</sup>",
+        "leaks",
+    ]
     return table(head, body)
 
 
@@ -59,19 +73,22 @@ def _kernel_text(rows):
     sentences = []
     for primitive in _names(rows, "primitive"):
         own, plain_row = _of(rows, primitive, "promin"), _of(rows, primitive, "textbook")
-        cost = own["ns_per_test"]["median"] / plain_row["ns_per_test"]["median"]
-        points = [(r["ns_per_test"]["median"], r["max_k"]) for r in rows if r["primitive"] == primitive]
-        of_primitive = [r for r in rows if r["primitive"] == primitive]
-        front = [of_primitive[i]["method"] for i in pareto_front(points)]
-        where = "it is on the front" if "promin" in front else f"by K alone {join(front)} are the front"
+        front = [r["method"] for r in front_of([r for r in rows if r["primitive"] == primitive], times="ns_per_test")]
+        where = f"by K alone {join(front)} {'are' if len(front) > 1 else 'is'} the front"
         sentence = (
-            f"A {primitive} takes {number(own['ns_per_test']['median'], 2)} ns, {cost:.2f} of the textbook's time, "
-            f"with K up to {number(own['max_k'], 2)} where the textbook's reaches {number(plain_row['max_k'], 2)}"
+            f"A {primitive} takes {number(own['ns_per_test']['median'], 2)} ns with K up to "
+            f"{number(own['max_k'], 2)}, by the textbook {plain_row['time_ratio']['median']:.2f} of that time "
+            f"with K up to {number(plain_row.get('max_k'), 2)}"
         )
         if "leaks" in own:
-            sentence += f"; {own['leaks']:,} rays leak instead of {plain_row['leaks']:,}"
-        sentences.append(f"{sentence}; {where}.")
-    return " ".join(sentences)
+            sentence += f"; of {own['leak_rays']:,} rays {own['leaks']:,} leak, by the textbook {plain_row['leaks']:,}"
+        sentences.append(f"<li>{sentence}; {where}.</li>")
+    return "<ul>" + "\n".join(sentences) + "</ul>"
+
+
+def _bargain(row):
+    leaks = f" and {row['leaks']:,} leaks" if row.get("leaks") else ""
+    return f"{row['method']} ({row['time_ratio']['median']:.2f} of the time, K {number(row['max_k'], 2)}{leaks})"
 
 
 def _front_gaps(rows):
@@ -83,23 +100,18 @@ def _front_gaps(rows):
         better = [
             r
             for r in of_primitive
-            if r is not own
-            and r["ns_per_test"]["upper_quartile"] < own["ns_per_test"]["lower_quartile"]
-            and r["max_k"] <= own["max_k"]
+            if r is not own and judge(r["time_ratio"]) == "faster" and r.get("max_k", math.inf) <= own["max_k"]
         ]
         if not better:
             continue
         leaky = [r for r in better if r.get("leaks", 0) > own.get("leaks", 0)]
-        if len(leaky) == len(better):
-            gaps.append(
-                f"for the {primitive}, {join(r['method'] for r in better)} would be faster and as exact, but leaks"
-            )
-        else:
-            names = [r["method"] for r in better if r not in leaky]
-            rare = " (not every device has it)" if names == ["fp64"] else ""
-            gaps.append(
-                f"for the {primitive}, {join(names)}{rare} is faster by these figures, as exact and leaks as little"
-            )
+        sound = [r for r in better if r not in leaky]
+        if leaky:
+            gaps.append(f"for the {primitive}, {join(map(_bargain, leaky))} would be as exact, but leak")
+            gaps[-1] += "s" if len(leaky) == 1 else ""
+        if sound:
+            rare = " (not every device has fp64)" if all(r["method"] == "fp64" for r in sound) else ""
+            gaps.append(f"for the {primitive}, {join(map(_bargain, sound))} would be as exact without more leaks{rare}")
     return "K does not say all: " + "; ".join(gaps) + "." if gaps else ""
 
 
@@ -145,6 +157,7 @@ def boxes(report):
             [
                 row["what"] + (" (shipped)" if row["is_shipped"] else ""),
                 spread(row["ns_per_test"]),
+                interval(row["time_ratio"]),
                 str(row["bytes_per_node"]),
                 f'{row["leaks"]:,} of {row["leak_rays"]:,}',
                 number(row["opened_needlessly_per_million"]),
@@ -158,10 +171,17 @@ def boxes(report):
         "box that an exact ray meets must be met. "
         f"The shipped test takes {number(own['ns_per_test']['median'], 2)} ns a box and hides {own['leaks']:,} of "
         f"{own['leak_rays']:,}; boxes in fp32 take "
-        f"{full['ns_per_test']['median'] / own['ns_per_test']['median']:.2f} of its time and twice its memory, and "
-        f"without padding hide {bare['leaks']:,}. What is opened needlessly costs time and no error."
+        f"{full['time_ratio']['median']:.2f} of its time and {full['bytes_per_node'] / own['bytes_per_node']:g} times "
+        f"its memory, and without padding hide {bare['leaks']:,}. What is opened needlessly costs time and no error."
     )
-    head = ["method", "ns a box", "bytes a node", "boxes hidden", "opened needlessly per million"]
+    head = [
+        "method",
+        "ns a box",
+        "of promin's time",
+        "bytes a node",
+        "boxes hidden",
+        "opened needlessly / 10<sup>6</sup>",
+    ]
     return {"title": "Boxes", "panels": [], "legend": [], "text": [text], "table": table(head, body)}
 
 
@@ -190,19 +210,38 @@ def _range_panels(rows, methods, variable, label):
     return panels
 
 
+def _missed_text(rows, shipped, distance_of_offsets):
+    """Where the shipped methods tell most rays wrong, and what the textbook's do there and at their own worst."""
+    rate = lambda row: row["misclassified_per_million"]  # noqa: E731
+    worst = max((r for r in rows if r["method"] == shipped), key=rate)
+    if not rate(worst):
+        return "The shipped methods misclassify no ray."
+    plain = max((r for r in rows if r["method"] == "textbook"), key=rate)
+    # S in sizes.
+    scale = 1 + (worst["value"] if worst["variable"] == "distance" else distance_of_offsets)
+    place = lambda row: f"{row['primitive']}, {row['variable']} {number(row['value'], 2)}"  # noqa: E731
+    return (
+        f"The shipped methods misclassify at most {number(rate(worst) / 1e4, 2)} % of the rays of a place "
+        f"({place(worst)}), where u S is {number(100 * 2**-24 * scale, 2)} % of the primitive's size and rays pass as "
+        f"near to its silhouette; the textbook's {number(rate(plain) / 1e4, 2)} % ({place(plain)})."
+    )
+
+
 def error_range(report):
     rows = report["kernels"]["range"]
     methods = _methods(rows)
     worst = {m: max(r.get("max_k", 0) for r in rows if r["method"] == m) for m in methods}
     shipped = next(r["method"] for r in rows if r["is_shipped"])
-    missed = {m: max(r["misclassified_per_million"] for r in rows if r["method"] == m) for m in methods}
     others = [f"{m} {number(worst[m], 2)}" for m in methods if m != shipped]
+    distances = [r["value"] for r in rows if r["variable"] == "distance"]
+    offsets = [r["value"] for r in rows if r["variable"] == "offset"]
+    away = report["kernels"]["distance_of_offsets"]
     text = (
-        "From a distance of 3 to 10<sup>6</sup> sizes, and 10 sizes away up to 10<sup>7</sup> from the world's "
-        f"origin, the shipped methods' K never passes {number(worst[shipped], 2)} (bound 8, dashed); the others reach "
-        f"{join(others)}. At the worst of these places {number(missed['textbook'] / 1e4, 2)} % of the textbook's rays "
-        f"are misclassified and {number(missed[shipped] / 1e4, 2)} % of the shipped ones', which S explains: far away "
-        "u S comes to the primitive's size. Where a method has no point, no ray hit both by it and the oracle."
+        f"From a distance of {number(min(distances), 2)} to {number(max(distances), 2)} sizes, and from "
+        f"{number(away)} sizes away up to {number(max(offsets), 2)} sizes from the world's origin, the shipped "
+        f"methods' K never passes {number(worst[shipped], 2)} (bound 8, dashed); the others reach {join(others)}. "
+        f"{_missed_text(rows, shipped, away)} Where a method has no point, no ray hit both by it and "
+        "the oracle."
     )
     panels = _range_panels(rows, methods, "distance", "distance / size")
     panels += _range_panels(rows, methods, "offset", "offset from the origin / size")

@@ -26,8 +26,13 @@ import kernel_page
 import plots
 import price_page
 import scaling_page
+import summary_page
+
+# Of report.json, as tools/reporting/provenance.h has it.
+_FORMAT = 2
 
 _SECTIONS = (
+    ("frames", summary_page.summary),
     ("frames", frame_page.frames),
     ("frames", frame_page.errors_apart),
     ("kernels", kernel_page.kernels),
@@ -38,6 +43,10 @@ _SECTIONS = (
     ("scaling", scaling_page.scaling),
     ("peers", price_page.peers),
 )
+
+
+def _interval_words(runs):
+    return "the median's 95 % interval" if runs >= 6 else "least and most, as so few have no 95 % interval"
 
 
 def _device_sentence(p):
@@ -58,15 +67,16 @@ def _device_sentence(p):
             load += f" <strong>The machine was busy with other work as well (load up to {busy:.1f}).</strong>"
     return (
         f"{html.escape(p['device'])}, {html.escape(p['driver'])}, {kind}. {html.escape(p['cpu'])}.{load} "
-        f"{p['runs']} timed runs of each after a warm-up, in turns; medians with quartiles; times are "
-        f"{html.escape(p['times_are'])}. Commit {html.escape(p['commit'])}, {html.escape(p['compiler'])}, "
-        f"{html.escape(p['date'])}, {p.get('minutes', 0):.0f} minutes.{quick}"
+        f"{p['runs']} timed runs of each after a warm-up, in turns; times are {html.escape(p['times_are'])}, medians "
+        f"with quartiles (…); ratios are of the same turn, medians with {_interval_words(p['runs'])} […]. "
+        f"Commit {html.escape(p['commit'])}, {html.escape(p['compiler'])}, {html.escape(p['date'])}, "
+        f"{p.get('minutes', 0):.0f} minutes.{quick}"
     )
 
 
 def _section(content):
     parts = [f"<section><h2>{content['title']}</h2>"]
-    parts += [f"<p>{text}</p>" for text in content["text"] if text]
+    parts += [text if text.startswith("<ul>") else f"<p>{text}</p>" for text in content["text"] if text]
     if content["legend"]:
         parts.append(plots.legend(content["legend"]))
     if content["panels"]:
@@ -105,6 +115,9 @@ def main():
     arguments = parser.parse_args()
     report = json.loads((arguments.folder / "report.json").read_text(encoding="utf-8"))
     old = json.loads(arguments.compare.read_text(encoding="utf-8")) if arguments.compare else None
+    for file, content in ((arguments.folder / "report.json", report), (arguments.compare, old)):
+        if content and content.get("format") != _FORMAT:
+            sys.exit(f"page.py: error: {file} is no report of format {_FORMAT}; measure it anew")
     # Whole or not at all.
     temporary = arguments.folder / f".report.{os.getpid()}.html"
     temporary.write_text(make_page(report, old), encoding="utf-8")

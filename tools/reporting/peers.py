@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Whole pictures of the sphereflake beside Tachyon and POV-Ray, as tools/bench_driver.py measures them; prints JSON."""
+"""Whole pictures of the sphereflake beside Tachyon and POV-Ray: prints what time_frames of tools/bench_driver.py tells
+as JSON, with a hash of the scene's file."""
 
 import argparse
 import hashlib
@@ -12,7 +13,7 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
-from bench_driver import measure_frames
+from bench_driver import time_frames
 
 
 def main():
@@ -27,14 +28,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         try:
             programs = arguments.programs.resolve()
-            figures = measure_frames(
+            times = time_frames(
                 programs, pathlib.Path(folder), arguments.runs, arguments.side, arguments.level, options
             )
             scene = (pathlib.Path(folder) / "flake.gltf").read_bytes()
-            figures["scene_hash"] = hashlib.sha256(scene).hexdigest()[:16]
+            times["scene_hash"] = hashlib.sha256(scene).hexdigest()[:16]
         except RuntimeError as problem:
             sys.exit(f"peers.py: error: {problem}")
-    print(json.dumps(figures))
+    print(json.dumps(times))
 
 
 if __name__ == "__main__":

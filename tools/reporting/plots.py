@@ -44,6 +44,8 @@ def _style(name):
         "ytick.color": _TEXT,
         "grid.color": _GRID,
         "axes.grid": True,
+        # A scene's name may have a $.
+        "text.parse_math": False,
         "axes.spines.top": False,
         "axes.spines.right": False,
         "lines.linewidth": 1.3,
@@ -164,6 +166,24 @@ def draw_curve(axes, index, xs, ys, x_spread=None, y_spread=None, line="-", is_m
         linestyle=line,
         elinewidth=0.8,
     )
+
+
+def draw_ratios(names, ratios):
+    """Ratios as points over their names, with their medians' intervals."""
+
+    def draw(axes):
+        values = [ratio["median"] for ratio in ratios]
+        bars = [
+            (ratio.get("interval_lower", ratio.get("least")), ratio.get("interval_upper", ratio.get("most")))
+            for ratio in ratios
+        ]
+        places = list(range(len(names)))[::-1]
+        draw_curve(axes, 0, values, places, x_spread=bars, line="none")
+        axes.set_yticks(places, names)
+        axes.set_ylim(-0.6, len(names) - 0.4)
+        axes.axvline(1, color=color(7), linewidth=0.8, linestyle="--")
+
+    return draw
 
 
 def ring(axes, x, y):

@@ -2,64 +2,72 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page's sections on what robustness and specialisation cost and bring."""
 
+import html
+
 import plots
-from figures import join, number, quartiles, spread, table, time_ratio
-
-
-def _draw_ratios(names, ratios):
-    """Ratios as points over their names, with their quartiles."""
-
-    def draw(axes):
-        values = [ratio["median"] for ratio in ratios]
-        bars = [quartiles(ratio) for ratio in ratios]
-        places = list(range(len(names)))[::-1]
-        plots.draw_curve(axes, 0, values, places, x_spread=bars, line="none")
-        axes.set_yticks(places, names)
-        axes.set_ylim(-0.6, len(names) - 0.4)
-        axes.axvline(1, color=plots.color(7), linewidth=0.8, linestyle="--")
-
-    return draw
+from figures import from_to, few, gap_text, interval, join, beyond_noise_text, number, spread, table
 
 
 def _pictures_text(report):
     """What it comes to in whole pictures, shading and all."""
-    rows = report["frames"]["rows"]
+    parts = [
+        f"{row['time_ratio']['median']:.2f} (<em>{html.escape(row['scene'])}</em>)"
+        for row in report["frames"]["rows"]
+        if row["knob"] == "methods"
+    ]
+    return f"Whole pictures take by all of the textbook's methods {join(parts)} of promin's time." if parts else ""
+
+
+def _truth_text(rows):
+    """What both kernels tell wrong of."""
+    inside = [r for r in rows if r["truth"] == "each hits"]
+    others = [r for r in rows if r["truth"] == "oracle"]
     parts = []
-    for plain in (row for row in rows if row["knob"] == "methods"):
-        own = next(row for row in rows if row["scene"] == plain["scene"] and row["is_default"])
-        parts.append(f"{own['ms']['median'] / plain['ms']['median']:.2f} (<em>{own['scene']}</em>)")
-    return f"Whole pictures take {join(parts)} times as long as with all of the textbook's methods." if parts else ""
+    if inside:
+        rays = sum(r["judged"] for r in inside)
+        parts.append(
+            f"Of {rays:,} rays from inside of a closed mesh (<em>wavy:N</em>, of about N triangles) at its edges, each "
+            f"of which must hit, promin loses {number(sum(r['promin_lost'] for r in inside))} and the textbook "
+            f"{sum(r['textbook_lost'] for r in inside):,}."
+        )
+    if others:
+        wrong = {
+            kernel: [sum(r[f"{kernel}_{kind}"] for r in others) for kind in ("lost", "invented")]
+            for kernel in ("promin", "textbook")
+        }
+        own, plain = wrong["promin"], wrong["textbook"]
+        differing = sum(r["differing"] for r in others)
+        all_or_some = "all" if all(r["differing"] <= r["judged"] for r in others) else "some of the"
+        judged, count = sum(r["judged"] for r in others), sum(r["count"] for r in others)
+        parts.append(
+            f"Of the other {count:,} rays {judged:,} were held against the oracle, brute force in long double: "
+            f"{all_or_some} {differing:,} on which the two differ, and of the rest as many as time allows. Promin "
+            f"loses {own[0]:,} and invents {own[1]:,}, the textbook {plain[0]:,} and {plain[1]:,}."
+        )
+        margin = max((r.get("promin_worst_margin", 0) for r in others), default=0)
+        # Of any-hit rays that are invented it is not known.
+        if margin:
+            parts.append(
+                f"Where promin is wrong, surfaces {number(margin, 2)} u S away would make it right: "
+                "rays that graze a silhouette as near are within its bound of 2 u S."
+                if margin <= 2
+                else f"Promin is off by up to {number(margin, 2)} u S there, beyond its bound of 2."
+            )
+    return " ".join(parts)
 
 
 def robustness(report):
     rows = report["robustness"]["rows"]
     names = [f"{r['scene']}, {r['rays']}" for r in rows]
-    by_row = [time_ratio(r, "robust_ms", "plain_ms") for r in rows]
-    draw = _draw_ratios(names, by_row)
+    by_row = [r["time_ratio"] for r in rows]
+    draw = plots.draw_ratios(names, by_row)
     panel = plots.panel("robustness", "time over the textbook's", draw, "ratio of times", "", x_log=False, y_log=False)
     ratios = sorted(ratio["median"] for ratio in by_row)
-    lost = [r for r in rows if r["lost"] or r["invented"]]
     text = (
         "The same rays through the same tree: promin's intersections, boxes and rays against the textbook's "
         "(quadratics, Möller and Trumbore, boxes without padding). "
-        f"Robustness takes {ratios[0]:.2f} to {ratios[-1]:.2f} times the textbook's time, "
-        f"{ratios[len(ratios) // 2]:.2f} in the middle. "
-        + (
-            "For that "
-            + join(
-                f"{r['lost']:,} of {r['count']:,} rays ({r['scene']}, {r['rays']}) no longer slip through"
-                for r in lost
-                if r["lost"]
-            )
-            + "."
-            if any(r["lost"] for r in lost)
-            else "None of these rays slips through either."
-        )
-        + (
-            f" {sum(r['invented'] for r in lost):,} hits that the textbook invents are gone."
-            if any(r["invented"] for r in lost)
-            else ""
-        )
+        f"Robustness takes {from_to(ratios)} times the textbook's time, "
+        f"{ratios[len(ratios) // 2]:.2f} in the middle. " + beyond_noise_text(by_row, "slower")
     )
     head = [
         "scene",
@@ -69,21 +77,22 @@ def robustness(report):
         "textbook, ms",
         "ratio",
         "Mrays/s",
-        "lost by the textbook",
-        "invented",
+        "judged",
+        "lost, invented by promin",
+        "by the textbook",
     ]
     body = [
         (
             [
-                r["scene"],
+                html.escape(r["scene"]),
                 r["rays"],
                 f"{r['count']:,}",
                 spread(r["robust_ms"]),
                 spread(r["plain_ms"]),
-                spread(ratio),
+                interval(ratio),
                 number(r["robust_mrays_per_s"]),
-                f"{r['lost']:,}",
-                f"{r['invented']:,}",
+                f"{r['judged']:,}" + (", each hits" if r["truth"] == "each hits" else ""),
+                *(f"{r[f'{kernel}_lost']:,}, {r[f'{kernel}_invented']:,}" for kernel in ("promin", "textbook")),
             ],
             False,
         )
@@ -93,21 +102,25 @@ def robustness(report):
         "title": "The price of robustness",
         "panels": [panel],
         "legend": [],
-        "text": [text, _pictures_text(report)],
+        "text": [text, _truth_text(rows), _pictures_text(report)],
         "table": table(head, body),
     }
+
+
+def _times(runs):
+    return "once" if runs == 1 else f"{runs} times, told as median with least and most"
 
 
 def specialisation(report):
     rows = report["specialisation"]["rows"]
     names = [r["scene"] for r in rows]
-    tracing = [time_ratio(r, "ms", "ms_with_all") for r in rows]
-    compiling = [time_ratio(r, "compile_ms", "compile_ms_with_all", "compile_time_ratio") for r in rows]
+    tracing = [r["time_ratio"] for r in rows]
+    compiling = [r["compile_time_ratio"] for r in rows]
     panels = [
         plots.panel(
             "specialisation-ms",
             "tracing, of all features' time",
-            _draw_ratios(names, tracing),
+            plots.draw_ratios(names, tracing),
             "ratio of times",
             x_log=False,
             y_log=False,
@@ -115,7 +128,7 @@ def specialisation(report):
         plots.panel(
             "specialisation-compile",
             "compiling, likewise",
-            _draw_ratios(names, compiling),
+            plots.draw_ratios(names, compiling),
             "ratio of times",
             x_log=False,
             y_log=False,
@@ -126,22 +139,23 @@ def specialisation(report):
     same = sum(r["is_bit_identical"] for r in rows)
     text = (
         "A pipeline is specialised to what its scene uses. Beside one with all features compiled in, tracing takes "
-        f"{min(gains):.2f} to {max(gains):.2f} of the time and compiling {min(compiles):.2f} to {max(compiles):.2f}; "
-        f"{same} of {len(rows)} pictures have the same bits either way. Compiling is timed on a device that has "
-        f"compiled nothing, {rows[0]['compile_ms']['runs']} runs, without the driver's cache on disk."
+        f"{from_to(gains)} of the time and compiling {from_to(compiles)}. "
+        + beyond_noise_text(tracing, "faster")
+        + f" {same} of {len(rows)} pictures have the same bits either way. Compiling is timed on a device that has "
+        f"compiled nothing, {_times(rows[0]['compile_ms']['runs'])}, without the driver's cache on disk."
     )
     head = ["scene", "features", "ms", "with all, ms", "ratio", "compiling, ms", "with all, ms", "ratio", "bits"]
     body = [
         (
             [
-                r["scene"],
+                html.escape(r["scene"]),
                 f"{r['features']} of {r['all_features']}",
                 spread(r["ms"]),
                 spread(r["ms_with_all"]),
-                spread(time_ratio(r, "ms", "ms_with_all")),
-                spread(r["compile_ms"]),
-                spread(r["compile_ms_with_all"]),
-                spread(time_ratio(r, "compile_ms", "compile_ms_with_all", "compile_time_ratio")),
+                interval(r["time_ratio"]),
+                few(r["compile_ms"]),
+                few(r["compile_ms_with_all"]),
+                few(r["compile_time_ratio"]),
                 "the same" if r["is_bit_identical"] else "<strong>differ</strong>",
             ],
             False,
@@ -160,19 +174,19 @@ def specialisation(report):
 def peers(report):
     content = report["peers"]
     rows = content["rows"]
-    absent = content["not_measured"]
-    gap = f" Not measured, as not installed: {join(absent)}." if absent else ""
+    gap = " " + gap_text(content["gaps"]) if content["gaps"] else ""
     if not rows:
         return {"title": "Beside other renderers", "panels": [], "legend": [], "text": [gap.strip()]}
     names = [f"{r['peer'].split(',')[0]}, {r['what'].split(' by ')[0]}" for r in rows]
     names = [
         name.replace("a picture of ", "") + (" px²" if "picture" in r["what"] else "") for name, r in zip(names, rows)
     ]
-    ratios = [time_ratio(r, "promin_ms", "peer_ms") for r in rows]
-    draw = _draw_ratios(names, ratios)
+    ratios = [r["time_ratio"] for r in rows]
+    draw = plots.draw_ratios(names, ratios)
     panel = plots.panel("peers", "promin's time over the peer's", draw, "ratio of times", "", y_log=False)
     sentences = [
-        f"{r['what'][0].upper() + r['what'][1:]} ({r['scene']}) take{'s' if 'picture' in r['what'] else ''} promin "
+        f"{r['what'][0].upper() + r['what'][1:]} ({html.escape(r['scene'])}) "
+        f"take{'s' if 'picture' in r['what'] else ''} promin "
         f"{ratio['median']:.2f} times as long as {r['peer'].split(',')[0]}"
         + (
             f", whose picture is {number(r['mean_difference'], 2)} away on average, "
@@ -186,12 +200,12 @@ def peers(report):
     body = [
         (
             [
-                r["scene"],
+                html.escape(r["scene"]),
                 r["what"],
                 r["peer"],
                 spread(r["promin_ms"]),
                 spread(r["peer_ms"]),
-                spread(ratio),
+                interval(ratio),
                 spread(r.get("peer_packets_ms")),
                 (
                     f"mean {number(r['mean_difference'], 2)}, {number(r['different_pixels_percent'], 2)} % of pixels"
@@ -203,11 +217,14 @@ def peers(report):
         )
         for r, ratio in zip(rows, ratios)
     ]
-    text = "The same scene in the same run, in turns, on the same cores. " + " ".join(sentences) + gap
+    text = [
+        f"The same scene in the same run, in {rows[0]['promin_ms']['runs']} turns, on the same cores." + gap,
+        "<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>",
+    ]
     return {
         "title": "Beside other renderers",
         "panels": [panel],
         "legend": [],
-        "text": [text],
+        "text": text,
         "table": table(head, body),
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
@@ -12,36 +13,68 @@
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "render/renderer.h"
-#include "reporting/provenance.h"
+#include "reporting/misjudged.h"
+#include "reporting/scene_hash.h"
+#include "reporting/session.h"
 #include "textbook_cast.spv.h"
 
 namespace promin::report {
 namespace {
 
+/// "promin_lost" and the like.
+void put_misjudged(Json& row, const std::string& kernel, const Misjudged& misjudged) {
+  row[kernel + "_lost"] = misjudged.lost;
+  row[kernel + "_invented"] = misjudged.invented;
+  if (std::isfinite(misjudged.worst_margin)) row[kernel + "_worst_margin"] = misjudged.worst_margin;
+}
+
+/// Whom the truth is asked of, and what both kernels come to by it.
+void judge_pair(const Session& session, const Scene& scene, const measure::RaySet& set, const measure::KernelPair& pair,
+                bool is_inside, Json& row) {
+  if (is_inside) {
+    row["truth"] = "each hits";
+    row["judged"] = pair.count;
+    put_misjudged(row, "promin", judge_in_closed_mesh(pair.robust_hits));
+    put_misjudged(row, "textbook", judge_in_closed_mesh(pair.plain_hits));
+    return;
+  }
+  uint64_t primitives = 0;
+  for (const Object& object : scene.objects) primitives += primitive_count(object.shape);
+  const std::vector<size_t> chosen =
+      choose_rays(pair.robust_hits, pair.plain_hits, primitives, session.pick(50'000'000U, 2'000'000U));
+  row["truth"] = "oracle";
+  row["judged"] = chosen.size();
+  const std::vector<uint8_t> is_there = ask_oracle(scene, set.rays, chosen);
+  put_misjudged(row, "promin", judge_by_oracle(scene, set.rays, pair.robust_hits, chosen, is_there));
+  put_misjudged(row, "textbook", judge_by_oracle(scene, set.rays, pair.plain_hits, chosen, is_there));
+}
+
 void compare_casters(const Session& session, const Scene& scene, bool is_closed, Json& rows) {
-  session.say("robustness: " + name_of(scene));
+  const std::string name = session.name_of(scene);
+  session.say("robustness: " + name);
   Caster robust(session.device(), scene);
   CasterOptions options;
   options.spirv = k_textbook_cast_spirv;
   Caster plain(session.device(), scene, options);
   const uint32_t side = session.pick(512U, 96U);
   const Camera camera = view_of(scene, uvec2(side)).camera;
-  const std::string hash = hash_of(pack_scene(scene, "sah"));
+  const std::string hash = hash_of(scene);
   for (const measure::RaySet& set : measure::make_ray_sets(robust, scene, camera, side, is_closed)) {
     if (set.rays.empty()) continue;
     const measure::KernelPair pair = measure::measure_pair(robust, plain, set, session.runs());
-    rows.push_back({{"id", name_of(scene) + "/" + pair.rays},
-                    {"scene", name_of(scene)},
-                    {"scene_hash", hash},
-                    {"rays", pair.rays},
-                    {"count", pair.count},
-                    {"robust_ms", json_of_times(pair.robust_ms)},
-                    {"plain_ms", json_of_times(pair.plain_ms)},
-                    {"time_ratio", json_of_times(measure::ratios_of(pair.robust_ms, pair.plain_ms))},
-                    {"robust_mrays_per_s", pair.robust_mrays_per_s()},
-                    {"plain_mrays_per_s", pair.plain_mrays_per_s()},
-                    {"lost", pair.lost},
-                    {"invented", pair.invented}});
+    Json row = {{"id", name + "/" + pair.rays},
+                {"scene", name},
+                {"scene_hash", hash},
+                {"rays", pair.rays},
+                {"count", pair.count},
+                {"differing", pair.count_only_robust() + pair.count_only_plain()},
+                {"robust_ms", json_of_times(pair.robust_ms)},
+                {"plain_ms", json_of_times(pair.plain_ms)},
+                {"time_ratio", json_of_times(measure::ratios_of(pair.robust_ms, pair.plain_ms))},
+                {"robust_mrays_per_s", pair.robust_mrays_per_s()},
+                {"plain_mrays_per_s", pair.plain_mrays_per_s()}};
+    judge_pair(session, scene, set, pair, is_closed && set.name == "edges", row);
+    rows.push_back(std::move(row));
   }
 }
 
@@ -58,7 +91,8 @@ double time_compiling(const Session& session, const Scene& scene, const Renderer
 }
 
 Json compare_specialisation(const Session& session, const Scene& scene) {
-  session.say("specialisation: " + name_of(scene));
+  const std::string name = session.name_of(scene);
+  session.say("specialisation: " + name);
   RendererOptions forced;
   forced.force_all_features = true;
   Renderer specialised(session.device(), scene);
@@ -76,20 +110,18 @@ Json compare_specialisation(const Session& session, const Scene& scene) {
   const std::vector<std::vector<double>> ms = measure::time_in_turns(rendering, session.runs());
   const std::array<std::function<double()>, 2> compiling = {[&] { return time_compiling(session, scene, {}); },
                                                             [&] { return time_compiling(session, scene, forced); }};
-  // It takes seconds: fewer runs, and each figure tells how many.
-  const uint32_t compile_runs = session.pick(std::min(5U, session.runs()), 1U);
-  const std::vector<std::vector<double>> compile_ms = measure::time_in_turns(compiling, compile_runs);
-  return {{"id", name_of(scene)},
-          {"scene", name_of(scene)},
-          {"scene_hash", hash_of(pack_scene(scene, "sah"))},
+  const std::vector<std::vector<double>> compile_ms = measure::time_in_turns(compiling, session.few_runs());
+  return {{"id", name},
+          {"scene", name},
+          {"scene_hash", hash_of(scene)},
           {"features", feature_names(features_of(scene)).size()},
           {"all_features", feature_names(all_features()).size()},
           {"ms", json_of_times(ms[0])},
           {"ms_with_all", json_of_times(ms[1])},
           {"time_ratio", json_of_times(measure::ratios_of(ms[0], ms[1]))},
-          {"compile_ms", json_of_times(compile_ms[0])},
-          {"compile_ms_with_all", json_of_times(compile_ms[1])},
-          {"compile_time_ratio", json_of_times(measure::ratios_of(compile_ms[0], compile_ms[1]))},
+          {"compile_ms", json_of_few_times(compile_ms[0])},
+          {"compile_ms_with_all", json_of_few_times(compile_ms[1])},
+          {"compile_time_ratio", json_of_few_times(measure::ratios_of(compile_ms[0], compile_ms[1]))},
           {"is_bit_identical", has_same_bits(of_scene, of_all)}};
 }
 

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <thread>
 
-#include "core/hash.h"
 #include "core/stopwatch.h"
 #include "gpu/device.h"
 #include "reporting/scripts.h"
@@ -46,6 +45,16 @@ std::string compiler_name() {
 #endif
 }
 
+/// As a user would type it; of the scenes and folders only the names.
+std::string command_of(const ReportOptions& options) {
+  std::string command = "promin-report";
+  if (options.is_quick) command += " --quick";
+  if (options.runs) command += fmt::format(" --runs {}", *options.runs);
+  if (options.device) command += fmt::format(" --device '{}'", *options.device);
+  for (const std::filesystem::path& scene : options.scenes) command += fmt::format(" {}", scene.filename().string());
+  return command + fmt::format(" -o {}", options.output.filename().string());
+}
+
 /// Whether Vulkan's validation layers watch (engine/gpu/open_device.h), which takes time.
 bool is_validated() {
   const char* layers = std::getenv("PROMIN_VALIDATION");
@@ -69,6 +78,7 @@ Json describe_run(const Session& session) {
           {"times_are", session.device().timestamp_period_ns() > 0.0 ? "device timestamps" : "the host's waiting"},
           {"cpu", cpu_name()},
           {"threads", std::thread::hardware_concurrency()},
+          {"command", command_of(session.options())},
           {"runs", session.runs()},
           {"is_quick", session.is_quick()},
           {"is_validated", is_validated()},
@@ -78,21 +88,6 @@ Json describe_run(const Session& session) {
 void end_run(Json& report) {
   report["provenance"]["load_after"] = load_average();
   report["provenance"]["minutes"] = since_start().ms() / 60e3;
-}
-
-std::string hash_of(const PackedScene& packed) {
-  Hash64 hash;
-  hash.add(packed.geometry_hash);
-  hash.add(std::as_bytes(std::span(packed.primitives)));
-  hash.add(packed.shading);
-  return fmt::format("{:016x}", hash.value());
-}
-
-std::string hash_of(const Mesh& mesh) {
-  Hash64 hash;
-  hash.add(std::as_bytes(std::span(mesh.positions)));
-  hash.add(std::as_bytes(std::span(mesh.triangles)));
-  return fmt::format("{:016x}", hash.value());
 }
 
 }  // namespace promin::report

@@ -2,23 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "render/pack_scene.h"
 #include "reporting/session.h"
 
 namespace promin::report {
 
 /// Of report.json; another where a reader of the last one would be misled.
-inline constexpr int kReportFormat = 1;
+inline constexpr int kReportFormat = 2;
 
 /// What every figure stands under: device, driver, compiler, commit, date, runs, and how busy the machine was before.
 Json describe_run(const Session& session);
 
 /// How busy it was after, and how long the report took.
 void end_run(Json& report);
-
-/// 16 hexadecimal digits over a scene's primitives, surfaces, materials and lights.
-std::string hash_of(const PackedScene& packed);
-/// Likewise over a mesh's positions and triangles.
-std::string hash_of(const Mesh& mesh);
 
 }  // namespace promin::report

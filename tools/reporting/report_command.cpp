@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "gpu/device.h"
 #include "reporting/provenance.h"
+#include "reporting/scene_names.h"
 #include "reporting/scripts.h"
 #include "reporting/session.h"
 #include "reporting/write_csv.h"
@@ -46,7 +48,13 @@ void check_old_report(const fs::path& file) {
 /// What would make the work useless, before it begins.
 void check_options(const ReportOptions& options) {
   if (options.compare) check_old_report(*options.compare);
-  for (const fs::path& scene : options.scenes) load_scene(scene);
+  for (auto scene = options.scenes.begin(); scene != options.scenes.end(); ++scene) {
+    load_scene(*scene);
+    if (std::any_of(options.scenes.begin(), scene,
+                    [&](const fs::path& other) { return is_same_file(other, *scene); })) {
+      throw UsageError({"a scene is given twice", scene->string(), "give each once"});
+    }
+  }
   std::error_code error;
   fs::create_directories(options.output, error);
   if (error || !fs::is_directory(options.output)) {
@@ -71,8 +79,9 @@ void report(const ReportOptions& options) {
   for (const Section& section : kSections) json[section.name] = section.measure(session);
   check_validation(session.device());
   end_run(json);
-  write_text_file(options.output / "report.json", json.dump(1) + "\n");
   write_csv_files(json, options.output);
+  drop_values(json);
+  write_text_file(options.output / "report.json", json.dump(1) + "\n");
   make_page(session);
 }
 

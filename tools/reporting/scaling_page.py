@@ -3,7 +3,7 @@
 """The page's section on how time, steps and memory grow."""
 
 import plots
-from figures import number, quartiles, table
+from figures import join, number, quartiles, table
 
 _RAYS = ("camera", "shadow", "random")
 
@@ -39,14 +39,19 @@ def _draw_pictures(rows, variable):
 def _draw_build(rows, key):
     def draw(axes):
         curve = _rows(rows, "triangles", "build")
-        plots.draw_curve(axes, 4, [r["value"] for r in curve], [r[key] for r in curve])
+        is_timed = isinstance(curve[0][key], dict)
+        values = [r[key]["median"] if is_timed else r[key] for r in curve]
+        bars = [(r[key]["least"], r[key]["most"]) for r in curve] if is_timed else None
+        plots.draw_curve(axes, 4, [r["value"] for r in curve], values, y_spread=bars)
 
     return draw
 
 
 def _power(fits, key):
     fit = next((f for f in fits if f["id"] == key), None)
-    return f"n<sup>{fit['exponent']:.2f}</sup> ({fit['lower']:.2f}…{fit['upper']:.2f})" if fit else "–"
+    if not fit:
+        return "–"
+    return f"n<sup>{fit['exponent']:.2f}</sup> ({fit['lower']:.2f}…{fit['upper']:.2f})".replace("-", "−")
 
 
 def scaling(report):
@@ -56,7 +61,7 @@ def scaling(report):
         plots.panel(
             "scaling-steps", "steps of a ray", _draw_rays(rows, "node_steps_per_ray"), "triangles", "node steps"
         ),
-        plots.panel("scaling-build", "building, one run", _draw_build(rows, "build_ms_once"), "triangles", "ms"),
+        plots.panel("scaling-build", "building the tree", _draw_build(rows, "build_ms"), "triangles", "ms"),
         plots.panel("scaling-memory", "memory", _draw_build(rows, "device_bytes"), "triangles", "bytes on the device"),
     ]
     for variable in ("pixels", "sources", "depth"):
@@ -66,19 +71,20 @@ def scaling(report):
     builds = _rows(rows, "triangles", "build")
     first, last = builds[0], builds[-1]
     times = {rays: _rows(rows, "triangles", rays) for rays in _RAYS}
-    growth = ", ".join(
-        f"{rays} rays {times[rays][-1]['ns_per_ray']['median'] / times[rays][0]['ns_per_ray']['median']:.1f}"
-        for rays in _RAYS
-    )
+    growth = join(f"{rays} rays {times[rays][-1]['time_ratio']['median']:.1f}" for rays in _RAYS)
+    runs = last["build_ms"]["runs"]
     depth = _rows(rows, "depth", "picture")
     text = (
         f"From {first['value']:,.0f} to {last['value']:,.0f} triangles a ray takes that many times longer: {growth}; "
-        f"it would be {last['value'] / first['value']:,.0f} without a tree. Steps grow as n to the powers of the "
+        f"brute force would take {last['value'] / first['value']:,.0f}. Steps grow as n to the powers of the "
         "table, with 95 % intervals; a logarithm's power falls with n. A triangle takes "
-        f"{last['device_bytes'] / last['value']:.1f} bytes on the device. A picture grows with its pixels "
+        f"{last['device_bytes'] / last['value']:.1f} bytes on the device, and the largest "
+        f"mesh's tree is built in {number(last['build_ms']['median'])} ms"
+        + (" (built once)" if runs == 1 else f" (median of {runs})")
+        + ". A picture grows with its pixels "
         f"as {_power(fits, 'pixels/ms')}, with sources as "
         f"{_power(fits, 'sources/ms')}; at a depth of {depth[-1]['value']:.0f} it takes "
-        f"{depth[-1]['ms']['median'] / depth[0]['ms']['median']:.1f} times what it does without mirror rays, and "
+        f"{depth[-1]['time_ratio']['median']:.1f} times what it does without mirror rays, and "
         f"{depth[-1]['rays'] / depth[0]['rays']:.1f} times the rays."
     )
     head = ["grows", "exponent", "95 % interval", "points"]
@@ -87,7 +93,7 @@ def scaling(report):
             [
                 f["id"].replace("/", ": ").replace("_", " "),
                 f"{f['exponent']:.3f}",
-                f"{f['lower']:.3f}…{f['upper']:.3f}",
+                f"{f['lower']:.3f}…{f['upper']:.3f}".replace("-", "−"),
                 f["points"],
             ],
             False,

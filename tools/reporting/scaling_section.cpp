@@ -4,15 +4,18 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <deque>
 #include <map>
 
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "measure/step_counts.h"
+#include "render/pack_scene.h"
 #include "render/renderer.h"
 #include "reporting/fit.h"
-#include "reporting/provenance.h"
+#include "reporting/scene_hash.h"
+#include "reporting/session.h"
 
 namespace promin::report {
 namespace {
@@ -52,62 +55,102 @@ class ScalingBench {
                      {"points", curve.xs.size()}});
   }
 
+  /// A mesh of the wavy sphere with what is measured of it.
+  struct Size {
+    uint32_t wanted;
+    Scene scene;
+    Caster caster;
+    std::vector<measure::RaySet> sets;
+    std::vector<std::vector<Hit>> hits;
+    std::vector<measure::StepCounts> steps;
+
+    Size(const Session& session, uint32_t wanted_triangles)
+        : wanted(wanted_triangles), scene(measure::make_wavy_sphere(wanted)), caster(session.device(), scene) {
+      scene.file = fmt::format("wavy:{}", wanted);
+      const uint32_t side = session.pick(512U, 96U);
+      sets = measure::make_ray_sets(caster, scene, view_of(scene, uvec2(side)).camera, side, false);
+      const measure::StepCounter counter(session.device(), scene, "sah");
+      for (const measure::RaySet& set : sets) {
+        hits.emplace_back(set.rays.size());
+        steps.push_back(counter.count(set));
+      }
+    }
+
+    double triangle_count() const {
+      return static_cast<double>(std::get<Mesh>(scene.objects[0].shape).triangles.size());
+    }
+  };
+
+  Json row_of(const Size& size, const std::string& curve) const {
+    return {{"id", fmt::format("triangles/{}/{}", curve, size.wanted)},
+            {"variable", "triangles"},
+            {"scene", session_.name_of(size.scene)},
+            {"scene_hash", hash_of(size.scene)},
+            {"curve", curve},
+            {"value", size.triangle_count()}};
+  }
+
+  /// All sizes stay on the device, so that each turn has them all.
   void measure_triangles() {
-    std::map<std::string, Curve> times;
-    std::map<std::string, Curve> steps;
-    Curve builds;
-    Curve bytes;
+    std::deque<Size> sizes;
     for (const uint32_t wanted : session_.pick<std::vector<uint32_t>>(
              {10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 5'000'000}, {2'000, 8'000, 32'000})) {
       session_.say(fmt::format("scaling: {} triangles", wanted));
-      Scene scene = measure::make_wavy_sphere(wanted);
-      scene.file = fmt::format("wavy:{}", wanted);
-      const auto count = static_cast<double>(std::get<Mesh>(scene.objects[0].shape).triangles.size());
-      const std::string hash = hash_of(std::get<Mesh>(scene.objects[0].shape));
-      Caster caster(session_.device(), scene);
-      const uint32_t side = session_.pick(512U, 96U);
-      const std::vector<measure::RaySet> sets =
-          measure::make_ray_sets(caster, scene, view_of(scene, uvec2(side)).camera, side, false);
-      std::vector<std::vector<Hit>> hits;
-      for (const measure::RaySet& set : sets) hits.emplace_back(set.rays.size());
-      std::vector<std::function<double()>> contestants;
-      for (size_t i = 0; i < sets.size(); ++i) {
-        contestants.emplace_back([&, i] { return caster.cast(sets[i].rays, hits[i], sets[i].query); });
-      }
-      const std::vector<std::vector<double>> ms = measure::time_in_turns(contestants, session_.runs());
-      const measure::StepCounter counter(session_.device(), scene, "sah");
-      for (size_t i = 0; i < sets.size(); ++i) {
-        const measure::StepCounts counts = counter.count(sets[i]);
-        const auto rays = static_cast<double>(sets[i].rays.size());
-        const Json ns = json_of_times(ms[i], 1e6 / rays);
-        const double node_steps = static_cast<double>(counts.node_steps) / rays;
-        rows_.push_back({{"id", fmt::format("triangles/{}/{}", sets[i].name, wanted)},
-                         {"variable", "triangles"},
-                         {"scene", name_of(scene)},
-                         {"scene_hash", hash},
-                         {"curve", sets[i].name},
-                         {"value", count},
-                         {"ns_per_ray", ns},
-                         {"node_steps_per_ray", node_steps},
-                         {"primitive_tests_per_ray", static_cast<double>(counts.primitive_tests) / rays}});
-        times[sets[i].name].add(count, ns["median"].get<double>());
-        steps[sets[i].name].add(count, node_steps);
-      }
-      const SetupStats& setup = caster.setup_stats();
-      rows_.push_back({{"id", fmt::format("triangles/build/{}", wanted)},
-                       {"variable", "triangles"},
-                       {"scene", name_of(scene)},
-                       {"scene_hash", hash},
-                       {"curve", "build"},
-                       {"value", count},
-                       {"build_ms_once", setup.bvh_ms},
-                       {"device_bytes", setup.device_bytes}});
-      builds.add(count, setup.bvh_ms);
-      bytes.add(count, static_cast<double>(setup.device_bytes));
+      sizes.emplace_back(session_, wanted);
     }
-    for (const auto& [name, curve] : times) fit("triangles/" + name + "/ns_per_ray", curve);
-    for (const auto& [name, curve] : steps) fit("triangles/" + name + "/node_steps_per_ray", curve);
-    fit("triangles/build/build_ms_once", builds);
+    session_.say("scaling: all sizes in turns");
+    measure_rays(sizes);
+    measure_builds(sizes);
+  }
+
+  void measure_rays(std::deque<Size>& sizes) {
+    const size_t set_count = sizes.front().sets.size();
+    std::vector<std::function<double()>> contestants;
+    for (Size& size : sizes) {
+      for (size_t i = 0; i < set_count; ++i) {
+        contestants.emplace_back(
+            [&size, i] { return size.caster.cast(size.sets[i].rays, size.hits[i], size.sets[i].query); });
+      }
+    }
+    std::vector<std::vector<double>> ns = measure::time_in_turns(contestants, session_.runs());
+    for (size_t i = 0; i < set_count; ++i) {
+      const std::string& name = sizes.front().sets[i].name;
+      Curve times;
+      Curve steps;
+      for (size_t s = 0; s < sizes.size(); ++s) {
+        const Size& size = sizes[s];
+        const auto rays = static_cast<double>(size.sets[i].rays.size());
+        std::vector<double>& of_size = ns[s * set_count + i];
+        for (double& time : of_size) time *= 1e6 / rays;
+        Json row = row_of(size, name);
+        row["ns_per_ray"] = json_of_times(of_size);
+        row["time_ratio"] = json_of_times(measure::ratios_of(of_size, ns[i]));
+        row["node_steps_per_ray"] = static_cast<double>(size.steps[i].node_steps) / rays;
+        row["primitive_tests_per_ray"] = static_cast<double>(size.steps[i].primitive_tests) / rays;
+        times.add(size.triangle_count(), row["ns_per_ray"]["median"].get<double>());
+        steps.add(size.triangle_count(), row["node_steps_per_ray"].get<double>());
+        rows_.push_back(std::move(row));
+      }
+      fit("triangles/" + name + "/ns_per_ray", times);
+      fit("triangles/" + name + "/node_steps_per_ray", steps);
+    }
+  }
+
+  void measure_builds(const std::deque<Size>& sizes) {
+    std::vector<std::function<double()>> contestants;
+    for (const Size& size : sizes) contestants.emplace_back([&] { return pack_scene(size.scene, "sah").bvh_ms; });
+    const std::vector<std::vector<double>> ms = measure::time_in_turns(contestants, session_.few_runs());
+    Curve builds;
+    Curve bytes;
+    for (size_t s = 0; s < sizes.size(); ++s) {
+      Json row = row_of(sizes[s], "build");
+      row["build_ms"] = json_of_few_times(ms[s]);
+      row["device_bytes"] = sizes[s].caster.setup_stats().device_bytes;
+      builds.add(sizes[s].triangle_count(), row["build_ms"]["median"].get<double>());
+      bytes.add(sizes[s].triangle_count(), row["device_bytes"].get<double>());
+      rows_.push_back(std::move(row));
+    }
+    fit("triangles/build/build_ms", builds);
     fit("triangles/build/device_bytes", bytes);
   }
 
@@ -127,7 +170,7 @@ class ScalingBench {
     for (size_t i = 0; i < frames.size(); ++i) {
       const Scene* scene = frames[i].scene;
       Renderer& renderer = renderers.try_emplace(scene, session_.device(), *scene).first->second;
-      hashes[scene] = hash_of(pack_scene(*scene, "sah"));
+      hashes[scene] = hash_of(*scene);
       contestants.emplace_back([&, i] {
         const RenderResult result = renderer.render(frames[i].view);
         counts[i] = result.rays;
@@ -140,11 +183,12 @@ class ScalingBench {
       const Json times = json_of_times(ms[i]);
       rows_.push_back({{"id", fmt::format("{}/{:g}", variable, frames[i].value)},
                        {"variable", variable},
-                       {"scene", name_of(*frames[i].scene)},
+                       {"scene", session_.name_of(*frames[i].scene)},
                        {"scene_hash", hashes[frames[i].scene]},
                        {"curve", "picture"},
                        {"value", frames[i].value},
                        {"ms", times},
+                       {"time_ratio", json_of_times(measure::ratios_of(ms[i], ms[0]))},
                        {"rays", counts[i].total()}});
       curve.add(frames[i].value, times["median"].get<double>());
     }

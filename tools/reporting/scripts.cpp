@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reporting/scripts.h"
 
+#include <fcntl.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 
 #include "core/error.h"
@@ -38,16 +42,42 @@ bool has_succeeded(pid_t process) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+std::string read_all(int file) {
+  std::string text;
+  std::array<char, 4096> buffer{};
+  for (ssize_t count = 0; (count = read(file, buffer.data(), buffer.size())) != 0;) {
+    if (count > 0) {
+      text.append(buffer.data(), static_cast<size_t>(count));
+    } else if (errno != EINTR) {
+      break;
+    }
+  }
+  return text;
+}
+
+/// Without white space around it; empty lines do not count.
+std::string last_line_of(const std::string& text) {
+  const size_t last = text.find_last_not_of(" \t\r\n");
+  if (last == std::string::npos) return {};
+  const size_t line = text.find_last_of('\n', last);
+  const size_t first = text.find_first_not_of(" \t\r", line == std::string::npos ? 0 : line + 1);
+  return text.substr(first, last + 1 - first);
+}
+
 }  // namespace
 
-std::optional<std::string> read_output(const std::vector<std::string>& words) {
+ProgramResult run_program(const std::vector<std::string>& words) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return std::nullopt;
+  // In memory, as a pipe that nobody reads would stop the program.
+  const int errors = memfd_create("errors", MFD_CLOEXEC);
+  if (errors < 0 || pipe2(ends.data(), O_CLOEXEC) != 0) {
+    if (errors >= 0) close(errors);
+    return {false, "", "no file for its output"};
+  }
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_addclose(&actions, ends[0]);
-  posix_spawn_file_actions_addclose(&actions, ends[1]);
+  posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
   for (std::string& word : copies) arguments.push_back(word.data());
@@ -56,40 +86,44 @@ std::optional<std::string> read_output(const std::vector<std::string>& words) {
   const bool has_started = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
-  std::string output;
-  std::array<char, 4096> buffer{};
-  for (ssize_t count = 0; has_started && (count = read(ends[0], buffer.data(), buffer.size())) > 0;) {
-    output.append(buffer.data(), static_cast<size_t>(count));
+  ProgramResult result;
+  if (has_started) {
+    result.output = read_all(ends[0]);
+    result.has_succeeded = has_succeeded(process);
+    lseek(errors, 0, SEEK_SET);
+    const std::string said = read_all(errors);
+    std::fputs(said.c_str(), stderr);
+    result.last_line = last_line_of(said);
+  } else {
+    result.last_line = words[0] + " cannot be run";
   }
   close(ends[0]);
-  if (!has_started || !has_succeeded(process)) return std::nullopt;
-  return output;
+  close(errors);
+  return result;
 }
 
 std::string describe_commit() {
-  std::string commit =
-      read_output({"git", "-C", PROMIN_TOOLS_DIR, "describe", "--always", "--dirty"}).value_or("unknown");
-  while (!commit.empty() && commit.back() == '\n') commit.pop_back();
-  return commit;
+  const ProgramResult git = run_program({"git", "-C", PROMIN_TOOLS_DIR, "describe", "--always", "--dirty"});
+  return git.has_succeeded ? last_line_of(git.output) : "unknown";
 }
 
-Json run_script(const std::string& name, const std::vector<std::string>& arguments) {
-  const std::optional<std::string> output = read_output(script_words(name, arguments));
-  if (!output) return {};
-  Json json = Json::parse(*output, nullptr, false);
-  return json.is_discarded() ? Json() : json;
+ScriptResult run_script(const std::string& name, const std::vector<std::string>& arguments) {
+  const ProgramResult script = run_program(script_words(name, arguments));
+  Json json = Json::parse(script.output, nullptr, false);
+  if (script.has_succeeded && !json.is_discarded()) return {std::move(json), std::nullopt};
+  return {Json(), script.last_line.empty() ? name + " failed without a word" : script.last_line};
 }
 
 void make_page(const Session& session) {
   const ReportOptions& options = session.options();
   std::vector<std::string> arguments = {options.output.string()};
   if (options.compare) arguments.insert(arguments.end(), {"--compare", options.compare->string()});
-  const std::optional<std::string> said = read_output(script_words("page.py", arguments));
-  if (!said) {
+  const ProgramResult page = run_program(script_words("page.py", arguments));
+  if (!page.has_succeeded) {
     throw RunError({"report.html could not be made", options.output.string(),
                     "report.json and the CSV files are there; install python3, and see what it says above"});
   }
-  if (!said->empty()) session.say(said->substr(0, said->find_last_not_of('\n') + 1));
+  if (!page.output.empty()) session.say(page.output.substr(0, page.output.find_last_not_of('\n') + 1));
 }
 
 }  // namespace promin::report

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,8 @@ class Session {
   bool is_quick() const { return options_.is_quick; }
   /// Timed runs of each contestant.
   uint32_t runs() const { return options_.runs.value_or(is_quick() ? 3 : 20); }
+  /// Of what takes seconds and is timed less often; each figure tells of how many.
+  uint32_t few_runs() const { return pick(std::min(5U, runs()), 1U); }
   /// What a section takes in full, or in a quick report.
   template <typename Value>
   Value pick(Value in_full, Value when_quick) const {
@@ -51,19 +54,28 @@ class Session {
   /// The user's scenes, or these of the project; lit where they have no light. Throws InputError.
   std::vector<Scene> load_scenes(const std::vector<std::string>& own) const;
 
+  /// A scene's name in the report, which no other has: see name_scenes.
+  std::string name_of(const Scene& scene) const;
+
  private:
   const ReportOptions& options_;
+  /// Of options_.scenes.
+  std::vector<std::string> names_;
   gpu::DeviceHandle device_;
 };
-
-/// A scene's name in the report: its file's without folder and ending.
-std::string name_of(const Scene& scene);
 
 /// The view of the scene's first camera, or of one that frames it.
 View view_of(const Scene& scene, const uvec2& size);
 
-/// {"median", "lower_quartile", "upper_quartile", "runs"} of times in any unit, times `scale`.
+/// Of times in any unit, or of ratios of times of the same turn, times `scale`: {"median", "lower_quartile",
+/// "upper_quartile", "interval_lower", "interval_upper", "confidence" (measure::MedianInterval), "runs", "values"}.
+/// The values go to runs.csv instead of report.json.
 Json json_of_times(const std::vector<double>& times, double scale = 1.0);
+/// Of Session::few_runs: {"median", "least", "most", "runs", "values"}.
+Json json_of_few_times(const std::vector<double>& times);
+/// What takes the place of a figure that was not measured: {"name", "is_installed", "reason"}. The reason is the
+/// program's own last line where it is installed and failed; without one it is not installed.
+Json json_of_gap(const std::string& name, const std::optional<std::string>& failure);
 
 // The sections, each an object with "rows"; a row has an "id" that is unique in its section. What is not measured is
 // left out of a row, never filled in.

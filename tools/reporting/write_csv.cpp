@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reporting/write_csv.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -11,6 +13,9 @@ namespace promin::report {
 namespace {
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
+
+/// A column of its own has no room for all values: they go to runs.csv.
+constexpr const char* kValues = "values";
 
 /// RFC 4180.
 std::string quote(const std::string& text) {
@@ -23,6 +28,7 @@ std::string quote(const std::string& text) {
 /// An object's values; of objects in it as "ns_per_test.median".
 void flatten(const Json& object, const std::string& prefix, Fields& fields) {
   for (const auto& [key, value] : object.items()) {
+    if (key == kValues) continue;
     if (value.is_object()) {
       flatten(value, prefix + key + ".", fields);
     } else {
@@ -63,16 +69,40 @@ std::string write_table(const Json& rows, const Json& provenance) {
   return text;
 }
 
+/// A line for each value of each time in these rows.
+void add_runs(const std::string& table, const Json& rows, std::string& text) {
+  for (const Json& row : rows) {
+    for (const auto& [figure, times] : row.items()) {
+      if (!times.is_object() || !times.contains(kValues)) continue;
+      size_t run = 0;
+      for (const Json& value : times[kValues]) {
+        text += fmt::format("{},{},{},{},{:.7g}\r\n", table, quote(row.at("id").get<std::string>()), figure, ++run,
+                            value.get<double>());
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void write_csv_files(const Json& report, const std::filesystem::path& folder) {
+  std::string runs = "table,id,figure,run,value\r\n";
   for (const auto& [section, content] : report.items()) {
     if (!content.is_object()) continue;
     for (const auto& [key, table] : content.items()) {
       if (!table.is_array() || table.empty() || !table.front().is_object()) continue;
       const std::string name = key == "rows" ? section : section + "_" + key;
       write_text_file(folder / (name + ".csv"), write_table(table, report.at("provenance")));
+      add_runs(name, table, runs);
     }
+  }
+  write_text_file(folder / "runs.csv", runs);
+}
+
+void drop_values(Json& json) {
+  if (json.is_object()) json.erase(kValues);
+  for (Json& part : json) {
+    if (part.is_structured()) drop_values(part);
   }
 }
 

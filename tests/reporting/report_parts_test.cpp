@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The report's parts that need no device.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "measure/meshes.h"
+#include "measure/samples.h"
+#include "oracle/oracle.h"
+#include "render/pack_scene.h"
+#include "reporting/front.h"
+#include "reporting/misjudged.h"
+#include "reporting/scene_hash.h"
+#include "reporting/scene_names.h"
+#include "reporting/scripts.h"
+#include "scene/load_scene.h"
+
+namespace promin::report {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(ReportInterval, IsBetweenOrderStatistics) {
+  std::vector<double> values;
+  for (int i = 20; i >= 1; --i) values.push_back(i);
+  const measure::MedianInterval interval = measure::median_interval_of(values);
+  // Tables of the sign test: 6th and 15th of 20, 95.86 %.
+  EXPECT_EQ(interval.lower, 6.0);
+  EXPECT_EQ(interval.upper, 15.0);
+  EXPECT_EQ(interval.median, 10.5);
+  EXPECT_NEAR(interval.confidence, 0.9586, 5e-5);
+}
+
+TEST(ReportInterval, SaysHowLittleFewValuesTell) {
+  EXPECT_EQ(measure::median_interval_of({3.0}).confidence, 0.0);
+  const measure::MedianInterval three = measure::median_interval_of({3.0, 1.0, 2.0});
+  EXPECT_EQ(three.lower, 1.0);
+  EXPECT_EQ(three.upper, 3.0);
+  EXPECT_EQ(three.confidence, 0.75);
+  EXPECT_LT(measure::median_interval_of({1, 2, 3, 4, 5}).confidence, 0.95);
+  EXPECT_GT(measure::median_interval_of({1, 2, 3, 4, 5, 6}).confidence, 0.95);
+}
+
+TEST(ReportInterval, HoldsTheMedianAsOftenAsItSaysAndNarrows) {
+  measure::Random random(7);
+  double last_width = HUGE_VAL;
+  for (const size_t count : {20, 80, 320}) {
+    constexpr int kTrials = 4000;
+    int held = 0;
+    double width = 0.0;
+    double confidence = 0.0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      // Skewed, as times are; its median is ln 2.
+      std::vector<double> values;
+      for (size_t i = 0; i < count; ++i) values.push_back(-std::log(1.0 - random.uniform()));
+      const measure::MedianInterval interval = measure::median_interval_of(values);
+      held += interval.lower <= std::log(2.0) && std::log(2.0) <= interval.upper ? 1 : 0;
+      width += (interval.upper - interval.lower) / kTrials;
+      confidence = interval.confidence;
+    }
+    EXPECT_NEAR(static_cast<double>(held) / kTrials, confidence, 0.012) << count;
+    EXPECT_LT(width, 0.6 * last_width) << count;
+    last_width = width;
+  }
+}
+
+TEST(ReportFront, HasWhatNothingIsAheadOf) {
+  EXPECT_THAT(find_front({{3, 1}, {1, 5}, {2, 5}, {2, 3}, {4, 2}, {1, 6}}),
+              ElementsAre(true, true, false, true, false, false));
+  // Of two that are alike neither is ahead.
+  EXPECT_THAT(find_front({{1, 1}, {1, 1}}), ElementsAre(true, true));
+  EXPECT_TRUE(find_front({}).empty());
+}
+
+TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
+  const Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / "all_primitives.gltf");
+  const std::string hash = hash_of(scene);
+  EXPECT_EQ(hash.size(), 16);
+  for (const char* builder : {"median", "sah", "spatial"}) {
+    pack_scene(scene, builder);
+    EXPECT_EQ(hash_of(scene), hash) << builder;
+  }
+  std::vector<Scene> others(10, scene);
+  others[0].materials[0].diffuse.y += 0.01F;
+  others[1].materials[0].shininess += 1.0F;
+  others[2].lights.emplace_back();
+  others[3].cameras.at(0).eye.x += 0.5F;
+  others[4].background.z += 0.1F;
+  others[5].ambient.z += 0.1F;
+  std::swap(others[6].objects[0], others[6].objects[1]);
+  others[7].objects.pop_back();
+  others[8].objects[0].shape = Sphere{vec3(0.0F), 0.25F};
+  others[9].objects[0].material += 1;
+  std::vector<std::string> hashes = {hash};
+  for (const Scene& other : others) {
+    EXPECT_THAT(hashes, testing::Not(testing::Contains(hash_of(other)))) << &other - others.data();
+    hashes.push_back(hash_of(other));
+  }
+  Scene renamed = scene;
+  renamed.objects[0].name = "another";
+  renamed.file = "another.gltf";
+  EXPECT_EQ(hash_of(renamed), hash);
+}
+
+TEST(ReportSceneNames, AreAsLongAsTellsThemApart) {
+  EXPECT_THAT(name_scenes({"a/x.gltf", "b/y.gltf"}), ElementsAre("x", "y"));
+  EXPECT_THAT(name_scenes({"x.gltf", "x.obj", "y.obj"}), ElementsAre("x.gltf", "x.obj", "y"));
+  EXPECT_THAT(name_scenes({"a/x.gltf", "b/x.gltf"}), ElementsAre("a/x.gltf", "b/x.gltf"));
+  EXPECT_THAT(name_scenes({"/1/a/x.gltf", "/2/a/x.gltf", "/2/b/x.gltf", "/2/b/x.obj"}),
+              ElementsAre("1/a/x.gltf", "2/a/x.gltf", "b/x.gltf", "x.obj"));
+  // A name that another's longer one would take.
+  EXPECT_THAT(name_scenes({"/q/x.gltf", "/q/x.gltf.obj", "/q/x.obj"}), ElementsAre("q/x.gltf", "x.gltf.obj", "x.obj"));
+  EXPECT_TRUE(name_scenes({}).empty());
+  EXPECT_TRUE(is_same_file("a/../x.gltf", "./x.gltf"));
+  EXPECT_FALSE(is_same_file("a/x.gltf", "x.gltf"));
+}
+
+/// A ray that hits the ball and one that does not, and answers to them.
+class ReportMisjudged : public testing::Test {
+ protected:
+  Misjudged judge(const std::vector<Hit>& hits, const std::vector<size_t>& chosen) const {
+    return judge_by_oracle(scene_, rays_, hits, chosen, ask_oracle(scene_, rays_, chosen));
+  }
+
+  Scene scene_ = measure::scene_of({Sphere{vec3(0.0F), 1.0F}});
+  std::vector<Ray> rays_ = {{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F)},
+                            {vec3(0.0F, 2.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F)}};
+  Hit hit_{2.0F, 0, 0};
+  Hit miss_;
+  std::vector<size_t> all_ = {0, 1};
+};
+
+TEST_F(ReportMisjudged, AsksTheOracleAndNotTheOtherKernel) {
+  const Misjudged right = judge(std::vector{hit_, miss_}, all_);
+  EXPECT_EQ(right.lost + right.invented, 0);
+  EXPECT_EQ(right.worst_margin, 0.0);
+  const Misjudged wrong = judge(std::vector{miss_, hit_}, all_);
+  EXPECT_EQ(wrong.lost, 1);
+  EXPECT_EQ(wrong.invented, 1);
+  EXPECT_GT(wrong.worst_margin, 1e5);
+  const Misjudged first = judge(std::vector{miss_, hit_}, {0});
+  EXPECT_EQ(first.lost, 1);
+  EXPECT_EQ(first.invented, 0);
+}
+
+TEST_F(ReportMisjudged, KnowsThatEachRayFromInsideHits) {
+  EXPECT_EQ(judge_in_closed_mesh(std::vector{hit_, miss_, miss_}).lost, 2);
+  EXPECT_EQ(judge_in_closed_mesh(std::vector{hit_}).lost, 0);
+}
+
+TEST_F(ReportMisjudged, ChoosesAllThatDiffer) {
+  std::vector<Hit> a(1000, miss_);
+  std::vector<Hit> b = a;
+  a[17] = hit_;
+  b[990] = hit_;
+  const std::vector<size_t> few = choose_rays(a, b, 1'000'000, 1'000'000);
+  EXPECT_EQ(few.size(), 64);
+  EXPECT_THAT(few, testing::IsSupersetOf({17, 990}));
+  EXPECT_EQ(choose_rays(a, b, 1, 1'000'000).size(), 1000);
+}
+
+TEST(ReportScripts, TellWhatAProgramSaidLast) {
+  const ProgramResult fine = run_program({"sh", "-c", "echo out; echo noise >&2"});
+  EXPECT_TRUE(fine.has_succeeded);
+  EXPECT_EQ(fine.output, "out\n");
+  const ProgramResult failed = run_program({"sh", "-c", "echo first >&2; echo ' the reason ' >&2; echo >&2; exit 3"});
+  EXPECT_FALSE(failed.has_succeeded);
+  EXPECT_EQ(failed.last_line, "the reason");
+  const ProgramResult absent = run_program({"no-such-program-anywhere"});
+  EXPECT_FALSE(absent.has_succeeded);
+  EXPECT_EQ(absent.last_line, "no-such-program-anywhere cannot be run");
+  // More than a pipe holds, of which nobody reads the errors meanwhile.
+  EXPECT_TRUE(run_program({"sh", "-c", "head -c 300000 /dev/zero >&2"}).has_succeeded);
+}
+
+TEST(ReportGap, TellsWhatIsAbsentFromWhatFailed) {
+  EXPECT_FALSE(json_of_gap("POV-Ray", std::nullopt)["is_installed"].get<bool>());
+  const Json failed = json_of_gap("POV-Ray", "Cannot open file");
+  EXPECT_TRUE(failed["is_installed"].get<bool>());
+  EXPECT_EQ(failed["reason"], "Cannot open file");
+}
+
+}  // namespace
+}  // namespace promin::report

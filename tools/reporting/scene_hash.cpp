@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "reporting/scene_hash.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <span>
+
+#include "core/hash.h"
+
+namespace promin::report {
+namespace {
+
+/// Member by member: padding has no value.
+class ContentHash {
+ public:
+  void add(uint64_t word) { hash_.add(word); }
+  void add(float value) { hash_.add(std::bit_cast<uint32_t>(value)); }
+  void add(const vec3& v) {
+    for (int axis = 0; axis < 3; ++axis) add(v[axis]);
+  }
+  template <typename Value>
+  void add(const std::vector<Value>& values) {
+    hash_.add(values.size());
+    hash_.add(std::as_bytes(std::span(values)));
+  }
+
+  void add(const NotDrawn& /*shape*/) {}
+  void add(const Mesh& mesh) {
+    add(mesh.positions);
+    add(mesh.normals);
+    add(mesh.colors);
+    add(mesh.triangles);
+    add(mesh.triangle_materials);
+  }
+  void add(const Sphere& sphere) {
+    add(sphere.center);
+    add(sphere.radius);
+  }
+  void add(const Plane& plane) {
+    add(plane.point);
+    add(plane.normal);
+  }
+  void add(const Cylinder& cylinder) {
+    add(cylinder.center);
+    add(cylinder.axis);
+    add(cylinder.half_height);
+    add(cylinder.radius);
+  }
+  void add(const Cone& cone) {
+    add(cone.center);
+    add(cone.axis);
+    add(cone.half_height);
+    add(cone.radius_bottom);
+    add(cone.radius_top);
+  }
+  void add(const Material& material) {
+    for (const vec3& factor :
+         {material.ambient, material.diffuse, material.specular, material.reflection, material.emissive}) {
+      add(factor);
+    }
+    add(material.shininess);
+  }
+  void add(const Light& light) {
+    add(static_cast<uint64_t>(light.kind));
+    add(static_cast<uint64_t>(light.attenuation));
+    for (const vec3& v : {light.position, light.direction, light.diffuse, light.specular}) add(v);
+    for (const float value : {light.range, light.inner_cone_angle, light.outer_cone_angle}) add(value);
+  }
+  void add(const Camera& camera) {
+    add(static_cast<uint64_t>(camera.projection));
+    for (const vec3& v : {camera.eye, camera.look, camera.up}) add(v);
+    for (const float value : {camera.yfov, camera.ymag, camera.aspect_ratio, camera.near}) add(value);
+  }
+
+  uint64_t value() const { return hash_.value(); }
+
+ private:
+  Hash64 hash_;
+};
+
+}  // namespace
+
+std::string hash_of(const Scene& scene) {
+  ContentHash hash;
+  hash.add(scene.objects.size());
+  for (const Object& object : scene.objects) {
+    hash.add(object.shape.index());
+    std::visit([&](const auto& shape) { hash.add(shape); }, object.shape);
+    hash.add(uint64_t{object.material});
+  }
+  hash.add(scene.materials.size());
+  for (const Material& material : scene.materials) hash.add(material);
+  hash.add(scene.lights.size());
+  for (const Light& light : scene.lights) hash.add(light);
+  hash.add(scene.cameras.size());
+  for (const Camera& camera : scene.cameras) hash.add(camera);
+  hash.add(scene.ambient);
+  hash.add(scene.background);
+  return fmt::format("{:016x}", hash.value());
+}
+
+}  // namespace promin::report

@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""The page's first section: what the others come to, a line each, by their figures."""
+
+import html
+
+from figures import from_to, number
+from front_text import find_dominators
+
+
+def _ratios(rows, key="time_ratio"):
+    return from_to([row[key]["median"] for row in rows])
+
+
+def _front_line(report):
+    rows = report["frames"]["rows"]
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    off = [s for s in scenes if find_dominators([row for row in rows if row["scene"] == s])]
+    if not off:
+        return (
+            f"The default lies on the Pareto front of pictures in {len(scenes)} of {len(scenes)} scenes, up to noise."
+        )
+    names = ", ".join(f"<em>{html.escape(scene)}</em>" for scene in off)
+    return (
+        f"The default lies off the Pareto front of pictures in {len(off)} of {len(scenes)} scenes ({names}): see below."
+    )
+
+
+def _kernel_line(report):
+    own = [row for row in report["kernels"]["rows"] if row["is_shipped"]]
+    plain = [row for row in report["kernels"]["rows"] if row["method"] == "textbook"]
+    leaks = [sum(row.get("leaks", 0) for row in rows) for rows in (own, plain)]
+    worst = [max(row.get("max_k", 0) for row in rows) for rows in (own, plain)]
+    return (
+        f"Intersections are off by at most {number(worst[0], 2)} u S (bound 8), the textbook's by "
+        f"{number(worst[1], 2)}; {leaks[0]:,} rays leak, by the textbook's {leaks[1]:,}, "
+        f"which take {_ratios(plain)} of the time."
+    )
+
+
+def _robustness_line(report):
+    rows = report["robustness"]["rows"]
+    lost = [sum(row[f"{kernel}_lost"] for row in rows) for kernel in ("promin", "textbook")]
+    return (
+        f"Through a tree robustness takes {_ratios(rows)} times the textbook's time; of "
+        f"{sum(row['judged'] for row in rows):,} rays whose truth is known promin loses {lost[0]:,}, the textbook "
+        f"{lost[1]:,}."
+    )
+
+
+def _specialisation_line(report):
+    rows = report["specialisation"]["rows"]
+    same = sum(row["is_bit_identical"] for row in rows)
+    return (
+        f"Specialised to its scene, tracing takes {_ratios(rows)} of the time and compiling "
+        f"{_ratios(rows, 'compile_time_ratio')}, with the same bits in {same} of {len(rows)} scenes."
+    )
+
+
+def _peers_line(report):
+    rows = report["peers"]["rows"]
+    parts = []
+    for name in dict.fromkeys(row["peer"].split(",")[0] for row in rows):
+        parts.append(
+            f"{_ratios([row for row in rows if row['peer'].startswith(name)])} times as long as {html.escape(name)}"
+        )
+    return f"The same work takes promin {'; '.join(parts)}." if parts else ""
+
+
+def summary(report):
+    lines = [_front_line, _kernel_line, _robustness_line, _specialisation_line, _peers_line]
+    items = [f"<li>{line}</li>" for line in (make(report) for make in lines) if line]
+    scenes = {row["scene"]: row["scene_hash"] for row in report["frames"]["rows"]}
+    names = ", ".join(f"<em>{html.escape(name)}</em> ({code})" for name, code in scenes.items())
+    p = report["provenance"]
+    return {
+        "title": "In short",
+        "panels": [],
+        "legend": [],
+        "text": [
+            "<ul>" + "\n".join(items) + "</ul>",
+            f"To make it again: <code>{html.escape(p['command'])}</code> of commit {html.escape(p['commit'])}. The "
+            f"pictures' scenes, with hashes of what they hold: {names}. All figures are in report.json and CSV files "
+            "beside this page, each timed run in runs.csv.",
+        ],
+    }
