@@ -45,8 +45,12 @@ bool FrameQueue::has_room() const {
   return static_cast<size_t>(count) < most_in_flight_ && !frames_[next_].is_in_flight;
 }
 
-Frame* FrameQueue::begin() {
+void FrameQueue::ask() {
   if (!asked_time_) asked_time_ = Window::now();
+}
+
+Frame* FrameQueue::begin() {
+  ask();
   if (!has_room()) return nullptr;
   Frame& frame = frames_[next_];
   const std::optional<uint32_t> image = swapchain_->acquire(*frame.ready);

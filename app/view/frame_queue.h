@@ -67,6 +67,8 @@ class FrameQueue {
   /// show an older camera.
   FrameQueue(const gpu::Device& device, Swapchain& swapchain);
 
+  /// A frame is wanted: its time counts from here on, or from the end of the frame before. Asking again is nothing new.
+  void ask();
   /// Whether another frame may begin beside those in flight.
   bool has_room() const;
   /// The next frame, with an image of the swapchain and its commands begun; null where none is free just now.

@@ -90,6 +90,7 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     update_replay();
     // Asking the display for the window's size takes as long as drawing the overlay; no frame, no question.
     if (!frames_.has_room()) {
+      if (has_work()) frames_.ask();
       window_.wait(kShortWait);
       continue;
     }

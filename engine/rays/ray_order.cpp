@@ -45,16 +45,17 @@ vec3 scaled_direction(const Ray& ray) {
 constexpr size_t kBlock = 64;
 using Block = std::array<float, kBlock>;
 
+// The first where the second is NaN.
 float lesser(float a, float b) {
-  return a < b ? a : b;
+  return b < a ? b : a;
 }
 float greater(float a, float b) {
-  return a > b ? a : b;
+  return b > a ? b : a;
 }
 
 /// Of x in [-1, 1] the cell, not yet rounded down; of any other x, NaN too, a number of [0, kCells) all the same.
 float cell_of(float x) {
-  return lesser(greater(0.5F * kCells * (x + 1.0F), 0.0F), kCells - 1.0F);
+  return lesser(kCells - 1.0F, greater(0.0F, 0.5F * kCells * (x + 1.0F)));
 }
 
 /// Of a cell's number, rounded down, bit i at 6 i: of copies a bit less than 6 apart, copy i has its bit i there.

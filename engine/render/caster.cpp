@@ -32,7 +32,7 @@ constexpr uint32_t kPacketSize = 4;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
-  // Not max_abs_component: a library's call for every ray would take as long as tracing it.
+  // Not max_abs_component: its calls of std::fmax took a seventh of all of the time of `promin cast`.
   const vec3 sizes = glm::abs(direction);
   const float size = std::max(std::max(sizes.x, sizes.y), sizes.z);
   if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;

@@ -162,6 +162,7 @@ const SetupStats& Renderer::setup_stats() const {
 }
 
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
+  assert(!impl_->options.repack);
   assert(pixel.x < view.size.x && pixel.y < view.size.y);
   Explanation explanation;
   gpu::translate_vulkan_errors([&] {

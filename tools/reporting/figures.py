@@ -82,6 +82,11 @@ def judge(ratio):
     return ""
 
 
+def bound_of(report, on_cpu):
+    """Of an error, which a GPU's divisions, good to 2.5 ulp, may make twice as large (check_report.py)."""
+    return on_cpu if report["provenance"]["device_type"] == "CPU" else 2 * on_cpu
+
+
 def beyond_noise_text(ratios, wanted):
     """How many of them judge finds so, as a sentence."""
     if all(ratio["confidence"] < _LEAST_CONFIDENCE for ratio in ratios):

@@ -121,7 +121,7 @@ def _knob_text(rows):
         of_scene = [r for r in rows if r["scene"] == scene]
         default = next(r for r in of_scene if r["is_default"])
         most = max((r for r in of_scene if r["knob"] == "samples"), key=lambda r: r["ms"]["median"], default=None)
-        if most:
+        if most and default["rmse"]:
             parts.append(
                 f"In <em>{html.escape(scene)}</em> {most['setting']} samples take "
                 f"{most['time_ratio']['median']:.1f} times as long and leave "

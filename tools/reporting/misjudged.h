@@ -20,8 +20,9 @@ struct Misjudged {
   double worst_margin = 0.0;
 };
 
-/// Which rays the truth is asked for: all on which the two kernels' hits differ, then others evenly, as many as brute
-/// force over `primitive_count` primitives may take in `most_tests` tests, and no fewer than 64.
+/// Which rays the truth is asked for: those that hit by one kernel and miss by the other, then others evenly; as many
+/// in all as brute force over `primitive_count` primitives may take in `most_tests` tests, and no fewer than 64. Where
+/// the first are more they are thinned out evenly.
 std::vector<size_t> choose_rays(std::span<const Hit> a, std::span<const Hit> b, uint64_t primitive_count,
                                 uint64_t most_tests);
 

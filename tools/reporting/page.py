@@ -59,12 +59,11 @@ def _device_sentence(p):
     if p.get("is_validated"):
         quick += " <strong>Vulkan's validation layers watched, which takes time.</strong>"
     load = ""
-    if p.get("load_before") is not None:
-        busy = max(p["load_before"], p.get("load_after") or 0)
-        after = p.get("load_after") or 0
-        load = f" {p['threads']} threads; load average {p['load_before']:.1f} before and {after:.1f} after."
-        if p["load_before"] > 0.5 * p["threads"]:
-            load += f" <strong>The machine was busy with other work as well (load up to {busy:.1f}).</strong>"
+    if p.get("busy_cores_before") is not None and p.get("busy_cores_after") is not None:
+        before, after = p["busy_cores_before"], p["busy_cores_after"]
+        load = f" Of {p['threads']} cores others kept {before:.1f} busy before and {after:.1f} after."
+        if max(before, after) > 0.2 * p["threads"]:
+            load += " <strong>The machine was busy with other work as well.</strong>"
     return (
         f"{html.escape(p['device'])}, {html.escape(p['driver'])}, {kind}. {html.escape(p['cpu'])}.{load} "
         f"{p['runs']} timed runs of each after a warm-up, in turns; times are {html.escape(p['times_are'])}, medians "

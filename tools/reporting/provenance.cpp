@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <string>
 #include <thread>
 
 #include "core/stopwatch.h"
@@ -31,10 +33,33 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Processes that wanted a core, over the last minute.
-Json load_average() {
-  std::array<double, 1> load{};
-  return getloadavg(load.data(), 1) == 1 ? Json(load[0]) : Json();
+/// Of all cores since the system started, in ticks; nothing where the system does not tell.
+struct CoreTimes {
+  double busy = 0.0;
+  double all = 0.0;
+};
+
+CoreTimes read_core_times() {
+  std::ifstream file("/proc/stat");
+  std::string name;
+  CoreTimes times;
+  if (!(file >> name)) return times;
+  // user, nice, system, idle, iowait, irq, softirq, steal; what follows is in the first two (proc(5)).
+  std::array<double, 8> ticks{};
+  for (double& part : ticks) file >> part;
+  for (const double part : ticks) times.all += part;
+  times.busy = times.all - ticks[3] - ticks[4];
+  return times;
+}
+
+/// Cores that others keep busy, over a second in which this program does nothing. Not the load average: that remembers
+/// the report before for minutes.
+Json busy_cores() {
+  const CoreTimes before = read_core_times();
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const CoreTimes after = read_core_times();
+  if (!(after.all > before.all)) return {};
+  return std::thread::hardware_concurrency() * (after.busy - before.busy) / (after.all - before.all);
 }
 
 std::string compiler_name() {
@@ -52,7 +77,8 @@ std::string command_of(const ReportOptions& options) {
   if (options.runs) command += fmt::format(" --runs {}", *options.runs);
   if (options.device) command += fmt::format(" --device '{}'", *options.device);
   for (const std::filesystem::path& scene : options.scenes) command += fmt::format(" {}", scene.filename().string());
-  return command + fmt::format(" -o {}", options.output.filename().string());
+  const std::filesystem::path output = options.output.has_filename() ? options.output : options.output.parent_path();
+  return command + fmt::format(" -o {}", output.filename().string());
 }
 
 /// Whether Vulkan's validation layers watch (engine/gpu/open_device.h), which takes time.
@@ -82,11 +108,11 @@ Json describe_run(const Session& session) {
           {"runs", session.runs()},
           {"is_quick", session.is_quick()},
           {"is_validated", is_validated()},
-          {"load_before", load_average()}};
+          {"busy_cores_before", busy_cores()}};
 }
 
 void end_run(Json& report) {
-  report["provenance"]["load_after"] = load_average();
+  report["provenance"]["busy_cores_after"] = busy_cores();
   report["provenance"]["minutes"] = since_start().ms() / 60e3;
 }
 

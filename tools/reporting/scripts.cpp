@@ -103,8 +103,13 @@ ProgramResult run_program(const std::vector<std::string>& words) {
 }
 
 std::string describe_commit() {
-  const ProgramResult git = run_program({"git", "-C", PROMIN_TOOLS_DIR, "describe", "--always", "--dirty"});
-  return git.has_succeeded ? last_line_of(git.output) : "unknown";
+  const std::string folder = PROMIN_TOOLS_DIR;
+  const ProgramResult commit = run_program({"git", "-C", folder, "describe", "--always"});
+  if (!commit.has_succeeded) return "unknown";
+  // Reports themselves lie in docs; no program is made of what does.
+  const ProgramResult same =
+      run_program({"git", "-C", folder, "diff", "--quiet", "HEAD", "--", ":/", ":(top,exclude)docs"});
+  return last_line_of(commit.output) + (same.has_succeeded ? "" : "-dirty");
 }
 
 ScriptResult run_script(const std::string& name, const std::vector<std::string>& arguments) {

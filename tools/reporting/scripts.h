@@ -21,7 +21,8 @@ struct ProgramResult {
 /// Runs a program to its end; what it writes to its standard error stream goes to ours too.
 ProgramResult run_program(const std::vector<std::string>& words);
 
-/// The commit of the sources beside this program, with "-dirty" where they differ from it; "unknown" without git.
+/// The commit of the sources beside this program, with "-dirty" where any but docs differ from it; "unknown" without
+/// git.
 std::string describe_commit();
 
 struct ScriptResult {

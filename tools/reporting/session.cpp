@@ -45,9 +45,7 @@ View view_of(const Scene& scene, const uvec2& size) {
   return app::make_view(scene, options, app::Console(app::Verbosity::kQuiet));
 }
 
-Json json_of_times(const std::vector<double>& times, double scale) {
-  std::vector<double> values = times;
-  for (double& value : values) value *= scale;
+Json json_of_times(const std::vector<double>& values) {
   const measure::Quartiles quartiles = measure::quartiles_of(values);
   const measure::MedianInterval interval = measure::median_interval_of(values);
   return {{"median", quartiles.median},

@@ -67,10 +67,10 @@ class Session {
 /// The view of the scene's first camera, or of one that frames it.
 View view_of(const Scene& scene, const uvec2& size);
 
-/// Of times in any unit, or of ratios of times of the same turn, times `scale`: {"median", "lower_quartile",
-/// "upper_quartile", "interval_lower", "interval_upper", "confidence" (measure::MedianInterval), "runs", "values"}.
+/// Of times in any unit, or of ratios of times of the same turn: {"median", "lower_quartile", "upper_quartile",
+/// "interval_lower", "interval_upper", "confidence" (measure::MedianInterval), "runs", "values"}.
 /// The values go to runs.csv instead of report.json.
-Json json_of_times(const std::vector<double>& times, double scale = 1.0);
+Json json_of_times(const std::vector<double>& times);
 /// Of Session::few_runs: {"median", "least", "most", "runs", "values"}.
 Json json_of_few_times(const std::vector<double>& times);
 /// What takes the place of a figure that was not measured: {"name", "is_installed", "reason"}. The reason is the

@@ -4,7 +4,7 @@
 
 import html
 
-from figures import from_to, number
+from figures import bound_of, from_to, number
 from front_text import find_dominators
 
 
@@ -32,9 +32,9 @@ def _kernel_line(report):
     leaks = [sum(row.get("leaks", 0) for row in rows) for rows in (own, plain)]
     worst = [max(row.get("max_k", 0) for row in rows) for rows in (own, plain)]
     return (
-        f"Intersections are off by at most {number(worst[0], 2)} u S (bound 8), the textbook's by "
-        f"{number(worst[1], 2)}; {leaks[0]:,} rays leak, by the textbook's {leaks[1]:,}, "
-        f"which take {_ratios(plain)} of the time."
+        f"Intersections are off by at most {number(worst[0], 2)} u S (bound {bound_of(report, 8)}), the textbook's by "
+        f"{number(worst[1], 2)}; {leaks[0]:,} rays leak, by the textbook's {leaks[1]:,}. "
+        f"The textbook's take {_ratios(plain)} of the time."
     )
 
 
@@ -61,9 +61,12 @@ def _peers_line(report):
     rows = report["peers"]["rows"]
     parts = []
     for name in dict.fromkeys(row["peer"].split(",")[0] for row in rows):
-        parts.append(
-            f"{_ratios([row for row in rows if row['peer'].startswith(name)])} times as long as {html.escape(name)}"
-        )
+        of_peer = [row for row in rows if row["peer"].startswith(name)]
+        part = f"{_ratios(of_peer)} times as long as {html.escape(name)}"
+        packets = [r["promin_ms"]["median"] / r["peer_packets_ms"]["median"] for r in of_peer if "peer_packets_ms" in r]
+        if packets:
+            part += f"'s single rays and {from_to(packets)} times as long as its packets"
+        parts.append(part)
     return f"The same work takes promin {'; '.join(parts)}." if parts else ""
 
 
