@@ -34,12 +34,6 @@ static_assert(kKeyBits % kDigitBits == 0);
 /// What is worth a thread.
 constexpr size_t kLeastPart = 16384;
 
-/// Its largest component is 1 or -1; NaN where there is no direction.
-vec3 scaled_direction(const Ray& ray) {
-  const vec3 size = glm::abs(ray.direction);
-  return ray.direction / std::max(std::max(size.x, size.y), size.z);
-}
-
 // Keys are computed for so many rays at a time, loop by loop over arrays and without branches, which compilers turn
 // into vector instructions: ray by ray it takes five times as long.
 constexpr size_t kBlock = 64;

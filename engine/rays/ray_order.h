@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -17,6 +18,12 @@ struct SceneCube {
   /// Half its side; >= 0.
   float radius = 0.0F;
 };
+
+/// The direction with its largest component 1 or -1; NaN where there is none.
+inline vec3 scaled_direction(const Ray& ray) {
+  const vec3 size = glm::abs(ray.direction);
+  return ray.direction / std::max(std::max(size.x, size.y), size.z);
+}
 
 /// Whether rays next to each other mostly begin and go near each other, as those of a camera in pixel order do; judged
 /// by a sample of the pairs.

@@ -13,6 +13,7 @@
 #include "core/stopwatch.h"
 #include "gpu/device.h"
 #include "rays/ray_order.h"
+#include "rays/ray_tiles.h"
 #include "render/pack_scene.h"
 #include "render/ray_kernel.h"
 
@@ -93,6 +94,19 @@ struct Caster::Impl {
     return device.is_lavapipe() ? Order::kInPackets : Order::kAsGiven;
   }
 
+  /// Empty where the rays are traced as they come.
+  std::span<const uint32_t> permutation_of(std::span<const Ray> rays, Order order) {
+    switch (order) {
+      case Order::kAsGiven:
+        return {};
+      case Order::kInPackets:
+        return tiler.tile(rays, cube);
+      case Order::kSorted:
+        return sorter.sort(rays, cube);
+    }
+    return {};
+  }
+
   RayKernel& kernel_for(HitQuery query, Order order) {
     const bool is_packet = order == Order::kInPackets;
     std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0][is_packet ? 1 : 0];
@@ -112,11 +126,10 @@ struct Caster::Impl {
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
     const Order order = order_of(rays);
     RayKernel& kernel = kernel_for(query, order);
-    const bool is_sorted = order == Order::kSorted;
-    const Stopwatch sorting;
-    const std::span<const uint32_t> permutation = is_sorted ? sorter.sort(rays, cube) : std::span<const uint32_t>();
-    double time_ms = is_sorted ? sorting.ms() : 0.0;
-    const auto place_of = [&](size_t i) { return is_sorted ? permutation[i] : i; };
+    const Stopwatch ordering;
+    const std::span<const uint32_t> permutation = permutation_of(rays, order);
+    double time_ms = ordering.ms();
+    const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
     requests.resize(rays.size());
     records.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
@@ -137,6 +150,7 @@ struct Caster::Impl {
   SceneCube cube;
   std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
   RaySorter sorter;
+  RayTiler tiler;
   /// What is asked and answered for the rays at hand, in the order in which they are traced.
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;

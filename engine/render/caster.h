@@ -44,8 +44,9 @@ class Caster {
 
   /// Answers each ray in the hit at the same place; as many hits as rays, any number. The answers do not depend on how
   /// many rays are cast together, nor on their order: on lavapipe rays that run side by side are traced in packets,
-  /// and on every CPU device others are sorted first. `progress` is called with the fraction done, 0...1. Returns
-  /// milliseconds of the traversal dispatches, by the device's clock, and of sorting; not of copying rays and hits.
+  /// those of rows tile by tile, and on every CPU device others are sorted first. `progress` is called with the
+  /// fraction done, 0...1. Returns milliseconds of the traversal dispatches, by the device's clock, and of ordering the
+  /// rays; not of copying rays and hits.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
               const std::function<void(double)>& progress = {});
 

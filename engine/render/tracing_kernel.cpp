@@ -3,6 +3,7 @@
 #include "render/tracing_kernel.h"
 
 #include <algorithm>
+#include <thread>
 
 #include "core/stopwatch.h"
 #include "gpu/buffer.h"
@@ -32,7 +33,8 @@ double dispatch_target_ms(const gpu::Device& device) {
 }
 
 uint32_t parts_of_dispatch(const gpu::Device& device) {
-  return device.is_cpu() ? 16 : 1;
+  // As many threads as the driver has, unless it was told otherwise.
+  return device.is_cpu() ? std::max(1U, std::thread::hardware_concurrency()) : 1;
 }
 
 RunError make_cut_loops_error(const std::string& cure) {

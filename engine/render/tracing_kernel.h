@@ -34,7 +34,7 @@ class Pacer {
 /// dispatch their threads wait for the last one.
 double dispatch_target_ms(const gpu::Device& device);
 
-/// From how many parts of all work the workgroups of a dispatch in a row take theirs (shaders/share_out.glsl).
+/// To how many parts the work of a dispatch is dealt out (shaders/share_out.glsl).
 uint32_t parts_of_dispatch(const gpu::Device& device);
 
 /// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.

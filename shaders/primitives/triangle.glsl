@@ -17,7 +17,7 @@ float dot2(vec2 a, vec2 b) {
 
 // A triangle in the plane that the ray pierces at its origin.
 struct ShearedTriangle {
-  bool is_met;
+  bool is_met;  // unless it is seen edge-on, which cross_triangle looks at
   vec2 a;
   vec2 b;
   vec2 c;
@@ -39,14 +39,10 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise float v = a2.x * c2.y - a2.y * c2.x;
   precise float w = b2.x * a2.y - b2.y * a2.x;
   bool is_outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
-  // On the line of a triangle seen edge-on, but beyond its corners, they may all round to 0 or to one sign. Where the
-  // corners lie tells, without rounding. Comparisons, as min and max take three instructions each on lavapipe.
-  bool is_beyond = (a2.x > 0.0 && b2.x > 0.0 && c2.x > 0.0) || (a2.y > 0.0 && b2.y > 0.0 && c2.y > 0.0) ||
-                   (a2.x < 0.0 && b2.x < 0.0 && c2.x < 0.0) || (a2.y < 0.0 && b2.y < 0.0 && c2.y < 0.0);
   precise float determinant = u + v + w;
   // Edge-on, or an area whose inverse is no longer a float.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
-  return ShearedTriangle(!is_outside && !is_beyond && has_area, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
+  return ShearedTriangle(!is_outside && has_area, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
 
 // The weights' point should be the origin of the sheared plane. Of slivers and of triangles seen edge-on the weights
@@ -78,9 +74,16 @@ vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   return beyond_a ? vec3(0.0, rest, part) : (beyond_b ? vec3(part, 0.0, rest) : vec3(rest, part, 0.0));
 }
 
+// On the line of a triangle seen edge-on, but beyond its corners, all weights may round to 0 or to one sign. Where the
+// corners lie tells, without rounding. Comparisons, as min and max take three instructions each on lavapipe.
+bool is_beyond_corners(vec2 a, vec2 b, vec2 c) {
+  return (a.x > 0.0 && b.x > 0.0 && c.x > 0.0) || (a.y > 0.0 && b.y > 0.0 && c.y > 0.0) ||
+         (a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || (a.y < 0.0 && b.y < 0.0 && c.y < 0.0);
+}
+
 // `tmin` and `shear_z` are the ray's.
 Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
-  if (!sheared.is_met) return NO_CROSSING;
+  if (!sheared.is_met || is_beyond_corners(sheared.a, sheared.b, sheared.c)) return NO_CROSSING;
   precise float determinant = sheared.areas.x + sheared.areas.y + sheared.areas.z;
   precise float inverse = 1.0 / determinant;
   precise vec3 raw_weights = sheared.areas * inverse;

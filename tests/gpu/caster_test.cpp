@@ -16,6 +16,7 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "oracle/verdict.h"
+#include "rays/ray_tiles.h"
 #include "render/pack_scene.h"
 #include "render/ray_kernel.h"
 #include "render/renderer.h"
@@ -71,7 +72,7 @@ std::vector<Ray> make_rows(uint32_t rows) {
   return rays;
 }
 
-// Rays in rows are traced in packets on a CPU device, the same ones shuffled are sorted and traced alone.
+// On lavapipe rays in rows are traced in packets and tile by tile; the same ones shuffled are sorted and traced alone.
 TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
   const Scene scene = test::make_scene_of_everything();
   // No multiple of a packet's size; some without direction, some empty.
@@ -81,6 +82,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
   rays[78].tmax = 0.0F;
   rays[500].direction.y = -rays[500].direction.y;
   rays[501].origin.x = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_FALSE(RayTiler().tile(rays, {vec3(0.0F), 1.0F}).empty());
   std::vector<size_t> order(rays.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::shuffle(order.begin(), order.end(), std::mt19937(5));

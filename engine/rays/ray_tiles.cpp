@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/ray_tiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+
+namespace promin {
+namespace {
+
+constexpr uint32_t kTileRows = 4;
+constexpr uint32_t kTileWidth = 8;
+constexpr uint32_t kFour = 4;
+
+/// Of these many pairs of rays in a row the median distance is called a step.
+constexpr size_t kSamplePairs = 255;
+/// Every so many rays one is looked at for the end of a row: there is none where it is less than kFarSteps from the
+/// last one looked at.
+constexpr size_t kStride = 16;
+constexpr float kFarSteps = 32.0F;
+/// The first ray of a row is at least so far from the last of the row before.
+constexpr float kLeastJump = 8.0F;
+/// How far apart rays of neighbouring rows may be that count as neighbours.
+constexpr float kMostNeighbourSteps = 16.0F;
+/// Rows whose columns differ by less are left so: fours that are askew by a ray trace as well as rays that make no
+/// four.
+constexpr float kLeastLag = 1.5F;
+/// What a thread takes at a time; what it leaves over is put behind it.
+constexpr size_t kChunkBands = 16;
+
+/// Where a ray begins and whither it goes, in units of the scene.
+struct Place {
+  vec3 origin;
+  vec3 direction;
+};
+
+Place operator-(const Place& a, const Place& b) {
+  return {a.origin - b.origin, a.direction - b.direction};
+}
+
+float dot(const Place& a, const Place& b) {
+  return glm::dot(a.origin, b.origin) + glm::dot(a.direction, b.direction);
+}
+
+/// NaN where a ray is none: every comparison is written so that one which fails does no harm.
+float square_distance(const Place& a, const Place& b) {
+  const Place difference = a - b;
+  return dot(difference, difference);
+}
+
+struct Row {
+  uint32_t begin = 0;
+  uint32_t end = 0;
+
+  uint32_t length() const { return end - begin; }
+};
+
+using Band = std::span<Row>;
+
+class Rows {
+ public:
+  Rows(std::span<const Ray> rays, const SceneCube& cube)
+      : rays_(rays), unit_(1.0F / cube.radius), square_step_(measure_square_step()) {}
+
+  Place place_of(size_t ray) const { return {rays_[ray].origin * unit_, scaled_direction(rays_[ray])}; }
+
+  /// It is looked at soon: rays that wait for memory would take most of the time.
+  void expect(size_t ray) const { __builtin_prefetch(&rays_[std::min(ray, rays_.size() - 1)]); }
+
+  bool are_neighbours(const Place& a, const Place& b) const {
+    return square_distance(a, b) <= kMostNeighbourSteps * kMostNeighbourSteps * square_step_;
+  }
+
+  std::vector<Row> find() const {
+    std::vector<Row> rows;
+    const auto count = static_cast<uint32_t>(rays_.size());
+    uint32_t begin = 0;
+    while (begin < count) {
+      const uint32_t end = find_end(begin, rows.empty() ? 0 : rows.back().length());
+      rows.push_back({begin, end});
+      begin = end;
+    }
+    return rows;
+  }
+
+  /// Rows that lie next to each other, up to kTileRows at a time.
+  std::vector<Band> join(std::span<Row> rows) const {
+    std::vector<Band> bands;
+    size_t first = 0;
+    for (size_t i = 1; i <= rows.size(); ++i) {
+      if (i < rows.size() && i - first < kTileRows && are_joined(rows[i - 1], rows[i])) continue;
+      bands.push_back(rows.subspan(first, i - first));
+      first = i;
+    }
+    return bands;
+  }
+
+ private:
+  float measure_square_step() const {
+    std::array<float, kSamplePairs> steps{};
+    for (size_t i = 0; i < kSamplePairs; ++i) {
+      // By the golden ratio, as in are_side_by_side().
+      const size_t first = (i * size_t{0x9E3779B97F4A7C15}) % (rays_.size() - 1);
+      const float step = square_distance(place_of(first), place_of(first + 1));
+      steps[i] = step >= 0.0F ? step : 0.0F;
+    }
+    const auto median = steps.begin() + kSamplePairs / 2;
+    std::nth_element(steps.begin(), median, steps.end());
+    return *median;
+  }
+
+  /// Whether the row that begins at `first` with the place `start` ends after `last`: the next ray is nearer to where
+  /// the row began.
+  bool is_end(const Place& start, size_t last) const {
+    const Place next = place_of(last + 1);
+    const float jump = square_distance(place_of(last), next);
+    return jump > kLeastJump * kLeastJump * square_step_ && square_distance(next, start) < jump;
+  }
+
+  /// Where between rays `a` and `b` the largest jump is, if one is much larger than the others: the ray before it.
+  size_t find_jump(size_t a, size_t b) const {
+    const Place place_a = place_of(a);
+    const Place place_b = place_of(b);
+    while (b - a > 1) {
+      const size_t middle = (a + b) / 2;
+      const Place place = place_of(middle);
+      (square_distance(place, place_a) < square_distance(place, place_b) ? a : b) = middle;
+    }
+    return a;
+  }
+
+  /// `expected` is the length of the row before, or 0: most are nearly as long.
+  uint32_t find_end(uint32_t begin, uint32_t expected) const {
+    const size_t count = rays_.size();
+    const Place start = place_of(begin);
+    if (expected >= kStride && begin + expected + kStride < count) {
+      const size_t last = find_jump(begin + expected - kStride, begin + expected + kStride);
+      if (is_end(start, last)) return static_cast<uint32_t>(last + 1);
+    }
+    Place place = start;
+    for (size_t i = begin; i + 1 < count;) {
+      const size_t next = std::min(i + kStride, count - 1);
+      expect(i + 8 * kStride);
+      const Place place_of_next = place_of(next);
+      if (square_distance(place, place_of_next) > kFarSteps * kFarSteps * square_step_) {
+        const size_t last = find_jump(i, next);
+        if (is_end(start, last)) return static_cast<uint32_t>(last + 1);
+      }
+      i = next;
+      place = place_of_next;
+    }
+    return static_cast<uint32_t>(count);
+  }
+
+  bool are_joined(const Row& a, const Row& b) const {
+    const Place start = place_of(a.begin);
+    const float square_length = square_distance(start, place_of(a.end - 1));
+    return square_distance(start, place_of(b.begin)) * 16.0F <= square_length;
+  }
+
+  std::span<const Ray> rays_;
+  float unit_;
+  float square_step_;
+};
+
+/// Puts a chunk's rays into the order, fours first and those that make no fours last.
+class Sink {
+ public:
+  explicit Sink(uint32_t* next) : next_(next) {}
+
+  /// Of one row.
+  void put(uint32_t first, uint32_t count) {
+    const uint32_t whole = count / kFour * kFour;
+    for (uint32_t i = 0; i < whole; ++i) *next_++ = first + i;
+    for (uint32_t i = whole; i < count; ++i) rest_.push_back(first + i);
+  }
+
+  /// Of two rows next to each other.
+  void put_pair(uint32_t a, uint32_t count_a, uint32_t b, uint32_t count_b) {
+    const uint32_t both = std::min(count_a, count_b) / 2 * 2;
+    for (uint32_t i = 0; i < both; i += 2) {
+      for (const uint32_t ray : {a + i, a + i + 1, b + i, b + i + 1}) *next_++ = ray;
+    }
+    put(a + both, count_a - both);
+    put(b + both, count_b - both);
+  }
+
+  void put_rest() { std::copy(rest_.begin(), rest_.end(), next_); }
+
+ private:
+  uint32_t* next_;
+  std::vector<uint32_t> rest_;
+};
+
+/// Goes along the rows of a band.
+class BandWalk {
+ public:
+  BandWalk(const Rows& rows, Band band) : rows_(rows) {
+    const Row& longest =
+        *std::max_element(band.begin(), band.end(), [](const Row& a, const Row& b) { return a.length() < b.length(); });
+    zero_ = rows.place_of(longest.begin);
+    along_ = rows.place_of(longest.end - 1) - zero_;
+    mean_step_ = dot(along_, along_) / static_cast<float>(longest.length());
+    is_regular_ = std::all_of(band.begin(), band.end(), [&](const Row& row) {
+      return row.length() == longest.length() && are_in_a_column(row.begin, longest.begin) &&
+             are_in_a_column(row.end - 1, longest.end - 1);
+    });
+    for (size_t i = 0; i < band.size(); ++i) {
+      heads_[i].next = band[i].begin;
+      heads_[i].end = band[i].end;
+      heads_[i].step = mean_step_;
+      look(heads_[i]);
+    }
+  }
+
+  void put_all(Sink& sink) {
+    while (choose_tile()) {
+      put_pair(heads_[0], heads_[1], sink);
+      put_pair(heads_[2], heads_[3], sink);
+
+      for (Head& head : heads_) advance(head);
+    }
+  }
+
+ private:
+  /// The next ray of a row.
+  struct Head {
+    uint32_t next = 0;
+    uint32_t end = 0;
+    /// How many are taken for the tile at hand.
+    uint32_t taken = 0;
+    Place place{};
+    /// How far along the rows, and how much farther a ray of this row is than the one before.
+    float column = 0.0F;
+    float step = 0.0F;
+  };
+
+  bool are_in_a_column(size_t a, size_t b) const {
+    return std::fabs(dot(rows_.place_of(a) - rows_.place_of(b), along_)) < kLeastLag * mean_step_;
+  }
+
+  void look(Head& head) const {
+    rows_.expect(head.next + 2 * kTileWidth);
+    head.place = rows_.place_of(head.next);
+    head.column = dot(head.place - zero_, along_);
+  }
+
+  void advance(Head& head) const {
+    if (head.taken == 0) return;
+    head.next += head.taken;
+    if (is_regular_ || head.next == head.end) return;
+    const float column = head.column;
+    look(head);
+    const float step = (head.column - column) / static_cast<float>(head.taken);
+    head.step = step > 0.5F * mean_step_ && step < 2.0F * mean_step_ ? step : mean_step_;
+  }
+
+  /// From each row that has not gone ahead of another: false where no row has rays left.
+  bool choose_tile() {
+    const Head* last = nullptr;
+    for (const Head& head : heads_) {
+      if (head.next < head.end && (last == nullptr || head.column < last->column)) last = &head;
+    }
+    if (last == nullptr) return false;
+    const float farthest = last->column + last->step * kTileWidth / 2;
+    for (Head& head : heads_) head.taken = head.column > farthest ? 0 : std::min(kTileWidth, head.end - head.next);
+    return true;
+  }
+
+  /// Of two rows next to each other; the one behind comes up with the other first.
+  void put_pair(Head& a, Head& b, Sink& sink) const {
+    if (a.taken == 0 || b.taken == 0 || !rows_.are_neighbours(a.place, b.place)) {
+      sink.put(a.next, a.taken);
+      sink.put(b.next, b.taken);
+      return;
+    }
+    Head& behind = a.column < b.column ? a : b;
+    Head& ahead = a.column < b.column ? b : a;
+    const float lag = (ahead.column - behind.column) / behind.step;
+    uint32_t lead = 0;
+    if (lag >= kLeastLag && lag < kTileWidth) {
+      lead = std::min(static_cast<uint32_t>(lag + 0.5F), behind.taken);
+      ahead.taken = std::min(ahead.taken, (kTileWidth - lead) / 2 * 2);
+      behind.taken = std::min(behind.taken, lead + ahead.taken);
+      sink.put(behind.next, lead);
+    }
+    sink.put_pair(behind.next + lead, behind.taken - lead, ahead.next, ahead.taken);
+  }
+
+  const Rows& rows_;
+  std::array<Head, kTileRows> heads_;
+  Place zero_{};
+  Place along_{};
+  float mean_step_ = 0.0F;
+  /// Rows of the same length that begin and end side by side are so everywhere: none of their rays is looked at.
+  bool is_regular_ = false;
+};
+
+}  // namespace
+
+std::span<const uint32_t> RayTiler::tile(std::span<const Ray> rays, const SceneCube& cube) {
+  if (rays.size() < 2) return {};
+  const Rows all(rays, cube);
+  std::vector<Row> rows = all.find();
+  const std::vector<Band> bands = all.join(rows);
+  if (bands.size() == rows.size()) return {};
+  order_.resize(rays.size());
+  for_each_chunk(bands.size(), kChunkBands, 0, [&](size_t begin, size_t end) {
+    // Fours begin at multiples of four.
+    uint32_t& first = bands[begin].front().begin;
+    for (; first % kFour != 0 && first < bands[begin].front().end; ++first) order_[first] = first;
+    Sink sink(order_.data() + first);
+    for (size_t i = begin; i < end; ++i) BandWalk(all, bands[i]).put_all(sink);
+    sink.put_rest();
+  });
+  return order_;
+}
+
+}  // namespace promin
