@@ -36,5 +36,5 @@ void main() {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     hits[indices[i]] = record_of(requests[i], packet[i], found[i]);
   }
-  if (were_loops_cut()) dispatch.share.w = 1u;
+  if (were_loops_cut()) dispatch.outcome.x = 1u;
 }

@@ -163,8 +163,7 @@ struct Dispatch {
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
-  uvec4 share;     // x = how many parts the pixels or rays are dealt out to (share_out.glsl); casting: w = 1 after the
-                   // dispatch if were_loops_cut(); 0 else
+  uvec4 outcome;   // casting: x = 1 after the dispatch if were_loops_cut(); 0 else
   uvec4 queue;     // of paths from one stage to the next: x = its first record, y = paths put, z = paths taken,
                    // w = paths that a lane takes at most
 };

@@ -103,7 +103,7 @@ void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const
                            traced, {}, {});
   constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
   const uint32_t groups = (picture.size.x * picture.size.y + kLanes - 1) / kLanes;
-  encoders_[picture.film]->dispatch(commands, std::min(groups, kMostEncodingGroups));
+  encoders_[picture.film]->dispatch(commands, uvec2(std::min(groups, kMostEncodingGroups), 1));
   const vk::MemoryBarrier encoded(Access::eShaderWrite, Access::eShaderRead);
   commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, encoded, {}, {});
   encoded_size_ = picture.size;

@@ -106,10 +106,10 @@ void ComputePipeline::bind(const BoundBuffer& buffer) {
   device_->handle().updateDescriptorSets(write, {});
 }
 
-void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, uint32_t group_count) const {
+void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const {
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *compiled_->pipeline);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *compiled_->layout, 0, *set_, {});
-  commands.dispatch(group_count, 1, 1);
+  commands.dispatch(group_count.x, group_count.y, 1);
 }
 
 }  // namespace promin::gpu

@@ -10,6 +10,8 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "core/math.h"
+
 namespace promin::gpu {
 
 class Buffer;
@@ -68,8 +70,8 @@ class ComputePipeline {
   /// Changes what a binding of the constructor refers to; the device must be idle.
   void bind(const BoundBuffer& buffer);
 
-  /// Records binding everything and `group_count` workgroups.
-  void dispatch(const vk::raii::CommandBuffer& commands, uint32_t group_count) const;
+  /// Records binding everything and `group_count` workgroups, across and down.
+  void dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const;
 
  private:
   const Device* device_;

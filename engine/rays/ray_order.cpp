@@ -17,7 +17,7 @@ namespace {
 
 /// Pairs that are looked at, and how near two rays are that count as side by side, in parts of the cube's half side and
 /// of the direction's largest component.
-constexpr size_t kSamplePairs = 1024;
+constexpr size_t kSamplePairs = 256;
 constexpr float kNearOrigin = 0.1F;
 constexpr float kNearDirection = 0.1F;
 

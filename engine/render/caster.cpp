@@ -124,11 +124,11 @@ struct Caster::Impl {
 
   /// At most RayKernel::kMaxRays.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
-    const Order order = order_of(rays);
-    RayKernel& kernel = kernel_for(query, order);
     const Stopwatch ordering;
+    const Order order = order_of(rays);
     const std::span<const uint32_t> permutation = permutation_of(rays, order);
     double time_ms = ordering.ms();
+    RayKernel& kernel = kernel_for(query, order);
     const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
     requests.resize(rays.size());
     records.resize(rays.size());

@@ -70,10 +70,9 @@ PicturePiece PicturePieces::next(double units) {
   PicturePiece piece;
   piece.dispatch = dispatch_;
   piece.dispatch.range = uvec4(first_block_, first_block_ + block_count_, sample_, max_depth_);
-  piece.dispatch.share.x = options_.parts;
   piece.dispatch.queue.w = paths_a_lane;
   const uint32_t part_groups = divide_up(divide_up(block_count_, options_.packet_size), options_.parts);
-  piece.group_counts = {options_.parts * part_groups, divide_up(block_count_, paths_a_lane)};
+  piece.group_counts = {uvec2(part_groups, options_.parts), uvec2(divide_up(block_count_, paths_a_lane), 1)};
   piece.units = block_count_;
   piece.most_rays_a_lane = (1.0 + max_depth_) * (1.0 + dispatch_.counts.z) * piece.units;
 

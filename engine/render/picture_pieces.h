@@ -14,8 +14,8 @@ namespace promin {
 struct PicturePiece {
   /// But for the place of the queue.
   layout::Dispatch dispatch{};
-  /// Workgroups of shaders/camera_stage.comp and of shaders/mirror_stage.comp.
-  std::array<uint32_t, 2> group_counts{};
+  /// Workgroups of shaders/camera_stage.comp (y = parts) and of shaders/mirror_stage.comp (y = 1).
+  std::array<uvec2, 2> group_counts{};
   /// What it takes: blocks of 8x8 pixels.
   double units = 0.0;
   /// Most rays that a lane may count in it.

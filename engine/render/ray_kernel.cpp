@@ -59,9 +59,8 @@ struct RayKernel::Impl {
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
     kernel.emplace(device, options.spirv, constants, buffers);
     // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
-    layout::Dispatch no_rays = scene->dispatch();
-    no_rays.share.x = 1;
-    kernel->run(no_rays, *hits, {1});
+    const layout::Dispatch no_rays = scene->dispatch();
+    kernel->run(no_rays, *hits, {uvec2(1)});
     pipeline_ms = compiling.ms();
   }
 
@@ -95,7 +94,7 @@ struct RayKernel::Impl {
   void check_loops() const {
     layout::Dispatch head;
     hits->read(std::as_writable_bytes(std::span(&head, 1)));
-    if (head.share.w != 0) throw make_cut_loops_error("take another device");
+    if (head.outcome.x != 0) throw make_cut_loops_error("take another device");
   }
 
   double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
@@ -104,7 +103,6 @@ struct RayKernel::Impl {
     double total_ms = 0.0;
     layout::Dispatch dispatch = scene->dispatch();
     const uint32_t parts = parts_of_dispatch(device);
-    dispatch.share.x = parts;
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -115,7 +113,7 @@ struct RayKernel::Impl {
       dispatch.range = uvec4(first, first + count, 0, 0);
       // As many in each part: those beyond the last ray do nothing.
       const uint32_t part_groups = divide_up(divide_up(count, group_rays), parts);
-      const double time_ms = kernel->run(dispatch, *hits, {parts * part_groups});
+      const double time_ms = kernel->run(dispatch, *hits, {uvec2(part_groups, parts)});
       if (device.is_lavapipe()) check_loops();
       pacer.learn(count, time_ms);
       total_ms += time_ms;

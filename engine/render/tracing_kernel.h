@@ -34,14 +34,14 @@ class Pacer {
 /// dispatch their threads wait for the last one.
 double dispatch_target_ms(const gpu::Device& device);
 
-/// To how many parts the work of a dispatch is dealt out (shaders/share_out.glsl).
+/// To how many parts the work of a dispatch is dealt out, its workgroups down (shaders/share_out.glsl).
 uint32_t parts_of_dispatch(const gpu::Device& device);
 
 /// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
 RunError make_cut_loops_error(const std::string& cure);
 
-/// Workgroups of each stage of a TracingKernel; those of stages that it has not are of no account.
-using GroupCounts = std::array<uint32_t, 2>;
+/// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
+using GroupCounts = std::array<uvec2, 2>;
 
 /// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
 class TracingKernel {

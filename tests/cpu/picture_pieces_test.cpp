@@ -43,9 +43,9 @@ TEST(PicturePieces, GroupsOfEachStageSufficeForAllPixels) {
     while (!pieces.is_done()) {
       const PicturePiece piece = pieces.next(units);
       const uint32_t blocks = piece.dispatch.range.y - piece.dispatch.range.x;
-      ASSERT_EQ(piece.group_counts[0] % 16, 0U);
-      ASSERT_GE(4 * piece.group_counts[0], blocks) << units << " units";
-      ASSERT_GE(piece.group_counts[1] * piece.dispatch.queue.w, blocks) << units << " units";
+      ASSERT_EQ(piece.group_counts[0].y, 16U);
+      ASSERT_GE(4 * piece.group_counts[0].x * 16, blocks) << units << " units";
+      ASSERT_GE(piece.group_counts[1].x * piece.dispatch.queue.w, blocks) << units << " units";
     }
   }
 }

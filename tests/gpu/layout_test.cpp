@@ -48,7 +48,7 @@ const Layout kLayouts[] = {
       OFFSET(Frame, background), OFFSET(Frame, tree_bounds), OFFSET(Frame, film_center), OFFSET(Frame, first_index)}},
     {"Dispatch",
      {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts),
-      OFFSET(Dispatch, share), OFFSET(Dispatch, queue)}},
+      OFFSET(Dispatch, outcome), OFFSET(Dispatch, queue)}},
     {"RayRecord", {OFFSET(RayRecord, origin_tmin), OFFSET(RayRecord, direction_tmax)}},
     {"HitRecord", {OFFSET(HitRecord, a), OFFSET(HitRecord, b)}},
     {"RayLog",
