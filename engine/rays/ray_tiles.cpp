@@ -138,6 +138,8 @@ class Rows {
     const size_t count = rays_.size();
     const Place start = place_of(begin);
     if (expected >= kStride && begin + expected + kStride < count) {
+      // Where the next row may end, a cache line at a time.
+      for (size_t i = 0; i <= 2 * kStride; i += 2) expect(begin + 2 * size_t{expected} - kStride + i);
       const size_t last = find_jump(begin + expected - kStride, begin + expected + kStride);
       if (is_end(start, last)) return static_cast<uint32_t>(last + 1);
     }
