@@ -34,7 +34,13 @@ void main() {
   step_counts = uvec2(0u);
   trace_packet(ANY_HIT != 0u);
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    hits[indices[i]] = record_of(requests[i], packet[i], found[i]);
+    HitRecord record = record_of(requests[i], packet[i], found[i]);
+    // A CPU driver stores word by word and lane by lane.
+    if (ANY_HIT != 0u && !has(FEATURE_STEP_COUNTS)) {
+      hits[indices[i]].a.xy = record.a.xy;
+    } else {
+      hits[indices[i]] = record;
+    }
   }
   if (were_loops_cut()) dispatch.outcome.x = 1u;
 }

@@ -19,9 +19,10 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "primitives.glsl"
 #include "traversal.glsl"
 #include "secondary.glsl"
+#include "share_out.glsl"
 
 void main() {
-  uint index = dispatch.range.x + gl_GlobalInvocationID.x;
+  uint index = dispatch.range.x + shared_out_group() * BLOCK_SIZE * BLOCK_SIZE + gl_LocalInvocationIndex;
   if (index >= dispatch.range.y) return;
   RayRecord request = load_ray(index);
   Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
