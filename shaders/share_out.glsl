@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// CPU drivers give each thread as many workgroups in a row. So that all take as long, the work is dealt out to as many
-// parts as there are threads; the groups of a part, which are in a row, take shares that lie near each other.
+// llvmpipe gives each thread one run of workgroups, across first, then down. So a row of them is a part of the work for a
+// thread (engine/render/share_out.h), and shares are dealt out to the parts in turn: all threads take as long, and what
+// a thread takes next lies near what it took last.
 
 // Which share of the work this group takes.
 uint shared_out_group() { return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y; }

@@ -45,36 +45,36 @@ void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool 
 #ifdef OTHER_TRIANGLES
 void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) { INTERSECT_PACKET(intersect_triangle) }
 #else
-// Few of a packet's rays meet a triangle whose box they meet: first whether they do, then where, one after the other.
+// Few of a packet's rays meet a triangle whose box they meet: first whether they may, then where, one after the other.
 void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) {
   ShearedTriangle sheared[PACKET_SIZE];
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
     sheared[ray] = shear_triangle(packet[ray], p);
-    sheared[ray].is_met = sheared[ray].is_met && limits[ray] >= 0.0;
+    sheared[ray].may_be_met = sheared[ray].may_be_met && limits[ray] >= 0.0;
   }
-  bool is_another_met;
+  bool may_another_be_met;
   do {
     uint next = 0u;
     ShearedTriangle of_next = sheared[0];
     float shear_z = packet[0].shear.z;
     float tmin = packet[0].tmin;
     [[unroll]] for (uint ray = 1u; ray < PACKET_SIZE; ++ray) {
-      if (of_next.is_met || !sheared[ray].is_met) continue;
+      if (of_next.may_be_met || !sheared[ray].may_be_met) continue;
       next = ray;
       of_next = sheared[ray];
       shear_z = packet[ray].shear.z;
       tmin = packet[ray].tmin;
     }
     Crossing crossing = cross_triangle(of_next, shear_z, tmin);
-    is_another_met = false;
+    may_another_be_met = false;
     [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
       if (ray == next) {
         keep_nearest(ray, crossing, i, p.c.y, any_hit);
-        sheared[ray].is_met = false;
+        sheared[ray].may_be_met = false;
       }
-      is_another_met = is_another_met || sheared[ray].is_met;
+      may_another_be_met = may_another_be_met || sheared[ray].may_be_met;
     }
-  } while (is_another_met);
+  } while (may_another_be_met);
 }
 #endif
 

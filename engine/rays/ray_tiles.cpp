@@ -14,17 +14,17 @@ namespace {
 
 constexpr uint32_t kTileRows = 4;
 constexpr uint32_t kTileWidth = 8;
-constexpr uint32_t kFour = 4;
+constexpr uint32_t kFour = RayTiler::kFour;
 
-/// Of these many pairs of rays in a row the median distance is called a step.
+/// The median distance of so many pairs of rays in a row is what is called a step here.
 constexpr size_t kSamplePairs = 255;
 /// Every so many rays one is looked at for the end of a row: there is none where it is less than kFarSteps from the
 /// last one looked at.
 constexpr size_t kStride = 16;
 constexpr float kFarSteps = 32.0F;
-/// The first ray of a row is at least so far from the last of the row before.
+/// The first ray of a row is at least so many steps from the last of the row before.
 constexpr float kLeastJump = 8.0F;
-/// How far apart rays of neighbouring rows may be that count as neighbours.
+/// How many steps rays of neighbouring rows may be apart that count as neighbours.
 constexpr float kMostNeighbourSteps = 16.0F;
 /// Rows whose columns differ by less are left so: fours that are askew by a ray trace as well as rays that make no
 /// four.
@@ -34,8 +34,8 @@ constexpr size_t kChunkBands = 16;
 
 /// Where a ray begins and whither it goes, in units of the scene.
 struct Place {
-  vec3 origin;
-  vec3 direction;
+  vec3 origin{0.0F};
+  vec3 direction{0.0F};
 };
 
 Place operator-(const Place& a, const Place& b) {
@@ -46,7 +46,7 @@ float dot(const Place& a, const Place& b) {
   return glm::dot(a.origin, b.origin) + glm::dot(a.direction, b.direction);
 }
 
-/// NaN where a ray is none: every comparison is written so that one which fails does no harm.
+/// NaN where either ray is none.
 float square_distance(const Place& a, const Place& b) {
   const Place difference = a - b;
   return dot(difference, difference);
@@ -77,11 +77,9 @@ class Rows {
 
   std::vector<Row> find() const {
     std::vector<Row> rows;
-    const auto count = static_cast<uint32_t>(rays_.size());
-    uint32_t begin = 0;
-    while (begin < count) {
-      const uint32_t end = find_end(begin, rows.empty() ? 0 : rows.back().length());
-      rows.push_back({begin, end});
+    for (size_t begin = 0; begin < rays_.size();) {
+      const size_t end = find_end(begin, rows.empty() ? 0 : rows.back().length());
+      rows.push_back({static_cast<uint32_t>(begin), static_cast<uint32_t>(end)});
       begin = end;
     }
     return rows;
@@ -133,15 +131,22 @@ class Rows {
     return a;
   }
 
+  /// Whether so many rays may be one row rather than two: the middle one is about halfway.
+  bool is_one_row(const Place& start, size_t begin, size_t last) const {
+    const float half_square = square_distance(start, place_of((begin + last) / 2));
+    const float square = square_distance(start, place_of(last));
+    return 16.0F * half_square > square && 16.0F * half_square < 9.0F * square;
+  }
+
   /// `expected` is the length of the row before, or 0: most are nearly as long.
-  uint32_t find_end(uint32_t begin, uint32_t expected) const {
+  size_t find_end(size_t begin, size_t expected) const {
     const size_t count = rays_.size();
     const Place start = place_of(begin);
     if (expected >= kStride && begin + expected + kStride < count) {
       // Where the next row may end, a cache line at a time.
-      for (size_t i = 0; i <= 2 * kStride; i += 2) expect(begin + 2 * size_t{expected} - kStride + i);
+      for (size_t i = 0; i <= 2 * kStride; i += 2) expect(begin + 2 * expected - kStride + i);
       const size_t last = find_jump(begin + expected - kStride, begin + expected + kStride);
-      if (is_end(start, last)) return static_cast<uint32_t>(last + 1);
+      if (is_end(start, last) && is_one_row(start, begin, last)) return last + 1;
     }
     Place place = start;
     for (size_t i = begin; i + 1 < count;) {
@@ -150,12 +155,12 @@ class Rows {
       const Place place_of_next = place_of(next);
       if (square_distance(place, place_of_next) > kFarSteps * kFarSteps * square_step_) {
         const size_t last = find_jump(i, next);
-        if (is_end(start, last)) return static_cast<uint32_t>(last + 1);
+        if (is_end(start, last)) return last + 1;
       }
       i = next;
       place = place_of_next;
     }
-    return static_cast<uint32_t>(count);
+    return count;
   }
 
   bool are_joined(const Row& a, const Row& b) const {
@@ -204,6 +209,7 @@ class BandWalk {
   BandWalk(const Rows& rows, Band band) : rows_(rows) {
     const Row& longest =
         *std::max_element(band.begin(), band.end(), [](const Row& a, const Row& b) { return a.length() < b.length(); });
+    if (longest.length() == 0) return;
     zero_ = rows.place_of(longest.begin);
     along_ = rows.place_of(longest.end - 1) - zero_;
     mean_step_ = dot(along_, along_) / static_cast<float>(longest.length());
@@ -212,10 +218,12 @@ class BandWalk {
              are_in_a_column(row.end - 1, longest.end - 1);
     });
     for (size_t i = 0; i < band.size(); ++i) {
-      heads_[i].next = band[i].begin;
-      heads_[i].end = band[i].end;
-      heads_[i].step = mean_step_;
-      look(heads_[i]);
+      Head& head = heads_[i];
+      head.next = band[i].begin;
+      head.end = band[i].end;
+      head.step = mean_step_;
+      if (head.next < head.end) look(head);
+      if (is_regular_) head.column = 0.0F;
     }
   }
 
@@ -261,7 +269,8 @@ class BandWalk {
     head.step = step > 0.5F * mean_step_ && step < 2.0F * mean_step_ ? step : mean_step_;
   }
 
-  /// From each row that has not gone ahead of another: false where no row has rays left.
+  /// From each row that has not gone ahead of another: false where no row has rays left. Whatever the columns are, NaN
+  /// too, the one taken for the last gives rays: `column > farthest` is false of it.
   bool choose_tile() {
     const Head* last = nullptr;
     for (const Head& head : heads_) {
@@ -298,7 +307,8 @@ class BandWalk {
   Place zero_{};
   Place along_{};
   float mean_step_ = 0.0F;
-  /// Rows of the same length that begin and end side by side are so everywhere: none of their rays is looked at.
+  /// Rows of the same length that begin and end side by side are taken to be so everywhere: none of their other rays is
+  /// looked at.
   bool is_regular_ = false;
 };
 
@@ -312,9 +322,12 @@ std::span<const uint32_t> RayTiler::tile(std::span<const Ray> rays, const SceneC
   if (bands.size() == rows.size()) return {};
   order_.resize(rays.size());
   for_each_chunk(bands.size(), kChunkBands, 0, [&](size_t begin, size_t end) {
-    // Fours begin at multiples of four.
-    uint32_t& first = bands[begin].front().begin;
-    for (; first % kFour != 0 && first < bands[begin].front().end; ++first) order_[first] = first;
+    // Fours begin at multiples of four; rows lie one after the other.
+    const std::span<Row> chunk_rows(bands[begin].data(), bands[end - 1].data() + bands[end - 1].size());
+    uint32_t first = chunk_rows.front().begin;
+    for (Row& row : chunk_rows) {
+      for (; first % kFour != 0 && row.begin < row.end; ++row.begin, ++first) order_[first] = first;
+    }
     Sink sink(order_.data() + first);
     for (size_t i = begin; i < end; ++i) BandWalk(all, bands[i]).put_all(sink);
     sink.put_rest();

@@ -27,9 +27,9 @@ using layout::RayRecord;
 constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATURE_SPHERES | layout::FEATURE_CYLINDERS |
                                        layout::FEATURE_CONES | layout::FEATURE_PLANES;
 
-/// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...4
+/// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...8
 /// (docs/performance.md).
-constexpr uint32_t kPacketSize = 4;
+constexpr uint32_t kPacketSize = RayTiler::kFour;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
@@ -96,14 +96,8 @@ struct Caster::Impl {
 
   /// Empty where the rays are traced as they come.
   std::span<const uint32_t> permutation_of(std::span<const Ray> rays, Order order) {
-    switch (order) {
-      case Order::kAsGiven:
-        return {};
-      case Order::kInPackets:
-        return tiler.tile(rays, cube);
-      case Order::kSorted:
-        return sorter.sort(rays, cube);
-    }
+    if (order == Order::kInPackets) return tiler.tile(rays, cube);
+    if (order == Order::kSorted) return sorter.sort(rays, cube);
     return {};
   }
 

@@ -79,7 +79,7 @@ void Film::reserve(uint32_t pixel_count) {
 PieceOptions Film::piece_options() const {
   // On a GPU one group waits while others work.
   constexpr uint32_t kGroupsACore = 8;
-  PieceOptions options{.packet_size = packet_size_, .parts = parts_of_dispatch(*device_)};
+  PieceOptions options{.packet_size = packet_size_, .most_parts = most_parts_of_dispatch(*device_)};
   if (device_->is_cpu()) {
     options.wanted_groups = kGroupsACore * std::max(1U, std::thread::hardware_concurrency());
     options.most_paths_a_lane = 16;

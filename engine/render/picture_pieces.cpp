@@ -8,6 +8,7 @@
 
 #include "core/divide_up.h"
 #include "render/sampling.h"
+#include "render/share_out.h"
 
 namespace promin {
 namespace {
@@ -71,8 +72,8 @@ PicturePiece PicturePieces::next(double units) {
   piece.dispatch = dispatch_;
   piece.dispatch.range = uvec4(first_block_, first_block_ + block_count_, sample_, max_depth_);
   piece.dispatch.queue.w = paths_a_lane;
-  const uint32_t part_groups = divide_up(divide_up(block_count_, options_.packet_size), options_.parts);
-  piece.group_counts = {uvec2(part_groups, options_.parts), uvec2(divide_up(block_count_, paths_a_lane), 1)};
+  piece.group_counts = {share_out(divide_up(block_count_, options_.packet_size), options_.most_parts),
+                        uvec2(divide_up(block_count_, paths_a_lane), 1)};
   piece.units = block_count_;
   piece.most_rays_a_lane = (1.0 + max_depth_) * (1.0 + dispatch_.counts.z) * piece.units;
 

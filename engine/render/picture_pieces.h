@@ -25,8 +25,8 @@ struct PicturePiece {
 struct PieceOptions {
   /// Pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
-  /// See shaders/share_out.glsl.
-  uint32_t parts = 1;
+  /// See render/share_out.h.
+  uint32_t most_parts = 1;
   /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
   uint32_t wanted_groups = 0;
   /// Paths that a lane of the mirror stage takes one after the other, at most. llvmpipe lets a lane's loops turn 65535

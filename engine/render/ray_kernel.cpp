@@ -12,6 +12,7 @@
 #include "core/stopwatch.h"
 #include "gpu/device.h"
 #include "render/device_scene.h"
+#include "render/share_out.h"
 #include "render/tracing_kernel.h"
 
 namespace promin {
@@ -102,7 +103,7 @@ struct RayKernel::Impl {
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
     layout::Dispatch dispatch = scene->dispatch();
-    const uint32_t parts = parts_of_dispatch(device);
+    const uint32_t most_parts = most_parts_of_dispatch(device);
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -111,9 +112,9 @@ struct RayKernel::Impl {
       const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : paced;
       const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
       dispatch.range = uvec4(first, first + count, 0, 0);
-      // As many in each part: those beyond the last ray do nothing.
-      const uint32_t part_groups = divide_up(divide_up(count, group_rays), parts);
-      const double time_ms = kernel->run(dispatch, *hits, {uvec2(part_groups, parts)});
+      // Those beyond the last ray do nothing.
+      const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
+      const double time_ms = kernel->run(dispatch, *hits, {groups});
       if (device.is_lavapipe()) check_loops();
       pacer.learn(count, time_ms);
       total_ms += time_ms;

@@ -53,7 +53,8 @@ class RayKernel {
   /// Most rays that one call of run takes.
   static constexpr size_t kMaxRays = size_t{1} << 20;
 
-  /// Fills as many records as there are rays, at most kMaxRays. Returns device milliseconds.
+  /// Fills as many records as there are rays, at most kMaxRays; what layout.h says is not told of any hit stays as it
+  /// was before. Returns device milliseconds.
   double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records);
 
   /// Time that compiling took.

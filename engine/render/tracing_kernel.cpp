@@ -32,9 +32,10 @@ double dispatch_target_ms(const gpu::Device& device) {
   return device.is_cpu() ? 100.0 : 25.0;
 }
 
-uint32_t parts_of_dispatch(const gpu::Device& device) {
-  // As many threads as the driver has, unless it was told otherwise.
-  return device.is_cpu() ? std::max(1U, std::thread::hardware_concurrency()) : 1;
+uint32_t most_parts_of_dispatch(const gpu::Device& device) {
+  // As many as llvmpipe has threads unless it is told otherwise (Mesa's LP_MAX_THREADS).
+  constexpr uint32_t kMostThreads = 32;
+  return device.is_cpu() ? std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads) : 1;
 }
 
 RunError make_cut_loops_error(const std::string& cure) {

@@ -34,8 +34,8 @@ class Pacer {
 /// dispatch their threads wait for the last one.
 double dispatch_target_ms(const gpu::Device& device);
 
-/// To how many parts the work of a dispatch is dealt out, its workgroups down (shaders/share_out.glsl).
-uint32_t parts_of_dispatch(const gpu::Device& device);
+/// To how many parts the work of a dispatch is dealt out at most (render/share_out.h).
+uint32_t most_parts_of_dispatch(const gpu::Device& device);
 
 /// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
 RunError make_cut_loops_error(const std::string& cure);

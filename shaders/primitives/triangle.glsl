@@ -17,7 +17,7 @@ float dot2(vec2 a, vec2 b) {
 
 // A triangle in the plane that the ray pierces at its origin.
 struct ShearedTriangle {
-  bool is_met;  // unless it is seen edge-on, which cross_triangle looks at
+  bool may_be_met;  // as far as the areas tell; cross_triangle has the last word
   vec2 a;
   vec2 b;
   vec2 c;
@@ -83,7 +83,7 @@ bool is_beyond_corners(vec2 a, vec2 b, vec2 c) {
 
 // `tmin` and `shear_z` are the ray's.
 Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
-  if (!sheared.is_met || is_beyond_corners(sheared.a, sheared.b, sheared.c)) return NO_CROSSING;
+  if (!sheared.may_be_met || is_beyond_corners(sheared.a, sheared.b, sheared.c)) return NO_CROSSING;
   precise float determinant = sheared.areas.x + sheared.areas.y + sheared.areas.z;
   precise float inverse = 1.0 / determinant;
   precise vec3 raw_weights = sheared.areas * inverse;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <random>
@@ -92,7 +93,7 @@ double fraction_of_fours(const Pixels& pixels, const std::vector<uint32_t>& orde
 }
 
 TEST(RayTiles, APictureIsTiledByEightTimesFourPixelsInFoursOfTwoByTwo) {
-  for (const uvec2 size : {uvec2(1024, 256), uvec2(64, 100)}) {
+  for (const uvec2 size : {uvec2(1024, 256), uvec2(56, 100)}) {
     const Pixels pixels = make_pixels(size, choose_all, make_camera_ray);
     const std::vector<uint32_t> order = tile(pixels.rays);
     expect_permutation(order, pixels.rays.size());
@@ -119,6 +120,57 @@ TEST(RayTiles, ShadowRaysOfPartsOfAPictureAreMostlyInFoursOfNeighbours) {
   EXPECT_GT(fraction_of_fours(pixels, order, {8, 4}), 0.98);
 }
 
+// The window in which the next row is expected to end holds the end of the second of two rows half as long.
+TEST(RayTiles, RowsMayBecomeHalfAsLongAtOnce) {
+  const auto choose_t = [](uvec2 pixel) { return pixel.y < 64 || pixel.x < 100; };
+  const Pixels pixels = make_pixels({200, 200}, choose_t, make_camera_ray);
+  const std::vector<uint32_t> order = tile(pixels.rays);
+  expect_permutation(order, pixels.rays.size());
+  EXPECT_GT(fraction_of_fours(pixels, order, {2, 2}), 0.98);
+}
+
+TEST(RayTiles, RowsThatBeginHereAndThereStayBesideEachOther) {
+  const auto choose_zigzag = [](uvec2 pixel) {
+    const uint32_t first = 10 + std::array<uint32_t, 4>{0, 0, 1, 2}[(pixel.y * 7 + pixel.y / 4) % 4];
+    return pixel.x >= first && pixel.x < first + 150;
+  };
+  const Pixels pixels = make_pixels({200, 200}, choose_zigzag, make_camera_ray);
+  const std::vector<uint32_t> order = tile(pixels.rays);
+  expect_permutation(order, pixels.rays.size());
+  EXPECT_GT(fraction_of_fours(pixels, order, {4, 2}), 0.97);
+  EXPECT_GT(fraction_of_fours(pixels, order, {3, 2}), 0.85);
+}
+
+// All that is left of the last row may go to make the fours before it begin at multiples of four.
+TEST(RayTiles, TheLastRowMayBeOneRay) {
+  const auto choose = [](uvec2 pixel) { return pixel != uvec2(0) && (pixel.y < 64 || pixel.x == 0); };
+  const Pixels pixels = make_pixels({100, 65}, choose, make_camera_ray);
+  ASSERT_EQ(pixels.rays.size(), 6400U);
+  const std::vector<uint32_t> order = tile(pixels.rays);
+  expect_permutation(order, pixels.rays.size());
+}
+
+TEST(RayTiles, AnyPartOfAPictureIsTiled) {
+  for (uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    const auto pick = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
+    const uvec2 size(50 + pick(100), 8 + pick(200));
+    std::vector<uvec2> ranges(size.y);
+    uint32_t last = pick(20);
+    for (uvec2& range : ranges) {
+      last = pick(8) == 0 ? pick(size.x) : last;
+      range = {last, size.x - pick(4)};
+    }
+    const uint32_t dropped = pick(4) == 0 ? 100 : 0;
+    Pixels pixels = make_pixels(
+        size, [&](uvec2 p) { return p.x >= ranges[p.y].x && p.x < ranges[p.y].y && !(pick(1000) < dropped); },
+        seed % 2 == 0 ? make_camera_ray : make_shadow_ray);
+    pixels.rays.resize(pixels.rays.size() - pick(size.x));
+    const std::vector<uint32_t> order = tile(pixels.rays);
+    if (!order.empty()) expect_permutation(order, pixels.rays.size());
+  }
+}
+
 TEST(RayTiles, WhatComesInNoRowsIsLeft) {
   std::vector<Ray> rays = make_pixels({256, 256}, choose_all, make_camera_ray).rays;
   EXPECT_TRUE(tile({}).empty());
@@ -133,20 +185,22 @@ TEST(RayTiles, WhatComesInNoRowsIsLeft) {
 TEST(RayTiles, IsAPermutationWhateverTheRays) {
   const Pixels pixels = make_pixels({300, 100}, choose_all, make_camera_ray);
   std::vector<Ray> bad = pixels.rays;
-  for (size_t i = 0; i < bad.size(); i += 37) bad[i].origin.x = kNan;
-  for (size_t i = 0; i < bad.size(); i += 41) bad[i].direction = vec3(0.0F);
-  for (size_t i = 0; i < bad.size(); i += 43) bad[i].origin = vec3(1e38F);
+  for (size_t i = 5; i < bad.size(); i += 37) bad[i].origin.x = kNan;
+  for (size_t i = 7; i < bad.size(); i += 41) bad[i].direction = vec3(0.0F);
+  for (size_t i = 11; i < bad.size(); i += 43) bad[i].origin = vec3(1e38F);
   std::vector<Ray> shuffled = pixels.rays;
   std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
   std::vector<Ray> back_and_forth = pixels.rays;
   for (size_t row = 1; row < 100; row += 2) {
     std::reverse(back_and_forth.begin() + row * 300, back_and_forth.begin() + (row + 1) * 300);
   }
+  ASSERT_FALSE(tile(bad).empty());
   for (const std::vector<Ray>& rays : {bad, shuffled, back_and_forth}) {
-    const std::vector<uint32_t> order = tile(rays);
-    if (!order.empty()) expect_permutation(order, rays.size());
-    RayTiler tiler;
-    tiler.tile(rays, SceneCube{});
+    for (const SceneCube& cube : {kCube, SceneCube{}}) {
+      RayTiler tiler;
+      const std::span<const uint32_t> order = tiler.tile(rays, cube);
+      if (!order.empty()) expect_permutation({order.begin(), order.end()}, rays.size());
+    }
   }
 }
 
@@ -155,6 +209,7 @@ TEST(RayTiles, ATilerForgetsWhatItTiledBefore) {
   tiler.tile(make_pixels({600, 600}, choose_ring, make_shadow_ray).rays, kCube);
   const std::vector<Ray> rays = make_pixels({200, 90}, choose_all, make_camera_ray).rays;
   const std::span<const uint32_t> order = tiler.tile(rays, kCube);
+  ASSERT_FALSE(order.empty());
   EXPECT_EQ(std::vector<uint32_t>(order.begin(), order.end()), tile(rays));
 }
 
