@@ -294,7 +294,7 @@ class BandWalk {
     const float lag = (ahead.column - behind.column) / behind.step;
     uint32_t lead = 0;
     if (lag >= kLeastLag && lag < kTileWidth) {
-      lead = std::min(static_cast<uint32_t>(lag + 0.5F), behind.taken);
+      lead = std::min(static_cast<uint32_t>(std::lround(lag)), behind.taken);
       ahead.taken = std::min(ahead.taken, (kTileWidth - lead) / 2 * 2);
       behind.taken = std::min(behind.taken, lead + ahead.taken);
       sink.put(behind.next, lead);

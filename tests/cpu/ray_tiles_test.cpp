@@ -85,11 +85,12 @@ uvec2 extent_of(const Pixels& pixels, const std::vector<uint32_t>& order, size_t
 
 /// How many of an order's fours are in so small a rectangle of pixels.
 double fraction_of_fours(const Pixels& pixels, const std::vector<uint32_t>& order, uvec2 most) {
+  const size_t fours = order.size() / 4;
   size_t small = 0;
-  for (size_t i = 0; i + 4 <= order.size(); i += 4) {
-    small += glm::all(glm::lessThanEqual(extent_of(pixels, order, i, 4), most)) ? 1 : 0;
+  for (size_t i = 0; i < fours; ++i) {
+    small += glm::all(glm::lessThanEqual(extent_of(pixels, order, 4 * i, 4), most)) ? 1 : 0;
   }
-  return static_cast<double>(small) / static_cast<double>(order.size() / 4);
+  return static_cast<double>(small) / static_cast<double>(fours);
 }
 
 TEST(RayTiles, APictureIsTiledByEightTimesFourPixelsInFoursOfTwoByTwo) {
