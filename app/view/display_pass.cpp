@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/divide_up.h"
 #include "cover_window.spv.h"
 #include "display.spv.h"
 #include "encode_film.spv.h"
@@ -102,7 +103,7 @@ void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer | Stage::eFragmentShader, Stage::eComputeShader, {},
                            traced, {}, {});
   constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-  const uint32_t groups = (picture.size.x * picture.size.y + kLanes - 1) / kLanes;
+  const uint32_t groups = divide_up(picture.size.x * picture.size.y, kLanes);
   encoders_[picture.film]->dispatch(commands, uvec2(std::min(groups, kMostEncodingGroups), 1));
   const vk::MemoryBarrier encoded(Access::eShaderWrite, Access::eShaderRead);
   commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, encoded, {}, {});

@@ -12,8 +12,12 @@
 
 namespace promin {
 
+unsigned core_count() {
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task) {
-  if (thread_count == 0) thread_count = std::max(1U, std::thread::hardware_concurrency());
+  if (thread_count == 0) thread_count = core_count();
   std::atomic<size_t> next = 0;
   std::exception_ptr failure;
   std::mutex failure_mutex;

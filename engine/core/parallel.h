@@ -8,6 +8,9 @@
 
 namespace promin {
 
+/// The machine's, or 1 where it does not tell.
+unsigned core_count();
+
 /// Calls task(i) once for every i in [0, count) and returns when all calls have. The calls share up to `thread_count`
 /// threads (0: as many as the machine has cores) and start in the order of i. After an exception no further call
 /// starts, and the first one is rethrown here.

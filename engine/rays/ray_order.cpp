@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -131,8 +130,7 @@ bool are_side_by_side(std::span<const Ray> rays, const SceneCube& cube) {
   const size_t pairs = std::min(kSamplePairs, rays.size() - 1);
   size_t near_pairs = 0;
   for (size_t i = 0; i < pairs; ++i) {
-    // Steps by the golden ratio: even ones would all fall on the ends of a picture's rows.
-    const size_t first = (i * size_t{0x9E3779B97F4A7C15}) % (rays.size() - 1);
+    const size_t first = sampled_pair(i, rays.size());
     const Ray& a = rays[first];
     const Ray& b = rays[first + 1];
     const bool is_near = max_abs_component(b.origin - a.origin) <= kNearOrigin * cube.radius &&
@@ -146,8 +144,7 @@ std::span<const uint32_t> RaySorter::sort(std::span<const Ray> rays, const Scene
   keyed_.resize(rays.size());
   scattered_.resize(rays.size());
   order_.resize(rays.size());
-  const size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const size_t part_count = std::clamp(rays.size() / kLeastPart, size_t{1}, cores);
+  const size_t part_count = std::clamp(rays.size() / kLeastPart, size_t{1}, size_t{core_count()});
   const size_t part_size = rays.size() / part_count + 1;
   for_each_chunk(rays.size(), part_size, 0, [&](size_t begin, size_t end) {
     std::array<uint32_t, kBlock> keys;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -23,6 +24,12 @@ struct SceneCube {
 inline vec3 scaled_direction(const Ray& ray) {
   const vec3 size = glm::abs(ray.direction);
   return ray.direction / std::max(std::max(size.x, size.y), size.z);
+}
+
+/// Of a sample of all pairs of rays next to each other the i-th: the first of the two. `ray_count` is at least 2. Steps
+/// by the golden ratio: even ones would all fall on the ends of a picture's rows.
+inline size_t sampled_pair(size_t i, size_t ray_count) {
+  return (i * size_t{0x9E3779B97F4A7C15}) % (ray_count - 1);
 }
 
 /// Whether rays next to each other mostly begin and go near each other, as those of a camera in pixel order do; judged

@@ -101,8 +101,7 @@ class Rows {
   float measure_square_step() const {
     std::array<float, kSamplePairs> steps{};
     for (size_t i = 0; i < kSamplePairs; ++i) {
-      // By the golden ratio, as in are_side_by_side().
-      const size_t first = (i * size_t{0x9E3779B97F4A7C15}) % (rays_.size() - 1);
+      const size_t first = sampled_pair(i, rays_.size());
       const float step = square_distance(place_of(first), place_of(first + 1));
       steps[i] = step >= 0.0F ? step : 0.0F;
     }
@@ -111,7 +110,7 @@ class Rows {
     return *median;
   }
 
-  /// Whether the row that begins at `first` with the place `start` ends after `last`: the next ray is nearer to where
+  /// Whether the row whose first ray has the place `start` ends after `last`: the next ray is nearer to where
   /// the row began.
   bool is_end(const Place& start, size_t last) const {
     const Place next = place_of(last + 1);
@@ -231,7 +230,6 @@ class BandWalk {
     while (choose_tile()) {
       put_pair(heads_[0], heads_[1], sink);
       put_pair(heads_[2], heads_[3], sink);
-
       for (Head& head : heads_) advance(head);
     }
   }

@@ -8,9 +8,9 @@
 #include <cassert>
 #include <cstddef>
 #include <cstring>
-#include <thread>
 
 #include "camera_stage.spv.h"
+#include "core/parallel.h"
 #include "gpu/device.h"
 #include "mirror_stage.spv.h"
 
@@ -81,7 +81,7 @@ PieceOptions Film::piece_options() const {
   constexpr uint32_t kGroupsACore = 8;
   PieceOptions options{.packet_size = packet_size_, .most_parts = most_parts_of_dispatch(*device_)};
   if (device_->is_cpu()) {
-    options.wanted_groups = kGroupsACore * std::max(1U, std::thread::hardware_concurrency());
+    options.wanted_groups = kGroupsACore * core_count();
     options.most_paths_a_lane = 16;
   }
   return options;

@@ -3,8 +3,8 @@
 #include "render/tracing_kernel.h"
 
 #include <algorithm>
-#include <thread>
 
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gpu/buffer.h"
 #include "gpu/device.h"
@@ -35,7 +35,7 @@ double dispatch_target_ms(const gpu::Device& device) {
 uint32_t most_parts_of_dispatch(const gpu::Device& device) {
   // As many as llvmpipe has threads unless it is told otherwise (Mesa's LP_MAX_THREADS).
   constexpr uint32_t kMostThreads = 32;
-  return device.is_cpu() ? std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads) : 1;
+  return device.is_cpu() ? std::min(core_count(), kMostThreads) : 1;
 }
 
 RunError make_cut_loops_error(const std::string& cure) {

@@ -10,7 +10,6 @@
 #include <limits>
 #include <random>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace promin {
@@ -72,6 +71,13 @@ void expect_permutation(std::vector<uint32_t> order, size_t count) {
   for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
+/// The order of all of them, none left out.
+std::vector<uint32_t> tile_all(const Pixels& pixels) {
+  std::vector<uint32_t> order = tile(pixels.rays);
+  expect_permutation(order, pixels.rays.size());
+  return order;
+}
+
 /// Width and height of the pixels [first, first + count) of an order.
 uvec2 extent_of(const Pixels& pixels, const std::vector<uint32_t>& order, size_t first, size_t count) {
   uvec2 lo(std::numeric_limits<uint32_t>::max());
@@ -96,8 +102,7 @@ double fraction_of_fours(const Pixels& pixels, const std::vector<uint32_t>& orde
 TEST(RayTiles, APictureIsTiledByEightTimesFourPixelsInFoursOfTwoByTwo) {
   for (const uvec2 size : {uvec2(1024, 256), uvec2(56, 100)}) {
     const Pixels pixels = make_pixels(size, choose_all, make_camera_ray);
-    const std::vector<uint32_t> order = tile(pixels.rays);
-    expect_permutation(order, pixels.rays.size());
+    const std::vector<uint32_t> order = tile_all(pixels);
     EXPECT_EQ(fraction_of_fours(pixels, order, {2, 2}), 1.0);
     for (size_t i = 0; i < order.size(); i += 32) ASSERT_EQ(extent_of(pixels, order, i, 32), uvec2(8, 4)) << i;
   }
@@ -106,16 +111,14 @@ TEST(RayTiles, APictureIsTiledByEightTimesFourPixelsInFoursOfTwoByTwo) {
 TEST(RayTiles, SizesThatAreNoMultiplesLoseFewFours) {
   for (const uvec2 size : {uvec2(1023, 77), uvec2(201, 203), uvec2(99, 1001)}) {
     const Pixels pixels = make_pixels(size, choose_all, make_camera_ray);
-    const std::vector<uint32_t> order = tile(pixels.rays);
-    expect_permutation(order, pixels.rays.size());
+    const std::vector<uint32_t> order = tile_all(pixels);
     EXPECT_GT(fraction_of_fours(pixels, order, {2, 2}), 0.95) << size.x;
   }
 }
 
 TEST(RayTiles, ShadowRaysOfPartsOfAPictureAreMostlyInFoursOfNeighbours) {
   const Pixels pixels = make_pixels({600, 600}, choose_ring, make_shadow_ray);
-  const std::vector<uint32_t> order = tile(pixels.rays);
-  expect_permutation(order, pixels.rays.size());
+  const std::vector<uint32_t> order = tile_all(pixels);
   // As they come, no four is but of one row, or of the ends of two.
   EXPECT_GT(fraction_of_fours(pixels, order, {3, 2}), 0.9);
   EXPECT_GT(fraction_of_fours(pixels, order, {8, 4}), 0.98);
@@ -125,8 +128,7 @@ TEST(RayTiles, ShadowRaysOfPartsOfAPictureAreMostlyInFoursOfNeighbours) {
 TEST(RayTiles, RowsMayBecomeHalfAsLongAtOnce) {
   const auto choose_t = [](uvec2 pixel) { return pixel.y < 64 || pixel.x < 100; };
   const Pixels pixels = make_pixels({200, 200}, choose_t, make_camera_ray);
-  const std::vector<uint32_t> order = tile(pixels.rays);
-  expect_permutation(order, pixels.rays.size());
+  const std::vector<uint32_t> order = tile_all(pixels);
   EXPECT_GT(fraction_of_fours(pixels, order, {2, 2}), 0.98);
 }
 
@@ -136,8 +138,7 @@ TEST(RayTiles, RowsThatBeginHereAndThereStayBesideEachOther) {
     return pixel.x >= first && pixel.x < first + 150;
   };
   const Pixels pixels = make_pixels({200, 200}, choose_zigzag, make_camera_ray);
-  const std::vector<uint32_t> order = tile(pixels.rays);
-  expect_permutation(order, pixels.rays.size());
+  const std::vector<uint32_t> order = tile_all(pixels);
   EXPECT_GT(fraction_of_fours(pixels, order, {4, 2}), 0.97);
   EXPECT_GT(fraction_of_fours(pixels, order, {3, 2}), 0.85);
 }
@@ -147,8 +148,7 @@ TEST(RayTiles, TheLastRowMayBeOneRay) {
   const auto choose = [](uvec2 pixel) { return pixel != uvec2(0) && (pixel.y < 64 || pixel.x == 0); };
   const Pixels pixels = make_pixels({100, 65}, choose, make_camera_ray);
   ASSERT_EQ(pixels.rays.size(), 6400U);
-  const std::vector<uint32_t> order = tile(pixels.rays);
-  expect_permutation(order, pixels.rays.size());
+  tile_all(pixels);
 }
 
 TEST(RayTiles, AnyPartOfAPictureIsTiled) {

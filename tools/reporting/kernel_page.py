@@ -239,13 +239,15 @@ def error_range(report):
     distances = [r["value"] for r in rows if r["variable"] == "distance"]
     offsets = [r["value"] for r in rows if r["variable"] == "offset"]
     away = report["kernels"]["distance_of_offsets"]
+    bound = bound_of(report, 8)
     text = (
         f"From a distance of {number(min(distances), 2)} to {number(max(distances), 2)} sizes, and from "
         f"{number(away)} sizes away up to {number(max(offsets), 2)} sizes from the world's origin, the shipped "
-        f"methods' K never passes {number(worst[shipped], 2)} (bound {bound_of(report, 8)}, dashed); the others reach {join(others)}. "
+        f"methods' K never passes {number(worst[shipped], 2)} (bound {bound}, dashed); the others "
+        f"reach {join(others)}. "
         f"{_missed_text(rows, shipped, away)} Where a method has no point, no ray hit both by it and "
         "the oracle."
     )
-    panels = _range_panels(rows, methods, bound_of(report, 8), "distance", "distance / size")
-    panels += _range_panels(rows, methods, bound_of(report, 8), "offset", "offset from the origin / size")
+    panels = _range_panels(rows, methods, bound, "distance", "distance / size")
+    panels += _range_panels(rows, methods, bound, "offset", "offset from the origin / size")
     return {"title": "Error over range", "panels": panels, "legend": list(enumerate(methods)), "text": [text]}
