@@ -8,6 +8,8 @@ layout(constant_id = CONSTANT_FEATURES) const uint FEATURES = 0xFFFFFFFFu;
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
 // Rays that an invocation traces together (traversal.glsl).
 layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
+// All of the kernel's rays ask for any hit.
+layout(constant_id = CONSTANT_ANY_HIT) const uint ANY_HIT = 0u;
 
 bool has(uint feature) { return (FEATURES & feature) != 0u; }
 

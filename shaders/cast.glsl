@@ -6,15 +6,18 @@
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;
 
+// A ray's t in units of the direction as given, over that in units of the direction as traced; a power of two.
+float units_of(RayRecord request) { return power_of_two_inverse(max_abs(request.direction_tmax.xyz)); }
+
 HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
   HitRecord miss = HitRecord(uvec4(floatBitsToUint(INFINITY), NO_ORDER, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   if (hit.primitive == NO_PRIMITIVE) return miss;
-  // Back to the units of the direction as given. Where that overflows there is no t to tell of.
-  precise float t = hit.t * power_of_two_inverse(max_abs(request.direction_tmax.xyz));
+  // Who asks for any hit is not told where.
+  if (ANY_HIT != 0u) return HitRecord(uvec4(0u, hit.order, 0u, 0u), uvec4(0u, 0u, 0u, steps));
+  precise float t = hit.t * units_of(request);
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
-  // Who asks for any hit is not told which.
-  vec3 normal = ANY_HIT != 0u ? vec3(0.0) : surface_point(ray, load_primitive(hit.primitive), hit).normal;
+  vec3 normal = surface_point(ray, load_primitive(hit.primitive), hit).normal;
   return HitRecord(uvec4(floatBitsToUint(t), hit.order, floatBitsToUint(vec2(hit.u, hit.v))),
                    uvec4(floatBitsToUint(normal), steps));
 }
@@ -30,6 +33,9 @@ void main() {
     requests[i] = load_ray(indices[i]);
     packet[i] = make_ray(requests[i].origin_tmin.xyz, requests[i].direction_tmax.xyz, requests[i].origin_tmin.w,
                          requests[i].direction_tmax.w);
+    // Farther away there is no t to tell of.
+    float farthest = LARGEST_FLOAT * power_of_two_inverse(units_of(requests[i]));
+    packet[i].tmax = packet[i].tmax < farthest ? packet[i].tmax : farthest;
   }
   step_counts = uvec2(0u);
   trace_packet(ANY_HIT != 0u);

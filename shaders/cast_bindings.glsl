@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a kernel that takes rays and gives records is bound to beyond the scene (engine/render/ray_kernel.h).
 
-layout(constant_id = CONSTANT_ANY_HIT) const uint ANY_HIT = 0u;
-
 layout(std430, set = 0, binding = BINDING_RAYS) readonly buffer Rays { RayRecord rays[]; };
 layout(set = 0, binding = BINDING_RAY_TEXELS) uniform usamplerBuffer ray_texels;
 layout(std430, set = 0, binding = BINDING_HITS) buffer Hits {

@@ -3,8 +3,8 @@
 // From an origin and a direction to what traversal needs of them.
 
 // The box test's allowance, as a multiple of the distance that intersections may span: every accepted hit lies within
-// 8 u S of its primitive (docs/accuracy.md, BK), and the box test's own rounding moves a plane by 6 u S: so a box grown
-// by 24 u S never hides a hit, whatever the tree.
+// 8 u S of its primitive (docs/accuracy.md, BK), the box test's own rounding moves a plane by 6 u S, and by 4 more with
+// divisions that are good to 2.5 ulp, Vulkan's promise: so a box grown by 24 u S never hides a hit, whatever the tree.
 const float BOX_PADDING = 24.0 * UNIT_ROUNDOFF;
 // Twice what rounding can take of the padding when it is added to the origin: far from the world's origin that would be
 // all of it, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
@@ -12,8 +12,6 @@ const float ORIGIN_PADDING = 2.0 * UNIT_ROUNDOFF;
 // Components of the direction count as no less in the box test: then nothing overflows in scenes of 10^15, and a ray
 // along a box's side still comes no nearer to its plane than the padding.
 const float SMALLEST_SLOPE = 8.67361737988403547e-19;  // 2^-60
-// The slab test's exit is widened by 2^-20, for divisions that are good to 2.5 ulp, Vulkan's promise.
-const float BOX_WIDENING = 1.0 + 16.0 * UNIT_ROUNDOFF;
 
 // Whether all components are finite; by their bits, as a compiler may assume that there are no NaNs.
 bool is_finite(vec3 v) {

@@ -33,17 +33,29 @@ void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool 
     keep_nearest(ray, INTERSECT(packet[ray], p), i, p.c.y, any_hit); \
   }
 
-// The primitives of one kind at the head of [i, end): leaves hold them sorted by kind.
-#define INTERSECT_RUN(KIND, FEATURE, INTERSECT)                       \
-  while (i < end && is_kind(load_primitive_kind(i), KIND, FEATURE)) { \
-    Primitive p = load_primitive(i);                                  \
-    INTERSECT_PACKET(INTERSECT)                                       \
-    ++i;                                                              \
+// What is left of the leaf at hand.
+uint leaf_next;
+uint leaf_end;
+// Its triangle before that is to be looked at again.
+bool needs_second_look;
+
+bool is_next_in_leaf(uint kind, uint feature) {
+  return leaf_next < leaf_end && is_kind(load_primitive_kind(leaf_next), kind, feature);
+}
+
+// The primitives of one kind that come next: leaves hold them sorted by kind.
+#define INTERSECT_RUN(KIND, FEATURE, INTERSECT) \
+  while (is_next_in_leaf(KIND, FEATURE)) {      \
+    uint i = leaf_next;                         \
+    Primitive p = load_primitive(i);            \
+    INTERSECT_PACKET(INTERSECT)                 \
+    ++leaf_next;                                \
   }
 
 // A kernel to compare with may bring triangles of its own (tools/plain).
 #ifdef OTHER_TRIANGLES
 void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) { INTERSECT_PACKET(intersect_triangle) }
+void glance_at_triangle(Primitive p, uint i) { intersect_packet_with_triangle(p, i, true); }
 #else
 // Few of a packet's rays meet a triangle whose box they meet: first whether they may, then where, one after the other.
 void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) {
@@ -76,15 +88,42 @@ void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) {
     }
   } while (may_another_be_met);
 }
+
+// The same for rays that ask for any hit, with ANY_HIT: most are told by a glance. Where one is not, the second look
+// waits until no lane has another triangle to glance at, as CPU drivers would execute it after every one.
+void glance_at_triangle(Primitive p, uint i) {
+  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
+    ShearedTriangle sheared = shear_triangle(packet[ray], p);
+    Glance glance = glance_at(sheared, packet[ray].shear.z, packet[ray].tmin, limits[ray]);
+    bool may_be_met = sheared.may_be_met && limits[ray] >= 0.0;
+    // The limit of a ray that has moved along itself is not told to the last bit.
+    bool is_met = may_be_met && glance.is_met && shifts[ray] == 0.0;
+    needs_second_look = needs_second_look || (may_be_met && !is_met && !glance.is_missed);
+    if (is_met) {
+      found[ray].primitive = i;
+      found[ray].order = p.c.y;
+      limits[ray] = -1.0;
+    }
+  }
+}
 #endif
 
-void intersect_leaf(uint child, bool any_hit) {
-  uint i = child & CHILD_FIRST_MASK;
-  uint end = i + ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
-  count_steps(0u, end - i);
-  while (i < end && is_kind(load_primitive_kind(i), KIND_TRIANGLE, FEATURE_TRIANGLES)) {
-    intersect_packet_with_triangle(load_primitive(i), i, any_hit);
-    ++i;
+void enter_leaf(uint child) {
+  leaf_next = child & CHILD_FIRST_MASK;
+  leaf_end = leaf_next + ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
+  count_steps(0u, leaf_end - leaf_next);
+}
+
+// What is left of a leaf, up to a triangle that needs a second look.
+void intersect_leaf(bool any_hit) {
+  while (!needs_second_look && is_next_in_leaf(KIND_TRIANGLE, FEATURE_TRIANGLES)) {
+    Primitive p = load_primitive(leaf_next);
+    if (ANY_HIT != 0u) {
+      glance_at_triangle(p, leaf_next);
+    } else {
+      intersect_packet_with_triangle(p, leaf_next, any_hit);
+    }
+    ++leaf_next;
   }
   INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
   INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
@@ -101,8 +140,12 @@ void intersect_planes(bool any_hit) {
 // The family of a node: those of its children that are left to visit, the nearest first. The node's index in the upper
 // 24 bits; how many there are, less one, in the two bits below; then which, in two bits each, the next one lowest. Of
 // four the last is not told: it is the one that the others are not.
+// With ANY_HIT a bit for each of the four instead, visited as they come: rays that find no hit, as most do, visit all
+// that they meet in any order.
 const uint NO_FAMILY = 0xFFFFFFFFu;
-const uint DONE = 0xFFFFFFFFu;  // instead of a child; has CHILD_IS_LEAF
+// Instead of a child; they have CHILD_IS_LEAF.
+const uint DONE = 0xFFFFFFFFu;
+const uint IN_LEAF = 0xFFFFFFFEu;  // the one that was entered
 
 uint family;
 uint stack[STACK_SIZE];  // the families of the nodes above
@@ -113,21 +156,31 @@ uint component_of(uvec4 v, uint i) {
   return (i & 1u) == 0u ? half_of_v.x : half_of_v.y;
 }
 
-// The nearest child that is left, or DONE.
+uint component_of_lowest_bit(uvec4 v, uint mask) {
+  return (mask & 1u) != 0u ? v.x : ((mask & 2u) != 0u ? v.y : ((mask & 4u) != 0u ? v.z : v.w));
+}
+
+// A family without the child that is next; NO_FAMILY after the last.
+uint without_next(uint members) {
+  if (ANY_HIT != 0u) {
+    uint left = members & (members - 1u);
+    return (left & 15u) == 0u ? NO_FAMILY : left;
+  }
+  uint others = (members >> 6) & 3u;
+  uint last = (members ^ (members >> 2) ^ (members >> 4)) & 3u;
+  uint left = (members & 0xFFFFFF00u) | ((others - 1u) << 6) | (last << 4) | ((members >> 2) & 15u);
+  return others == 0u ? NO_FAMILY : left;
+}
+
+// The next child that is left, or DONE.
 uint take_child() {
-  bool is_none = family == NO_FAMILY;
-  uint child = is_none ? DONE : component_of(load_children(family >> 8), family & 3u);
-  uint others = (family >> 6) & 3u;
-  uint last = (family ^ (family >> 2) ^ (family >> 4)) & 3u;
-  bool is_last = others == 0u;
-  family = is_none ? NO_FAMILY
-                   : ((family & 0xFFFFFF00u) | ((others - 1u) << 6) | (last << 4) | ((family >> 2) & 15u));
-  if (is_last && !is_none) {
-    family = NO_FAMILY;
-    if (stack_top > 0u) {
-      --stack_top;
-      family = stack[stack_top];
-    }
+  if (family == NO_FAMILY) return DONE;
+  uvec4 children = load_children(family >> 8);
+  uint child = ANY_HIT != 0u ? component_of_lowest_bit(children, family) : component_of(children, family & 3u);
+  family = without_next(family);
+  if (family == NO_FAMILY && stack_top > 0u) {
+    --stack_top;
+    family = stack[stack_top];
   }
   return child;
 }
@@ -149,26 +202,42 @@ uvec4 sorted(uvec4 k) {
 
 vec4 unpack_bytes(uint word) { return vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu); }
 
-// Of each pair the greater and the lesser; the second where either is a NaN, which comes of 0 * infinity in scenes
-// beyond 10^18: what a NaN should bound is then bounded by tmin or the hit so far alone. GLSL's max and min take three
-// instructions each on lavapipe, these one.
-vec4 greater(vec4 a, vec4 b) {
-  precise vec4 result =
-      vec4(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z, a.w > b.w ? a.w : b.w);
-  return result;
-}
-vec4 lesser(vec4 a, vec4 b) {
-  precise vec4 result =
-      vec4(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z, a.w < b.w ? a.w : b.w);
-  return result;
-}
-
 const uint NOT_MET = 0xFFFFFFFFu;
 const float SHIFT_TO_CULL_BY = 1.0 - 4.0 * UNIT_ROUNDOFF;
 
-uvec4 least_where(uvec4 keys, bvec4 condition, uvec4 candidates) {
-  return min(keys, uvec4(condition.x ? candidates.x : NOT_MET, condition.y ? candidates.y : NOT_MET,
-                         condition.z ? candidates.z : NOT_MET, condition.w ? candidates.w : NOT_MET));
+uvec4 key_where(bvec4 condition, uvec4 keys) {
+  return uvec4(condition.x ? keys.x : NOT_MET, condition.y ? keys.y : NOT_MET, condition.z ? keys.z : NOT_MET,
+               condition.w ? keys.w : NOT_MET);
+}
+
+// Which children are met: of each the bits of where a ray comes in first, which are in their order as none is negative,
+// or NOT_MET. With ANY_HIT x has a bit for each.
+const uvec4 NONE_MET = uvec4(ANY_HIT != 0u ? 0u : NOT_MET);
+
+uvec4 add_met(uvec4 met, bvec4 are_met, vec4 entries) {
+  uint mask = met.x;
+  if (are_met.x) mask |= 1u;
+  if (are_met.y) mask |= 2u;
+  if (are_met.z) mask |= 4u;
+  if (are_met.w) mask |= 8u;
+  uvec4 first = min(met, key_where(are_met, floatBitsToUint(entries)));
+  // No branch: glslang 12 fails over some.
+  return ANY_HIT != 0u ? uvec4(mask) : first;
+}
+
+// Of the first `count` children those that are met.
+uint family_of(uint index, uint count, uvec4 met) {
+  if (ANY_HIT != 0u) {
+    uint mask = met.x & ((1u << count) - 1u);
+    return mask == 0u ? NO_FAMILY : (index << 8) | mask;
+  }
+  bvec4 is_met = lessThan(uvec4(0u, 1u, 2u, 3u), uvec4(count));
+  is_met = bvec4(is_met.x && met.x != NOT_MET, is_met.y && met.y != NOT_MET, is_met.z && met.z != NOT_MET,
+                 is_met.w && met.w != NOT_MET);
+  uvec4 keys = sorted(key_where(is_met, (met & ~3u) | uvec4(0u, 1u, 2u, 3u)));
+  uint others = uint(keys.y != NOT_MET) + uint(keys.z != NOT_MET) + uint(keys.w != NOT_MET);
+  uint members = (index << 8) | (others << 6) | ((keys.z & 3u) << 4) | ((keys.y & 3u) << 2) | (keys.x & 3u);
+  return keys.x == NOT_MET ? NO_FAMILY : members;
 }
 
 // A kernel to compare with may bring boxes of its own (tools/plain).
@@ -193,8 +262,7 @@ uint meet_children(uint index) {
   vec4 far_y = unpack_bytes(far.y);
   vec4 far_z = unpack_bytes(far.z);
 
-  // Where a ray comes in first; no t is negative, so their bits are in their order.
-  uvec4 entries = uvec4(NOT_MET);
+  uvec4 met = NONE_MET;
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
     vec3 inverse = packet[ray].inverse_direction;
     precise vec3 step = scale * inverse;
@@ -207,19 +275,13 @@ uint meet_children(uint index) {
     precise vec4 far_t_y = far_y * step.y + far_base.y;
     precise vec4 far_t_z = far_z * step.z + far_base.z;
     vec4 entry = greater(near_t_x, greater(near_t_y, greater(near_t_z, vec4(packet[ray].tmin))));
-    precise vec4 exit = lesser(far_t_x, lesser(far_t_y, far_t_z)) * BOX_WIDENING;
+    vec4 exit = lesser(far_t_x, lesser(far_t_y, far_t_z));
     // A little more than what is left, as t is rounded when the shift comes to it.
     precise float limit = limits[ray] - SHIFT_TO_CULL_BY * shifts[ray];
-    entries = least_where(entries, lessThanEqual(entry, lesser(exit, vec4(limit))), floatBitsToUint(entry));
+    met = add_met(met, lessThanEqual(entry, lesser(exit, vec4(limit))), entry);
   }
 
-  bvec4 is_met = lessThan(uvec4(0u, 1u, 2u, 3u), uvec4(node.frame.w >> 24));
-  is_met = bvec4(is_met.x && entries.x != NOT_MET, is_met.y && entries.y != NOT_MET, is_met.z && entries.z != NOT_MET,
-                 is_met.w && entries.w != NOT_MET);
-  uvec4 keys = sorted(least_where(uvec4(NOT_MET), is_met, (entries & ~3u) | uvec4(0u, 1u, 2u, 3u)));
-  if (keys.x == NOT_MET) return NO_FAMILY;
-  uint others = uint(keys.y != NOT_MET) + uint(keys.z != NOT_MET) + uint(keys.w != NOT_MET);
-  return (index << 8) | (others << 6) | ((keys.z & 3u) << 4) | ((keys.y & 3u) << 2) | (keys.x & 3u);
+  return family_of(index, node.frame.w >> 24, met);
 }
 #endif
 
@@ -233,19 +295,27 @@ bool any_takes_part() {
 void descend(bool any_hit) {
   stack_top = 0u;
   family = NO_FAMILY;
+  needs_second_look = false;
   uint current = any_takes_part() ? 0u : DONE;
-  // Loops rather than branches around the two halves: CPU drivers execute both sides of a branch under a mask, but
-  // leave a loop as soon as no lane is in it.
-  while (current != DONE) {
-    while ((current & CHILD_IS_LEAF) == 0u) {
-      count_steps(1u, 0u);
-      enter_family(meet_children(current));
-      current = take_child();
+  // Loops rather than branches around the parts: CPU drivers execute both sides of a branch under a mask, but leave a
+  // loop as soon as no lane is in it.
+  for (;;) {
+    while (current != DONE && !needs_second_look) {
+      while ((current & CHILD_IS_LEAF) == 0u) {
+        count_steps(1u, 0u);
+        enter_family(meet_children(current));
+        current = take_child();
+      }
+      if (current == DONE) break;
+      if (current != IN_LEAF) enter_leaf(current);
+      intersect_leaf(any_hit);
+      current = IN_LEAF;
+      if (needs_second_look) break;
+      current = any_hit && !any_takes_part() ? DONE : take_child();
     }
-    if (current == DONE) break;
-    intersect_leaf(current, any_hit);
-    if (any_hit && !any_takes_part()) break;
-    current = take_child();
+    if (ANY_HIT == 0u || !needs_second_look) break;
+    intersect_packet_with_triangle(load_primitive(leaf_next - 1u), leaf_next - 1u, any_hit);
+    needs_second_look = false;
   }
 }
 

@@ -48,13 +48,14 @@ RayRecord record_of(const Ray& ray) {
 }
 
 Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const PrimitiveNumbers& numbers) {
-  const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
-  if (record.a.y == layout::NO_ORDER || !(t > ray.tmin && t < ray.tmax)) return {};
   Hit hit;
+  if (record.a.y == layout::NO_ORDER) return hit;
   if (query == HitQuery::kAny) {
     hit.t = 0.0F;
     return hit;
   }
+  const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
+  if (!(t > ray.tmin && t < ray.tmax)) return hit;
   const PrimitiveId id = primitive_of_order(numbers, record.a.y);
   hit.t = t;
   hit.object = static_cast<int32_t>(id.object);

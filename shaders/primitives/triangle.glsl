@@ -18,6 +18,8 @@ float dot2(vec2 a, vec2 b) {
 // A triangle in the plane that the ray pierces at its origin.
 struct ShearedTriangle {
   bool may_be_met;  // as far as the areas tell; cross_triangle has the last word
+  float least;      // of the areas; negative where one has another sign than the determinant
+  float determinant;
   vec2 a;
   vec2 b;
   vec2 c;
@@ -34,15 +36,16 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise vec2 c2 = c.xy - ray.shear.xy * c.z;
 
   // Each is the difference of two rounded products: its sign is that of the exact difference, or it is 0 (an edge
-  // belongs to the triangle).
+  // belongs to the triangle). Outside they are of both signs: one of them has another than their sum.
   precise float u = c2.x * b2.y - c2.y * b2.x;
   precise float v = a2.x * c2.y - a2.y * c2.x;
   precise float w = b2.x * a2.y - b2.y * a2.x;
-  bool is_outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
   precise float determinant = u + v + w;
-  // Edge-on, or an area whose inverse is no longer a float.
+  uint sign = floatBitsToUint(determinant) & 0x80000000u;
+  float least = lesser(lesser(flip_sign(u, sign), flip_sign(v, sign)), flip_sign(w, sign));
+  // Not edge-on, nor an area whose inverse is no longer a float.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
-  return ShearedTriangle(!is_outside && has_area, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
+  return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
 
 // The weights' point should be the origin of the sheared plane. Of slivers and of triangles seen edge-on the weights
@@ -84,14 +87,43 @@ bool is_beyond_corners(vec2 a, vec2 b, vec2 c) {
 // `tmin` and `shear_z` are the ray's.
 Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
   if (!sheared.may_be_met || is_beyond_corners(sheared.a, sheared.b, sheared.c)) return NO_CROSSING;
-  precise float determinant = sheared.areas.x + sheared.areas.y + sheared.areas.z;
-  precise float inverse = 1.0 / determinant;
+  precise float inverse = 1.0 / sheared.determinant;
   precise vec3 raw_weights = sheared.areas * inverse;
   vec3 weights = center_weights(raw_weights, sheared.a, sheared.b, sheared.c);
   vec3 depths = sheared.depths;
   precise float t = (weights.x * depths.x + weights.y * depths.y + weights.z * depths.z) * shear_z;
   if (!(t > tmin)) return NO_CROSSING;
   return Crossing(t, weights.y, weights.z, PART_SIDE);
+}
+
+// What can be told of a triangle that may be met without where: that there is a hit, or that there is none, or neither.
+struct Glance {
+  bool is_met;
+  bool is_missed;
+};
+
+// With W for the sum of the areas' six products, D for the determinant, no more than W, and Z for the sum of the
+// depths: the areas' rounding is 2 u W in all. cross_triangle's weights are off by 12 u W / D, for which it moves them
+// by 27 u W / D along the longest side, so none becomes negative where the least area is over 64 u W; its t is then
+// within 44 u Z W / D of the exact one, what is computed here within 8. What is sure here it finds too.
+Glance glance_at(ShearedTriangle sheared, float shear_z, float tmin, float tmax) {
+  vec2 a = sheared.a;
+  vec2 b = sheared.b;
+  vec2 c = sheared.c;
+  vec3 depths = sheared.depths;
+  precise float rounding = 64.0 * UNIT_ROUNDOFF *
+                           (abs(c.x * b.y) + abs(c.y * b.x) + abs(a.x * c.y) + abs(a.y * c.x) + abs(b.x * a.y) +
+                            abs(b.y * a.x));
+  // As all below times the determinant.
+  precise float error = rounding * (abs(depths.x) + abs(depths.y) + abs(depths.z));
+  precise float sum = sheared.areas.x * depths.x + sheared.areas.y * depths.y + sheared.areas.z * depths.z;
+  float area = abs(sheared.determinant);
+  precise float t = sum * flip_sign(shear_z, floatBitsToUint(sheared.determinant) & 0x80000000u);
+  precise float after = t - tmin * area;
+  precise float before = tmax * area - t;
+  // The second fails where products underflow, and neither holds of NaNs.
+  bool is_sure = sheared.least > rounding && error >= SMALLEST_NORMAL;
+  return Glance(is_sure && after > error && before > error, is_sure && (after < -error || before < -error));
 }
 
 Crossing intersect_triangle(Ray ray, Primitive p) {

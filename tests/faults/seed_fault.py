@@ -34,7 +34,6 @@ FAULTS = {
         "make_ray.glsl": [
             (r"BOX_PADDING = [^;]*;", "BOX_PADDING = 0.0;"),
             (r"ORIGIN_PADDING = [^;]*;", "ORIGIN_PADDING = 0.0;"),
-            (r"BOX_WIDENING = [^;]*;", "BOX_WIDENING = 1.0;"),
         ]
     },
     "fixed_epsilon": {"secondary.glsl": [(r"position \+ lift \*", "position + 1e-4 *")]},

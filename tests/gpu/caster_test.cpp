@@ -145,6 +145,114 @@ TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
   EXPECT_EQ(compile(200), before + 2);
 }
 
+Scene scene_of(const Mesh& mesh) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.objects = {{"", mesh, 0}};
+  return scene;
+}
+
+// Triangles of a square of 32 x 32 cells, all corners at whole numbers, z = 0.
+Mesh make_grid() {
+  constexpr uint32_t kSide = 32;
+  Mesh mesh;
+  for (uint32_t y = 0; y <= kSide; ++y) {
+    for (uint32_t x = 0; x <= kSide; ++x) mesh.positions.emplace_back(x, y, 0.0F);
+  }
+  for (uint32_t y = 0; y < kSide; ++y) {
+    for (uint32_t x = 0; x < kSide; ++x) {
+      const uint32_t corner = y * (kSide + 1) + x;
+      mesh.triangles.push_back({corner, corner + 1, corner + kSide + 2});
+      mesh.triangles.push_back({corner, corner + kSide + 2, corner + kSide + 1});
+    }
+  }
+  return mesh;
+}
+
+class AnyHitTest : public CasterTest {
+ protected:
+  /// Expects any hit where there is a nearest one; returns the part of the rays that have one.
+  static double part_of_hits(const Scene& scene, std::span<const Ray> rays) {
+    const std::vector<Hit> nearest = cast(scene, rays);
+    const std::vector<Hit> any = cast(scene, rays, HitQuery::kAny);
+    size_t hit_count = 0;
+    size_t difference_count = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const bool is_hit = nearest[i].object >= 0;
+      difference_count += any[i].t == (is_hit ? 0.0F : kInfinity) ? 0 : 1;
+      hit_count += is_hit ? 1 : 0;
+    }
+    EXPECT_EQ(difference_count, 0U);
+    return static_cast<double>(hit_count) / static_cast<double>(rays.size());
+  }
+};
+
+// Where a glance cannot tell: edges and corners, and ends of the ray on the triangle.
+TEST_F(AnyHitTest, IsFoundAtEdgesAndEnds) {
+  std::vector<Ray> rays;
+  for (const float z : {8.0F, 1024.0F, 1.0e6F}) {
+    // Straight down and askew, through halves, which are corners, edges and diagonals, and through what is none.
+    for (const vec3 lean : {vec3(0.0F), vec3(0.5F, 0.25F, 0.0F)}) {
+      for (int i = 0; i < 65 * 65; ++i) {
+        const int column = i % 65;
+        const int row = i / 65;
+        const vec3 nudge = i % 3 == 0 ? vec3(0.1F, 0.2F, 0.0F) : vec3(0.0F);
+        const vec3 target = 0.5F * vec3(column, row, 0) + nudge;
+        const vec3 direction = vec3(0, 0, -1) + lean;
+        for (const float tmax : {z, std::nextafter(z, kInfinity), kInfinity}) {
+          rays.push_back({target - z * direction, 0.0F, direction, tmax});
+        }
+        rays.push_back({target, 0.0F, direction, kInfinity});
+      }
+    }
+  }
+  const double part = part_of_hits(scene_of(make_grid()), rays);
+  EXPECT_GT(part, 0.25);
+  EXPECT_LT(part, 0.75);
+}
+
+TEST_F(AnyHitTest, IsFoundOnSlivers) {
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+  const auto random = [&] { return vec3(uniform(generator), uniform(generator), uniform(generator)); };
+  Mesh mesh;
+  std::vector<Ray> rays;
+  for (uint32_t i = 0; i < 20000; ++i) {
+    const vec3 a = random();
+    const vec3 b = a + 0.1F * random();
+    const float middle = 0.5F + 0.5F * uniform(generator);
+    const vec3 c = a + middle * (b - a) + std::pow(10.0F, -3.5F + 3.0F * uniform(generator)) * random();
+    mesh.positions.insert(mesh.positions.end(), {a, b, c});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    const vec3 target = (a + b + c) / 3.0F;
+    const vec3 origin = 3.0F * random();
+    // There, up to there, and from there on.
+    rays.push_back({origin, 0.0F, target - origin, kInfinity});
+    rays.push_back({origin, 0.0F, target - origin, 1.0F});
+    rays.push_back({target, 0.0F, target - origin, kInfinity});
+    // In its plane, as far as that can be told.
+    rays.push_back({a + 3.0F * (b - a), 0.0F, target - (a + 3.0F * (b - a)), kInfinity});
+  }
+  const double part = part_of_hits(scene_of(mesh), rays);
+  EXPECT_GT(part, 0.1);
+  EXPECT_LT(part, 0.9);
+}
+
+// In units of so short a direction t would be 10^40.
+TEST_F(CasterTest, HitsWithoutATAreNone) {
+  Mesh mesh;
+  mesh.positions = {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0)};
+  mesh.triangles = {{0, 1, 2}};
+  const Scene scene = scene_of(mesh);
+  const std::vector<Ray> rays = {{vec3(0, 0, 1e10F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
+                                 {vec3(0, 0, 1e7F), 0.0F, vec3(0, 0, -1e-30F), kInfinity}};
+  for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
+    const std::vector<Hit> hits = cast(scene, rays, query);
+    EXPECT_EQ(hits[0].t, kInfinity);
+    EXPECT_LT(hits[1].t, kInfinity);
+  }
+}
+
 // llvmpipe ends a lane's loops after 65535 turns: what it then has is no answer.
 TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
   constexpr int kSlivers = 40000;
@@ -160,9 +268,7 @@ TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
   const float back = kSlivers + 1;
   mesh.positions.insert(mesh.positions.end(), {vec3(-9, -9, back), vec3(9, -9, back), vec3(0, 9, back)});
   mesh.triangles.push_back({last, last + 1, last + 2});
-  Scene scene;
-  scene.materials.resize(1);
-  scene.objects = {{"", mesh, 0}};
+  const Scene scene = scene_of(mesh);
   const std::vector<Ray> rays = {{vec3(-0.5F, 0.5F, 0), 0.0F, vec3(0, 0, 1), kInfinity}};
   try {
     EXPECT_EQ(cast(scene, rays)[0].primitive, kSlivers);

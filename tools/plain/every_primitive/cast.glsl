@@ -9,8 +9,8 @@ void test_every_primitive(bool any_hit) {
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
   if (has(FEATURE_PLANES)) intersect_planes(any_hit);
   if ((FEATURES & SOLID_FEATURES) == 0u) return;
-  uint i = 0u;
-  uint end = dispatch.counts.x;
+  leaf_next = 0u;
+  leaf_end = dispatch.counts.x;
   INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle)
   INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
   INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)

@@ -53,7 +53,7 @@ uint meet_children(uint index) {
   vec4 far_y = is_backward.y ? lo_y : hi_y;
   vec4 far_z = is_backward.z ? lo_z : hi_z;
 
-  uvec4 entries = uvec4(NOT_MET);
+  uvec4 met = NONE_MET;
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
     vec3 inverse = packet[ray].inverse_direction;
     vec3 near_origin = packet[ray].near_origin;
@@ -62,17 +62,10 @@ uint meet_children(uint index) {
         slab(near_x, near_origin.x, inverse.x),
         greater(slab(near_y, near_origin.y, inverse.y),
                 greater(slab(near_z, near_origin.z, inverse.z), vec4(packet[ray].tmin))));
-    precise vec4 exit = lesser(slab(far_x, far_origin.x, inverse.x),
-                               lesser(slab(far_y, far_origin.y, inverse.y), slab(far_z, far_origin.z, inverse.z))) *
-                        BOX_WIDENING;
-    entries = least_where(entries, lessThanEqual(entry, lesser(exit, vec4(limits[ray]))), floatBitsToUint(entry));
+    vec4 exit = lesser(slab(far_x, far_origin.x, inverse.x),
+                       lesser(slab(far_y, far_origin.y, inverse.y), slab(far_z, far_origin.z, inverse.z)));
+    met = add_met(met, lessThanEqual(entry, lesser(exit, vec4(limits[ray]))), entry);
   }
 
-  bvec4 is_child = lessThan(uvec4(0u, 1u, 2u, 3u), uvec4(load_child_count(index)));
-  bvec4 is_met = bvec4(is_child.x && entries.x != NOT_MET, is_child.y && entries.y != NOT_MET,
-                       is_child.z && entries.z != NOT_MET, is_child.w && entries.w != NOT_MET);
-  uvec4 keys = sorted(least_where(uvec4(NOT_MET), is_met, (entries & ~3u) | uvec4(0u, 1u, 2u, 3u)));
-  if (keys.x == NOT_MET) return NO_FAMILY;
-  uint others = uint(keys.y != NOT_MET) + uint(keys.z != NOT_MET) + uint(keys.w != NOT_MET);
-  return (index << 8) | (others << 6) | ((keys.z & 3u) << 4) | ((keys.y & 3u) << 2) | (keys.x & 3u);
+  return family_of(index, load_child_count(index), met);
 }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_ray.glsl without what makes it robust: boxes as they are.
 
-const float BOX_WIDENING = 1.0;
-
 // Rays start where they start.
 bool is_far_away(Ray ray) { return false; }
 float distance_to_tree(Ray ray) { return 0.0; }
