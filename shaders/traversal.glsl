@@ -36,7 +36,7 @@ void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool 
 // What is left of the leaf at hand.
 uint leaf_next;
 uint leaf_end;
-// Its triangle before that is to be looked at again.
+// Its triangle just before that is to be looked at again.
 bool needs_second_look;
 
 bool is_next_in_leaf(uint kind, uint feature) {
@@ -125,6 +125,7 @@ void intersect_leaf(bool any_hit) {
     }
     ++leaf_next;
   }
+  if (needs_second_look) return;
   INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
   INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
   INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)
@@ -380,7 +381,7 @@ void descend_from_nearby(bool any_hit) {
 }
 
 // Fills `found` from `packet`: with the nearest hits, or with `any_hit` some hits; where there is none, `primitive` is
-// NO_PRIMITIVE.
+// NO_PRIMITIVE. With ANY_HIT only that and `order` are told.
 void trace_packet(bool any_hit) {
   [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
     shifts[ray] = 0.0;

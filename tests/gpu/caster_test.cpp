@@ -190,9 +190,9 @@ class AnyHitTest : public CasterTest {
 // Where a glance cannot tell: edges and corners, and ends of the ray on the triangle.
 TEST_F(AnyHitTest, IsFoundAtEdgesAndEnds) {
   std::vector<Ray> rays;
-  for (const float z : {8.0F, 1024.0F, 1.0e6F}) {
+  for (const float z : {8.0F, 7.3F, 1024.0F, 1.0e6F}) {
     // Straight down and askew, through halves, which are corners, edges and diagonals, and through what is none.
-    for (const vec3 lean : {vec3(0.0F), vec3(0.5F, 0.25F, 0.0F)}) {
+    for (const vec3 lean : {vec3(0.0F), vec3(0.5F, 0.25F, 0.0F), vec3(-0.3F, 0.7F, 0.0F)}) {
       for (int i = 0; i < 65 * 65; ++i) {
         const int column = i % 65;
         const int row = i / 65;
@@ -238,6 +238,40 @@ TEST_F(AnyHitTest, IsFoundOnSlivers) {
   EXPECT_LT(part, 0.9);
 }
 
+// What the second look is at is the triangle, not what comes after it in the leaf.
+TEST_F(AnyHitTest, IsFoundBesideSolids) {
+  Mesh mesh;
+  mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
+  mesh.triangles = {{0, 1, 2}};
+  Scene scene = scene_of(mesh);
+  // All in one leaf.
+  scene.objects.push_back({"", Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F}, 0});
+  scene.objects.push_back({"", Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}, 0});
+  std::vector<Ray> rays;
+  for (const float z : {4.0F, 4.0e3F, 4.0e6F}) {
+    for (int i = 0; i <= 64; ++i) {
+      const float x = static_cast<float>(i) / 64.0F;
+      // Along the sides, and inside up to the triangle and a little beyond.
+      rays.push_back({vec3(x, 0, z), 0.0F, vec3(0, 0, -1), kInfinity});
+      rays.push_back({vec3(0, x, z), 0.0F, vec3(0, 0, -1), kInfinity});
+      rays.push_back({vec3(0.3F * x, 0.3F, z), 0.0F, vec3(0, 0, -1), z});
+      rays.push_back({vec3(0.3F * x, 0.3F, z), 0.0F, vec3(0, 0, -1), std::nextafter(z, kInfinity)});
+    }
+  }
+  EXPECT_NEAR(part_of_hits(scene, rays), 0.75, 0.01);
+}
+
+// Products overflow in a glance that do not in the whole test.
+TEST_F(AnyHitTest, IsFoundInVastScenes) {
+  const float size = 6.0e12F;
+  Mesh mesh;
+  mesh.positions = {size * vec3(0, 1, -1), size * vec3(-1, -1, 1.1F), size * vec3(1, -1, 1.1F)};
+  mesh.triangles = {{0, 1, 2}};
+  const std::vector<Ray> rays = {{vec3(0.0F), 0.0F, vec3(0, 0, 1), kInfinity},
+                                 {vec3(0.0F), 0.0F, vec3(0, 0, -1), kInfinity}};
+  EXPECT_DOUBLE_EQ(part_of_hits(scene_of(mesh), rays), 0.5);
+}
+
 // In units of so short a direction t would be 10^40.
 TEST_F(CasterTest, HitsWithoutATAreNone) {
   Mesh mesh;
@@ -245,11 +279,15 @@ TEST_F(CasterTest, HitsWithoutATAreNone) {
   mesh.triangles = {{0, 1, 2}};
   const Scene scene = scene_of(mesh);
   const std::vector<Ray> rays = {{vec3(0, 0, 1e10F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
-                                 {vec3(0, 0, 1e7F), 0.0F, vec3(0, 0, -1e-30F), kInfinity}};
+                                 {vec3(0, 0, 1e7F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
+                                 {vec3(0, 0, 100), 0.0F, vec3(0, 0, -1e-37F), kInfinity},
+                                 {vec3(0, 0, 10), 0.0F, vec3(0, 0, -1e-37F), kInfinity}};
   for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
     const std::vector<Hit> hits = cast(scene, rays, query);
     EXPECT_EQ(hits[0].t, kInfinity);
     EXPECT_LT(hits[1].t, kInfinity);
+    EXPECT_EQ(hits[2].t, kInfinity);
+    EXPECT_LT(hits[3].t, kInfinity);
   }
 }
 

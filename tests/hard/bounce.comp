@@ -27,7 +27,7 @@ void main() {
   RayRecord request = load_ray(index);
   Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
                      request.direction_tmax.w);
-  Hit hit = trace(ray, ANY_HIT != 0u);
+  Hit hit = trace(ray, false);
   hits[index] = HitRecord(uvec4(0u), uvec4(0u, 0u, 0u, NO_ORDER));
   if (hit.primitive == NO_PRIMITIVE) return;
   SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// cast.glsl without intersections: each ray is tested against the boxes of every node. What it tells instead of a hit
+// cast.glsl for nearest hits without intersections: each ray is tested against the boxes of every node. What it tells instead of a hit
 // is which of the last node's children it meets, a bit each, in the place of u; t counts all that it meets.
 
 uint children_of(uint met) {
