@@ -56,8 +56,10 @@ precise float power(float x, float y) {
   return e * uintBitsToFloat(uint(int(n) + 127) << 23);
 }
 
-// `sign` is 0x80000000 or 0.
-float flip_sign(float x, uint sign) { return uintBitsToFloat(floatBitsToUint(x) ^ sign); }
+// -x where `other` is negative.
+float times_sign_of(float x, float other) {
+  return uintBitsToFloat(floatBitsToUint(x) ^ (floatBitsToUint(other) & 0x80000000u));
+}
 
 // Of each pair the greater and the lesser; the second where either is a NaN, which comes of 0 * infinity in scenes
 // beyond 10^18: what a NaN should bound is then bounded by tmin or the hit so far alone. GLSL's max and min take three

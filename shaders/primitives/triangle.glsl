@@ -41,8 +41,8 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise float v = a2.x * c2.y - a2.y * c2.x;
   precise float w = b2.x * a2.y - b2.y * a2.x;
   precise float determinant = u + v + w;
-  uint sign = floatBitsToUint(determinant) & 0x80000000u;
-  float least = lesser(lesser(flip_sign(u, sign), flip_sign(v, sign)), flip_sign(w, sign));
+  float least = lesser(lesser(times_sign_of(u, determinant), times_sign_of(v, determinant)),
+                       times_sign_of(w, determinant));
   // Not edge-on, nor an area whose inverse is no longer a float.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
@@ -123,12 +123,11 @@ Glance glance_at(ShearedTriangle sheared, float shear_z, float tmin, float tmax)
   precise float error = rounding * (abs(depths.x) + abs(depths.y) + abs(depths.z));
   precise float sum = sheared.areas.x * depths.x + sheared.areas.y * depths.y + sheared.areas.z * depths.z;
   float area = abs(sheared.determinant);
-  precise float t = sum * flip_sign(shear_z, floatBitsToUint(sheared.determinant) & 0x80000000u);
+  precise float t = sum * times_sign_of(shear_z, sheared.determinant);
   precise float after = t - tmin * area;
   precise float before = tmax * area - t;
   // False of NaNs.
-  bool is_sure =
-      sheared.least > rounding && rounding >= LEAST_SURE && error >= LEAST_SURE && error <= MOST_SURE;
+  bool is_sure = sheared.least > rounding && rounding >= LEAST_SURE && error >= LEAST_SURE && error <= MOST_SURE;
   return Glance(is_sure && after > error && before > error, is_sure && (after < -error || before < -error));
 }
 

@@ -15,6 +15,7 @@
 #include "gpu/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "measure/meshes.h"
 #include "oracle/verdict.h"
 #include "rays/ray_tiles.h"
 #include "render/pack_scene.h"
@@ -23,6 +24,8 @@
 
 namespace promin {
 namespace {
+
+using measure::scene_of;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -145,13 +148,6 @@ TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
   EXPECT_EQ(compile(200), before + 2);
 }
 
-Scene scene_of(const Mesh& mesh) {
-  Scene scene;
-  scene.materials.resize(1);
-  scene.objects = {{"", mesh, 0}};
-  return scene;
-}
-
 // Triangles of a square of 32 x 32 cells, all corners at whole numbers, z = 0.
 Mesh make_grid() {
   constexpr uint32_t kSide = 32;
@@ -206,7 +202,7 @@ TEST_F(AnyHitTest, IsFoundAtEdgesAndEnds) {
       }
     }
   }
-  const double part = part_of_hits(scene_of(make_grid()), rays);
+  const double part = part_of_hits(scene_of({make_grid()}), rays);
   EXPECT_GT(part, 0.25);
   EXPECT_LT(part, 0.75);
 }
@@ -233,7 +229,7 @@ TEST_F(AnyHitTest, IsFoundOnSlivers) {
     // In its plane, as far as that can be told.
     rays.push_back({a + 3.0F * (b - a), 0.0F, target - (a + 3.0F * (b - a)), kInfinity});
   }
-  const double part = part_of_hits(scene_of(mesh), rays);
+  const double part = part_of_hits(scene_of({mesh}), rays);
   EXPECT_GT(part, 0.1);
   EXPECT_LT(part, 0.9);
 }
@@ -243,10 +239,9 @@ TEST_F(AnyHitTest, IsFoundBesideSolids) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
-  Scene scene = scene_of(mesh);
   // All in one leaf.
-  scene.objects.push_back({"", Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F}, 0});
-  scene.objects.push_back({"", Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}, 0});
+  const Scene scene = scene_of(
+      {mesh, Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F}, Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}});
   std::vector<Ray> rays;
   for (const float z : {4.0F, 4.0e3F, 4.0e6F}) {
     for (int i = 0; i <= 64; ++i) {
@@ -269,7 +264,7 @@ TEST_F(AnyHitTest, IsFoundInVastScenes) {
   mesh.triangles = {{0, 1, 2}};
   const std::vector<Ray> rays = {{vec3(0.0F), 0.0F, vec3(0, 0, 1), kInfinity},
                                  {vec3(0.0F), 0.0F, vec3(0, 0, -1), kInfinity}};
-  EXPECT_DOUBLE_EQ(part_of_hits(scene_of(mesh), rays), 0.5);
+  EXPECT_DOUBLE_EQ(part_of_hits(scene_of({mesh}), rays), 0.5);
 }
 
 // In units of so short a direction t would be 10^40.
@@ -277,7 +272,7 @@ TEST_F(CasterTest, HitsWithoutATAreNone) {
   Mesh mesh;
   mesh.positions = {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
-  const Scene scene = scene_of(mesh);
+  const Scene scene = scene_of({mesh});
   const std::vector<Ray> rays = {{vec3(0, 0, 1e10F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
                                  {vec3(0, 0, 1e7F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
                                  {vec3(0, 0, 100), 0.0F, vec3(0, 0, -1e-37F), kInfinity},
@@ -306,7 +301,7 @@ TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
   const float back = kSlivers + 1;
   mesh.positions.insert(mesh.positions.end(), {vec3(-9, -9, back), vec3(9, -9, back), vec3(0, 9, back)});
   mesh.triangles.push_back({last, last + 1, last + 2});
-  const Scene scene = scene_of(mesh);
+  const Scene scene = scene_of({mesh});
   const std::vector<Ray> rays = {{vec3(-0.5F, 0.5F, 0), 0.0F, vec3(0, 0, 1), kInfinity}};
   try {
     EXPECT_EQ(cast(scene, rays)[0].primitive, kSlivers);
@@ -332,9 +327,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
 
 // Directions that fp32 arithmetic alone would lose: denormal, and near the largest number.
 TEST_F(CasterTest, DirectionsHaveAnyLength) {
-  Scene scene;
-  scene.materials.resize(1);
-  scene.objects = {{"", Sphere{vec3(0.0F), 1e-3F}, 0}};
+  const Scene scene = scene_of({Sphere{vec3(0.0F), 1e-3F}});
   const vec3 origin(0, 0, 2e-3F);
   for (const float length : {1e-40F, 1e-37F, 1.2e-38F, 1.0F, 1e37F, 1.7e38F, 3e38F}) {
     const std::vector<Ray> rays = {{origin, 0.0F, vec3(0, 0, -length), kInfinity},

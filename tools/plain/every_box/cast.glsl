@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// cast.glsl for nearest hits without intersections: each ray is tested against the boxes of every node. What it tells instead of a hit
-// is which of the last node's children it meets, a bit each, in the place of u; t counts all that it meets.
+// cast.glsl for nearest hits without intersections: each ray is tested against the boxes of every node. What it tells
+// instead of a hit is which of the last node's children it meets, a bit each, in the place of u; t counts all that it
+// meets.
 
 uint children_of(uint met) {
   if (met == NO_FAMILY) return 0u;
