@@ -9,7 +9,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {
@@ -61,11 +61,11 @@ void refuse_leftovers(const CLI::App& program) {
 
 }  // namespace
 
-void Words::refuse(const std::string& what) const {
+void OptionValues::refuse(const std::string& what) const {
   throw UsageError({what, kWhere, cure_for(command_)});
 }
 
-uint32_t Words::whole(size_t i, uint32_t min, uint32_t max) const {
+uint32_t OptionValues::whole(size_t i, uint32_t min, uint32_t max) const {
   uint32_t number = 0;
   if (!parse_number(words_[i], number) || number < min || number > max) {
     refuse(fmt::format("{} takes a whole number from {} to {}, not \"{}\"", option_, min, max, words_[i]));
@@ -73,7 +73,7 @@ uint32_t Words::whole(size_t i, uint32_t min, uint32_t max) const {
   return number;
 }
 
-double Words::real(size_t i, double min, double max) const {
+double OptionValues::real(size_t i, double min, double max) const {
   double number = 0.0;
   // Written so that a NaN is refused.
   if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
@@ -82,11 +82,11 @@ double Words::real(size_t i, double min, double max) const {
   return number;
 }
 
-dvec3 Words::vector(double max) const {
+dvec3 OptionValues::vector(double max) const {
   return {real(0, -max, max), real(1, -max, max), real(2, -max, max)};
 }
 
-const std::string& Words::choice(std::span<const std::string_view> choices) const {
+const std::string& OptionValues::choice(std::span<const std::string_view> choices) const {
   if (std::find(choices.begin(), choices.end(), text()) == choices.end()) {
     refuse(fmt::format("{} takes {}, not \"{}\"", option_, fmt::join(choices, " or "), text()));
   }
@@ -99,7 +99,7 @@ void OptionTable::add(const std::string& names, const std::string& placeholders,
   const auto count = static_cast<int>(std::count(placeholders.begin(), placeholders.end(), ' ')) + 1;
   const auto receive = [path = path_of(command_), name = display_name(names),
                         set = std::move(set)](const std::vector<std::string>& words) {
-    set(Words(path, name, words));
+    set(OptionValues(path, name, words));
     return true;
   };
   CLI::Option* option = command_.add_option(names, CLI::callback_t(receive), help);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/math.h"
+#include "promin/math.h"
 
 namespace CLI {
 class App;
@@ -20,9 +20,9 @@ namespace promin::app {
 
 /// The words that the user gave to one option. Every reading throws UsageError, which names the option, what it takes
 /// and what it got.
-class Words {
+class OptionValues {
  public:
-  Words(std::string command, std::string option, std::vector<std::string> words)
+  OptionValues(std::string command, std::string option, std::vector<std::string> words)
       : command_(std::move(command)), option_(std::move(option)), words_(std::move(words)) {}
 
   const std::vector<std::string>& all() const { return words_; }
@@ -37,7 +37,7 @@ class Words {
   const std::string& choice(std::span<const std::string_view> choices) const;
 
   /// Parts of the words, to be read as words of the same option.
-  Words with(std::vector<std::string> words) const { return {command_, option_, std::move(words)}; }
+  OptionValues with(std::vector<std::string> words) const { return {command_, option_, std::move(words)}; }
 
   [[noreturn]] void refuse(const std::string& what) const;
 
@@ -52,7 +52,7 @@ class OptionTable {
  public:
   explicit OptionTable(CLI::App& command);
 
-  using Setter = std::function<void(const Words&)>;
+  using Setter = std::function<void(const OptionValues&)>;
   /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
   /// takes: "N", "W H".
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);

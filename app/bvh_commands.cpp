@@ -9,18 +9,18 @@
 #include <map>
 #include <memory>
 
+#include "bvh/find_tree_faults.h"
+#include "bvh/read_node.h"
 #include "console.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
+#include "device_scene/pack_scene.h"
 #include "outputs.h"
 #include "progress.h"
-#include "render/find_tree_faults.h"
-#include "render/pack_scene.h"
-#include "render/read_node.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 #include "rows.h"
-#include "scene/load_scene.h"
 #include "tracing_options.h"
 
 namespace promin::app {
@@ -42,16 +42,18 @@ struct BvhOptions {
 };
 
 void add_scene_row(OptionTable& table, BvhOptions& options) {
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj", [&](const Words& w) { options.scene = w.text(); });
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+                     [&](const OptionValues& w) { options.scene = w.text(); });
 }
 
 void add_file_row(OptionTable& table, BvhOptions& options) {
-  table.add_required("FILE.pbvh", "", "BVH file of promin-bvh build", [&](const Words& w) { options.file = w.text(); });
+  table.add_required("FILE.pbvh", "", "BVH file of promin-bvh build",
+                     [&](const OptionValues& w) { options.file = w.text(); });
 }
 
 void add_common_rows(OptionTable& table, BvhOptions& options) {
   table.add("--threads", "N", fmt::format("Threads to use, 1 to {} [one a core]", kMaxThreads),
-            [&](const Words& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
+            [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
   table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
   table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
 }
@@ -160,10 +162,10 @@ Command add_build_command(CLI::App& program) {
   OptionTable table(command);
   add_scene_row(table, *options);
   table.add_required("-o,--output", "FILE.pbvh", "BVH file to write",
-                     [options](const Words& w) { options->file = w.text(); });
+                     [options](const OptionValues& w) { options->file = w.text(); });
   table.add("--builder", "NAME",
             fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), options->builder),
-            [options](const Words& w) { options->builder = w.choice(builder_names()); });
+            [options](const OptionValues& w) { options->builder = w.choice(builder_names()); });
   add_common_rows(table, *options);
   return {&command, [options] { build(*options); }};
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera.h"
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/math.h"
-#include "scene/scene.h"
+#include "promin/math.h"
+#include "promin/scene.h"
 
 namespace promin {
 
@@ -30,7 +30,7 @@ class FreeCamera {
   /// At the origin, looking along -Z with +Y up; the projection is Camera's default.
   FreeCamera() : FreeCamera(Camera{}) {}
 
-  /// Takes over pose and projection. Look and up are orthonormal to fp32 rounding, as Camera promises.
+  /// Takes over pose and projection. RenderMode and up are orthonormal to fp32 rounding, as Camera promises.
   explicit FreeCamera(const Camera& camera);
 
   /// From directions of any length. They are used as given, to the bit, where they are orthonormal to rounding;

@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "camera.h"
-#include "core/error.h"
 #include "core/file.h"
-#include "scene/json_rule.h"
-#include "scene/load_scene.h"
-#include "scene/parse_json.h"
+#include "formats/gltf/json_rule.h"
+#include "formats/gltf/parse_json.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 namespace promin {
 

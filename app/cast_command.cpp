@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "console.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "outputs.h"
 #include "progress.h"
+#include "promin/caster.h"
+#include "promin/error.h"
 #include "rays/npy.h"
-#include "render/caster.h"
 #include "tracing_run.h"
 
 namespace promin::app {
@@ -39,10 +39,10 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
   OptionTable table(command);
   add_scene_argument(table, options.tracing);
   table.add_required("RAYS.npy", "", "NumPy array of N x 8 float32: origin xyz, tmin, direction xyz (any length), tmax",
-                     [&](const Words& w) { options.rays = w.text(); });
+                     [&](const OptionValues& w) { options.rays = w.text(); });
   table.add_required_repeated("-o,--output", "HITS.npy",
                               "NumPy array to write: t, object, primitive, u, v, normal of each ray's nearest hit",
-                              [&](const Words& w) {
+                              [&](const OptionValues& w) {
                                 if (w.all().size() > 1) w.refuse("--output takes one file here");
                                 options.hits = w.text();
                               });

@@ -6,7 +6,7 @@
 
 #include <cstdio>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 

@@ -7,8 +7,8 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 
-#include "core/error.h"
-#include "gpu/device_info.h"
+#include "promin/device_info.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {

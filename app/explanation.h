@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "render/explain.h"
-#include "scene/scene.h"
+#include "promin/explain.h"
+#include "promin/scene.h"
 
 namespace promin::app {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "camera_path.h"
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {

@@ -10,10 +10,10 @@
 #include <memory>
 
 #include "console.h"
-#include "render/pack_scene.h"
+#include "device_scene/pack_scene.h"
+#include "promin/load_scene.h"
 #include "rows.h"
 #include "scene/features.h"
-#include "scene/load_scene.h"
 #include "scene_counts.h"
 #include "view_setup.h"
 
@@ -92,7 +92,7 @@ Command add_info_command(CLI::App& program) {
   CLI::App& command = add_command(program, "info", "Print what a scene holds and what is modelled of it");
   const auto file = std::make_shared<std::filesystem::path>();
   OptionTable(command).add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
-                                    [file](const Words& w) { *file = w.text(); });
+                                    [file](const OptionValues& w) { *file = w.text(); });
   return {&command, [file] { print_info(*file); }};
 }
 

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <set>
 
-#include "core/error.h"
 #include "core/file.h"
 #include "deferred_signals.h"
-#include "image/image.h"
+#include "promin/error.h"
+#include "promin/image.h"
 
 namespace promin::app {
 namespace fs = std::filesystem;

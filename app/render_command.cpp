@@ -11,16 +11,16 @@
 #include <memory>
 
 #include "console.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "frame_plan.h"
-#include "image/image.h"
 #include "layout.h"
 #include "outputs.h"
 #include "progress.h"
+#include "promin/error.h"
+#include "promin/image.h"
 #include "render_options.h"
 #include "tracing_run.h"
 #include "view_setup.h"

@@ -11,10 +11,10 @@
 
 #include "arguments.h"
 #include "camera_path.h"
-#include "core/error.h"
-#include "image/image.h"
-#include "render/sampling.h"
-#include "scene/load_scene.h"
+#include "promin/error.h"
+#include "promin/image.h"
+#include "promin/load_scene.h"
+#include "trace/sampling.h"
 
 namespace promin::app {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 constexpr std::array<std::string_view, 4> kAovNames = {"depth", "normal", "object", "primitive"};
 
 /// From names between commas.
-AovChoice read_aovs(const Words& words) {
+AovChoice read_aovs(const OptionValues& words) {
   AovChoice choice;
   const std::array<bool*, kAovNames.size()> switches = {&choice.depth, &choice.normal, &choice.object,
                                                         &choice.primitive};
@@ -44,7 +44,7 @@ AovChoice read_aovs(const Words& words) {
   return choice;
 }
 
-PixelWindow read_window(const Words& words) {
+PixelWindow read_window(const OptionValues& words) {
   const PixelWindow window = {{words.whole(0, 0, kMaxSide), words.whole(1, 0, kMaxSide)},
                               {words.whole(2, 0, kMaxSide), words.whole(3, 0, kMaxSide)}};
   if (window.lo.x >= window.hi.x || window.lo.y >= window.hi.y) {
@@ -53,24 +53,24 @@ PixelWindow read_window(const Words& words) {
   return window;
 }
 
-Shading read_shading(const Words& words) {
+Shading read_shading(const OptionValues& words) {
   const std::span<const std::string_view> names = shading_names();
   const auto place = std::find(names.begin(), names.end(), words.choice(names));
   return static_cast<Shading>(place - names.begin());
 }
 
 /// "3-7", or "3" alone.
-FrameRange read_frames(const Words& words) {
+FrameRange read_frames(const OptionValues& words) {
   const std::string& text = words.text();
   const size_t dash = text.find('-');
-  const Words ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
+  const OptionValues ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
   const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
   if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
   return range;
 }
 
 /// Numbers between commas.
-std::vector<uint32_t> read_numbers(const Words& words) {
+std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
   std::istringstream list(words.text() + ",");
   for (std::string number; std::getline(list, number, ',');) {
@@ -105,27 +105,27 @@ void check_explain_options(const RenderOptions& options) {
 void add_view_options(OptionTable& table, ViewOptions& view) {
   PoseOptions& pose = view.pose;
   table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
-            [&](const Words& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
+            [&](const OptionValues& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--max-depth", "N",
             fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
-            [&](const Words& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
+            [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
   table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(shading_names(), ", ")),
-            [&](const Words& w) { view.shading = read_shading(w); });
+            [&](const OptionValues& w) { view.shading = read_shading(w); });
   table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
   table.add("--lights-off", "INDICES", "Sources to leave out, by their numbers from 0 with commas between",
-            [&](const Words& w) { view.lights_off = read_numbers(w); });
+            [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
-            [&](const Words& w) { view.camera = w.text(); });
+            [&](const OptionValues& w) { view.camera = w.text(); });
   table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",
-            [&](const Words& w) { pose.eye = w.vector(kMaxCoordinate); });
+            [&](const OptionValues& w) { pose.eye = w.vector(kMaxCoordinate); });
   table.add("--look", "X Y Z", "Direction of view, instead of the camera's",
-            [&](const Words& w) { pose.look = w.vector(kMaxCoordinate); });
+            [&](const OptionValues& w) { pose.look = w.vector(kMaxCoordinate); });
   table.add("--up", "X Y Z", "Direction that is up in the picture [with --look 0 1 0, else the camera's]",
-            [&](const Words& w) { pose.up = w.vector(kMaxCoordinate); });
+            [&](const OptionValues& w) { pose.up = w.vector(kMaxCoordinate); });
   table.add("--fov", "DEG", "Vertical field of view in degrees, instead of the camera's",
-            [&](const Words& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
+            [&](const OptionValues& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
   table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
-            [&](const Words& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
+            [&](const OptionValues& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
 }
 
 void add_fps_option(OptionTable& table, std::optional<double>& fps) {
@@ -133,7 +133,7 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
       "--fps", "N|stored",
       fmt::format("Pictures a second of the path, {} to {}, or its frames as stored [as the path says, else stored]",
                   PathPictures::kMinFps, PathPictures::kMaxFps),
-      [&](const Words& w) {
+      [&](const OptionValues& w) {
         const bool is_stored = w.text() == "stored";
         fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps);
       });
@@ -145,25 +145,27 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
   add_scene_argument(table, options.tracing);
   table.add_repeated("-o,--output", "FILE", "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
-                     [&](const Words& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+                     [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
-            [&](const Words& w) { options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide)); });
+            [&](const OptionValues& w) {
+              options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
+            });
   table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
-            [&](const Words& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+            [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   add_view_options(table, view);
   table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
-            [&](const Words& w) { view.crop = read_window(w); });
+            [&](const OptionValues& w) { view.crop = read_window(w); });
 
   table.add("--path", "FILE.json", "Render the frames of a camera path, each to -o with its number in place of ####",
-            [&](const Words& w) { options.path = w.text(); });
+            [&](const OptionValues& w) { options.path = w.text(); });
   table.add("--frames", "A-B", "Of the path, the frames A to B, both included; the first is 0 [all]",
-            [&](const Words& w) { options.frames = read_frames(w); });
+            [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
 
   table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(kAovNames, ",")),
-            [&](const Words& w) { options.aovs = read_aovs(w); });
+            [&](const OptionValues& w) { options.aovs = read_aovs(w); });
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
-            [&](const Words& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
+            [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);
 }

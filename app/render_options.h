@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/math.h"
-#include "render/renderer.h"
+#include "promin/math.h"
+#include "promin/renderer.h"
 #include "tracing_options.h"
 
 namespace CLI {

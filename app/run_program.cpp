@@ -10,7 +10,7 @@
 #include <new>
 #include <vector>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "gpu/device_info.h"
-#include "image/image.h"
+#include "promin/device_info.h"
+#include "promin/image.h"
+#include "promin/renderer.h"
 #include "quantiles.h"
-#include "render/renderer.h"
 #include "scene_counts.h"
 
 namespace promin::app {

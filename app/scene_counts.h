@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 namespace promin::app {
 

@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "arguments.h"
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {
@@ -15,26 +15,27 @@ constexpr uint32_t kMaxRepeats = 10000;
 }  // namespace
 
 void add_scene_argument(OptionTable& table, TracingOptions& options) {
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj", [&](const Words& w) { options.scene = w.text(); });
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+                     [&](const OptionValues& w) { options.scene = w.text(); });
 }
 
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   table.add("--device", "NAME|INDEX", "Vulkan device by a part of its name or its index in `promin devices`",
-            [&](const Words& w) { options.device = w.text(); });
+            [&](const OptionValues& w) { options.device = w.text(); });
   table.add("--builder", "NAME",
             fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),
-            [&](const Words& w) { options.builder = w.choice(builder_names()); });
+            [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });
   table.add("--bvh", "FILE.pbvh", "Take the BVH from a file of promin-bvh build",
-            [&](const Words& w) { options.bvh = w.text(); });
+            [&](const OptionValues& w) { options.bvh = w.text(); });
   table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
   table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
 }
 
 void add_measuring_options(OptionTable& table, TracingOptions& options) {
   table.add("--repeat", "N", "Trace N times and report the median time [1]",
-            [&](const Words& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
+            [&](const OptionValues& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
   table.add("--stats", "FILE.json", "Write counts and times as JSON",
-            [&](const Words& w) { options.stats = w.text(); });
+            [&](const OptionValues& w) { options.stats = w.text(); });
 }
 
 void check_tracing_options(const TracingOptions& options) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "console.h"
-#include "render/renderer.h"
+#include "promin/renderer.h"
 
 namespace promin::app {
 

@@ -4,9 +4,9 @@
 
 #include <fmt/ranges.h>
 
-#include "core/error.h"
 #include "core/stopwatch.h"
-#include "scene/load_scene.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 
 namespace promin::app {
 

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "console.h"
-#include "gpu/open_device.h"
+#include "formats/source_file.h"
+#include "promin/device.h"
+#include "promin/scene.h"
 #include "run_stats.h"
-#include "scene/scene.h"
-#include "scene/source_file.h"
 #include "tracing_options.h"
 
 namespace promin::app {

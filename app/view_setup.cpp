@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "camera.h"
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "console.h"
-#include "render/renderer.h"
+#include "promin/renderer.h"
+#include "promin/scene.h"
 #include "render_options.h"
-#include "scene/scene.h"
 
 namespace promin::app {
 

@@ -11,7 +11,7 @@ uvec2 pixel_in_block(uint lane) {
 
 // The i-th of n sample points in the unit square: a lattice with one point in each of n columns and rows, symmetric
 // about the centre, (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n; n = 1 is the centre, n = 4 the rotated grid. The host
-// chooses g (render/sampling.h).
+// chooses g (trace/sampling.h).
 vec2 sample_point(uint index) {
   uint count = dispatch.sampling.x;
   uint row = (dispatch.sampling.y * (index + 1u)) % (count + 1u) - 1u;

@@ -177,8 +177,8 @@ struct RayRecord {
   vec4 direction_tmax;
 };
 
-// What it meets. FEATURE_STEP_COUNTS brings the counts, each clamped to its 16 bits. Who asks for any hit is told a.x, 0
-// or infinite on a miss, and a.y, and without the counts nothing else is written.
+// What it meets. FEATURE_STEP_COUNTS brings the counts, each clamped to its 16 bits. Who asks for any hit is told a.x,
+// 0 or infinite on a miss, and a.y, and without the counts nothing else is written.
 struct HitRecord {
   uvec4 a;  // bits of t (infinite on a miss), the primitive's number in order (NO_ORDER on a miss), bits of u and v
   uvec4 b;  // bits of the geometric normal; w = node steps + primitive tests * 2^16

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/view.h"
+#include "promin/view.h"
 
 namespace promin::app {
 

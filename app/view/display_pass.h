@@ -5,9 +5,9 @@
 #include <array>
 #include <optional>
 
-#include "core/math.h"
-#include "gpu/buffer.h"
-#include "gpu/pipeline.h"
+#include "device/buffer.h"
+#include "device/pipeline.h"
+#include "promin/math.h"
 #include "view/swapchain.h"
 
 namespace promin::app {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "render/film.h"
+#include "trace/film.h"
 #include "view/window.h"
 
 namespace promin::app {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
-#include "gpu/buffer.h"
-#include "render/ray_counts.h"
+#include "device/buffer.h"
+#include "promin/ray_counts.h"
 #include "view/swapchain.h"
 
 namespace promin::app {
@@ -23,11 +23,11 @@ struct StageTimes {
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
-  /// The driver cut the tracing short (render/film.h): pixels are wrong.
+  /// The driver cut the tracing short (trace/film.h): pixels are wrong.
   bool has_cut_loops = false;
-  /// How it was traced, as LivePicture has it.
+  /// How it was traced, as ProgressivePicture has it.
   bool takes_many_paths = false;
-  /// Units of tracing (LivePicture::record).
+  /// Units of tracing (ProgressivePicture::record).
   double units = 0.0;
   /// As Frame::is_of_flight.
   bool is_of_flight = false;

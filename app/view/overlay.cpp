@@ -42,7 +42,7 @@ void show_times(const OverlayContent& content) {
   show_text("Mrays/s: {:.2f} primary,\n{:.2f} shadow, {:.2f} mirror", rays.x, rays.y, rays.z);
 }
 
-void show_picture(const LivePicture& picture) {
+void show_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
   if (!shown) return show_text("no picture yet");
   show_text("{} x {} of {} x {}, {} spp", shown->size.x, shown->size.y, picture.full_size().x, picture.full_size().y,

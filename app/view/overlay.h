@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "view/frame_queue.h"
-#include "view/live_picture.h"
 #include "view/overlay_scale.h"
+#include "view/progressive_picture.h"
 #include "view/scene_loader.h"
 
 namespace promin::app {
@@ -39,7 +39,7 @@ struct Switches {
   bool has_mirrors = true;
   bool has_shadows = true;
   Shading shading = Shading::kFull;
-  /// As LivePicture::fix_scale.
+  /// As ProgressivePicture::fix_scale.
   std::optional<double> scale;
   bool is_paused = false;
 
@@ -49,7 +49,7 @@ struct Switches {
 /// What the overlay shows beside.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
-  const LivePicture* picture = nullptr;
+  const ProgressivePicture* picture = nullptr;
   const Scene* scene = nullptr;
   std::string device;
   double speed = 0.0;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "render/pack_scene.h"
+#include "device_scene/pack_scene.h"
+#include "formats/source_file.h"
 #include "scene/features.h"
-#include "scene/source_file.h"
 
 namespace promin::app {
 

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <vector>
 
-#include "core/error.h"
-#include "render/film.h"
+#include "promin/error.h"
+#include "trace/film.h"
 
 namespace promin::app {
 namespace fs = std::filesystem;

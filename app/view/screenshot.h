@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "gpu/buffer.h"
-#include "image/image.h"
-#include "render/view.h"
+#include "device/buffer.h"
+#include "promin/image.h"
+#include "promin/view.h"
 
 namespace promin::app {
 

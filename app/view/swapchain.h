@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/math.h"
-#include "gpu/device.h"
+#include "device/device.h"
+#include "promin/math.h"
 
 namespace promin::app {
 

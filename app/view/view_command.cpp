@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "camera_path.h"
-#include "core/error.h"
 #include "outputs.h"
+#include "promin/error.h"
 #include "render_options.h"
 #include "tracing_run.h"
 #include "view/viewer.h"
@@ -42,19 +42,19 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
   table.add("--target-ms", "T",
             fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
                         kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
-            [&](const Words& w) { options.target_ms = w.real(0, kMinTargetMs, kMaxTargetMs); });
+            [&](const OptionValues& w) { options.target_ms = w.real(0, kMinTargetMs, kMaxTargetMs); });
   table.add("--scale", "S",
             fmt::format("Pixels of a moving picture for one of the window on a side, {} to 1 [as the target allows]",
                         kMinScale),
-            [&](const Words& w) { options.scale = w.real(0, kMinScale, 1.0); });
+            [&](const OptionValues& w) { options.scale = w.real(0, kMinScale, 1.0); });
   table.add("--present-mode", "MODE",
             fmt::format("How frames go to the display: {}; fifo where it has no other [fifo]",
                         fmt::join(present_mode_names(), ", ")),
-            [&](const Words& w) { options.present_mode = w.choice(present_mode_names()); });
+            [&](const OptionValues& w) { options.present_mode = w.choice(present_mode_names()); });
   table.add("--record", "FILE.json", "Write the camera's flight, a camera path, when the window closes",
-            [&](const Words& w) { options.record = w.text(); });
+            [&](const OptionValues& w) { options.record = w.text(); });
   table.add("--replay", "FILE.json", "Play a camera path, print what its frames took, and close",
-            [&](const Words& w) { options.replay = w.text(); });
+            [&](const OptionValues& w) { options.replay = w.text(); });
   add_fps_option(table, options.fps);
   table.add_flag("--keep-open", "After --replay let the user fly on", options.stays_open);
   add_tracing_options(table, options.tracing);
@@ -75,7 +75,7 @@ void check_window_options(const WindowOptions& options) {
 }
 
 /// Waits for it while the window answers; none where the user closes that.
-std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, PictureMaker& maker) {
+std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, ScenePreparer& maker) {
   constexpr double kWait = 0.02;
   while (!maker.is_ready()) {
     window.set_title(title + " (" + maker.describe() + ")");
@@ -119,9 +119,9 @@ void view(const WindowOptions& options) {
   const gpu::Device device(tracing.device, &presentation);
   stats.device = device.info();
   console.detail(device.choice());
-  PictureMaker maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
+  ScenePreparer maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
   // The longest last: without a window it would be in vain.
-  const Look look{!options.view.has_no_shadows, start.view.shading};
+  const RenderMode look{!options.view.has_no_shadows, start.view.shading};
   maker.begin(scene, {start.choice, look, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
   if (!picture) return;

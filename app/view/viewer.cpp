@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/error.h"
 #include "deferred_signals.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {
@@ -22,7 +22,7 @@ constexpr double kLeastTraceShare = 0.5;
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, PictureMaker& maker,
+Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& maker,
                ReadyPicture picture, ViewerStart start, RunStats stats)
     : window_(window),
       device_(device),

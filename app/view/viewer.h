@@ -15,10 +15,10 @@
 #include "view/flight.h"
 #include "view/frame_queue.h"
 #include "view/imgui_renderer.h"
-#include "view/live_picture.h"
 #include "view/overlay.h"
-#include "view/picture_maker.h"
-#include "view/pixel_asker.h"
+#include "view/pixel_query.h"
+#include "view/progressive_picture.h"
+#include "view/scene_preparer.h"
 #include "view/screenshot.h"
 #include "view/window.h"
 
@@ -32,7 +32,7 @@ struct ViewerStart {
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
   std::optional<double> target_ms;
-  /// As LivePicture::fix_scale.
+  /// As ProgressivePicture::fix_scale.
   std::optional<double> scale;
 
   /// What of a flight to play, and whether the window stays open after it.
@@ -48,7 +48,7 @@ struct ViewerStart {
 class Viewer {
  public:
   /// Throws RunError, vk::SystemError.
-  Viewer(Window& window, const gpu::Device& device, const Console& console, PictureMaker& maker, ReadyPicture picture,
+  Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& maker, ReadyPicture picture,
          ViewerStart start, RunStats stats);
   ~Viewer();
 
@@ -75,7 +75,7 @@ class Viewer {
   void show_picture(ReadyPicture ready);
   /// Says what has become of questions about pixels.
   void update_answers();
-  Look asked_look() const { return {switches_.has_shadows, switches_.shading}; }
+  RenderMode asked_look() const { return {switches_.has_shadows, switches_.shading}; }
   /// Whether another look than the one shown is on its way.
   bool awaits_look() const;
   /// What is under way beside the picture, in words.
@@ -107,7 +107,7 @@ class Viewer {
   Window& window_;
   const gpu::Device& device_;
   const Console& console_;
-  PictureMaker& maker_;
+  ScenePreparer& maker_;
   std::filesystem::path file_;
   RunStats stats_;
   /// Whether the target is the refresh interval of the display that the window is on.
@@ -116,9 +116,9 @@ class Viewer {
 
   std::shared_ptr<const ShownScene> scene_;
   /// Of the picture.
-  Look look_;
+  RenderMode look_;
   Switches switches_;
-  PixelAsker asker_;
+  PixelQuery asker_;
   /// Whether an orbit begins when its center is found.
   bool wants_orbit_ = false;
   CameraControl control_;
@@ -135,8 +135,8 @@ class Viewer {
   DisplayPass display_;
   std::unique_ptr<ImguiRenderer> imgui_;
   FrameQueue frames_;
-  std::optional<LivePicture> picture_;
-  /// LivePicture::shown_count of what was encoded last.
+  std::optional<ProgressivePicture> picture_;
+  /// ProgressivePicture::shown_count of what was encoded last.
   uint64_t encoded_count_ = 0;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;

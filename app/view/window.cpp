@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/error.h"
+#include "promin/error.h"
 #include "view/screen_area.h"
 
 namespace promin::app {

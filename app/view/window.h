@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gpu/device.h"
+#include "device/device.h"
 #include "view/keys.h"
 #include "view/overlay_scale.h"
 

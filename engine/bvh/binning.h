@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "core/math.h"
+#include "promin/math.h"
 
 // The inner loops of the SAH builder: boxes that fill whole registers, their bins, and the best plane between bins.
 namespace promin {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "bvh/builders.h"
-#include "core/error.h"
 #include "core/suggest.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/math.h"
 #include "core/shared_progress.h"
 #include "core/unset_vector.h"
+#include "promin/math.h"
 
 namespace promin {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "core/math.h"
+#include "promin/math.h"
 
 namespace promin {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace fs = std::filesystem;

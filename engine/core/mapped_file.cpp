@@ -7,8 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/error.h"
 #include "core/file.h"
+#include "promin/error.h"
 
 namespace promin {
 

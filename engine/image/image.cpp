@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "image/image.h"
+#include "promin/image.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -11,8 +11,8 @@
 #include <memory>
 #include <span>
 
-#include "core/error.h"
 #include "core/file.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace fs = std::filesystem;

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/file.h"
-#include "rays/ray.h"
+#include "promin/ray.h"
 
 namespace promin {
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/unset_vector.h"
-#include "rays/ray.h"
+#include "promin/ray.h"
 
 // In which order rays are best traced. No answer depends on it.
 namespace promin {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kTileRows = 4;
 constexpr uint32_t kTileWidth = 8;
-constexpr uint32_t kFour = RayTiler::kFour;
+constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
 /// The median distance of so many pairs of rays in a row is what is called a step here.
 constexpr size_t kSamplePairs = 255;
@@ -180,7 +180,7 @@ class Sink {
 
   /// Of one row.
   void put(uint32_t first, uint32_t count) {
-    const uint32_t whole = count / kFour * kFour;
+    const uint32_t whole = count / kPacketSize * kPacketSize;
     for (uint32_t i = 0; i < whole; ++i) *next_++ = first + i;
     for (uint32_t i = whole; i < count; ++i) rest_.push_back(first + i);
   }
@@ -324,7 +324,7 @@ std::span<const uint32_t> RayTiler::tile(std::span<const Ray> rays, const SceneC
     const std::span<Row> chunk_rows(bands[begin].data(), bands[end - 1].data() + bands[end - 1].size());
     uint32_t first = chunk_rows.front().begin;
     for (Row& row : chunk_rows) {
-      for (; first % kFour != 0 && row.begin < row.end; ++row.begin, ++first) order_[first] = first;
+      for (; first % kPacketSize != 0 && row.begin < row.end; ++row.begin, ++first) order_[first] = first;
     }
     Sink sink(order_.data() + first);
     for (size_t i = begin; i < end; ++i) BandWalk(all, bands[i]).put_all(sink);

@@ -15,7 +15,7 @@ namespace promin {
 class RayTiler {
  public:
   /// How many rays a packet has that is to hold neighbours.
-  static constexpr uint32_t kFour = 4;
+  static constexpr uint32_t kPacketSize = 4;
 
   /// The rays' indices, tile by tile of up to 8 rays of 4 rows in a row, where they lie near each other. Most fours in
   /// a row, from the first on, are 2x2 of neighbouring rows, the others mostly of one row. Where rays do not come in

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/caster.h"
+#include "promin/caster.h"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "core/stopwatch.h"
-#include "gpu/device.h"
+#include "device/device.h"
+#include "device_scene/pack_scene.h"
 #include "rays/ray_order.h"
 #include "rays/ray_tiles.h"
-#include "render/pack_scene.h"
-#include "render/ray_kernel.h"
+#include "trace/ray_kernel.h"
 
 namespace promin {
 namespace {
@@ -29,7 +29,7 @@ constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATU
 
 /// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...8
 /// (docs/performance.md).
-constexpr uint32_t kPacketSize = RayTiler::kFour;
+constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/explain.h"
+#include "promin/explain.h"
 
 #include <bit>
 #include <utility>
 
+#include "device_scene/pack_scene.h"
 #include "layout.h"
-#include "render/pack_scene.h"
 
 namespace promin {
 namespace {

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/renderer.h"
+#include "promin/renderer.h"
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 
 #include "core/stopwatch.h"
-#include "gpu/device.h"
+#include "device/device.h"
+#include "device_scene/pack_scene.h"
 #include "layout.h"
-#include "render/explain_pixel.h"
-#include "render/film.h"
-#include "render/pack_scene.h"
-#include "render/sampling.h"
+#include "trace/explain_pixel.h"
+#include "trace/film.h"
+#include "trace/sampling.h"
 
 namespace promin {
 namespace {
@@ -33,7 +33,7 @@ struct Renderer::Impl {
   Impl(const gpu::Device& the_device, const Scene& the_scene, const RendererOptions& the_options)
       : device(the_device),
         options(the_options),
-        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), PicturePieces::kMinBlocks) {
+        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), TileScheduler::kMinBlocks) {
     PackedScene packed =
         options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
     if (options.repack) packed = options.repack(std::move(packed));
@@ -63,7 +63,7 @@ struct Renderer::Impl {
   /// Traces one band: `window` of the picture, on a film of its size.
   void trace_band(const PixelWindow& window, const View& view, RenderResult& result,
                   const std::function<void(double)>& on_progress) {
-    PieceOptions cut = film->piece_options();
+    TileOptions cut = film->piece_options();
     cut.blocks_per_piece = options.blocks_per_dispatch;
     for (;;) {
       if (!takes_many_paths) cut.most_paths_a_lane = 1;
@@ -77,7 +77,7 @@ struct Renderer::Impl {
     }
   }
 
-  FilmCounts trace_pieces(const PixelWindow& window, const View& view, const PieceOptions& cut, double& trace_ms,
+  FilmCounts trace_pieces(const PixelWindow& window, const View& view, const TileOptions& cut, double& trace_ms,
                           const std::function<void(double)>& on_progress) {
     FilmCounts counts;
     const auto collect = [&] {
@@ -85,11 +85,11 @@ struct Renderer::Impl {
       counts.rays += taken.rays;
       counts.has_cut_loops = counts.has_cut_loops || taken.has_cut_loops;
     };
-    PicturePieces picture = film->cut(view, window, cut);
+    TileScheduler picture = film->cut(view, window, cut);
     film->reserve(picture.pixel_count());
     film->begin(picture);
     double uncollected = 0.0;
-    std::vector<PicturePiece> pieces;
+    std::vector<TileSample> pieces;
     while (!picture.is_done()) {
       // Of a small picture a piece is less than is asked for.
       pieces.clear();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 #include <algorithm>
 

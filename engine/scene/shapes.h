@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/math.h"
+#include "promin/math.h"
 
 namespace promin {
 

@@ -17,8 +17,8 @@
 #include "gpu/device_fixture.h"
 #include "measure/meshes.h"
 #include "measure/step_counts.h"
-#include "render/caster.h"
-#include "scene/load_scene.h"
+#include "promin/caster.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 namespace {

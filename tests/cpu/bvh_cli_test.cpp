@@ -25,16 +25,16 @@ using testing::MatchesRegex;
 
 class BvhCliTest : public CliTest {
  protected:
-  ProcessResult run_bvh(const Words& arguments) const {
+  ProcessResult run_bvh(const OptionValues& arguments) const {
     return Process(PROMIN_BVH_EXECUTABLE, arguments, options_).wait();
   }
 
-  void expect_bvh_failure(const Words& arguments, int exit_code, const std::string& part) const {
+  void expect_bvh_failure(const OptionValues& arguments, int exit_code, const std::string& part) const {
     expect_failure(run_bvh(arguments), exit_code, part, "promin-bvh");
   }
 
-  void build(const Words& arguments) const {
-    Words words = {"build"};
+  void build(const OptionValues& arguments) const {
+    OptionValues words = {"build"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     words.emplace_back("--quiet");
     const ProcessResult result = run_bvh(words);
@@ -68,11 +68,12 @@ class BvhCliTest : public CliTest {
 };
 
 TEST_F(BvhCliTest, HelpAndVersionEverywhere) {
-  for (const Words& command : {Words{}, Words{"build"}, Words{"info"}, Words{"verify"}}) {
-    Words with_help = command;
+  for (const OptionValues& command :
+       {OptionValues{}, OptionValues{"build"}, OptionValues{"info"}, OptionValues{"verify"}}) {
+    OptionValues with_help = command;
     with_help.emplace_back("--help");
     EXPECT_THAT(run_bvh(with_help).out, HasSubstr("Usage: promin-bvh"));
-    Words with_version = command;
+    OptionValues with_version = command;
     with_version.emplace_back("--version");
     EXPECT_THAT(run_bvh(with_version).out, MatchesRegex("promin-bvh [0-9]+\\.[0-9]+\\.[0-9]+\n"));
   }
@@ -113,9 +114,9 @@ TEST_F(BvhCliTest, TheFileDoesNotDependOnTheThreads) {
 }
 
 TEST_F(BvhCliTest, PicturesAndHitsTakeTheFile) {
-  const Words view = {"square.gltf", "--size", "64", "36"};
-  const auto with = [&](const Words& more) {
-    Words words = view;
+  const OptionValues view = {"square.gltf", "--size", "64", "36"};
+  const auto with = [&](const OptionValues& more) {
+    OptionValues words = view;
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
@@ -150,7 +151,7 @@ TEST_F(BvhCliTest, WrongUsageIsRefusedInOneLine) {
   expect_bvh_failure({"info"}, 2, "FILE.pbvh is required");
   expect_bvh_failure({"info", "a.pbvh", "b.pbvh"}, 2, "unexpected argument b.pbvh");
   expect_bvh_failure({"verify", "square.gltf"}, 2, "FILE.pbvh is required");
-  const Words contradiction = {"render", "square.gltf", "-o", "a.exr", "--bvh", "a.pbvh", "--builder", "sah"};
+  const OptionValues contradiction = {"render", "square.gltf", "-o", "a.exr", "--bvh", "a.pbvh", "--builder", "sah"};
   expect_failure(run(contradiction), 2,
                  "--bvh and --builder contradict each other, on the command line; leave one out");
   EXPECT_THAT(files(), ElementsAre("a.pbvh"));

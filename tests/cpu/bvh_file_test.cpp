@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/bvh_file.h"
+#include "bvh/bvh_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,15 +9,15 @@
 #include <fstream>
 #include <random>
 
-#include "core/error.h"
+#include "bvh/read_node.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "cpu/scene_files.h"
 #include "cpu/temp_folder.h"
+#include "device_scene/pack_scene.h"
 #include "gpu/test_scenes.h"
-#include "render/pack_scene.h"
-#include "render/read_node.h"
-#include "scene/load_scene.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 namespace {

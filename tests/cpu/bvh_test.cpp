@@ -9,8 +9,8 @@
 #include <random>
 
 #include "bvh/builder.h"
-#include "core/error.h"
 #include "cpu/expect_tree.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

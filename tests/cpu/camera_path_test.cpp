@@ -10,8 +10,8 @@
 #include <random>
 
 #include "camera.h"
-#include "core/error.h"
 #include "cpu/temp_folder.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

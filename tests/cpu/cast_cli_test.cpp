@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "cli_fixture.h"
-#include "rays/ray.h"
+#include "promin/ray.h"
 
 namespace promin {
 namespace {

@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
 #include "process.h"
-#include "rays/ray.h"
+#include "promin/image.h"
+#include "promin/ray.h"
 
 namespace promin {
 
-using Words = std::vector<std::string>;
+using OptionValues = std::vector<std::string>;
 
 /// No camera, no light.
 inline constexpr const char* kTriangleObj = R"(o triangle
@@ -94,10 +94,12 @@ class CliTest : public testing::Test {
     return names;
   }
 
-  ProcessResult run(const Words& arguments) const { return Process(PROMIN_EXECUTABLE, arguments, options_).wait(); }
+  ProcessResult run(const OptionValues& arguments) const {
+    return Process(PROMIN_EXECUTABLE, arguments, options_).wait();
+  }
 
   /// Renders in a small size; fails the test if the program does.
-  Image render(Words arguments, const std::string& output) const {
+  Image render(OptionValues arguments, const std::string& output) const {
     arguments.insert(arguments.begin(), "render");
     arguments.insert(arguments.end(), {"-o", output, "--quiet"});
     const ProcessResult result = run(arguments);

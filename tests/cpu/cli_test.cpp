@@ -29,15 +29,16 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST_F(CliTest, HelpAndVersionEverywhere) {
-  for (const Words& command : {Words{}, Words{"render"}, Words{"cast"}, Words{"info"}, Words{"devices"}}) {
-    Words with_help = command;
+  for (const OptionValues& command :
+       {OptionValues{}, OptionValues{"render"}, OptionValues{"cast"}, OptionValues{"info"}, OptionValues{"devices"}}) {
+    OptionValues with_help = command;
     with_help.emplace_back("--help");
     const ProcessResult help = run(with_help);
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage: promin"));
     EXPECT_THAT(help.err, IsEmpty());
 
-    Words with_version = command;
+    OptionValues with_version = command;
     with_version.emplace_back("--version");
     const ProcessResult version = run(with_version);
     EXPECT_EQ(version.exit_code, 0);
@@ -47,7 +48,7 @@ TEST_F(CliTest, HelpAndVersionEverywhere) {
 }
 
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
-  const std::pair<Words, std::string> cases[] = {
+  const std::pair<OptionValues, std::string> cases[] = {
       {{}, "no command given, on the command line; see promin --help"},
       {{"rendr"}, "unknown command rendr"},
       {{"--spp", "3"}, "unknown option --spp"},
@@ -261,7 +262,7 @@ TEST_F(CliTest, StatsHoldWhatTheInterfacePromises) {
 }
 
 TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {
-  const Words arguments = {"square.gltf", "--size", "150", "100", "-s", "2"};
+  const OptionValues arguments = {"square.gltf", "--size", "150", "100", "-s", "2"};
   options_.environment["LP_NUM_THREADS"] = "1";
   const Image by_one = render(arguments, "one.exr");
   options_.environment["LP_NUM_THREADS"] = "3";
@@ -336,8 +337,8 @@ TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
 }
 
 TEST_F(CliTest, AovsAreChannelsOfTheExr) {
-  const Words view = {"square.gltf", "--size", "16", "9"};
-  const auto with = [&](Words words) {
+  const OptionValues view = {"square.gltf", "--size", "16", "9"};
+  const auto with = [&](OptionValues words) {
     words.insert(words.begin(), view.begin(), view.end());
     return words;
   };

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cut_triangles.h"
+#include "device_scene/cut_triangles.h"
 
 #include <gtest/gtest.h>
 
-#include "render/pack_scene.h"
+#include "device_scene/pack_scene.h"
 
 namespace promin {
 namespace {

@@ -53,7 +53,7 @@ TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
 }
 
 TEST_F(CliTest, ExplainGoesAloneAndStaysInThePicture) {
-  const std::pair<Words, std::string> cases[] = {
+  const std::pair<OptionValues, std::string> cases[] = {
       {{"--explain", "64", "0"}, "--explain is beyond the picture of 64x36"},
       {{"--explain", "0", "36"}, "--explain is beyond"},
       {{"--explain", "1"}, "too few values for --explain"},
@@ -68,7 +68,7 @@ TEST_F(CliTest, ExplainGoesAloneAndStaysInThePicture) {
   };
   for (const auto& [more, part] : cases) {
     SCOPED_TRACE(testing::PrintToString(more));
-    Words arguments = {"render", "square.gltf", "--size", "64", "36"};
+    OptionValues arguments = {"render", "square.gltf", "--size", "64", "36"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     expect_failure(run(arguments), 2, part);
     EXPECT_THAT(files(), IsEmpty());

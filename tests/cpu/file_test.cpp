@@ -7,8 +7,8 @@
 
 #include <fstream>
 
-#include "core/error.h"
 #include "cpu/temp_folder.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/find_tree_faults.h"
+#include "bvh/find_tree_faults.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <bit>
 
+#include "bvh/read_node.h"
 #include "cpu/scene_files.h"
 #include "gpu/test_scenes.h"
-#include "render/read_node.h"
-#include "scene/load_scene.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 namespace {

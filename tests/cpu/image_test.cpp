@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "image/image.h"
+#include "promin/image.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
@@ -12,9 +12,9 @@
 #include <fstream>
 #include <limits>
 
-#include "core/error.h"
 #include "core/file.h"
 #include "cpu/temp_folder.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

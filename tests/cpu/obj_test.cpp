@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/triangulate.h"
+#include "formats/obj/triangulate.h"
 #include "scene_folder.h"
 
 namespace promin {

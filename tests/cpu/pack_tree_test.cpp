@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "render/pack_scene.h"
-#include "render/read_node.h"
+#include "bvh/read_node.h"
+#include "device_scene/pack_scene.h"
 
 namespace promin {
 namespace {

@@ -25,7 +25,7 @@ constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, 
   {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
   {"time_s": 0.1, "eye": [1, 0.5, 3], "look": [-0.28, 0, -0.96], "up": [0, 1, 0], "fov_deg": 60},
   {"time_s": 0.3, "eye": [2, 0, 3], "look": [-0.6, 0, -0.8], "up": [0, 1, 0], "fov_deg": 30}]})";
-const Words kPoses[] = {
+const OptionValues kPoses[] = {
     {"--eye", "0", "0", "4", "--look", "0", "0", "-1", "--up", "0", "1", "0", "--fov", "45", "--near", "0.01"},
     {"--eye", "1", "0.5", "3", "--look", "-0.28", "0", "-0.96", "--up", "0", "1", "0", "--fov", "60", "--near", "0"},
     {"--eye", "2", "0", "3", "--look", "-0.6", "0", "-0.8", "--up", "0", "1", "0", "--fov", "30", "--near", "0"}};
@@ -37,7 +37,7 @@ class PathCliTest : public CliTest {
     write("path.json", kPath);
   }
 
-  ProcessResult render_path(Words more) const {
+  ProcessResult render_path(OptionValues more) const {
     more.insert(more.begin(), {"render", "square.gltf", "--size", "32", "18", "--path", "path.json"});
     return run(more);
   }
@@ -50,7 +50,7 @@ TEST_F(PathCliTest, EachFrameHasTheBitsOfItsPoseAlone) {
                                       "f.##.exr", "--aov", "depth", "--quiet"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     for (size_t i = 0; i < std::size(kPoses); ++i) {
-      Words alone = {scene, "--size", "32", "18", "-s", "2"};
+      OptionValues alone = {scene, "--size", "32", "18", "-s", "2"};
       alone.insert(alone.end(), kPoses[i].begin(), kPoses[i].end());
       const Image expected = render(alone, "alone.exr");
       EXPECT_EQ(read_image(folder() / ("f.0" + std::to_string(i) + ".exr")).pixels, expected.pixels)
@@ -111,7 +111,7 @@ TEST_F(PathCliTest, StatsTellOfEachFrame) {
 }
 
 TEST_F(PathCliTest, WrongUseIsRefused) {
-  const std::pair<Words, std::string> cases[] = {
+  const std::pair<OptionValues, std::string> cases[] = {
       {{"-o", "a.exr"}, "3 frames would go to one file, a.exr; put ####"},
       {{"-o", "a#/f.exr"}, "3 frames would go to one file"},
       {{"-o", "f#.exr", "--camera", "main"}, "--path and a camera"},

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 namespace promin::test {
 

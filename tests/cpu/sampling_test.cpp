@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/sampling.h"
+#include "trace/sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cpu/temp_folder.h"
-#include "scene/load_scene.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 

@@ -15,7 +15,7 @@
 
 #include "cpu/scene_files.h"
 #include "process.h"
-#include "scene/load_scene.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 namespace {

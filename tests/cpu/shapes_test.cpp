@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 namespace promin {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin {
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 namespace promin::app {
 namespace {

@@ -13,10 +13,10 @@
 
 #include "gpu/device_fixture.h"
 #include "image/compare.h"
-#include "image/image.h"
 #include "layout.h"
-#include "render/renderer.h"
-#include "scene/load_scene.h"
+#include "promin/image.h"
+#include "promin/load_scene.h"
+#include "promin/renderer.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/bvh_file.h"
+#include "bvh/bvh_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,12 +8,12 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/error.h"
+#include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "render/caster.h"
-#include "render/pack_scene.h"
-#include "render/renderer.h"
+#include "promin/caster.h"
+#include "promin/error.h"
+#include "promin/renderer.h"
 
 namespace promin {
 namespace {

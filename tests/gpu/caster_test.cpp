@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/caster.h"
+#include "promin/caster.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,16 +11,16 @@
 #include <numeric>
 #include <random>
 
-#include "core/error.h"
-#include "gpu/device.h"
+#include "device/device.h"
+#include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "measure/meshes.h"
 #include "oracle/verdict.h"
+#include "promin/error.h"
+#include "promin/renderer.h"
 #include "rays/ray_tiles.h"
-#include "render/pack_scene.h"
-#include "render/ray_kernel.h"
-#include "render/renderer.h"
+#include "trace/ray_kernel.h"
 
 namespace promin {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gpu/open_device.h"
+#include "promin/device.h"
 
 namespace promin::test {
 

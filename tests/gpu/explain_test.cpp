@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/explain.h"
+#include "promin/explain.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <filesystem>
 
-#include "core/error.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "render/caster.h"
-#include "render/renderer.h"
-#include "scene/load_scene.h"
+#include "promin/caster.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
+#include "promin/renderer.h"
 
 namespace promin {
 namespace {

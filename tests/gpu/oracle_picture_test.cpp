@@ -11,8 +11,8 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "oracle/compare_picture.h"
-#include "render/renderer.h"
-#include "scene/load_scene.h"
+#include "promin/load_scene.h"
+#include "promin/renderer.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/renderer.h"
+#include "promin/renderer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,11 +10,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/error.h"
-#include "gpu/device.h"
+#include "device/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "layout.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {

@@ -9,12 +9,12 @@
 #include <set>
 #include <tuple>
 
+#include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "layout.h"
-#include "render/pack_scene.h"
-#include "render/ray_kernel.h"
-#include "render/renderer.h"
+#include "promin/renderer.h"
+#include "trace/ray_kernel.h"
 
 namespace promin {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "rays/ray.h"
-#include "render/renderer.h"
-#include "scene/scene.h"
+#include "promin/ray.h"
+#include "promin/renderer.h"
+#include "promin/scene.h"
 
 namespace promin::test {
 

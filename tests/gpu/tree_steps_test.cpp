@@ -6,9 +6,9 @@
 #include <random>
 
 #include "cpu/pipes.h"
+#include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
-#include "render/pack_scene.h"
-#include "render/ray_kernel.h"
+#include "trace/ray_kernel.h"
 
 namespace promin {
 namespace {

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "gpu/open_device.h"
-#include "rays/ray.h"
-#include "render/pack_scene.h"
-#include "render/ray_kernel.h"
-#include "scene/scene.h"
+#include "device_scene/pack_scene.h"
+#include "promin/device.h"
+#include "promin/ray.h"
+#include "promin/scene.h"
+#include "trace/ray_kernel.h"
 
 namespace promin::hard {
 

@@ -18,7 +18,7 @@
 #include "core/file.h"
 #include "core/parallel.h"
 #include "hard/figures.h"
-#include "render/caster.h"
+#include "promin/caster.h"
 
 namespace promin::hard {
 namespace {

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "gpu/open_device.h"
 #include "layout.h"
 #include "measure/meshes.h"
 #include "measure/random.h"
 #include "measure/ray_sets.h"
 #include "oracle/verdict.h"
-#include "rays/ray.h"
-#include "render/ray_kernel.h"
-#include "scene/scene.h"
+#include "promin/device.h"
+#include "promin/ray.h"
+#include "promin/scene.h"
+#include "trace/ray_kernel.h"
 
 namespace promin::hard {
 

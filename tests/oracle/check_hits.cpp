@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <random>
 
-#include "core/error.h"
 #include "core/parallel.h"
-#include "gpu/open_device.h"
 #include "oracle/verdict.h"
-#include "render/caster.h"
-#include "scene/load_scene.h"
+#include "promin/caster.h"
+#include "promin/device.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
 #include "oracle/picture.h"
 #include "oracle/verdict.h"
+#include "promin/image.h"
 
 /// A device's picture against the oracle's.
 namespace promin::oracle {

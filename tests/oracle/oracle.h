@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 /// What the renderer is checked against: the formulas of the thesis in long double (64 bits of mantissa on x86), by
 /// brute force over every primitive. It shares no formula with the shaders, and normalises axes itself.

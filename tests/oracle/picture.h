@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "oracle/oracle.h"
-#include "render/renderer.h"
+#include "promin/renderer.h"
 
 /// Whole pictures by brute force: docs/model.md's "Rays and camera" and "Light" in long double.
 namespace promin::oracle {

@@ -13,13 +13,13 @@
 
 #include "cpu/process.h"
 #include "image/compare.h"
-#include "image/image.h"
+#include "promin/image.h"
 
 namespace promin {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
+using OptionValues = std::vector<std::string>;
 
 constexpr const char* kSize = "1024";
 /// Bounces, as promin counts them.
@@ -37,7 +37,7 @@ struct Peer {
   fs::path program;
   std::string converter;
   std::string scene;
-  Words arguments;
+  OptionValues arguments;
   std::string picture;
 };
 
@@ -71,14 +71,14 @@ class PeerPictureTest : public testing::Test {
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
 
-  void run(const fs::path& program, const Words& arguments) const {
+  void run(const fs::path& program, const OptionValues& arguments) const {
     ProcessOptions options;
     options.folder = folder_;
     const ProcessResult result = Process(program, arguments, options).wait();
     ASSERT_EQ(result.exit_code, 0) << program << "\n" << result.err;
   }
 
-  void run_tool(const std::string& name, Words arguments) const {
+  void run_tool(const std::string& name, OptionValues arguments) const {
     arguments.insert(arguments.begin(), std::string(PROMIN_TOOLS_DIR) + "/" + name);
     run(PROMIN_PYTHON, arguments);
   }

@@ -10,16 +10,16 @@
 #include <functional>
 #include <set>
 
+#include "device_scene/pack_scene.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "oracle/oracle.h"
-#include "render/pack_scene.h"
+#include "promin/load_scene.h"
 #include "reporting/front.h"
 #include "reporting/misjudged.h"
 #include "reporting/scene_hash.h"
 #include "reporting/scene_names.h"
 #include "reporting/scripts.h"
-#include "scene/load_scene.h"
 
 namespace promin::report {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
-#include "gpu/device.h"
+#include "device/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 
@@ -76,7 +76,7 @@ class OverlayTest : public test::DeviceTest {
 
   const Scene scene_ = test::make_scene_of_everything();
   FrameStatistics statistics_;
-  std::optional<LivePicture> picture_;
+  std::optional<ProgressivePicture> picture_;
   Switches switches_;
 };
 

@@ -10,17 +10,17 @@
 #include <optional>
 #include <thread>
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "device_scene/pack_scene.h"
 #include "measure/embree.h"
 #include "measure/meshes.h"
 #include "measure/ray_sets.h"
 #include "measure/samples.h"
 #include "measure/step_counts.h"
-#include "render/caster.h"
-#include "render/pack_scene.h"
-#include "scene/load_scene.h"
+#include "promin/caster.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 #include "view_setup.h"
 
 namespace {

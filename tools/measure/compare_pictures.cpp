@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
 #include "image/compare.h"
+#include "promin/error.h"
 
 namespace {
 

@@ -13,9 +13,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "promin/error.h"
 
 namespace promin::measure {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "rays/ray.h"
-#include "scene/scene.h"
+#include "promin/ray.h"
+#include "promin/scene.h"
 
 namespace promin::measure {
 

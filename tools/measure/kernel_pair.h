@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "measure/ray_sets.h"
-#include "render/caster.h"
+#include "promin/caster.h"
 
 namespace promin::measure {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "measure/random.h"
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 namespace promin::measure {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "render/ray_kernel.h"
+#include "trace/ray_kernel.h"
 
 namespace promin::measure {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string_view>
 
-#include "gpu/open_device.h"
 #include "measure/ray_sets.h"
+#include "promin/device.h"
 #include "scene/features.h"
 
 namespace promin {

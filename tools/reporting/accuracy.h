@@ -6,7 +6,7 @@
 #include <span>
 
 #include "layout.h"
-#include "rays/ray.h"
+#include "promin/ray.h"
 #include "reporting/session.h"
 
 namespace promin::report {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "measure/random.h"
-#include "rays/ray.h"
-#include "scene/scene.h"
+#include "promin/ray.h"
+#include "promin/scene.h"
 
 namespace promin::report {
 

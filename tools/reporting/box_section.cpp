@@ -8,15 +8,15 @@
 #include <cmath>
 
 #include "cancelling_boxes.spv.h"
+#include "device/device.h"
 #include "full_boxes.spv.h"
 #include "full_unpadded_boxes.spv.h"
-#include "gpu/device.h"
 #include "measure/samples.h"
 #include "promin_boxes.spv.h"
-#include "render/ray_kernel.h"
 #include "reporting/accuracy.h"
 #include "reporting/aimed_rays.h"
 #include "reporting/full_boxes.h"
+#include "trace/ray_kernel.h"
 #include "unpadded_boxes.spv.h"
 
 namespace promin::report {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
+#include "device_scene/pack_scene.h"
 #include "measure/samples.h"
 #include "oracle/picture.h"
-#include "render/pack_scene.h"
 #include "reporting/front.h"
 #include "reporting/picture.h"
 #include "reporting/scene_hash.h"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <vector>
 
-#include "render/read_node.h"
+#include "bvh/read_node.h"
 
 namespace promin::report {
 namespace {

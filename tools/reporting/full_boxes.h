@@ -5,8 +5,8 @@
 #include <array>
 #include <span>
 
-#include "core/math.h"
-#include "render/pack_scene.h"
+#include "device_scene/pack_scene.h"
+#include "promin/math.h"
 
 namespace promin::report {
 

@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "device/device.h"
 #include "fp64_tests.spv.h"
-#include "gpu/device.h"
 #include "measure/samples.h"
 #include "promin_tests.spv.h"
 #include "recentred_tests.spv.h"
-#include "render/ray_kernel.h"
 #include "reporting/accuracy.h"
 #include "reporting/aimed_rays.h"
 #include "reporting/front.h"
 #include "textbook_tests.spv.h"
+#include "trace/ray_kernel.h"
 
 namespace promin::report {
 namespace {

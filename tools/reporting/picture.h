@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
-#include "render/renderer.h"
+#include "promin/image.h"
+#include "promin/renderer.h"
 
 namespace promin::report {
 

@@ -12,7 +12,7 @@
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
-#include "render/renderer.h"
+#include "promin/renderer.h"
 #include "reporting/misjudged.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"

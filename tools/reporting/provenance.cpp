@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "core/stopwatch.h"
-#include "gpu/device.h"
+#include "device/device.h"
 #include "reporting/scripts.h"
 
 namespace promin::report {
@@ -81,7 +81,7 @@ std::string command_of(const ReportOptions& options) {
   return command + fmt::format(" -o {}", output.filename().string());
 }
 
-/// Whether Vulkan's validation layers watch (engine/gpu/open_device.h), which takes time.
+/// Whether Vulkan's validation layers watch (include/promin/device.h), which takes time.
 bool is_validated() {
   const char* layers = std::getenv("PROMIN_VALIDATION");
   return layers != nullptr && *layers != '\0';

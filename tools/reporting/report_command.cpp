@@ -8,15 +8,15 @@
 #include <algorithm>
 #include <memory>
 
-#include "core/error.h"
 #include "core/file.h"
-#include "gpu/device.h"
+#include "device/device.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 #include "reporting/provenance.h"
 #include "reporting/scene_names.h"
 #include "reporting/scripts.h"
 #include "reporting/session.h"
 #include "reporting/write_csv.h"
-#include "scene/load_scene.h"
 
 namespace promin::report {
 namespace {
@@ -90,17 +90,18 @@ void report(const ReportOptions& options) {
 app::Command add_report_command(CLI::App& program) {
   const auto options = std::make_shared<ReportOptions>();
   app::OptionTable table(program);
-  table.add_repeated("SCENE", "SCENE", "Scenes: .gltf, .glb or .obj [the project's own]",
-                     [=](const app::Words& words) { options->scenes.assign(words.all().begin(), words.all().end()); });
+  table.add_repeated(
+      "SCENE", "SCENE", "Scenes: .gltf, .glb or .obj [the project's own]",
+      [=](const app::OptionValues& words) { options->scenes.assign(words.all().begin(), words.all().end()); });
   program.get_option("SCENE")->expected(-1);  // one or more
   table.add_required("-o,--output", "FOLDER", "Where report.json, CSV files and report.html go",
-                     [=](const app::Words& words) { options->output = words.text(); });
+                     [=](const app::OptionValues& words) { options->output = words.text(); });
   table.add("--compare", "OLD.json", "Say what changed since this report beyond noise",
-            [=](const app::Words& words) { options->compare = words.text(); });
+            [=](const app::OptionValues& words) { options->compare = words.text(); });
   table.add("--device", "NAME|INDEX", "As `promin render` takes it",
-            [=](const app::Words& words) { options->device = words.text(); });
+            [=](const app::OptionValues& words) { options->device = words.text(); });
   table.add("--runs", "N", "Timed runs of each after a warm-up, in turns [20; 3 with --quick]",
-            [=](const app::Words& words) { options->runs = words.whole(0, 1, 1000); });
+            [=](const app::OptionValues& words) { options->runs = words.whole(0, 1, 1000); });
   table.add_flag("--quick", "Few runs and small sizes: whether it works, not how fast it is", options->is_quick);
   return {&program, [options] { report(*options); }};
 }

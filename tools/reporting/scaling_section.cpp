@@ -7,12 +7,12 @@
 #include <deque>
 #include <map>
 
+#include "device_scene/pack_scene.h"
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "measure/step_counts.h"
-#include "render/pack_scene.h"
-#include "render/renderer.h"
+#include "promin/renderer.h"
 #include "reporting/fit.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "scene/scene.h"
+#include "promin/scene.h"
 
 namespace promin::report {
 

@@ -13,7 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/error.h"
+#include "promin/error.h"
 
 extern char** environ;
 

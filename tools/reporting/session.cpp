@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "measure/samples.h"
+#include "promin/load_scene.h"
 #include "reporting/scene_names.h"
-#include "scene/load_scene.h"
 #include "view_setup.h"
 
 namespace promin::report {

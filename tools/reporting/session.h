@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "gpu/open_device.h"
-#include "render/view.h"
-#include "scene/scene.h"
+#include "promin/device.h"
+#include "promin/scene.h"
+#include "promin/view.h"
 
 namespace promin::report {
 

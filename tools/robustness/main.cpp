@@ -7,13 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
 #include "core/file.h"
-#include "gpu/open_device.h"
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
-#include "render/caster.h"
-#include "scene/load_scene.h"
+#include "promin/caster.h"
+#include "promin/device.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
 #include "textbook_cast.spv.h"
 
 namespace {

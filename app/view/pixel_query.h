@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "promin/math.h"
+#include "view/background.h"
+#include "view/scene_preparer.h"
+
+namespace promin::app {
+
+/// A pixel's ray tree for the user.
+struct PixelText {
+  std::string title;
+  std::string text;
+};
+
+/// Traces single pixels of a shown scene beside its picture, each question on a thread of its own.
+class PixelQuery {
+ public:
+  explicit PixelQuery(const gpu::Device& device) : device_(&device) {}
+
+  /// What a pixel of the view is made of, as it is with one sample. A question that comes before the answer to the one
+  /// before is passed over.
+  void ask_why(std::shared_ptr<const ShownScene> scene, const RenderMode& look, const View& view, const uvec2& pixel);
+  /// What is in the middle of what the camera sees; likewise.
+  void ask_middle(std::shared_ptr<const ShownScene> scene, const RenderMode& look, const Camera& camera);
+
+  bool is_busy() const { return text_.is_busy() || middle_.is_busy(); }
+  bool is_looking_for_middle() const { return middle_.is_busy(); }
+  /// The answers, once they are there. They throw RunError.
+  std::optional<PixelText> take_text() { return text_.take(); }
+  /// A point in the world; none where there is nothing.
+  std::optional<std::optional<dvec3>> take_middle() { return middle_.take(); }
+
+  /// Until nothing is under way.
+  void wait() const;
+
+ private:
+  const gpu::Device* device_;
+  Background<PixelText> text_;
+  Background<std::optional<dvec3>> middle_;
+};
+
+}  // namespace promin::app

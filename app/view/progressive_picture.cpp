@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/progressive_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "camera.h"
+#include "core/divide_up.h"
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kSampleStep = 4;
+/// The coarsest first picture, of the window's pixels on a side.
+constexpr double kMinScale = 1.0 / 16.0;
+/// How near below the affordable it comes.
+constexpr double kScaleStep = 0.98;
+
+uvec2 scale_size(const uvec2& size, double scale) {
+  return glm::max(uvec2(1), uvec2(glm::round(dvec2(size) * scale)));
+}
+
+double count_blocks(const uvec2& size) {
+  return static_cast<double>(divide_up(size.x, layout::BLOCK_SIZE)) * divide_up(size.y, layout::BLOCK_SIZE);
+}
+
+}  // namespace
+
+bool shows_same(const View& a, const View& b) {
+  return a.size == b.size && a.shading == b.shading && a.max_depth == b.max_depth && shows_same(a.camera, b.camera);
+}
+
+ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
+                                       FeatureMask features, double budget_ms)
+    : longest_piece_ms_(dispatch_target_ms(device)),
+      budget_ms_(budget_ms),
+      pacer_(budget_ms, TileScheduler::kMinBlocks) {
+  films_.reserve(kFilmCount);
+  for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
+}
+
+void ProgressivePicture::resize(const uvec2& size) {
+  const double most_pixels = films_[0].max_capacity();
+  const double pixels = static_cast<double>(size.x) * size.y;
+  full_size_ = pixels <= most_pixels ? size : uvec2(dvec2(size) * std::sqrt(most_pixels / pixels));
+  for (Film& film : films_) film.reserve(full_size_.x * full_size_.y);
+  shown_.reset();
+  shown_count_ = 0;
+  picture_.reset();
+}
+
+void ProgressivePicture::want(View view) {
+  view.size = full_size_;
+  if (shows_same(view, wanted_)) return;
+  wanted_ = view;
+  ++wanted_version_;
+}
+
+bool ProgressivePicture::is_settled() const {
+  return !next_view() && (!picture_ || (is_paused_ && !is_first_));
+}
+
+bool ProgressivePicture::is_complete() const {
+  return shown_ && shown_version_ == wanted_version_ && shown_->size == full_size_;
+}
+
+std::optional<View> ProgressivePicture::next_view() const {
+  View view = wanted_;
+  view.samples_per_pixel = 1;
+  if (!shown_ || shown_version_ != wanted_version_) {
+    view.size = first_size();
+    return view;
+  }
+  if (is_paused_) return std::nullopt;
+  if (shown_->size != full_size_) return view;
+  view.samples_per_pixel = kSampleStep * shown_->samples_per_pixel;
+  return view.samples_per_pixel <= kMostSamples ? std::optional(view) : std::nullopt;
+}
+
+uvec2 ProgressivePicture::first_size() const {
+  if (fixed_scale_) return scale_size(full_size_, *fixed_scale_);
+  // Blocks at the right and lower edge are not full: a picture of fewer pixels may have as many.
+  const double affordable = std::max<double>(pacer_.units(), TileScheduler::kMinBlocks);
+  double scale = 1.0;
+  while (scale > kMinScale && count_blocks(scale_size(full_size_, scale)) > affordable) {
+    scale =
+        std::max(kMinScale, kScaleStep * scale * std::sqrt(affordable / count_blocks(scale_size(full_size_, scale))));
+  }
+  return scale_size(full_size_, scale);
+}
+
+void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {
+  const size_t film = shown_ ? 1 - shown_->film : 0;
+  is_first_ = !shown_ || shown_version_ != wanted_version_;
+  TileOptions options = films_[film].piece_options();
+  if (!takes_many_paths_) options.most_paths_a_lane = 1;
+  picture_ = films_[film].cut(view, {uvec2(0), view.size}, options);
+  picture_when_done_ = {film, view.size, view.samples_per_pixel};
+  picture_version_ = wanted_version_;
+  films_[film].record_begin(commands, *picture_);
+}
+
+double ProgressivePicture::record(const vk::raii::CommandBuffer& commands) {
+  // A view's first picture is finished even if the view has changed meanwhile: else a slow device would show none.
+  if (picture_ && picture_version_ != wanted_version_ && !is_first_) picture_.reset();
+  if (picture_ && is_paused_ && !is_first_) return 0.0;
+  if (!picture_) {
+    const std::optional<View> view = next_view();
+    if (!view) return 0.0;
+    begin(commands, *view);
+  }
+  double units = 0.0;
+  const double most_units = pacer_.units() * std::min(1.0, longest_piece_ms_ / budget_ms_);
+  while (!picture_->is_done() && units < pacer_.units()) {
+    const TileSample piece = picture_->next(std::min(most_units, pacer_.units() - units));
+    films_[picture_when_done_.film].record(commands, piece);
+    units += piece.units;
+  }
+  if (picture_->is_done()) finish();
+  return units;
+}
+
+void ProgressivePicture::finish() {
+  shown_ = picture_when_done_;
+  shown_version_ = picture_version_;
+  ++shown_count_;
+  picture_.reset();
+}
+
+void ProgressivePicture::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
+  films_[picture_when_done_.film].record_take_counts(commands, target);
+}
+
+void ProgressivePicture::set_budget(double budget_ms) {
+  budget_ms_ = budget_ms;
+  pacer_.aim(budget_ms);
+}
+
+void ProgressivePicture::shorten_loops() {
+  takes_many_paths_ = false;
+  picture_.reset();
+  ++wanted_version_;
+}
+
+void ProgressivePicture::learn(double units, double time_ms) {
+  // Drivers compile in a pipeline's first dispatch.
+  if (std::exchange(is_warm_, true)) pacer_.learn(units, time_ms);
+}
+
+}  // namespace promin::app

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "trace/film.h"
+#include "view/display_pass.h"
+
+namespace promin::app {
+
+/// The picture of a view that may change any time, traced in pieces of about a frame's time each. A new view comes at
+/// once in as few pixels as a frame has time for; while it stands still it comes in full size, then with 4, 16 and 64
+/// samples a pixel, each as `promin render` gives it. One film is traced while the other, complete, is shown.
+class ProgressivePicture {
+ public:
+  ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+                     double budget_ms);
+
+  /// Makes room for a window; the device must be idle. Afterwards film(i) may be another buffer, and nothing is shown.
+  void resize(const uvec2& size);
+  /// What a picture can have of the window's pixels: all, if the device's buffers can be large enough.
+  const uvec2& full_size() const { return full_size_; }
+  const gpu::Buffer& film(size_t index) const { return films_[index].buffer(); }
+
+  /// The view to show from now on, in full size.
+  void want(View view);
+  const View& wanted() const { return wanted_; }
+  /// Pixels of the first picture of a view for one of the window; none adapts it to the time of a frame.
+  void fix_scale(std::optional<double> scale) { fixed_scale_ = scale; }
+  /// Nothing is refined beyond a view's first picture while paused.
+  void pause(bool is_paused) { is_paused_ = is_paused; }
+
+  /// Whether there is nothing to trace.
+  bool is_settled() const;
+  /// Whether the wanted view is shown in full size.
+  bool is_complete() const;
+  const std::optional<ShownPicture>& shown() const { return shown_; }
+  /// How many pictures have been shown so far; resize() starts anew.
+  uint64_t shown_count() const { return shown_count_; }
+  /// Of the picture under way; 1 where there is none.
+  double fraction_done() const { return picture_ ? picture_->fraction_done() : 1.0; }
+
+  /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace.
+  double record(const vk::raii::CommandBuffer& commands);
+  /// Records taking the ray counts of that.
+  void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
+  /// How long units of a frame took, by which the next budget is met.
+  void learn(double units, double time_ms);
+  void set_budget(double budget_ms);
+
+  /// Whether lanes may take several paths (TileOptions::most_paths_a_lane).
+  bool takes_many_paths() const { return takes_many_paths_; }
+  /// After the driver cut loops short: what is shown is wrong, and all is traced again with one path a lane.
+  void shorten_loops();
+
+  static constexpr uint32_t kMostSamples = 64;
+
+ private:
+  /// What to trace now; none where all is done.
+  std::optional<View> next_view() const;
+  uvec2 first_size() const;
+  void begin(const vk::raii::CommandBuffer& commands, const View& view);
+  void finish();
+
+  std::vector<Film> films_;
+  /// Of one dispatch; a longer budget takes several.
+  double longest_piece_ms_;
+  double budget_ms_;
+  Pacer pacer_;
+  bool is_warm_ = false;
+  bool takes_many_paths_ = true;
+  uvec2 full_size_{1};
+  std::optional<double> fixed_scale_;
+  bool is_paused_ = false;
+
+  View wanted_;
+  uint64_t wanted_version_ = 0;
+  std::optional<ShownPicture> shown_;
+  uint64_t shown_version_ = 0;
+  uint64_t shown_count_ = 0;
+  /// Under way, on the film that is not shown.
+  std::optional<TileScheduler> picture_;
+  ShownPicture picture_when_done_;
+  uint64_t picture_version_ = 0;
+  bool is_first_ = false;
+};
+
+/// Whether two views show the same but for their samples.
+bool shows_same(const View& a, const View& b);
+
+}  // namespace promin::app

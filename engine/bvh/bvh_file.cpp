@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "bvh/bvh_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bvh/read_node.h"
+#include "core/file.h"
+#include "core/hash.h"
+#include "device_scene/pack_scene.h"
+#include "promin/error.h"
+
+namespace promin {
+namespace fs = std::filesystem;
+
+namespace {
+
+using layout::Node;
+
+static_assert(std::endian::native == std::endian::little, "the file is little-endian and used as it lies in memory");
+
+// A byte beyond ASCII and both line ends, so that what damages binary files shows here.
+constexpr std::array<char, 8> kMagic = {'\x89', 'P', 'B', 'V', 'H', '\r', '\n', '\x1A'};
+constexpr uint32_t kByteOrder = 0x01020304;
+constexpr uint32_t kVersion = 1;
+
+/// docs/bvh_file.md
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  uint32_t byte_order = kByteOrder;
+  uint32_t version = kVersion;
+  /// Of the whole file, with 0 in this place.
+  uint64_t checksum = 0;
+  uint64_t layout_hash = 0;
+  uint64_t geometry_hash = 0;
+  uint32_t node_count = 0;
+  uint32_t reference_count = 0;
+  uint32_t primitive_count = 0;
+  uint32_t stack_size = 0;
+  // BvhStats.
+  uint64_t tree_nodes = 0;
+  uint64_t leaves = 0;
+  double sah_cost = 0.0;
+  uint32_t depth = 0;
+  uint32_t max_leaf_size = 0;
+  /// Filled up with zeros, at least one.
+  std::array<char, 40> builder{};
+};
+static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && std::is_trivially_copyable_v<Header>);
+
+/// The traversal stack of a tree of kMaxBvhDepth cannot need more: an entry for each node above the deepest.
+constexpr uint32_t kMaxStackSize = kMaxBvhDepth - 1;
+
+/// Of what pack_tree makes of a small tree, and of the kinds' order: a change of what a node's bits mean, or of how
+/// many entries the stack takes, changes it.
+uint64_t hash_layout() {
+  Bvh probe;
+  // Five leaves, one more than a node holds: inner, leaf and absent children.
+  for (uint32_t i = 0; i < 5; ++i) {
+    const auto x = static_cast<float>(i);
+    const Bounds box{{x, -0.3F * x, 1e-3F * x}, {5.3F, 0.7F + x, 2e3F}};
+    const uint32_t node = 2 * i;
+    if (i < 4) {
+      probe.nodes.push_back({{{x, -2.0F, 0.0F}, {6.0F, 5.0F, 2e3F}}, node + 1, 0});
+      probe.nodes.push_back({box, 3 * i, i + 1});
+    } else {
+      probe.nodes.push_back({box, 3 * i, kMaxLeafSize});
+    }
+  }
+  // The children of an inner node are neighbours: node 2i + 1 is a leaf, node 2i + 2 the next inner one.
+  const PackedTree packed = pack_tree(probe);
+  Hash64 hash;
+  hash.add(std::as_bytes(std::span(packed.nodes)));
+  hash.add(packed.stack_size);
+  for (const uint32_t kind : {layout::KIND_TRIANGLE, layout::KIND_SPHERE, layout::KIND_CYLINDER, layout::KIND_CONE}) {
+    hash.add(kind);
+  }
+  return hash.value();
+}
+
+uint64_t hash_file(Header header, std::span<const std::byte> nodes, std::span<const std::byte> references) {
+  header.checksum = 0;
+  Hash64 hash;
+  hash.add(std::as_bytes(std::span(&header, 1)));
+  hash.add(nodes);
+  hash.add(references);
+  return hash.value();
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& what) {
+  throw InputError({what, file.string(), "build it again with promin-bvh build"});
+}
+
+Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
+  if (std::memcmp(bytes.data(), kMagic.data(), std::min(bytes.size(), kMagic.size())) != 0) {
+    throw InputError({"not a BVH file", file.string(), "name a file that promin-bvh build has written"});
+  }
+  if (bytes.size() < sizeof(Header)) refuse(file, "the BVH file ends within its header");
+  Header header;
+  std::memcpy(&header, bytes.data(), sizeof(Header));
+  if (header.byte_order != kByteOrder) refuse(file, "the BVH file is of another byte order");
+  if (header.version != kVersion) {
+    refuse(file, "the BVH file is of version " + std::to_string(header.version) + " and this promin reads version " +
+                     std::to_string(kVersion));
+  }
+  if (header.layout_hash != hash_layout()) {
+    refuse(file, "the BVH file has nodes of another layout than this promin's");
+  }
+  return header;
+}
+
+std::string read_builder(const Header& header, const fs::path& file) {
+  const auto end = std::find(header.builder.begin(), header.builder.end(), '\0');
+  // It is printed: nothing that a terminal would obey.
+  const bool is_name = end != header.builder.end() && std::all_of(header.builder.begin(), end, [](char c) {
+                         return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+                       });
+  if (!is_name) refuse(file, "the BVH file does not name its builder");
+  return {header.builder.begin(), end};
+}
+
+/// Walks a tree from untrusted hands once, in the order of the nodes.
+class TreeCheck {
+ public:
+  TreeCheck(const TreeView& tree, const fs::path& file)
+      : tree_(tree),
+        file_(file),
+        entries_(tree.nodes.size(), kUnreached),
+        is_slot_taken_(tree.references.size()),
+        is_referred_to_(tree.primitive_count) {}
+
+  /// Throws InputError.
+  void run() {
+    if (tree_.references.size() > layout::CHILD_FIRST_MASK) refuse(file_, "the BVH file has too many references");
+    if (tree_.nodes.empty()) refuse(file_, "the BVH file has no nodes");
+    if (tree_.nodes.size() > layout::MAX_NODES) refuse(file_, "the BVH file has too many nodes");
+    entries_[0] = 0;
+    // A child comes after its parent, so no way leads back, and each has been reached when its turn comes.
+    for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
+    if (most_entries_ != tree_.stack_size) {
+      refuse(file_, "the BVH file's tree takes a stack of " + std::to_string(most_entries_) + " and claims " +
+                        std::to_string(tree_.stack_size));
+    }
+    if (slots_taken_ != tree_.references.size()) refuse(file_, "the BVH file has references in no leaf");
+    check_stats();
+    for (const uint32_t primitive : tree_.references) {
+      if (primitive >= tree_.primitive_count) {
+        refuse(file_, "the BVH file refers to primitive " + std::to_string(primitive) + " of " +
+                          std::to_string(tree_.primitive_count));
+      }
+      is_referred_to_[primitive] = true;
+    }
+    const auto missing = std::find(is_referred_to_.begin(), is_referred_to_.end(), false);
+    if (missing != is_referred_to_.end()) {
+      refuse(file_, "the BVH file's tree lacks primitive " + std::to_string(missing - is_referred_to_.begin()));
+    }
+  }
+
+ private:
+  static constexpr uint32_t kUnreached = std::numeric_limits<uint32_t>::max();
+
+  [[noreturn]] void refuse_node(uint32_t index, const std::string& what) const {
+    refuse(file_, "the BVH file's node " + std::to_string(index) + " " + what);
+  }
+
+  void visit(uint32_t index) {
+    if (entries_[index] == kUnreached) refuse_node(index, "has no parent before it");
+    const Node& node = tree_.nodes[index];
+    const uint32_t count = child_count(node);
+    if (count > layout::NODE_WIDTH) refuse_node(index, "tells of " + std::to_string(count) + " children");
+    // The only node without children is that of an empty tree.
+    if (count == 0 && tree_.nodes.size() > 1) refuse_node(index, "has no children");
+    const uint32_t entries = entries_[index];
+    if (entries > kMaxStackSize) refuse_node(index, "lies deeper than any builder goes");
+    most_entries_ = std::max(most_entries_, entries);
+    for (uint32_t i = 0; i < count; ++i) {
+      const NodeChild child = child_of(node, i);
+      if (child.kind == ChildKind::kLeaf) {
+        take_slots(index, child);
+      } else if (child.first <= index || child.first >= tree_.nodes.size()) {
+        refuse_node(index, "has a child out of range");
+      } else if (entries_[child.first] != kUnreached) {
+        refuse_node(child.first, "has two parents");
+      } else {
+        entries_[child.first] = entries + 1;
+      }
+    }
+  }
+
+  /// What is told of the tree: it is printed, and goes to --stats.
+  void check_stats() const {
+    const BvhStats& stats = tree_.stats;
+    const uint64_t binary_nodes = leaf_count_ > 0 ? 2 * leaf_count_ - 1 : 0;
+    const bool is_so = stats.leaves == leaf_count_ && stats.max_leaf_size == max_leaf_size_ &&
+                       stats.nodes == binary_nodes && stats.depth <= kMaxBvhDepth && stats.sah_cost >= 0.0 &&
+                       std::isfinite(stats.sah_cost);
+    if (!is_so) refuse(file_, "the BVH file tells of another tree than it holds");
+  }
+
+  void take_slots(uint32_t index, const NodeChild& leaf) {
+    if (uint64_t{leaf.first} + leaf.count > is_slot_taken_.size()) refuse_node(index, "has a leaf out of range");
+    for (uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
+      if (is_slot_taken_[slot]) refuse_node(index, "shares a reference with another leaf");
+      is_slot_taken_[slot] = true;
+    }
+    slots_taken_ += leaf.count;
+    ++leaf_count_;
+    max_leaf_size_ = std::max(max_leaf_size_, leaf.count);
+  }
+
+  const TreeView& tree_;
+  const fs::path& file_;
+  /// Entries on the traversal stack when a ray leaves a node: one for each node above.
+  std::vector<uint32_t> entries_;
+  uint32_t most_entries_ = 1;
+  std::vector<bool> is_slot_taken_;
+  size_t slots_taken_ = 0;
+  uint64_t leaf_count_ = 0;
+  uint32_t max_leaf_size_ = 0;
+  std::vector<bool> is_referred_to_;
+};
+
+}  // namespace
+
+BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
+  const std::span<const std::byte> bytes = mapped_.bytes();
+  const Header header = read_header(bytes, file);
+  const uint64_t node_bytes = uint64_t{header.node_count} * sizeof(Node);
+  const uint64_t reference_bytes = uint64_t{header.reference_count} * sizeof(uint32_t);
+  const uint64_t size = sizeof(Header) + node_bytes + reference_bytes;
+  if (bytes.size() != size) {
+    refuse(file, "the BVH file has " + std::to_string(bytes.size()) + " bytes where its header tells of " +
+                     std::to_string(size));
+  }
+  const auto nodes = bytes.subspan(sizeof(Header), node_bytes);
+  const auto references = bytes.subspan(sizeof(Header) + node_bytes);
+  if (hash_file(header, nodes, references) != header.checksum) {
+    refuse(file, "the BVH file is damaged: its checksum does not match");
+  }
+  // Both are aligned: the mapping begins at a page, the nodes 128 bytes behind.
+  tree_.nodes = {reinterpret_cast<const Node*>(nodes.data()), header.node_count};
+  tree_.references = {reinterpret_cast<const uint32_t*>(references.data()), header.reference_count};
+  tree_.primitive_count = header.primitive_count;
+  tree_.stack_size = header.stack_size;
+  tree_.geometry_hash = header.geometry_hash;
+  tree_.stats = {.builder = read_builder(header, file),
+                 .nodes = header.tree_nodes,
+                 .leaves = header.leaves,
+                 .depth = header.depth,
+                 .max_leaf_size = header.max_leaf_size,
+                 .sah_cost = header.sah_cost,
+                 .bytes = node_bytes};
+  // Before memory is taken for them.
+  if (header.primitive_count > header.reference_count)
+    refuse(file, "the BVH file has fewer references than primitives");
+  TreeCheck(tree_, file).run();
+}
+
+void BvhFile::check_scene(uint64_t geometry_hash, size_t solid_count) const {
+  if (geometry_hash != tree_.geometry_hash || solid_count != tree_.primitive_count) {
+    refuse(file_, "the BVH file is stale: it was built over other geometry than the scene's");
+  }
+}
+
+void write_bvh_file(const fs::path& file, const TreeView& tree) {
+  Header header;
+  header.layout_hash = hash_layout();
+  header.geometry_hash = tree.geometry_hash;
+  header.node_count = static_cast<uint32_t>(tree.nodes.size());
+  header.reference_count = static_cast<uint32_t>(tree.references.size());
+  header.primitive_count = tree.primitive_count;
+  header.stack_size = tree.stack_size;
+  header.tree_nodes = tree.stats.nodes;
+  header.leaves = tree.stats.leaves;
+  header.sah_cost = tree.stats.sah_cost;
+  header.depth = tree.stats.depth;
+  header.max_leaf_size = tree.stats.max_leaf_size;
+  tree.stats.builder.copy(header.builder.data(), header.builder.size() - 1);
+  const auto nodes = std::as_bytes(tree.nodes);
+  const auto references = std::as_bytes(tree.references);
+  header.checksum = hash_file(header, nodes, references);
+  write_file(file, {std::as_bytes(std::span(&header, 1)), nodes, references});
+}
+
+}  // namespace promin

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "bvh/find_tree_faults.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "bvh/read_node.h"
+#include "core/parallel.h"
+
+namespace promin {
+namespace {
+
+using layout::Node;
+using layout::Primitive;
+
+constexpr uint32_t kChunkSize = 4096;
+
+/// Sides of a box: below its lower plane, above its upper one.
+enum class Side { kBelow, kAbove };
+
+bool is_beyond(double coordinate, double plane, Side side) {
+  return side == Side::kBelow ? coordinate < plane : coordinate > plane;
+}
+
+// Apart from bvh/clip_triangle on purpose: what cuts for builders must not check itself.
+
+/// Something cut at a plane; either part may be missing.
+template <typename Piece>
+struct Cut {
+  std::optional<Piece> beyond;
+  std::optional<Piece> within;
+};
+
+/// Corners in order; convex and plane.
+using Polygon = std::vector<dvec3>;
+
+Cut<Polygon> cut_at(const Polygon& polygon, int axis, double plane, Side side) {
+  Polygon beyond;
+  Polygon within;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const dvec3& a = polygon[i];
+    const dvec3& b = polygon[(i + 1) % polygon.size()];
+    const bool is_a_beyond = is_beyond(a[axis], plane, side);
+    (is_a_beyond ? beyond : within).push_back(a);
+    if (is_a_beyond == is_beyond(b[axis], plane, side)) continue;
+    dvec3 crossing = glm::mix(a, b, (plane - a[axis]) / (b[axis] - a[axis]));
+    crossing[axis] = plane;
+    beyond.push_back(crossing);
+    within.push_back(crossing);
+  }
+  Cut<Polygon> cut;
+  if (!beyond.empty()) cut.beyond = std::move(beyond);
+  if (!within.empty()) cut.within = std::move(within);
+  return cut;
+}
+
+Cut<Box> cut_at(const Box& box, int axis, double plane, Side side) {
+  Cut<Box> cut;
+  const bool is_below = side == Side::kBelow;
+  const double outer = is_below ? box.lo[axis] : box.hi[axis];
+  const double inner = is_below ? box.hi[axis] : box.lo[axis];
+  if (!is_beyond(outer, plane, side)) return {{}, box};
+  if (is_beyond(inner, plane, side)) return {box, {}};
+  cut.beyond = cut.within = box;
+  (is_below ? cut.beyond->hi : cut.beyond->lo)[axis] = plane;
+  (is_below ? cut.within->lo : cut.within->hi)[axis] = plane;
+  return cut;
+}
+
+/// What is left of `piece` outside of `box`.
+template <typename Piece>
+void subtract(const Piece& piece, const Box& box, std::vector<Piece>& left) {
+  const size_t first = left.size();
+  Piece rest = piece;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Side side : {Side::kBelow, Side::kAbove}) {
+      Cut<Piece> cut = cut_at(rest, axis, side == Side::kBelow ? box.lo[axis] : box.hi[axis], side);
+      if (!cut.within) {
+        // The box has nothing of it: it stays whole.
+        left.resize(first);
+        left.push_back(piece);
+        return;
+      }
+      if (cut.beyond) left.push_back(std::move(*cut.beyond));
+      rest = std::move(*cut.within);
+    }
+  }
+}
+
+/// Whether boxes that are larger by `tolerance` on all sides cover a piece.
+template <typename Piece>
+bool is_covered(const Piece& piece, std::span<const Box> boxes, double tolerance) {
+  std::vector<Piece> pieces = {piece};
+  std::vector<Piece> left;
+  for (const Box& box : boxes) {
+    left.clear();
+    for (const Piece& each : pieces) subtract(each, {box.lo - tolerance, box.hi + tolerance}, left);
+    std::swap(pieces, left);
+  }
+  return pieces.empty();
+}
+
+Polygon polygon_of(const Primitive& p) {
+  const std::array corners = triangle_corners(p);
+  return {corners.begin(), corners.end()};
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Box kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
+
+/// What both hold.
+Box intersect(const Box& a, const Box& b) {
+  const Box both{glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
+  // Written so that a NaN holds nothing.
+  const bool is_box = glm::all(glm::lessThanEqual(b.lo, b.hi)) && glm::all(glm::lessThanEqual(both.lo, both.hi));
+  return is_box ? both : kNothing;
+}
+
+bool contains(const Box& outer, const Box& inner) {
+  return glm::all(glm::lessThanEqual(outer.lo, inner.lo)) && glm::all(glm::greaterThanEqual(outer.hi, inner.hi));
+}
+
+class Inspection {
+ public:
+  explicit Inspection(const PackedScene& packed)
+      : packed_(packed),
+        tree_(packed.tree()),
+        node_boxes_(tree_.nodes.size()),
+        leaf_of_slot_(tree_.references.size()),
+        slots_(tree_.references.size()),
+        first_slot_(tree_.primitive_count + size_t{1}) {}
+
+  TreeFaults run(const TreeFaultOptions& options) {
+    for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
+    group_slots();
+    const size_t chunk_count = (size_t{tree_.primitive_count} + kChunkSize - 1) / kChunkSize;
+    std::vector<TreeFaults> of_chunks(chunk_count);
+    SharedProgress progress(options.progress, static_cast<double>(chunk_count));
+    for_each_index(chunk_count, options.thread_count, [&](size_t chunk) {
+      const auto begin = static_cast<uint32_t>(chunk * kChunkSize);
+      const uint32_t end = begin + std::min(kChunkSize, tree_.primitive_count - begin);
+      for (uint32_t i = begin; i < end; ++i) inspect(i, of_chunks[chunk]);
+      progress.add(1.0);
+    });
+    for (const TreeFaults& faults : of_chunks) {
+      if (faults_.count == 0) faults_.first = faults.first;
+      faults_.count += faults.count;
+    }
+    return std::move(faults_);
+  }
+
+ private:
+  /// A node comes after its parent, so its box is known.
+  void visit(uint32_t index) {
+    const Node& node = tree_.nodes[index];
+    for (uint32_t i = 0; i < layout::NODE_WIDTH; ++i) {
+      const NodeChild child = child_of(node, i);
+      if (child.kind == ChildKind::kAbsent) continue;
+      const Box box = intersect(node_boxes_[index], child_box(node, i));
+      if (child.kind == ChildKind::kNode) {
+        node_boxes_[child.first] = box;
+        continue;
+      }
+      const auto slots = std::span(packed_.primitives).subspan(child.first, child.count);
+      const auto has_lower_kind = [](const Primitive& a, const Primitive& b) { return a.c.z < b.c.z; };
+      if (!std::is_sorted(slots.begin(), slots.end(), has_lower_kind)) {
+        add_fault(faults_, "a leaf of node " + std::to_string(index) + " is not sorted by kind");
+      }
+      std::fill_n(leaf_of_slot_.begin() + child.first, child.count, static_cast<uint32_t>(leaf_boxes_.size()));
+      leaf_boxes_.push_back(box);
+    }
+  }
+
+  /// Makes [first_slot_[i], first_slot_[i + 1]) of `slots_` those that refer to primitive i.
+  void group_slots() {
+    for (const uint32_t primitive : tree_.references) ++first_slot_[primitive];
+    std::partial_sum(first_slot_.begin(), first_slot_.end(), first_slot_.begin());
+    for (uint32_t slot = 0; slot < slots_.size(); ++slot) slots_[--first_slot_[tree_.references[slot]]] = slot;
+  }
+
+  void inspect(uint32_t index, TreeFaults& faults) const {
+    const auto slots = std::span(slots_).subspan(first_slot_[index], first_slot_[index + 1] - first_slot_[index]);
+    const Primitive& primitive = packed_.primitives[slots.front()];
+    const Bounds bounds = primitive_bounds(primitive);
+    const Box whole{bounds.lo, bounds.hi};
+    if (slots.size() == 1) {
+      if (contains(box_of(slots.front()), whole)) return;
+      add_fault(faults, name_of(primitive) + " reaches out of the box of its leaf or of a node above it");
+      return;
+    }
+    std::vector<Box> boxes;
+    for (const uint32_t slot : slots) boxes.push_back(box_of(slot));
+    const float size = std::max(max_abs_component(bounds.lo), max_abs_component(bounds.hi));
+    const double tolerance = static_cast<double>(kUnitRoundoff) * static_cast<double>(size);
+    const bool is_whole = primitive.c.z == layout::KIND_TRIANGLE ? is_covered(polygon_of(primitive), boxes, tolerance)
+                                                                 : is_covered(whole, boxes, tolerance);
+    if (is_whole) return;
+    add_fault(faults, name_of(primitive) + " is in " + std::to_string(slots.size()) +
+                          " leaves, and their boxes do not cover it");
+  }
+
+  const Box& box_of(uint32_t slot) const { return leaf_boxes_[leaf_of_slot_[slot]]; }
+
+  std::string name_of(const Primitive& primitive) const {
+    const PrimitiveId id = primitive_of_order(packed_.numbers, primitive.c.y);
+    return "primitive " + std::to_string(id.primitive) + " of object " + std::to_string(id.object);
+  }
+
+  static void add_fault(TreeFaults& faults, const std::string& sentence) {
+    if (faults.count++ == 0) faults.first = sentence;
+  }
+
+  const PackedScene& packed_;
+  TreeView tree_;
+  /// Of each node, and of each leaf: what its own box and those of all nodes above have in common.
+  std::vector<Box> node_boxes_;
+  std::vector<Box> leaf_boxes_;
+  std::vector<uint32_t> leaf_of_slot_;
+  std::vector<uint32_t> slots_;
+  std::vector<uint32_t> first_slot_;
+  TreeFaults faults_;
+};
+
+}  // namespace
+
+TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options) {
+  return Inspection(packed).run(options);
+}
+
+}  // namespace promin

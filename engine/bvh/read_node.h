@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "layout.h"
+#include "promin/math.h"
+
+// Reads on the host what pack_tree and pack_scene write, as the shaders read it: for checks, tests and builders.
+namespace promin {
+
+/// A box in double. Everything by default: what nothing confines.
+struct Box {
+  dvec3 lo{-std::numeric_limits<double>::infinity()};
+  dvec3 hi{std::numeric_limits<double>::infinity()};
+};
+
+enum class ChildKind { kAbsent, kNode, kLeaf };
+
+struct NodeChild {
+  ChildKind kind = ChildKind::kAbsent;
+  /// The index of a node, the first reference of a leaf.
+  uint32_t first = 0;
+  /// References in a leaf.
+  uint32_t count = 0;
+};
+
+/// How many children a node tells of: at most NODE_WIDTH unless the bits are no node's.
+uint32_t child_count(const layout::Node& node);
+
+/// Child 0...NODE_WIDTH - 1; those from child_count on are absent.
+NodeChild child_of(const layout::Node& node, uint32_t child);
+
+/// The box of a child that is there. Bits that are no box (NaN, infinity) come as they are.
+Box child_box(const layout::Node& node, uint32_t child);
+
+/// Of any primitive of the tree, conservative as bounds_of of its shape is.
+Bounds primitive_bounds(const layout::Primitive& primitive);
+
+/// Of a KIND_TRIANGLE.
+std::array<vec3, 3> triangle_corners(const layout::Primitive& primitive);
+
+}  // namespace promin

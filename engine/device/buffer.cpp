@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/buffer.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstring>
+#include <string>
+
+#include "device/device.h"
+#include "promin/error.h"
+
+namespace promin::gpu {
+namespace {
+
+using Memory = vk::MemoryPropertyFlagBits;
+constexpr vk::MemoryPropertyFlags kMappable = Memory::eHostVisible | Memory::eHostCoherent;
+
+// Cached matters for reading pictures back; memory that is device-local and mappable is not cached on discrete GPUs,
+// and there its window may be small, so they take the staging way.
+const std::array kDevicePreferences{Memory::eDeviceLocal | kMappable | Memory::eHostCached,
+                                    vk::MemoryPropertyFlags(Memory::eDeviceLocal), vk::MemoryPropertyFlags()};
+const std::array kStagingPreferences{kMappable | Memory::eHostCached, kMappable};
+
+}  // namespace
+
+Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage)
+    : Buffer(device, size_bytes, usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst,
+             kDevicePreferences) {}
+
+Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,
+               std::span<const vk::MemoryPropertyFlags> preferences)
+    : device_(&device), size_bytes_(size_bytes) {
+  const vk::PhysicalDeviceLimits& limits = device.limits();
+  vk::DeviceSize most_bytes = ~vk::DeviceSize{0};
+  if (usage & vk::BufferUsageFlagBits::eStorageBuffer) most_bytes = limits.maxStorageBufferRange;
+  if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer) {
+    most_bytes = std::max(most_bytes, limits.maxTexelBufferElements * kTexelBytes);
+  }
+  if (size_bytes > most_bytes) {
+    throw RunError({"the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB",
+                    "on a device that allows " + std::to_string(most_bytes >> 20) + " MiB",
+                    "use a smaller scene or another --device"});
+  }
+  buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, size_bytes, usage));
+  const vk::MemoryRequirements requirements = buffer_.getMemoryRequirements();
+  std::optional<uint32_t> type;
+  vk::MemoryPropertyFlags properties;
+  for (const auto& wanted : preferences) {
+    type = device.find_memory_type(requirements.memoryTypeBits, wanted);
+    properties = wanted;
+    if (type) break;
+  }
+  // Vulkan guarantees a host-visible coherent type and some type for every buffer.
+  assert(type.has_value());
+  memory_ = vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(requirements.size, *type));
+  buffer_.bindMemory(*memory_, 0);
+  if ((properties & kMappable) == kMappable) {
+    mapped_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
+  }
+}
+
+Buffer Buffer::make_readback(const Device& device, vk::DeviceSize size_bytes) {
+  return {device, size_bytes, vk::BufferUsageFlagBits::eTransferDst, kStagingPreferences};
+}
+
+vk::raii::BufferView Buffer::make_texel_view() const {
+  const vk::DeviceSize most_bytes = device_->limits().maxTexelBufferElements * kTexelBytes;
+  return {device_->handle(),
+          vk::BufferViewCreateInfo({}, *buffer_, vk::Format::eR32G32B32A32Uint, 0, std::min(size_bytes_, most_bytes))};
+}
+
+void Buffer::write(std::span<const std::byte> data) {
+  assert(data.size() <= size_bytes_);
+  if (data.empty()) return;
+  if (mapped_ != nullptr) {
+    std::memcpy(mapped_, data.data(), data.size());
+    return;
+  }
+  const Buffer staging(*device_, data.size(), vk::BufferUsageFlagBits::eTransferSrc, kStagingPreferences);
+  std::memcpy(staging.mapped_, data.data(), data.size());
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, 0, data.size()));
+  });
+}
+
+void Buffer::read(std::span<std::byte> data, vk::DeviceSize offset_bytes) const {
+  assert(offset_bytes + data.size() <= size_bytes_);
+  if (data.empty()) return;
+  if (mapped_ != nullptr) {
+    std::memcpy(data.data(), mapped_ + offset_bytes, data.size());
+    return;
+  }
+  const Buffer staging = make_readback(*device_, data.size());
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    const vk::MemoryBarrier before(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eTransferRead);
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eTransfer, {},
+                             before, {}, {});
+    commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(offset_bytes, 0, data.size()));
+    const vk::MemoryBarrier after(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, after, {}, {});
+  });
+  std::memcpy(data.data(), staging.mapped_, data.size());
+}
+
+}  // namespace promin::gpu

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/device.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+
+#include "device/instance.h"
+#include "promin/device.h"
+#include "promin/error.h"
+
+namespace promin::gpu {
+namespace {
+
+std::string name_of(vk::PhysicalDeviceType type) {
+  switch (type) {
+    case vk::PhysicalDeviceType::eDiscreteGpu:
+      return "discrete GPU";
+    case vk::PhysicalDeviceType::eIntegratedGpu:
+      return "integrated GPU";
+    case vk::PhysicalDeviceType::eVirtualGpu:
+      return "virtual GPU";
+    case vk::PhysicalDeviceType::eCpu:
+      return "CPU";
+    default:
+      return "other";
+  }
+}
+
+/// Lower is better.
+int rank_of(const std::string& type) {
+  const std::array order{"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"};
+  return static_cast<int>(std::find(order.begin(), order.end(), type) - order.begin());
+}
+
+std::string version_text(uint32_t version) {
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+         std::to_string(VK_API_VERSION_PATCH(version));
+}
+
+/// A family that computes and, where there is a surface, draws and presents to it as well.
+std::optional<uint32_t> find_family(const vk::raii::PhysicalDevice& device, vk::SurfaceKHR surface) {
+  using Flag = vk::QueueFlagBits;
+  const vk::QueueFlags wanted = surface ? Flag::eCompute | Flag::eGraphics : vk::QueueFlags(Flag::eCompute);
+  const auto families = device.getQueueFamilyProperties();
+  for (uint32_t i = 0; i < families.size(); ++i) {
+    const bool is_able = (families[i].queueFlags & wanted) == wanted;
+    if (is_able && (!surface || device.getSurfaceSupportKHR(i, surface))) return i;
+  }
+  return std::nullopt;
+}
+
+bool has_device_extension(const vk::raii::PhysicalDevice& device, std::string_view name) {
+  const auto extensions = device.enumerateDeviceExtensionProperties();
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return name == e.extensionName.data(); });
+}
+
+/// None where the driver does not tell.
+std::optional<vk::PhysicalDeviceDriverProperties> driver_properties(const vk::raii::PhysicalDevice& device,
+                                                                    const vk::PhysicalDeviceProperties& properties) {
+  if (properties.apiVersion < VK_API_VERSION_1_2 &&
+      !has_device_extension(device, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
+    return std::nullopt;
+  }
+  const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+  return chain.get<vk::PhysicalDeviceDriverProperties>();
+}
+
+std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
+  const auto driver = driver_properties(device, properties);
+  if (!driver) return "driver " + version_text(properties.driverVersion);
+  const std::string name = driver->driverName.data();
+  const std::string version = driver->driverInfo.data();
+  return version.empty() ? name : name + " " + version;
+}
+
+DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::SurfaceKHR surface) {
+  const vk::PhysicalDeviceProperties properties = device.getProperties();
+  DeviceInfo info;
+  info.index = index;
+  info.name = properties.deviceName.data();
+  info.type = name_of(properties.deviceType);
+  info.api_version = version_text(properties.apiVersion);
+  if (properties.apiVersion < VK_API_VERSION_1_1) {
+    info.driver = "driver " + version_text(properties.driverVersion);
+    info.obstacles.push_back("only Vulkan " + info.api_version + ", 1.1 is needed");
+    return info;
+  }
+  info.driver = driver_text(device, properties);
+  if (!find_family(device, {})) {
+    info.obstacles.emplace_back("no compute queue");
+    return info;
+  }
+  const auto family = find_family(device, surface);
+  if (!family || (surface && !has_device_extension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME))) {
+    info.obstacles.emplace_back("it cannot present to this window; promin render needs none");
+    return info;
+  }
+  if (device.getQueueFamilyProperties()[*family].timestampValidBits == 0) {
+    info.lacks.emplace_back("timestamps (times are the host's)");
+  }
+  return info;
+}
+
+std::vector<DeviceInfo> describe_all(const std::vector<vk::raii::PhysicalDevice>& devices, vk::SurfaceKHR surface) {
+  std::vector<DeviceInfo> infos;
+  for (uint32_t i = 0; i < devices.size(); ++i) infos.push_back(describe(devices[i], i, surface));
+  const auto best = std::min_element(infos.begin(), infos.end(), [](const DeviceInfo& a, const DeviceInfo& b) {
+    const auto key = [](const DeviceInfo& d) { return std::pair(!d.obstacles.empty(), rank_of(d.type)); };
+    return key(a) < key(b);
+  });
+  if (best != infos.end() && best->obstacles.empty()) best->is_default = true;
+  return infos;
+}
+
+std::vector<vk::raii::PhysicalDevice> enumerate(const vk::raii::Instance& instance) {
+  try {
+    return instance.enumeratePhysicalDevices();
+  } catch (const vk::InitializationFailedError&) {
+    return {};  // a loader without any driver
+  }
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::string list_names(const std::vector<DeviceInfo>& infos) {
+  std::string text;
+  for (const DeviceInfo& info : infos) {
+    text += (text.empty() ? "" : ", ") + std::to_string(info.index) + " " + info.name;
+  }
+  return text;
+}
+
+/// Index into `infos`; by exact index where the selection is a number, else by a part of the name.
+size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<std::string>& selection) {
+  if (infos.empty()) {
+    throw DeviceError({"no Vulkan device", "on this machine", "install a driver such as mesa-vulkan-drivers"});
+  }
+  for (size_t i = 0; i < infos.size(); ++i) {
+    if (!selection && infos[i].is_default) return i;
+  }
+  if (!selection) {
+    throw DeviceError({"no usable Vulkan device (" + infos[0].name + ": " + infos[0].obstacles[0] + ")",
+                       "on this machine", "install a driver such as mesa-vulkan-drivers"});
+  }
+  size_t number = 0;
+  const char* end = selection->data() + selection->size();
+  const auto parsed = std::from_chars(selection->data(), end, number);
+  const bool is_number = !selection->empty() && parsed.ec == std::errc() && parsed.ptr == end;
+  for (size_t i = 0; i < infos.size(); ++i) {
+    const bool matches =
+        is_number ? i == number : lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
+    if (!matches) continue;
+    if (!infos[i].obstacles.empty()) {
+      throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],
+                         "asked for by --device", "choose another of: " + list_names(infos)});
+    }
+    return i;
+  }
+  throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "asked for by --device",
+                     "choose one of: " + list_names(infos)});
+}
+
+}  // namespace
+
+void translate_vulkan_errors(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const vk::OutOfDeviceMemoryError& error) {
+    throw RunError({"out of device memory", error.what(), "use a smaller scene or picture, or another --device"});
+  } catch (const vk::OutOfHostMemoryError& error) {
+    throw RunError({"out of host memory", error.what(), "use a smaller scene or picture"});
+  } catch (const vk::DeviceLostError& error) {
+    throw RunError({"the device was lost", error.what(), "try again, or another --device"});
+  } catch (const vk::SystemError& error) {
+    throw RunError({"a Vulkan call failed", error.what(), "try another --device"});
+  }
+}
+
+Device::Device(const std::optional<std::string>& selection, const Presentation* presentation)
+    : validation_messages_(std::make_unique<std::atomic<uint64_t>>(0)),
+      context_(load_vulkan()),
+      instance_(make_instance(
+          context_, presentation != nullptr ? presentation->instance_extensions : std::vector<const char*>())),
+      messenger_(make_messenger(instance_, validation_messages_.get())) {
+  if (presentation != nullptr) {
+    surface_ = vk::raii::SurfaceKHR(instance_, presentation->make_surface(*instance_));
+  }
+  auto devices = enumerate(instance_);
+  const std::vector<DeviceInfo> infos = describe_all(devices, *surface_);
+  const size_t index = select_device(infos, selection);
+  physical_ = std::move(devices[index]);
+  info_ = infos[index];
+  choice_ = "using " + info_.name + " (" + info_.type + ", " + info_.driver + "), " +
+            (selection           ? "asked for by --device"
+             : infos.size() == 1 ? "the only Vulkan device"
+                                 : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
+  translate_vulkan_errors([&] {
+    const vk::PhysicalDeviceProperties properties = physical_.getProperties();
+    limits_ = properties.limits;
+    is_cpu_ = properties.deviceType == vk::PhysicalDeviceType::eCpu;
+    const auto driver = driver_properties(physical_, properties);
+    is_lavapipe_ = driver && driver->driverID == vk::DriverId::eMesaLlvmpipe;
+    memory_ = physical_.getMemoryProperties();
+    queue_family_ = *find_family(physical_, *surface_);
+    if (const uint32_t bits = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits; bits > 0) {
+      timestamp_period_ns_ = limits_.timestampPeriod;
+      timestamp_mask_ = ~uint64_t{0} >> (64 - bits);
+    }
+    const float priority = 1.0F;
+    const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
+    // A layered driver must be told that its extension is known of.
+    std::vector<const char*> extensions;
+    if (has_device_extension(physical_, "VK_KHR_portability_subset")) {
+      extensions.push_back("VK_KHR_portability_subset");
+    }
+    if (presentation != nullptr) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    // For measurements against double alone (tools/reporting): nothing else needs an optional feature.
+    has_fp64_ = physical_.getFeatures().shaderFloat64 == VK_TRUE;
+    vk::PhysicalDeviceFeatures features;
+    features.shaderFloat64 = has_fp64_ ? VK_TRUE : VK_FALSE;
+    device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions, &features));
+    queue_ = vk::raii::Queue(device_, queue_family_, 0);
+    pool_ = vk::raii::CommandPool(
+        device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));
+    commands_ = std::move(
+        vk::raii::CommandBuffers(device_, vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1))
+            .front());
+    fence_ = vk::raii::Fence(device_, vk::FenceCreateInfo());
+  });
+}
+
+std::optional<uint32_t> Device::find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const {
+  for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+    const bool is_allowed = ((allowed_types >> i) & 1U) != 0;
+    if (is_allowed && (memory_.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+  }
+  return std::nullopt;
+}
+
+void Device::wait_idle() const {
+  // Vulkan counts it as a use of all queues.
+  const std::lock_guard lock(queue_mutex_);
+  device_.waitIdle();
+}
+
+void Device::run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
+  const std::lock_guard lock(run_mutex_);
+  commands_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
+  record(commands_);
+  commands_.end();
+  vk::SubmitInfo submit;
+  const vk::CommandBuffer buffer = *commands_;
+  submit.setCommandBuffers(buffer);
+  use_queue([&](const vk::raii::Queue& queue) { queue.submit(submit, *fence_); });
+  // Work is cut into short dispatches: a device that is silent for this long is gone.
+  constexpr uint64_t kTimeoutNs = 120'000'000'000;
+  const vk::Result result = device_.waitForFences({*fence_}, VK_TRUE, kTimeoutNs);
+  if (result != vk::Result::eSuccess) throw vk::DeviceLostError("vk::Device::waitForFences: no answer for 120 s");
+  device_.resetFences({*fence_});
+}
+
+std::vector<DeviceInfo> list_devices() {
+  const vk::raii::Context context = load_vulkan();
+  const vk::raii::Instance instance = make_instance(context);
+  return describe_all(enumerate(instance), {});
+}
+
+void DeviceDeleter::operator()(Device* device) const {
+  delete device;
+}
+
+DeviceHandle open_device(const std::optional<std::string>& selection) {
+  return DeviceHandle(new Device(selection));
+}
+
+const DeviceInfo& info_of(const Device& device) {
+  return device.info();
+}
+const std::string& choice_of(const Device& device) {
+  return device.choice();
+}
+uint64_t validation_message_count(const Device& device) {
+  return device.validation_message_count();
+}
+
+}  // namespace promin::gpu

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "device/pipeline.h"
+#include "promin/device_info.h"
+
+namespace promin::gpu {
+
+/// What a window asks of a device beside tracing.
+struct Presentation {
+  std::vector<const char*> instance_extensions;
+  /// Makes the surface, which the device will own. Throws DeviceError.
+  std::function<VkSurfaceKHR(VkInstance)> make_surface;
+};
+
+/// Runs `work` and turns Vulkan's exceptions into RunError sentences that name the call and the result.
+void translate_vulkan_errors(const std::function<void()>& work);
+
+/// A Vulkan instance and one logical device with one queue that computes; for a window it draws and presents as well.
+/// Needs nothing beyond Vulkan 1.1's required minima. Several threads may use a device, each its own buffers and
+/// pipelines.
+class Device {
+ public:
+  /// See open_device (promin/device.h); with `presentation` of the devices that can present to its surface. Throws
+  /// DeviceError.
+  explicit Device(const std::optional<std::string>& selection, const Presentation* presentation = nullptr);
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+  const std::string& choice() const { return choice_; }
+  /// Whether the host's processor does the device's work.
+  bool is_cpu() const { return is_cpu_; }
+  /// Whether its shaders compute in double too; promin's own never do.
+  bool has_fp64() const { return has_fp64_; }
+  /// Whether it is Mesa's llvmpipe, which compiles large kernels in a fraction of a second where SwiftShader takes
+  /// minutes.
+  bool is_lavapipe() const { return is_lavapipe_; }
+  uint64_t validation_message_count() const { return *validation_messages_; }
+
+  const vk::raii::Device& handle() const { return device_; }
+  const vk::raii::Instance& instance() const { return instance_; }
+  const vk::raii::PhysicalDevice& physical() const { return physical_; }
+  /// Calls `use` with the queue while no other thread uses it.
+  template <typename Use>
+  auto use_queue(const Use& use) const {
+    const std::lock_guard lock(queue_mutex_);
+    return use(queue_);
+  }
+  /// Waits until nothing that was submitted is left to do.
+  void wait_idle() const;
+  uint32_t queue_family() const { return queue_family_; }
+  /// Null without a window.
+  const vk::raii::SurfaceKHR& surface() const { return surface_; }
+  CompiledPipelines& compiled_pipelines() const { return compiled_pipelines_; }
+  const vk::PhysicalDeviceLimits& limits() const { return limits_; }
+  /// Nanoseconds a timestamp tick; 0 where the queue has no timestamps.
+  double timestamp_period_ns() const { return timestamp_period_ns_; }
+  /// Ticks between two timestamps, of which the device may have fewer than 64 bits.
+  uint64_t ticks_between(uint64_t first, uint64_t second) const { return (second - first) & timestamp_mask_; }
+
+  /// Index of the first memory type in `allowed_types` that has all of `wanted`, or none.
+  std::optional<uint32_t> find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const;
+
+  /// Records one command buffer, submits it and waits until the device has finished; one thread after the other.
+  void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
+
+ private:
+  // Declared in the order of their making: each needs those before it.
+  std::unique_ptr<std::atomic<uint64_t>> validation_messages_;
+  vk::raii::Context context_;
+  vk::raii::Instance instance_{nullptr};
+  vk::raii::DebugUtilsMessengerEXT messenger_{nullptr};
+  vk::raii::SurfaceKHR surface_{nullptr};
+  vk::raii::PhysicalDevice physical_{nullptr};
+  vk::PhysicalDeviceLimits limits_;
+  vk::PhysicalDeviceMemoryProperties memory_;
+  double timestamp_period_ns_ = 0.0;
+  uint64_t timestamp_mask_ = 0;
+  vk::raii::Device device_{nullptr};
+  mutable CompiledPipelines compiled_pipelines_;
+  uint32_t queue_family_ = 0;
+  vk::raii::Queue queue_{nullptr};
+  mutable std::mutex queue_mutex_;
+  mutable std::mutex run_mutex_;
+  vk::raii::CommandPool pool_{nullptr};
+  vk::raii::CommandBuffer commands_{nullptr};
+  vk::raii::Fence fence_{nullptr};
+  DeviceInfo info_;
+  bool is_cpu_ = false;
+  bool has_fp64_ = false;
+  bool is_lavapipe_ = false;
+  std::string choice_;
+};
+
+}  // namespace promin::gpu

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+namespace promin::gpu {
+
+/// The Vulkan loader. Throws DeviceError where none is installed.
+vk::raii::Context load_vulkan();
+
+/// An instance for Vulkan 1.1 with these extensions, with the validation layers that PROMIN_VALIDATION asks for
+/// (promin/device.h). Throws DeviceError if a layer is asked for that is not installed.
+vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<const char*> extensions = {});
+
+/// Prints validation messages to stderr and counts them; null where validation is off. The counter must outlive it.
+vk::raii::DebugUtilsMessengerEXT make_messenger(const vk::raii::Instance& instance, std::atomic<uint64_t>* counter);
+
+}  // namespace promin::gpu

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/pipeline.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "device/buffer.h"
+#include "device/device.h"
+
+namespace promin::gpu {
+
+bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
+  constexpr size_t kHeaderWords = 5;
+  constexpr uint32_t kOpDecorate = 71;
+  constexpr uint32_t kSpecId = 1;
+  for (size_t i = kHeaderWords; i < spirv.size();) {
+    const uint32_t opcode = spirv[i] & 0xFFFFU;
+    const uint32_t length = spirv[i] >> 16;
+    if (length == 0) return false;
+    if (opcode == kOpDecorate && length >= 4 && spirv[i + 2] == kSpecId && spirv[i + 3] == id) return true;
+    i += length;
+  }
+  return false;
+}
+
+const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
+                                               std::span<const SpecializationConstant> constants,
+                                               std::span<const vk::DescriptorSetLayoutBinding> bindings) {
+  std::vector<uint32_t> key;
+  for (const vk::DescriptorSetLayoutBinding& binding : bindings) {
+    key.insert(key.end(), {binding.binding, static_cast<uint32_t>(binding.descriptorType)});
+  }
+  for (const SpecializationConstant& constant : constants) key.insert(key.end(), {constant.id, constant.value});
+  key.insert(key.end(), {static_cast<uint32_t>(bindings.size()), static_cast<uint32_t>(constants.size())});
+  key.insert(key.end(), spirv.begin(), spirv.end());
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = compiled_.find(key); found != compiled_.end()) return found->second;
+  }
+
+  std::vector<vk::SpecializationMapEntry> entries;
+  std::vector<uint32_t> values;
+  for (const SpecializationConstant& constant : constants) {
+    if (!has_specialization_constant(spirv, constant.id)) {
+      throw std::logic_error("the shader has no specialisation constant " + std::to_string(constant.id));
+    }
+    entries.emplace_back(constant.id, static_cast<uint32_t>(values.size() * sizeof(uint32_t)), sizeof(uint32_t));
+    values.push_back(constant.value);
+  }
+  const vk::SpecializationInfo specialization(static_cast<uint32_t>(entries.size()), entries.data(),
+                                              values.size() * sizeof(uint32_t), values.data());
+  const vk::raii::ShaderModule module(device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                &specialization);
+  CompiledPipeline made;
+  made.set_layout = vk::raii::DescriptorSetLayout(
+      device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));
+  made.layout = vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo({}, *made.set_layout));
+  made.pipeline = vk::raii::Pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *made.layout));
+  // Where two threads have compiled the same, one's is kept.
+  const std::lock_guard lock(mutex_);
+  return compiled_.emplace(std::move(key), std::move(made)).first->second;
+}
+
+size_t CompiledPipelines::size() const {
+  const std::lock_guard lock(mutex_);
+  return compiled_.size();
+}
+
+ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
+                                 std::span<const SpecializationConstant> constants,
+                                 std::span<const BoundBuffer> buffers)
+    : device_(&device) {
+  std::vector<vk::DescriptorSetLayoutBinding> bindings;
+  std::map<vk::DescriptorType, uint32_t> type_counts;
+  for (const BoundBuffer& buffer : buffers) {
+    bindings.emplace_back(buffer.binding, buffer.type, 1, vk::ShaderStageFlagBits::eCompute);
+    ++type_counts[buffer.type];
+  }
+  compiled_ = &device.compiled_pipelines().get(device.handle(), spirv, constants, bindings);
+  std::vector<vk::DescriptorPoolSize> pool_sizes;
+  for (const auto& [type, count] : type_counts) pool_sizes.emplace_back(type, count);
+  pool_ = vk::raii::DescriptorPool(
+      device.handle(),
+      vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_sizes));
+  const vk::DescriptorSetAllocateInfo allocation(*pool_, *compiled_->set_layout);
+  set_ = std::move(vk::raii::DescriptorSets(device.handle(), allocation).front());
+  for (const BoundBuffer& buffer : buffers) bind(buffer);
+}
+
+void ComputePipeline::bind(const BoundBuffer& buffer) {
+  vk::WriteDescriptorSet write(*set_, buffer.binding, 0, 1, buffer.type);
+  // What lies beyond the range of a storage buffer, the shader reads as texels.
+  const vk::DeviceSize range =
+      std::min<vk::DeviceSize>(buffer.buffer->size_bytes(), device_->limits().maxStorageBufferRange);
+  const vk::DescriptorBufferInfo info(*buffer.buffer->handle(), 0, range);
+  vk::BufferView view;
+  if (buffer.view != nullptr) {
+    view = **buffer.view;
+    write.pTexelBufferView = &view;
+  } else {
+    write.pBufferInfo = &info;
+  }
+  device_->handle().updateDescriptorSets(write, {});
+}
+
+void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *compiled_->pipeline);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *compiled_->layout, 0, *set_, {});
+  commands.dispatch(group_count.x, group_count.y, 1);
+}
+
+}  // namespace promin::gpu

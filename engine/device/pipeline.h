@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <span>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "promin/math.h"
+
+namespace promin::gpu {
+
+class Buffer;
+class Device;
+
+/// A specialisation constant: `id` is a CONSTANT_* of shaders/layout.h.
+struct SpecializationConstant {
+  uint32_t id = 0;
+  uint32_t value = 0;
+};
+
+/// A buffer at a binding (BINDING_* of shaders/layout.h).
+struct BoundBuffer {
+  uint32_t binding = 0;
+  vk::DescriptorType type = vk::DescriptorType::eStorageBuffer;
+  const Buffer* buffer = nullptr;
+  /// Of a texel buffer, its view.
+  const vk::raii::BufferView* view = nullptr;
+};
+
+/// Whether a SPIR-V module declares a specialisation constant with this SpecId.
+bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
+
+/// A compiled compute shader with entry point "main" and one descriptor set, apart from what is bound to it.
+struct CompiledPipeline {
+  vk::raii::DescriptorSetLayout set_layout{nullptr};
+  vk::raii::PipelineLayout layout{nullptr};
+  vk::raii::Pipeline pipeline{nullptr};
+};
+
+/// What a device has compiled: the same shader with the same constants and bindings is compiled once. VkPipelineCache
+/// does not see to that: lavapipe's is empty, and SwiftShader's takes pipelines of two layout objects for different.
+/// For several threads: none waits while another compiles.
+class CompiledPipelines {
+ public:
+  /// Compiles where needed. The pipeline lives as long as this. Throws vk::SystemError, and std::logic_error if the
+  /// module lacks a constant: a driver would ignore it in silence.
+  const CompiledPipeline& get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
+                              std::span<const SpecializationConstant> constants,
+                              std::span<const vk::DescriptorSetLayoutBinding> bindings);
+  size_t size() const;
+
+ private:
+  mutable std::mutex mutex_;
+  /// By all words that `get` was told.
+  std::map<std::vector<uint32_t>, CompiledPipeline> compiled_;
+};
+
+/// A compiled pipeline and the buffers bound to it.
+class ComputePipeline {
+ public:
+  /// Throws as CompiledPipelines::get does.
+  ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
+                  std::span<const SpecializationConstant> constants, std::span<const BoundBuffer> buffers);
+
+  /// Changes what a binding of the constructor refers to; the device must be idle.
+  void bind(const BoundBuffer& buffer);
+
+  /// Records binding everything and `group_count` workgroups, across and down.
+  void dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const;
+
+ private:
+  const Device* device_;
+  const CompiledPipeline* compiled_;
+  vk::raii::DescriptorPool pool_{nullptr};
+  vk::raii::DescriptorSet set_{nullptr};
+};
+
+}  // namespace promin::gpu

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/accessors.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+namespace promin {
+namespace {
+
+/// `count` elements of `components` numbers each, `stride` bytes apart.
+struct Source {
+  const std::byte* data;
+  size_t stride;
+  size_t count;
+  size_t components;
+  int component_type;
+  bool normalized;
+};
+
+template <class To, class From>
+To convert(From value, bool normalized) {
+  if constexpr (std::is_floating_point_v<To> && std::is_integral_v<From>) {
+    const To scaled = static_cast<To>(value) / static_cast<To>(std::numeric_limits<From>::max());
+    if (normalized) return std::max(scaled, To{-1});
+  }
+  return static_cast<To>(value);
+}
+
+template <class From, class To>
+void copy_as(const Source& source, To* out) {
+  for (size_t i = 0; i < source.count; ++i) {
+    const std::byte* element = source.data + i * source.stride;
+    for (size_t c = 0; c < source.components; ++c) {
+      From value;
+      std::memcpy(&value, element + c * sizeof(From), sizeof(From));
+      *out++ = convert<To>(value, source.normalized);
+    }
+  }
+}
+
+template <class To>
+void copy(const Source& source, To* out) {
+  switch (source.component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return copy_as<int8_t>(source, out);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return copy_as<uint8_t>(source, out);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return copy_as<int16_t>(source, out);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return copy_as<uint16_t>(source, out);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return copy_as<uint32_t>(source, out);
+    default:
+      return copy_as<float>(source, out);
+  }
+}
+
+const std::byte* bytes_of_view(const GltfDocument& document, int view) {
+  const tinygltf::BufferView& v = document.model.bufferViews[static_cast<size_t>(view)];
+  return document.buffers[static_cast<size_t>(v.buffer)].data() + v.byteOffset;
+}
+
+template <class To>
+std::vector<To> read_accessor(const GltfDocument& document, int index, LoadReport& report) {
+  const tinygltf::Accessor& accessor = document.model.accessors[static_cast<size_t>(index)];
+  const auto components = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
+  const auto component_bytes =
+      static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType)));
+  const size_t packed_stride = components * component_bytes;
+  std::vector<To> values(accessor.count * components, To{});
+  if (accessor.bufferView >= 0) {
+    const size_t stride = document.model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
+    copy(
+        Source{bytes_of_view(document, accessor.bufferView) + accessor.byteOffset, stride == 0 ? packed_stride : stride,
+               accessor.count, components, accessor.componentType, accessor.normalized},
+        values.data());
+  }
+  if (!accessor.sparse.isSparse) return values;
+
+  const auto& sparse = accessor.sparse;
+  const auto count = static_cast<size_t>(sparse.count);
+  std::vector<uint32_t> places(count);
+  copy(Source{bytes_of_view(document, sparse.indices.bufferView) + sparse.indices.byteOffset,
+              static_cast<size_t>(
+                  tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType))),
+              count, 1, sparse.indices.componentType, false},
+       places.data());
+  const std::byte* replacements = bytes_of_view(document, sparse.values.bufferView) + sparse.values.byteOffset;
+  for (size_t i = 0; i < count; ++i) {
+    if (places[i] >= accessor.count) {
+      report.refuse("sparse index " + std::to_string(places[i]) + " is out of range, the accessor has " +
+                        std::to_string(accessor.count) + " elements",
+                    "accessors[" + std::to_string(index) + "].sparse.indices, element " + std::to_string(i),
+                    "export the file again");
+      break;
+    }
+    copy(Source{replacements + i * packed_stride, packed_stride, 1, components, accessor.componentType,
+                accessor.normalized},
+         values.data() + places[i] * components);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<float> read_floats(const GltfDocument& document, int accessor, LoadReport& report) {
+  return read_accessor<float>(document, accessor, report);
+}
+
+std::vector<uint32_t> read_indices(const GltfDocument& document, int accessor, LoadReport& report) {
+  return read_accessor<uint32_t>(document, accessor, report);
+}
+
+}  // namespace promin

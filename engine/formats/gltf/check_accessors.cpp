@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "formats/gltf/checks.h"
+#include "formats/gltf/json_lookup.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+/// An accessor that is nothing but zeros needs no bytes in the file, so the file's size does not bound it.
+constexpr uint64_t kMaxZeroElements = 1 << 24;
+
+constexpr int kByte = 5120;
+constexpr int kUnsignedByte = 5121;
+constexpr int kShort = 5122;
+constexpr int kUnsignedShort = 5123;
+constexpr int kUnsignedInt = 5125;
+constexpr int kFloat = 5126;
+
+struct Format {
+  std::string_view attribute;
+  std::string_view type;
+  int component_type;
+  /// Whether the accessor must be, must not be, or (nullopt) may be normalized.
+  std::optional<bool> normalized;
+};
+
+/// What the loader reads; "indices" stands for a primitive's indices.
+constexpr Format kFormats[] = {
+    {"POSITION", "VEC3", kFloat, {}},
+    {"POSITION", "VEC3", kByte, {}},
+    {"POSITION", "VEC3", kUnsignedByte, {}},
+    {"POSITION", "VEC3", kShort, {}},
+    {"POSITION", "VEC3", kUnsignedShort, {}},
+    {"NORMAL", "VEC3", kFloat, {}},
+    {"NORMAL", "VEC3", kByte, true},
+    {"NORMAL", "VEC3", kShort, true},
+    {"COLOR_0", "VEC3", kFloat, {}},
+    {"COLOR_0", "VEC3", kUnsignedByte, true},
+    {"COLOR_0", "VEC3", kUnsignedShort, true},
+    {"COLOR_0", "VEC4", kFloat, {}},
+    {"COLOR_0", "VEC4", kUnsignedByte, true},
+    {"COLOR_0", "VEC4", kUnsignedShort, true},
+    {"indices", "SCALAR", kUnsignedByte, false},
+    {"indices", "SCALAR", kUnsignedShort, false},
+    {"indices", "SCALAR", kUnsignedInt, false},
+};
+
+std::string at(const char* array, size_t index) {
+  return std::string(array) + "[" + std::to_string(index) + "]";
+}
+
+/// Columns of matrices are padded to 4 bytes.
+uint64_t element_bytes(const std::string& type, int component_type) {
+  if (!type.starts_with("MAT")) return component_count(type) * component_bytes(component_type);
+  const auto rows = static_cast<uint64_t>(type[3] - '0');
+  return rows * ((rows * component_bytes(component_type) + 3) / 4 * 4);
+}
+
+/// Refuses `count` elements that do not fit into a buffer view. In 64 bits nothing wraps: the schema keeps offsets
+/// below 2^53, counts below 2^31 and strides below 256.
+void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t stride, uint64_t size,
+               const std::string& place, LoadReport& report) {
+  const auto available = view["byteLength"].get<uint64_t>();
+  const uint64_t end = offset + (count - 1) * stride + size;
+  if (end <= available) return;
+  report.refuse("the elements end at byte " + std::to_string(end) + " of a buffer view of " +
+                    std::to_string(available) + " bytes",
+                place, "correct the count, the offset or the buffer view");
+}
+
+void check_accessor(const json& document, const json& accessor, const std::string& place, LoadReport& report) {
+  const auto count = accessor["count"].get<uint64_t>();
+  const std::string type = accessor["type"];
+  const int component_type = accessor["componentType"];
+  const uint64_t size = element_bytes(type, component_type);
+  if (accessor.contains("bufferView")) {
+    const json& view = document["bufferViews"][accessor["bufferView"].get<size_t>()];
+    const uint64_t stride = view.value("byteStride", size);
+    if (stride < size) {
+      report.refuse(
+          "a stride of " + std::to_string(stride) + " bytes is less than an element of " + std::to_string(size), place,
+          "correct byteStride of its buffer view");
+    }
+    check_fit(view, accessor.value("byteOffset", uint64_t{0}), count, stride, size, place, report);
+  } else if (count > kMaxZeroElements) {
+    report.refuse("an accessor of " + std::to_string(count) + " zeros is too large", place + ".count",
+                  "add a buffer view or use at most " + std::to_string(kMaxZeroElements));
+  }
+
+  if (!accessor.contains("sparse")) return;
+  const auto& sparse = accessor["sparse"];
+  const auto sparse_count = sparse["count"].get<uint64_t>();
+  const auto check_part = [&](const char* part, uint64_t part_size) {
+    const json& view = document["bufferViews"][sparse[part]["bufferView"].get<size_t>()];
+    check_fit(view, sparse[part].value("byteOffset", uint64_t{0}), sparse_count, part_size, part_size,
+              place + ".sparse." + part, report);
+  };
+  check_part("indices", component_bytes(sparse["indices"]["componentType"]));
+  check_part("values", size);
+}
+
+void check_format(const json& accessor, std::string_view attribute, const std::string& place, LoadReport& report) {
+  const std::string type = accessor["type"];
+  const int component_type = accessor["componentType"];
+  const bool normalized = accessor.value("normalized", false);
+  bool is_read = false;
+  for (const Format& format : kFormats) {
+    if (format.attribute != attribute) continue;
+    is_read = true;
+    if (format.type == type && format.component_type == component_type &&
+        format.normalized.value_or(normalized) == normalized) {
+      return;
+    }
+  }
+  if (!is_read) return;
+  report.refuse("the accessor's format (" + type + " of " + std::to_string(component_type) +
+                    (normalized ? ", normalized" : "") + ") is not allowed here",
+                place, "export it as the glTF specification has it");
+}
+
+void check_primitive(const json& primitive, const json& accessors, const std::string& place, LoadReport& report) {
+  uint64_t vertex_count = 0;
+  for (const auto& [name, index] : primitive["attributes"].items()) {
+    const json& accessor = accessors[index.get<size_t>()];
+    const std::string attribute_place = place + ".attributes." + name;
+    check_format(accessor, name, attribute_place, report);
+    const auto count = accessor["count"].get<uint64_t>();
+    if (vertex_count == 0) vertex_count = count;
+    if (count != vertex_count) {
+      report.refuse(
+          "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(vertex_count),
+          attribute_place, "give all attributes of a primitive one count");
+    }
+  }
+  if (!primitive.contains("indices")) return;
+  const json& indices = accessors[primitive["indices"].get<size_t>()];
+  check_format(indices, "indices", place + ".indices", report);
+  if (!indices.contains("bufferView")) {
+    report.refuse("the indices have no buffer view, so all are 0", place + ".indices", "add the bytes");
+  }
+}
+
+}  // namespace
+
+uint64_t component_bytes(int component_type) {
+  if (component_type == kByte || component_type == kUnsignedByte) return 1;
+  return component_type == kShort || component_type == kUnsignedShort ? 2 : 4;
+}
+
+uint64_t component_count(const std::string& type) {
+  if (type == "SCALAR") return 1;
+  const auto n = static_cast<uint64_t>(type.back() - '0');
+  return type.starts_with("MAT") ? n * n : n;
+}
+
+void check_gltf_accessors(const json& document, LoadReport& report) {
+  const json& buffers = elements_of(document, "buffers");
+  const json& views = elements_of(document, "bufferViews");
+  for (size_t i = 0; i < views.size(); ++i) {
+    const auto available = buffers[views[i]["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
+    const uint64_t end = views[i].value("byteOffset", uint64_t{0}) + views[i]["byteLength"].get<uint64_t>();
+    if (end > available) {
+      report.refuse("the buffer view ends at byte " + std::to_string(end) + " of a buffer of " +
+                        std::to_string(available) + " bytes",
+                    at("bufferViews", i), "correct its byteOffset or byteLength");
+    }
+    if (views[i].value("byteStride", 4) % 4 != 0) {
+      report.refuse("the stride is no multiple of 4", at("bufferViews", i) + ".byteStride", "pad the elements");
+    }
+  }
+
+  const json& accessors = elements_of(document, "accessors");
+  for (size_t i = 0; i < accessors.size(); ++i) check_accessor(document, accessors[i], at("accessors", i), report);
+
+  const json& meshes = elements_of(document, "meshes");
+  for (size_t m = 0; m < meshes.size(); ++m) {
+    const auto& primitives = meshes[m]["primitives"];
+    for (size_t p = 0; p < primitives.size(); ++p) {
+      check_primitive(primitives[p], accessors, at("meshes", m) + "." + at("primitives", p), report);
+    }
+  }
+}
+
+}  // namespace promin

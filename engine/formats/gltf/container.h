@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "formats/load_report.h"
+
+namespace promin {
+
+/// The parts of a .gltf or .glb file; views into its bytes.
+struct GltfContainer {
+  std::string_view json;
+  /// The binary chunk of a GLB file.
+  std::optional<std::span<const std::byte>> binary;
+};
+
+/// Takes a file apart, GLB by its magic number (glTF 2.0, section 4.4). Every length is checked against the bytes
+/// there are. Throws InputError.
+GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report);
+
+}  // namespace promin

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/lights.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "formats/gltf/json_lookup.h"
+#include "promin/load_scene.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+LightKind kind_of(const std::string& type) {
+  if (type == "directional") return LightKind::kDirectional;
+  return type == "spot" ? LightKind::kSpot : LightKind::kPoint;
+}
+
+void read_cone(const json& source, const std::string& place, Light& light, LoadReport& report) {
+  const json spot = source.value("spot", json::object());
+  const double inner = spot.value("innerConeAngle", 0.0);
+  const double outer = spot.value("outerConeAngle", std::numbers::pi / 4.0);
+  if (!(inner < outer)) {
+    report.refuse("the spot's inner cone angle is not less than its outer", place + ".spot",
+                  "make innerConeAngle less than outerConeAngle");
+  }
+  light.inner_cone_angle = static_cast<float>(inner);
+  light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
+}
+
+/// Candela and lux are powers as they stand; a directional light has no distance to fall off with.
+void read_power(const json& source, const std::string& title, Light& light, LoadReport& report) {
+  const dvec3 power = source.value("intensity", 1.0) * vec3_of(source, "color", dvec3(1.0));
+  light.diffuse = light.specular = vec3(power);
+  light.attenuation = Attenuation::kInverseSquare;
+  if (const json* classic = find_extension(source, "PROMIN_lights_phong")) {
+    light.diffuse = vec3(vec3_of(*classic, "diffuseColor", power));
+    light.specular = vec3(vec3_of(*classic, "specularColor", power));
+    if (classic->value("attenuation", "none") == "none") {
+      light.attenuation = Attenuation::kNone;
+    } else if (light.kind == LightKind::kDirectional) {
+      report.warn("light " + title + " is directional, its attenuation is ignored");
+    }
+  }
+  if (light.kind == LightKind::kDirectional) light.attenuation = Attenuation::kNone;
+  if (light.attenuation == Attenuation::kInverseSquare) light.range = source.value("range", light.range);
+}
+
+}  // namespace
+
+std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report) {
+  const auto& node = document.json["nodes"][static_cast<size_t>(placed.node)];
+  const json* link = find_extension(node, "KHR_lights_punctual");
+  if (link == nullptr) return std::nullopt;
+  const auto& extension = document.json["extensions"]["KHR_lights_punctual"];
+  const size_t index = (*link)["light"];
+  const auto& source = extension["lights"][index];
+  const std::string place = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "]";
+  const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
+
+  Light light;
+  const std::string name = node.value("name", "");
+  light.name = name.empty() ? source.value("name", "") : name;
+  light.kind = kind_of(source["type"]);
+  const dvec3 position(placed.world_from_object[3]);
+  const dvec3 direction(-placed.world_from_object[2]);
+  const double length = glm::length(direction);
+  if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kMaxCoordinate)) {
+    report.refuse("the light lies beyond 1e15 in the world", node_place,
+                  "use a smaller translation in it and its parents");
+  }
+  if (light.kind != LightKind::kPoint) {
+    if (!(length > 0.0) || !std::isfinite(length)) {
+      report.refuse("the light has no direction", node_place, "use a scale other than 0");
+    }
+    light.direction = vec3(direction / length);
+  }
+  light.position = vec3(position);
+  if (light.kind == LightKind::kSpot) read_cone(source, place, light, report);
+  read_power(source, title_of(extension, "lights", index), light, report);
+  return light;
+}
+
+void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& report) {
+  const json* extension = find_extension(document.json, "OMI_environment_sky");
+  if (extension == nullptr || (*extension)["skies"].empty()) return;
+  size_t index = 0;
+  const json& scenes = elements_of(document.json, "scenes");
+  if (!scenes.empty()) {
+    const json& shown = scenes[static_cast<size_t>(std::max(document.model.defaultScene, 0))];
+    if (const json* choice = find_extension(shown, "OMI_environment_sky")) index = choice->value("sky", size_t{0});
+  }
+
+  const auto& sky = (*extension)["skies"][index];
+  const std::string type = sky["type"];
+  dvec3 color(0.0);
+  if (type != "plain") {
+    report.warn("the sky is of type " + quote(type) + ", only plain ones are drawn: the background is black");
+  } else if (sky.contains("plain")) {
+    color = vec3_of(sky["plain"], "color", dvec3(0.0));
+  }
+  scene.background = vec3(color);
+  scene.ambient =
+      vec3(glm::mix(vec3_of(sky, "ambientLightColor", dvec3(0.0)), color, sky.value("ambientSkyContribution", 1.0)));
+}
+
+}  // namespace promin

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "formats/gltf/document.h"
+#include "formats/gltf/nodes.h"
+#include "promin/scene.h"
+
+namespace promin {
+
+/// The light a node carries (KHR_lights_punctual; PROMIN_lights_phong makes it a classic one), if it does. The node's
+/// scale is ignored; the light travels along its -Z. Problems go to the report.
+std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
+
+/// Sets the scene's background and ambient light from OMI_environment_sky; black and none without it.
+void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& report);
+
+}  // namespace promin

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/load_gltf.h"
+
+#include "formats/gltf/cameras.h"
+#include "formats/gltf/document.h"
+#include "formats/gltf/json_lookup.h"
+#include "formats/gltf/lights.h"
+#include "formats/gltf/materials.h"
+#include "formats/gltf/meshes.h"
+#include "formats/gltf/nodes.h"
+#include "formats/gltf/shapes.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+/// Nodes may show one mesh many times, so that the size of the file does not bound the scene's.
+constexpr uint64_t kMaxTriangles = uint64_t{1} << 28;
+
+/// Turns the nodes of a document into a scene.
+class SceneReader {
+ public:
+  SceneReader(const GltfDocument& document, LoadReport& report) : document_(document), report_(report) {}
+
+  Scene read() {
+    scene_.file = report_.file();
+    scene_.materials = read_gltf_materials(document_, report_);
+    read_gltf_sky(document_, scene_, report_);
+    for (const PlacedNode& placed : place_gltf_nodes(document_, report_)) read_node(placed);
+    if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
+    warn_about_motion();
+    report_.throw_if_refused();
+    scene_.warnings = report_.warnings();
+    return std::move(scene_);
+  }
+
+ private:
+  void read_node(const PlacedNode& placed) {
+    if (const auto camera = read_gltf_camera(document_, placed, report_)) scene_.cameras.push_back(*camera);
+    if (placed.is_visible) {
+      if (const auto light = read_gltf_light(document_, placed, report_)) scene_.lights.push_back(*light);
+    }
+    const tinygltf::Node& node = document_.model.nodes[static_cast<size_t>(placed.node)];
+    if (node.mesh < 0) return;
+    const auto mesh = static_cast<size_t>(node.mesh);
+    const tinygltf::Mesh& source = document_.model.meshes[mesh];
+    for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
+      Object object;
+      object.name = node.name.empty() ? source.name : node.name;
+      object.shape = placed.is_visible ? read_shape(placed, mesh, primitive) : NotDrawn{};
+      if (!std::holds_alternative<NotDrawn>(object.shape)) {
+        object.material = read_material(source.primitives[primitive].material, object.shape);
+      }
+      scene_.objects.push_back(std::move(object));
+    }
+  }
+
+  Shape read_shape(const PlacedNode& placed, size_t mesh, size_t primitive) {
+    if (std::optional<Shape> shape = read_gltf_shape(document_, mesh, primitive, placed, report_)) return *shape;
+    if (triangle_count_ > kMaxTriangles) return NotDrawn{};
+    Mesh triangles = read_gltf_mesh(document_, mesh, primitive, placed, report_);
+    if (triangles.triangles.empty()) return NotDrawn{};
+    triangle_count_ += triangles.triangles.size();
+    if (triangle_count_ > kMaxTriangles) {
+      report_.refuse("the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
+                     "nodes[" + std::to_string(placed.node) + "]", "show the mesh by fewer nodes, or simplify it");
+    }
+    return triangles;
+  }
+
+  uint32_t read_material(int material, const Shape& shape) {
+    if (material >= 0) {
+      const auto index = static_cast<size_t>(material);
+      const auto* mesh = std::get_if<Mesh>(&shape);
+      if (mesh != nullptr && !mesh->colors.empty() &&
+          find_extension(document_.json["materials"][index], "KHR_materials_unlit") != nullptr) {
+        report_.warn("material " + title_of(document_.json, "materials", index) +
+                     " is unlit, the vertex colours under it are ignored");
+      }
+      return static_cast<uint32_t>(material);
+    }
+    if (default_material_ == kNoMaterial) {
+      default_material_ = static_cast<uint32_t>(scene_.materials.size());
+      scene_.materials.push_back(default_gltf_material());
+    }
+    return default_material_;
+  }
+
+  void warn_about_motion() {
+    if (!elements_of(document_.json, "animations").empty())
+      report_.warn("animations are ignored, the scene stands still");
+    if (!elements_of(document_.json, "skins").empty()) report_.warn("skins are ignored, meshes are drawn in rest pose");
+    for (const json& mesh : elements_of(document_.json, "meshes")) {
+      for (const json& primitive : mesh["primitives"]) {
+        if (primitive.contains("targets")) report_.warn("morph targets are ignored, meshes are drawn in rest pose");
+      }
+    }
+  }
+
+  static constexpr uint32_t kNoMaterial = std::numeric_limits<uint32_t>::max();
+
+  const GltfDocument& document_;
+  LoadReport& report_;
+  Scene scene_;
+  uint64_t triangle_count_ = 0;
+  uint32_t default_material_ = kNoMaterial;
+};
+
+}  // namespace
+
+Scene load_gltf(LoadReport& report) {
+  const GltfDocument document = read_gltf_document(report);
+  return SceneReader(document, report).read();
+}
+
+}  // namespace promin

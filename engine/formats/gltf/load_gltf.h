@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "formats/load_report.h"
+#include "promin/scene.h"
+
+namespace promin {
+
+/// Reads glTF 2.0, as text or GLB whichever the file holds. See load_scene for what is promised.
+Scene load_gltf(LoadReport& report);
+
+}  // namespace promin

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "formats/gltf/json_lookup.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+struct MetallicRoughness {
+  dvec3 base{1.0};
+  double metallic = 1.0;
+  double roughness = 1.0;
+};
+
+/// Phong by what the two models share: diffuse base/pi; reflectance at normal incidence as the specular factor; an
+/// exponent whose lobe is as wide as the microfacets' (Blinn's 2/r^4 - 2 around the half vector, a quarter of that
+/// around the reflected ray); a mirror that fades as the surface gets rough.
+void shade_as_phong(const MetallicRoughness& pbr, Material& material) {
+  constexpr double kDielectricReflectance = 0.04;
+  constexpr double kRoughestMirror = 0.3;
+  constexpr double kSharpestHighlight = 1e4;
+  const dvec3 diffuse = pbr.base * (1.0 - pbr.metallic);
+  const dvec3 specular = glm::mix(dvec3(kDielectricReflectance), pbr.base, pbr.metallic);
+  const double exponent = (2.0 / std::pow(pbr.roughness, 4.0) - 2.0) / 4.0;
+  material.ambient = vec3(diffuse);
+  material.diffuse = vec3(diffuse / std::numbers::pi);
+  material.specular = vec3(specular);
+  material.shininess = static_cast<float>(std::clamp(exponent, 1.0, kSharpestHighlight));
+  material.reflection = vec3(specular * std::max(0.0, 1.0 - pbr.roughness / kRoughestMirror));
+}
+
+void shade_as_written(const json& phong, const dvec3& base, Material& material) {
+  const dvec3 diffuse = vec3_of(phong, "diffuseFactor", base);
+  material.diffuse = vec3(diffuse);
+  material.ambient = vec3(vec3_of(phong, "ambientFactor", diffuse));
+  material.specular = vec3(vec3_of(phong, "specularFactor", dvec3(0.0)));
+  material.shininess = phong.value("shininess", 0.0F);
+  material.reflection = vec3(vec3_of(phong, "reflectionFactor", dvec3(0.0)));
+}
+
+bool has_texture(const json& object) {
+  for (const auto& [name, value] : object.items()) {
+    if (name.ends_with("Texture")) return true;
+  }
+  return false;
+}
+
+void warn_about_what_is_ignored(const json& source, const std::string& title, LoadReport& report) {
+  const auto pbr = source.find("pbrMetallicRoughness");
+  if (has_texture(source) || (pbr != source.end() && has_texture(*pbr))) {
+    report.warn("material " + title + ": its textures are ignored, its factors are used");
+  }
+  const std::string alpha_mode = source.value("alphaMode", "OPAQUE");
+  if (alpha_mode != "OPAQUE") report.warn("material " + title + ": alphaMode " + alpha_mode + " is drawn opaque");
+  if (!source.contains("extensions")) return;
+  for (const auto& [name, value] : source["extensions"].items()) {
+    if (name != "PROMIN_materials_phong" && name != "KHR_materials_unlit" &&
+        name != "KHR_materials_emissive_strength") {
+      report.warn("material " + title + ": " + name + " is ignored");
+    }
+  }
+}
+
+Material read_material(const tinygltf::Material& core, const json& source) {
+  const std::vector<double>& base = core.pbrMetallicRoughness.baseColorFactor;
+  const MetallicRoughness pbr{dvec3(base[0], base[1], base[2]), core.pbrMetallicRoughness.metallicFactor,
+                              core.pbrMetallicRoughness.roughnessFactor};
+  Material material;
+  material.name = core.name;
+  if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
+    shade_as_written(*phong, pbr.base, material);
+  } else if (find_extension(source, "KHR_materials_unlit") != nullptr) {
+    material.ambient = material.diffuse = vec3(0.0F);
+    material.emissive = vec3(pbr.base);
+    return material;
+  } else {
+    shade_as_phong(pbr, material);
+  }
+  double strength = 1.0;
+  if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
+    strength = extension->value("emissiveStrength", 1.0);
+  }
+  material.emissive = vec3(strength * vec3_of(source, "emissiveFactor", dvec3(0.0)));
+  return material;
+}
+
+}  // namespace
+
+std::vector<Material> read_gltf_materials(const GltfDocument& document, LoadReport& report) {
+  std::vector<Material> materials;
+  for (size_t i = 0; i < document.model.materials.size(); ++i) {
+    const auto& source = document.json["materials"][i];
+    materials.push_back(read_material(document.model.materials[i], source));
+    warn_about_what_is_ignored(source, title_of(document.json, "materials", i), report);
+  }
+  return materials;
+}
+
+Material default_gltf_material() {
+  Material material;
+  material.name = "glTF default";
+  shade_as_phong(MetallicRoughness{}, material);
+  return material;
+}
+
+}  // namespace promin

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/nodes.h"
+
+#include <algorithm>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "formats/gltf/json_lookup.h"
+
+namespace promin {
+namespace {
+
+dmat4 local_transform(const tinygltf::Node& node) {
+  dmat4 matrix(1.0);
+  if (!node.matrix.empty()) {
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
+    return matrix;
+  }
+  if (!node.rotation.empty()) {
+    const std::vector<double>& q = node.rotation;
+    matrix = glm::mat4_cast(glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const auto axis = static_cast<size_t>(i);
+    if (!node.scale.empty()) matrix[i] *= node.scale[axis];
+    if (!node.translation.empty()) matrix[3][i] = node.translation[axis];
+  }
+  return matrix;
+}
+
+bool is_finite(const dmat4& matrix) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(matrix[column][row])) return false;
+    }
+  }
+  return true;
+}
+
+/// The default scene's roots, or every root in a file without scenes (a library of parts).
+std::vector<int> root_nodes(const tinygltf::Model& model) {
+  if (!model.scenes.empty()) return model.scenes[static_cast<size_t>(std::max(model.defaultScene, 0))].nodes;
+  std::vector<bool> is_child(model.nodes.size(), false);
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
+  }
+  std::vector<int> roots;
+  for (size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+}  // namespace
+
+std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report) {
+  std::vector<PlacedNode> placed;
+  // An own stack, last node first: files may nest deeper than the machine's stack.
+  std::vector<PlacedNode> pending;
+  const std::vector<int> roots = root_nodes(document.model);
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), true});
+  while (!pending.empty()) {
+    PlacedNode next = pending.back();
+    pending.pop_back();
+    const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(next.node)];
+    next.world_from_object = next.world_from_object * local_transform(node);
+    const nlohmann::json* visibility =
+        find_extension(document.json["nodes"][static_cast<size_t>(next.node)], "KHR_node_visibility");
+    if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
+    if (!is_finite(next.world_from_object)) {
+      report.refuse("the node's place in the world overflows", "nodes[" + std::to_string(next.node) + "]",
+                    "use smaller translations and scales in it and its parents");
+      continue;
+    }
+    placed.push_back(next);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      pending.push_back({*child, next.world_from_object, next.is_visible});
+    }
+  }
+  return placed;
+}
+
+}  // namespace promin

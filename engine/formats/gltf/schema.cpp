@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/schema.h"
+
+#include <nlohmann/json.hpp>
+
+#include "formats/gltf/json_rule.h"
+#include "promin/load_scene.h"
+
+namespace promin {
+namespace {
+
+using namespace rules;
+
+/// A length: a size that fp32 arithmetic can square.
+constexpr JsonRule length(std::string_view path) {
+  return number(path, kMinSize, kMaxCoordinate);
+}
+constexpr JsonRule length_or_zero(std::string_view path) {
+  return number(path, 0.0, kMaxCoordinate);
+}
+/// Powers and factors of light are not negative, but may exceed 1.
+constexpr JsonRule factor(std::string_view path) {
+  return number(path, 0.0, kMaxCoordinate);
+}
+constexpr JsonRule color(std::string_view path) {
+  return numbers(path, 3, 0.0, kMaxCoordinate);
+}
+
+constexpr double kMaxBytes = 0x1p53;
+constexpr double kMaxCount = 0x1p31 - 1.0;
+constexpr double kMaxScalar = 1e30;
+/// Exporters that think in fp32 write pi/2 a little too large.
+constexpr double kHalfPi = 1.5707964;
+constexpr double kPi = 3.141592653589793;
+constexpr double kJustUnder = 1.0 - 0x1p-52;
+constexpr double kTiny = 1e-9;
+
+#define PROMIN_LIGHTS "extensions.KHR_lights_punctual.lights"
+#define PROMIN_SHAPES "extensions.KHR_implicit_shapes.shapes"
+#define PROMIN_SKIES "extensions.OMI_environment_sky.skies"
+#define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
+#define PROMIN_PHONG "materials[].extensions.PROMIN_materials_phong"
+
+constexpr JsonRule kRules[] = {
+    needed(object("asset")),
+    needed(text("asset.version")),
+    text("asset.minVersion"),
+    array("extensionsUsed"),
+    text("extensionsUsed[]"),
+    array("extensionsRequired"),
+    text("extensionsRequired[]"),
+
+    array("scenes"),
+    index("scene", "scenes"),
+    object("scenes[]"),
+    array("scenes[].nodes"),
+    index("scenes[].nodes[]", "nodes"),
+
+    array("nodes"),
+    object("nodes[]"),
+    text("nodes[].name"),
+    array("nodes[].children"),
+    index("nodes[].children[]", "nodes"),
+    index("nodes[].mesh", "meshes"),
+    index("nodes[].camera", "cameras"),
+    numbers("nodes[].matrix", 16, -kMaxScalar, kMaxScalar),
+    numbers("nodes[].translation", 3, -kMaxCoordinate, kMaxCoordinate),
+    numbers("nodes[].rotation", 4, -kMaxScalar, kMaxScalar),
+    numbers("nodes[].scale", 3, -kMaxScalar, kMaxScalar),
+
+    array("meshes"),
+    object("meshes[]"),
+    text("meshes[].name"),
+    needed(array("meshes[].primitives")),
+    object("meshes[].primitives[]"),
+    needed(object("meshes[].primitives[].attributes")),
+    index("meshes[].primitives[].attributes.*", "accessors"),
+    index("meshes[].primitives[].indices", "accessors"),
+    index("meshes[].primitives[].material", "materials"),
+    integer("meshes[].primitives[].mode", 0, 6),
+    array("meshes[].primitives[].targets"),
+
+    array("buffers"),
+    object("buffers[]"),
+    text("buffers[].uri"),
+    needed(integer("buffers[].byteLength", 1, kMaxBytes)),
+
+    array("bufferViews"),
+    object("bufferViews[]"),
+    needed(index("bufferViews[].buffer", "buffers")),
+    integer("bufferViews[].byteOffset", 0, kMaxBytes),
+    needed(integer("bufferViews[].byteLength", 1, kMaxBytes)),
+    integer("bufferViews[].byteStride", 4, 252),
+
+    array("accessors"),
+    object("accessors[]"),
+    index("accessors[].bufferView", "bufferViews"),
+    integer("accessors[].byteOffset", 0, kMaxBytes),
+    needed(choice("accessors[].componentType", "5120|5121|5122|5123|5125|5126")),
+    boolean("accessors[].normalized"),
+    needed(integer("accessors[].count", 1, kMaxCount)),
+    needed(choice("accessors[].type", "SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4")),
+    object("accessors[].sparse"),
+    needed(integer("accessors[].sparse.count", 1, kMaxCount)),
+    needed(object("accessors[].sparse.indices")),
+    needed(index("accessors[].sparse.indices.bufferView", "bufferViews")),
+    integer("accessors[].sparse.indices.byteOffset", 0, kMaxCount),
+    needed(choice("accessors[].sparse.indices.componentType", "5121|5123|5125")),
+    needed(object("accessors[].sparse.values")),
+    needed(index("accessors[].sparse.values.bufferView", "bufferViews")),
+    integer("accessors[].sparse.values.byteOffset", 0, kMaxCount),
+
+    array("materials"),
+    object("materials[]"),
+    text("materials[].name"),
+    object("materials[].pbrMetallicRoughness"),
+    numbers("materials[].pbrMetallicRoughness.baseColorFactor", 4, 0.0, kMaxCoordinate),
+    number("materials[].pbrMetallicRoughness.metallicFactor", 0.0, 1.0),
+    number("materials[].pbrMetallicRoughness.roughnessFactor", 0.0, 1.0),
+    color("materials[].emissiveFactor"),
+    choice("materials[].alphaMode", "OPAQUE|MASK|BLEND"),
+    object("materials[].extensions"),
+    object("materials[].extensions.*"),
+    factor("materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"),
+    color(PROMIN_PHONG ".ambientFactor"),
+    color(PROMIN_PHONG ".diffuseFactor"),
+    color(PROMIN_PHONG ".specularFactor"),
+    color(PROMIN_PHONG ".reflectionFactor"),
+    factor(PROMIN_PHONG ".shininess"),
+
+    array("cameras"),
+    object("cameras[]"),
+    text("cameras[].name"),
+    needed(choice("cameras[].type", "perspective|orthographic")),
+    object("cameras[].perspective"),
+    needed(number("cameras[].perspective.yfov", kTiny, kPi* kJustUnder)),
+    number("cameras[].perspective.aspectRatio", kTiny, 1e9),
+    length_or_zero("cameras[].perspective.znear"),
+    object("cameras[].orthographic"),
+    needed(length("cameras[].orthographic.xmag")),
+    needed(length("cameras[].orthographic.ymag")),
+    length_or_zero("cameras[].orthographic.znear"),
+
+    object("extensions"),
+    object("extensions.*"),
+    object("scenes[].extensions"),
+    object("scenes[].extensions.*"),
+    object("nodes[].extensions"),
+    object("nodes[].extensions.*"),
+    object("meshes[].primitives[].extensions"),
+    object("meshes[].primitives[].extensions.*"),
+
+    needed(index("nodes[].extensions.KHR_lights_punctual.light", PROMIN_LIGHTS)),
+    boolean("nodes[].extensions.KHR_node_visibility.visible"),
+    needed(array(PROMIN_LIGHTS)),
+    object(PROMIN_LIGHTS "[]"),
+    text(PROMIN_LIGHTS "[].name"),
+    needed(choice(PROMIN_LIGHTS "[].type", "point|directional|spot")),
+    color(PROMIN_LIGHTS "[].color"),
+    factor(PROMIN_LIGHTS "[].intensity"),
+    length(PROMIN_LIGHTS "[].range"),
+    object(PROMIN_LIGHTS "[].spot"),
+    number(PROMIN_LIGHTS "[].spot.innerConeAngle", 0.0, kHalfPi),
+    number(PROMIN_LIGHTS "[].spot.outerConeAngle", 0.0, kHalfPi),
+    object(PROMIN_LIGHTS "[].extensions"),
+    object(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong"),
+    choice(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong.attenuation", "none|inverse_square"),
+    color(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong.diffuseColor"),
+    color(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong.specularColor"),
+
+    index("scenes[].extensions.OMI_environment_sky.sky", PROMIN_SKIES),
+    needed(array(PROMIN_SKIES)),
+    object(PROMIN_SKIES "[]"),
+    needed(text(PROMIN_SKIES "[].type")),
+    object(PROMIN_SKIES "[].plain"),
+    color(PROMIN_SKIES "[].plain.color"),
+    color(PROMIN_SKIES "[].ambientLightColor"),
+    number(PROMIN_SKIES "[].ambientSkyContribution", 0.0, 1.0),
+
+    needed(index(PROMIN_LINK ".shape", PROMIN_SHAPES)),
+    needed(array(PROMIN_SHAPES)),
+    object(PROMIN_SHAPES "[]"),
+    text(PROMIN_SHAPES "[].name"),
+    needed(choice(PROMIN_SHAPES "[].type", "sphere|box|capsule|cylinder|plane")),
+    object(PROMIN_SHAPES "[].sphere"),
+    length(PROMIN_SHAPES "[].sphere.radius"),
+    object(PROMIN_SHAPES "[].box"),
+    object(PROMIN_SHAPES "[].capsule"),
+    object(PROMIN_SHAPES "[].cylinder"),
+    length(PROMIN_SHAPES "[].cylinder.height"),
+    length_or_zero(PROMIN_SHAPES "[].cylinder.radiusTop"),
+    length_or_zero(PROMIN_SHAPES "[].cylinder.radiusBottom"),
+    object(PROMIN_SHAPES "[].plane"),
+};
+
+#undef PROMIN_LIGHTS
+#undef PROMIN_SHAPES
+#undef PROMIN_SKIES
+#undef PROMIN_LINK
+#undef PROMIN_PHONG
+
+}  // namespace
+
+void check_gltf_schema(nlohmann::json& document, LoadReport& report) {
+  if (!document.is_object()) {
+    report.refuse("the file is no JSON object", "the top level", "export the file again");
+    return;
+  }
+  for (const JsonRule& rule : kRules) check_json_rule(document, rule, report);
+}
+
+}  // namespace promin

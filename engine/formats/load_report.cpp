@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/load_report.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace promin {
+namespace {
+
+/// A broken exporter breaks every vertex alike: nobody reads more of them than this.
+constexpr size_t kMaxProblems = 50;
+constexpr size_t kMaxWord = 80;
+
+std::string make_visible(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; }, '?');
+  return text;
+}
+
+}  // namespace
+
+std::string quote(std::string_view word) {
+  std::string quoted(1, '"');
+  quoted.append(word.substr(0, kMaxWord)).append(word.size() > kMaxWord ? "...\"" : "\"");
+  return quoted;
+}
+
+void LoadReport::refuse(const std::string& what, const std::string& place, const std::string& cure) {
+  const Problem problem{make_visible(what), file_.string() + (place.empty() ? "" : ": " + make_visible(place)),
+                        make_visible(cure)};
+  if (problems_.size() < kMaxProblems && !said_.insert(problem.sentence()).second) return;
+  ++problem_count_;
+  if (problems_.size() < kMaxProblems) problems_.push_back(problem);
+}
+
+void LoadReport::warn(const std::string& sentence) {
+  if (said_.insert(sentence).second) warnings_.push_back(make_visible(sentence));
+}
+
+void LoadReport::add_source(const std::filesystem::path& file) {
+  const auto is_same = [&](const SourceFile& source) { return source.file == file; };
+  if (std::none_of(sources_.begin(), sources_.end(), is_same)) sources_.push_back({file, stamp_of(file)});
+}
+
+void LoadReport::throw_if_refused() const {
+  if (problems_.empty()) return;
+  std::vector<Problem> problems = problems_;
+  if (problem_count_ > problems.size()) {
+    problems.push_back({"and " + std::to_string(problem_count_ - problems.size()) + " more", "", ""});
+  }
+  throw InputError(problems);
+}
+
+}  // namespace promin

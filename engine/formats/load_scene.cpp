@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "promin/load_scene.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/file.h"
+#include "formats/gltf/load_gltf.h"
+#include "formats/load_report.h"
+#include "formats/obj/load_obj.h"
+#include "promin/error.h"
+
+namespace promin {
+namespace {
+
+struct SceneFormat {
+  const char* ending;
+  Scene (*load)(LoadReport&);
+};
+
+bool has_anything_to_draw(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return primitive_count(object.shape) > 0; });
+}
+
+/// A triangle's area in the sheared plane must be a normal float (shaders/primitives/triangle.glsl).
+constexpr float kSmallestMesh = 1e-18F;
+
+/// Meshes that are not refused for their size, but too small to be hit.
+void warn_of_tiny_meshes(Scene& scene) {
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&scene.objects[i].shape);
+    if (mesh == nullptr || mesh->triangles.empty()) continue;
+    Bounds bounds;
+    for (const vec3& position : mesh->positions) bounds.extend(position);
+    if (max_component(bounds.extent()) >= kSmallestMesh) continue;
+    scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
+  }
+}
+
+constexpr SceneFormat kFormats[] = {{".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}};
+
+const SceneFormat& find_format(const std::filesystem::path& file) {
+  const std::string ending = lower_case_ending(file);
+  std::string known;
+  for (const SceneFormat& format : kFormats) {
+    if (ending == format.ending) return format;
+    known += known.empty() ? format.ending : std::string(", ") + format.ending;
+  }
+  throw InputError({"unknown scene format " + quote(ending), file.string(), "use a file that ends in " + known});
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+  std::vector<SourceFile> sources;
+  return load_scene(file, sources);
+}
+
+Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources) {
+  LoadReport report(file);
+  report.add_source(file);
+  try {
+    Scene scene = find_format(file).load(report);
+    sources = report.sources();
+    warn_of_tiny_meshes(scene);
+    if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
+    return scene;
+  } catch (...) {
+    sources = report.sources();
+    throw;
+  }
+}
+
+}  // namespace promin

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/obj/load_obj.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+#include "core/file.h"
+#include "formats/obj/materials.h"
+#include "formats/obj/text.h"
+#include "formats/obj/triangulate.h"
+
+namespace promin {
+namespace {
+
+/// Builds the mesh of one group after another. Its vertices are the pairs of position and normal that its faces use.
+class MeshBuilder {
+ public:
+  MeshBuilder(const ObjText& text, LoadReport& report)
+      : text_(text), report_(report), newest_vertex_(text.positions.size(), kNoObjIndex) {}
+
+  Mesh build(const ObjGroup& group) {
+    mesh_ = {};
+    previous_vertex_.clear();
+    normal_of_vertex_.clear();
+    const auto* faces = &text_.faces[group.first_face];
+    has_normals_ = std::any_of(faces, faces + group.face_count, [&](const ObjFace& f) { return has_normals(f); });
+    for (uint32_t i = 0; i < group.face_count; ++i) add_face(faces[i]);
+    for (uint32_t i = 0; i < group.face_count; ++i) forget_vertices(faces[i]);
+    return std::move(mesh_);
+  }
+
+ private:
+  bool has_normals(const ObjFace& face) {
+    for (uint32_t i = 0; i < face.corner_count; ++i) {
+      const uint32_t normal = text_.corners[face.first_corner + i].normal;
+      if (normal == kNoObjIndex) return false;
+      if (!(glm::length(dvec3(text_.normals[normal])) > 0.0)) {
+        report_.warn("there are normals of no length, faces that use them are drawn sharp");
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void add_face(const ObjFace& face) {
+    const ObjCorner* corners = &text_.corners[face.first_corner];
+    if (face.corner_count == 3) return add_triangle(face, uvec3(0, 1, 2));
+    polygon_.clear();
+    for (uint32_t i = 0; i < face.corner_count; ++i) polygon_.push_back(text_.positions[corners[i].position]);
+    for (const uvec3& triangle : triangulate_polygon(polygon_)) add_triangle(face, triangle);
+  }
+
+  void add_triangle(const ObjFace& face, const uvec3& triangle) {
+    const ObjCorner* corners = &text_.corners[face.first_corner];
+    uvec3 vertices;
+    if (has_normals_ && !has_normals(face)) {
+      const dvec3 a(text_.positions[corners[triangle.x].position]);
+      const dvec3 b(text_.positions[corners[triangle.y].position]);
+      const dvec3 c(text_.positions[corners[triangle.z].position]);
+      const dvec3 normal = glm::cross(b - a, c - a);
+      const double length = glm::length(normal);
+      // Sharp among smooth ones: corners of its own. A triangle without area is never hit, any normal will do.
+      for (int i = 0; i < 3; ++i) {
+        vertices[i] = add_vertex(corners[triangle[i]].position);
+        mesh_.normals.push_back(length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));
+      }
+    } else {
+      for (int i = 0; i < 3; ++i) vertices[i] = find_or_add_vertex(corners[triangle[i]]);
+    }
+    mesh_.triangles.push_back(vertices);
+  }
+
+  /// The vertices of one position form a chain, the newest first; it is short, as few normals meet in a point.
+  uint32_t find_or_add_vertex(const ObjCorner& corner) {
+    const uint32_t normal = has_normals_ ? corner.normal : kNoObjIndex;
+    for (uint32_t v = newest_vertex_[corner.position]; v != kNoObjIndex; v = previous_vertex_[v]) {
+      if (normal_of_vertex_[v] == normal) return v;
+    }
+    const uint32_t vertex = add_vertex(corner.position);
+    previous_vertex_[vertex] = newest_vertex_[corner.position];
+    newest_vertex_[corner.position] = vertex;
+    normal_of_vertex_[vertex] = normal;
+    if (has_normals_) mesh_.normals.emplace_back(glm::normalize(dvec3(text_.normals[normal])));
+    return vertex;
+  }
+
+  uint32_t add_vertex(uint32_t position) {
+    mesh_.positions.push_back(text_.positions[position]);
+    if (!text_.colors.empty()) mesh_.colors.emplace_back(text_.colors[position], 1.0F);
+    previous_vertex_.push_back(kNoObjIndex);
+    normal_of_vertex_.push_back(kNoObjIndex);
+    return static_cast<uint32_t>(mesh_.positions.size() - 1);
+  }
+
+  void forget_vertices(const ObjFace& face) {
+    for (uint32_t i = 0; i < face.corner_count; ++i) {
+      newest_vertex_[text_.corners[face.first_corner + i].position] = kNoObjIndex;
+    }
+  }
+
+  const ObjText& text_;
+  LoadReport& report_;
+  Mesh mesh_;
+  bool has_normals_ = false;
+  std::vector<uint32_t> newest_vertex_;
+  std::vector<uint32_t> previous_vertex_;
+  std::vector<uint32_t> normal_of_vertex_;
+  std::vector<vec3> polygon_;
+};
+
+/// Appends the materials that faces use; where each usemtl name lies in Scene::materials.
+std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadReport& report) {
+  const std::map<std::string, Material> known = read_obj_materials(text.libraries, report);
+  std::vector<uint32_t> indices;
+  for (const std::string& name : text.material_names) {
+    const auto found = known.find(name);
+    Material material;
+    if (found != known.end()) {
+      material = found->second;
+    } else {
+      material.name = name;
+      report.warn("material " + quote(name) + " is in no MTL file: it is drawn grey");
+    }
+    indices.push_back(static_cast<uint32_t>(scene.materials.size()));
+    scene.materials.push_back(material);
+  }
+  return indices;
+}
+
+/// The material of each triangle of a group, in the triangles' order.
+std::vector<uint32_t> materials_of(const ObjText& text, const ObjGroup& group, const std::vector<uint32_t>& indices,
+                                   uint32_t otherwise) {
+  std::vector<uint32_t> materials;
+  for (uint32_t i = 0; i < group.face_count; ++i) {
+    const ObjFace& face = text.faces[group.first_face + i];
+    const uint32_t material = face.material == kNoObjIndex ? otherwise : indices[face.material];
+    materials.insert(materials.end(), face.corner_count - 2, material);
+  }
+  return materials;
+}
+
+}  // namespace
+
+Scene load_obj(LoadReport& report) {
+  const std::filesystem::path& file = report.file();
+  const std::vector<std::byte> bytes = read_file(file);
+  const ObjText text = parse_obj_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
+  report.throw_if_refused();
+  if (text.faces.empty() && !text.positions.empty()) {
+    report.refuse("the file has " + std::to_string(text.positions.size()) + " vertices but no faces", "",
+                  "export it with faces");
+  }
+
+  Scene scene;
+  scene.file = file;
+  const std::vector<uint32_t> indices = add_materials(text, scene, report);
+  report.throw_if_refused();
+  const bool needs_default = scene.materials.empty() || std::any_of(text.faces.begin(), text.faces.end(),
+                                                                    [](auto& f) { return f.material == kNoObjIndex; });
+  const auto default_material = static_cast<uint32_t>(scene.materials.size());
+  if (needs_default) {
+    scene.materials.emplace_back();
+    scene.materials.back().name = "default";
+  }
+
+  MeshBuilder builder(text, report);
+  for (const ObjGroup& group : text.groups) {
+    Object object;
+    object.name = group.name;
+    Mesh mesh = builder.build(group);
+    mesh.triangle_materials = materials_of(text, group, indices, default_material);
+    object.material = mesh.triangle_materials.front();
+    const bool has_one_material = std::all_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
+                                              [&](uint32_t material) { return material == object.material; });
+    if (has_one_material) mesh.triangle_materials.clear();
+    object.shape = std::move(mesh);
+    scene.objects.push_back(std::move(object));
+  }
+  scene.warnings = report.warnings();
+  return scene;
+}
+
+}  // namespace promin

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/load_report.h"
+#include "promin/math.h"
+
+namespace promin {
+
+inline constexpr uint32_t kNoObjIndex = std::numeric_limits<uint32_t>::max();
+
+/// Indices from 0 into the arrays of ObjText.
+struct ObjCorner {
+  uint32_t position = 0;
+  /// kNoObjIndex where the file gives none.
+  uint32_t normal = kNoObjIndex;
+};
+
+struct ObjFace {
+  uint32_t first_corner = 0;
+  uint32_t corner_count = 0;
+  /// Index into material_names, kNoObjIndex before the first usemtl.
+  uint32_t material = kNoObjIndex;
+};
+
+/// What follows an `o` or `g` up to the next, if it has faces.
+struct ObjGroup {
+  std::string name;
+  uint32_t first_face = 0;
+  uint32_t face_count = 0;
+};
+
+/// What an OBJ file says, checked: every index is in range, every number finite.
+struct ObjText {
+  std::vector<vec3> positions;
+  /// Empty, or one per position: white where the file gives none.
+  std::vector<vec3> colors;
+  /// As written, not of unit length.
+  std::vector<vec3> normals;
+  std::vector<ObjCorner> corners;
+  std::vector<ObjFace> faces;
+  std::vector<ObjGroup> groups;
+  /// Of usemtl, each once.
+  std::vector<std::string> material_names;
+  /// The rest of each mtllib line.
+  std::vector<std::string> libraries;
+};
+
+/// Parses the statements v, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning where they would show.
+/// Texture coordinates are not read. Problems go to the report with their line.
+ObjText parse_obj_text(std::string_view text, LoadReport& report);
+
+}  // namespace promin

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "promin/math.h"
+
+namespace promin {
+
+/// Cuts a polygon, convex or not, into its n - 2 triangles, wound as it is; indices into `corners`. Convex polygons
+/// become the fan around corner 0, others are cut by ear clipping (Meisters 1975). A polygon that crosses itself or
+/// has no area still gives n - 2 triangles, so that numbering holds.
+std::vector<uvec3> triangulate_polygon(std::span<const vec3> corners);
+
+}  // namespace promin

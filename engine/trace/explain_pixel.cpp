@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/explain_pixel.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+
+#include "device/device.h"
+#include "device_scene/device_scene.h"
+#include "promin/error.h"
+#include "trace/film.h"
+#include "trace/tile_scheduler.h"
+#include "trace/tracing_kernel.h"
+
+namespace promin {
+namespace {
+
+/// A film of one pixel, before its log (shaders/ray_log.glsl).
+struct LoggedFilm {
+  layout::Dispatch dispatch{};
+  std::array<uvec4, layout::BLOCK_SIZE * layout::BLOCK_SIZE> ray_counts{};
+  uvec4 pixel{0};
+  uvec4 log_count{0};
+};
+
+/// Half of what Vulkan guarantees for a storage buffer.
+constexpr uint64_t kMostLogBytes = 64U << 20;
+
+/// For one sample of the view, whatever it meets.
+uint64_t film_bytes(const DeviceScene& scene, const View& view) {
+  const uint64_t most_entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.dispatch().counts.z);
+  if (most_entries > kMostLogBytes / sizeof(layout::RayLog)) {
+    throw RunError({"a pixel may take " + std::to_string(most_entries) + " rays and sources, too many to explain",
+                    "in this scene with its --max-depth", "give a smaller --max-depth"});
+  }
+  return sizeof(LoggedFilm) + most_entries * sizeof(layout::RayLog);
+}
+
+constexpr uint64_t kQueuedPathBytes = Film::kQueuedPathRecords * sizeof(uvec4);
+
+class LoggingKernel {
+ public:
+  LoggingKernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features, const layout::Frame& frame,
+                const View& view)
+      : frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer),
+        queue_offset_(film_bytes(scene, view)),
+        film_(device, queue_offset_ + kQueuedPathBytes, vk::BufferUsageFlagBits::eStorageBuffer),
+        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, 1, frame_, film_)) {
+    frame_.write(std::as_bytes(std::span(&frame, 1)));
+  }
+
+  /// Traces one sample of the pixel; they come in their order.
+  std::vector<layout::RayLog> trace(const TileSample& sample) {
+    head_.log_count = uvec4(0);
+    film_.write(std::as_bytes(std::span(&head_, 1)));
+    layout::Dispatch dispatch = sample.dispatch;
+    dispatch.queue.x = static_cast<uint32_t>((queue_offset_ - offsetof(LoggedFilm, pixel)) / sizeof(uvec4));
+    kernel_.run(dispatch, film_, sample.group_counts);
+    film_.read(std::as_writable_bytes(std::span(&head_, 1)));
+    if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("lower --max-depth");
+    std::vector<layout::RayLog> log(head_.log_count.x);
+    film_.read(std::as_writable_bytes(std::span(log)), sizeof(LoggedFilm));
+    return log;
+  }
+
+  /// Of the samples so far.
+  vec3 sum() const { return std::bit_cast<vec3>(std::array{head_.pixel.x, head_.pixel.y, head_.pixel.z}); }
+
+ private:
+  gpu::Buffer frame_;
+  /// Of the queue of paths, behind the log.
+  uint64_t queue_offset_;
+  gpu::Buffer film_;
+  LoggedFilm head_;
+  TracingKernel kernel_;
+};
+
+}  // namespace
+
+Explanation explain_pixel(const gpu::Device& device, const DeviceScene& scene, const PrimitiveNumbers& numbers,
+                          FeatureMask features, const View& view, const uvec2& pixel) {
+  TileScheduler samples(scene.frame(), scene.dispatch(), view, {pixel, pixel + 1U});
+  LoggingKernel kernel(device, scene, features, samples.frame(), view);
+  Explanation explanation;
+  explanation.pixel = pixel;
+  while (!samples.is_done()) {
+    explanation.samples.push_back(explain_sample(kernel.trace(samples.next(1.0)), numbers));
+  }
+  explanation.sum = kernel.sum();
+  explanation.color = explanation.sum / static_cast<float>(view.samples_per_pixel);
+  return explanation;
+}
+
+}  // namespace promin

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/film.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstring>
+
+#include "camera_stage.spv.h"
+#include "core/parallel.h"
+#include "device/device.h"
+#include "mirror_stage.spv.h"
+
+namespace promin {
+namespace {
+
+using Access = vk::AccessFlagBits;
+using Stage = vk::PipelineStageFlagBits;
+
+constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+/// One for each lane of a block.
+using Counters = std::array<uvec4, kLanes>;
+
+/// Head of the film buffer (shaders/film.glsl).
+struct FilmHead {
+  layout::Dispatch dispatch{};
+  Counters ray_counts{};
+};
+
+Counters lanes_of(std::span<const std::byte> counters) {
+  Counters lanes;
+  assert(counters.size() >= sizeof lanes);
+  std::memcpy(lanes.data(), counters.data(), sizeof lanes);
+  return lanes;
+}
+
+/// Paths of the longest queue that a piece may need.
+constexpr uint32_t kMostQueuedPaths = TileScheduler::kMaxBlocks * kLanes;
+
+/// GPUs trace pixels alone: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes minutes
+/// to compile packets. Steps and logs are of single rays.
+uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
+  return device.is_lavapipe() && (features & layout::FEATURE_STEP_COUNTS) == 0 ? 4 : 1;
+}
+
+}  // namespace
+
+const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
+const vk::DeviceSize Film::kCountersBytes = sizeof(Counters);
+
+PictureShaders picture_shaders() {
+  return {k_camera_stage_spirv, k_mirror_stage_spirv};
+}
+
+Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+           const FilmOptions& options)
+    : device_(&device),
+      scene_(std::move(scene)),
+      features_(features),
+      packet_size_(options.packet_size.value_or(pick_packet_size(device, features))),
+      frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
+  reserve(kLanes);
+  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_, options.shaders));
+}
+
+void Film::reserve(uint32_t pixel_count) {
+  if (capacity_ >= pixel_count) return;
+  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + queue_records(pixel_count);
+  // There before the old one goes: where memory is short the film stays whole.
+  gpu::Buffer buffer(*device_, sizeof(FilmHead) + records * sizeof(uvec4), vk::BufferUsageFlagBits::eStorageBuffer);
+  buffer_.emplace(std::move(buffer));
+  capacity_ = pixel_count;
+  if (kernel_) kernel_->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_});
+}
+
+TileOptions Film::piece_options() const {
+  // On a GPU one group waits while others work.
+  constexpr uint32_t kGroupsACore = 8;
+  TileOptions options{.packet_size = packet_size_, .most_parts = most_parts_of_dispatch(*device_)};
+  if (device_->is_cpu()) {
+    options.wanted_groups = kGroupsACore * core_count();
+    options.most_paths_a_lane = 16;
+  }
+  return options;
+}
+
+TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
+  return {scene_->frame(), scene_->dispatch(), view, window, options};
+}
+
+void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileScheduler& picture) const {
+  assert(picture.pixel_count() <= capacity_);
+  const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite, Access::eTransferWrite);
+  commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eTransfer, {}, before, {}, {});
+  commands.updateBuffer<layout::Frame>(*frame_.handle(), 0, picture.frame());
+  commands.fillBuffer(*buffer_->handle(), offsetof(FilmHead, ray_counts), kCountersBytes, 0);
+}
+
+void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
+  kernel_->record(commands, dispatch_of(piece), *buffer_, piece.group_counts);
+}
+
+void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
+  const vk::MemoryBarrier written(Access::eShaderWrite, Access::eTransferRead);
+  commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, written, {}, {});
+  const vk::DeviceSize offset = offsetof(FilmHead, ray_counts);
+  commands.copyBuffer(*buffer_->handle(), *target.handle(), vk::BufferCopy(offset, 0, kCountersBytes));
+  const vk::MemoryBarrier copied(Access::eTransferWrite, Access::eHostRead | Access::eTransferWrite);
+  commands.pipelineBarrier(Stage::eTransfer, Stage::eTransfer | Stage::eHost, {}, copied, {}, {});
+  commands.fillBuffer(*buffer_->handle(), offset, kCountersBytes, 0);
+}
+
+void Film::begin(const TileScheduler& picture) const {
+  device_->run([&](const vk::raii::CommandBuffer& commands) { record_begin(commands, picture); });
+}
+
+double Film::run(std::span<const TileSample> pieces) const {
+  return kernel_->run([&](const vk::raii::CommandBuffer& commands) {
+    for (const TileSample& piece : pieces) record(commands, piece);
+  });
+}
+
+FilmCounts Film::take_counts() const {
+  const gpu::Buffer target = gpu::Buffer::make_readback(*device_, kCountersBytes);
+  device_->run([&](const vk::raii::CommandBuffer& commands) { record_take_counts(commands, target); });
+  return {sum_counts(target.mapped()), were_loops_cut(target.mapped())};
+}
+
+void Film::warm_up() const {
+  View one_pixel;
+  one_pixel.size = uvec2(1);
+  one_pixel.max_depth = 0;
+  TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, {});
+  begin(picture);
+  const TileSample piece = picture.next(1.0);
+  run({&piece, 1});
+}
+
+uint32_t Film::records_per_pixel() const {
+  return (features_ & layout::FEATURE_AOVS) != 0 ? 2 : 1;
+}
+
+uint32_t Film::queue_records(uint32_t pixel_count) const {
+  if ((features_ & layout::FEATURE_MIRRORS) == 0) return 0;
+  return kQueuedPathRecords * std::min(pixel_count, kMostQueuedPaths);
+}
+
+layout::Dispatch Film::dispatch_of(const TileSample& piece) const {
+  layout::Dispatch dispatch = piece.dispatch;
+  dispatch.queue.x = capacity_ * records_per_pixel();
+  return dispatch;
+}
+
+uint32_t Film::max_capacity() const {
+  const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(FilmHead)) / sizeof(uvec4);
+  return static_cast<uint32_t>((records - queue_records(kMostQueuedPaths)) / records_per_pixel());
+}
+
+TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
+                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
+                                  const PictureShaders& shaders) {
+  const std::array constants{
+      gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
+      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
+      gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
+      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() ? 1U : 0U}};
+  std::vector<gpu::BoundBuffer> buffers = scene.geometry();
+  for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
+  buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});
+  buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
+  TracingKernel kernel(device, shaders.camera_stage, constants, buffers);
+  if ((features & layout::FEATURE_MIRRORS) != 0) {
+    // Mirror rays go everywhere: each is traced alone.
+    kernel.add_stage(shaders.mirror_stage, std::span(constants).subspan(1), buffers);
+  }
+  return kernel;
+}
+
+void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const auto sum = std::bit_cast<std::array<float, 4>>(records[i]);
+    pixels[i] = vec3(sum[0], sum[1], sum[2]) / static_cast<float>(samples);
+  }
+}
+
+RayCounts sum_counts(std::span<const std::byte> counters) {
+  RayCounts sum;
+  for (const uvec4& lane : lanes_of(counters)) sum += {lane.x, lane.y, lane.z};
+  return sum;
+}
+
+bool were_loops_cut(std::span<const std::byte> counters) {
+  const Counters lanes = lanes_of(counters);
+  return std::any_of(lanes.begin(), lanes.end(), [](const uvec4& lane) { return lane.w != 0; });
+}
+
+}  // namespace promin

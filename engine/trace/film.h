@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "device/buffer.h"
+#include "device_scene/device_scene.h"
+#include "promin/ray_counts.h"
+#include "scene/features.h"
+#include "trace/picture_shaders.h"
+#include "trace/tile_scheduler.h"
+#include "trace/tracing_kernel.h"
+
+namespace promin {
+
+struct FilmCounts {
+  RayCounts rays;
+  /// See were_loops_cut.
+  bool has_cut_loops = false;
+};
+
+struct FilmOptions {
+  /// Pixels that a lane of the camera stage takes together, 1, 2 or 4; empty: as suits the device.
+  std::optional<uint32_t> packet_size = std::nullopt;
+  /// Others with the same bindings are for measurements.
+  PictureShaders shaders = picture_shaders();
+};
+
+/// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
+/// in two stages (shaders/camera_stage.comp, shaders/mirror_stage.comp). A picture is begun, then all of its pieces
+/// run; nothing of that waits unless it says so.
+class Film {
+ public:
+  /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
+  /// (render/shading.h), and FEATURE_AOVS.
+  Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
+       const FilmOptions& options = {});
+
+  /// Makes room for so many pixels; the device is idle with respect to the film.
+  void reserve(uint32_t pixel_count);
+  uint32_t capacity() const { return capacity_; }
+
+  /// How the device wants pictures cut.
+  TileOptions piece_options() const;
+  /// A picture of the film's scene.
+  TileScheduler cut(const View& view, const PixelWindow& window, const TileOptions& options) const;
+
+  /// Records the beginning of a picture that has room, after all that compute shaders and transfers recorded before.
+  void record_begin(const vk::raii::CommandBuffer& commands, const TileScheduler& picture) const;
+  /// Records one of its pieces, likewise.
+  void record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const;
+  /// Records a copy of the counters to the start of `target`, kCountersBytes of it, and sets them to zero.
+  void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
+
+  /// As the recordings above, and waits. `run` returns device milliseconds as TracingKernel::run does.
+  void begin(const TileScheduler& picture) const;
+  double run(std::span<const TileSample> pieces) const;
+  FilmCounts take_counts() const;
+  /// Traces a block of one pixel: drivers compile late, and a pipeline's first dispatch must not count as tracing.
+  void warm_up() const;
+
+  /// Records of a pixel, of uvec4: its sum over samples, and of the AOVs another.
+  uint32_t records_per_pixel() const;
+  /// Most pixels that a film can have on this device.
+  uint32_t max_capacity() const;
+  const gpu::Buffer& buffer() const { return *buffer_; }
+
+  /// Where the pixels lie in the buffer; counters before them.
+  static const vk::DeviceSize kPixelsOffset;
+  static const vk::DeviceSize kCountersBytes;
+  /// Of uvec4, what a path takes in the queue between the stages (shaders/path.glsl).
+  static constexpr uint32_t kQueuedPathRecords = 4;
+
+ private:
+  /// Of the queue of paths, for a film of so many pixels.
+  uint32_t queue_records(uint32_t pixel_count) const;
+  layout::Dispatch dispatch_of(const TileSample& piece) const;
+
+  const gpu::Device* device_;
+  std::shared_ptr<const DeviceScene> scene_;
+  FeatureMask features_;
+  uint32_t packet_size_;
+  gpu::Buffer frame_;
+  std::optional<gpu::Buffer> buffer_;
+  uint32_t capacity_ = 0;
+  std::optional<TracingKernel> kernel_;
+};
+
+/// The stages of a picture for a scene's `features`, bound to the scene and to these buffers.
+TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
+                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
+                                  const PictureShaders& shaders = picture_shaders());
+
+/// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
+void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);
+
+/// The sum of counters as record_take_counts copies them.
+RayCounts sum_counts(std::span<const std::byte> counters);
+/// Whether they tell that the driver cut a lane's loops (shaders/loop_check.glsl): then pixels are wrong.
+bool were_loops_cut(std::span<const std::byte> counters);
+
+}  // namespace promin

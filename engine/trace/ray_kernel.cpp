@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/ray_kernel.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <optional>
+
+#include "cast.spv.h"
+#include "core/divide_up.h"
+#include "core/stopwatch.h"
+#include "device/device.h"
+#include "device_scene/device_scene.h"
+#include "trace/share_out.h"
+#include "trace/tracing_kernel.h"
+
+namespace promin {
+namespace {
+
+constexpr uint32_t kGroupLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+/// Keeps the device's cores busy in the first dispatch.
+constexpr double kFirstRays = 64.0 * kGroupLanes;
+static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
+
+vk::DeviceSize hits_size(size_t ray_count) {
+  return sizeof(layout::Dispatch) + ray_count * sizeof(layout::HitRecord);
+}
+
+}  // namespace
+
+std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed) {
+  std::shared_ptr<const DeviceScene> scene;
+  gpu::translate_vulkan_errors([&] { scene = std::make_shared<const DeviceScene>(device, packed); });
+  return scene;
+}
+
+std::span<const uint32_t> cast_spirv() {
+  return k_cast_spirv;
+}
+
+struct RayKernel::Impl {
+  Impl(const gpu::Device& the_device, std::shared_ptr<const DeviceScene> the_scene, const RayKernelOptions& the_options)
+      : device(the_device),
+        scene(std::move(the_scene)),
+        options(the_options),
+        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), kFirstRays) {
+    const Stopwatch compiling;
+    frame.emplace(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer);
+    frame->write(std::as_bytes(std::span(&scene->frame(), 1)));
+    make_buffers(1);
+    const std::array constants{
+        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features},
+        gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
+        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, fetches_texels() ? 1U : 0U},
+        gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, options.packet_size},
+        gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
+    std::vector<gpu::BoundBuffer> buffers = scene->geometry();
+    buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame});
+    for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
+    kernel.emplace(device, options.spirv, constants, buffers);
+    // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
+    const layout::Dispatch no_rays = scene->dispatch();
+    kernel->run(no_rays, *hits, {uvec2(1)});
+    pipeline_ms = compiling.ms();
+  }
+
+  std::array<gpu::BoundBuffer, 3> ray_buffers() const {
+    return {{{layout::BINDING_RAYS, vk::DescriptorType::eStorageBuffer, &*rays},
+             {layout::BINDING_RAY_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*rays, &ray_texels},
+             {layout::BINDING_HITS, vk::DescriptorType::eStorageBuffer, &*hits}}};
+  }
+
+  bool fetches_texels() const {
+    return scene->fetches_texels() && !options.avoids_texels &&
+           RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.limits().maxTexelBufferElements * gpu::kTexelBytes;
+  }
+
+  void make_buffers(size_t ray_count) {
+    if (ray_count <= capacity) return;
+    // Both are there before either is replaced: the pipeline stays bound to buffers that live.
+    constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
+    gpu::Buffer new_rays(device, ray_count * sizeof(layout::RayRecord),
+                         kStorage | vk::BufferUsageFlagBits::eUniformTexelBuffer);
+    vk::raii::BufferView new_ray_texels = new_rays.make_texel_view();
+    gpu::Buffer new_hits(device, hits_size(ray_count), kStorage);
+    ray_texels = std::move(new_ray_texels);
+    rays.emplace(std::move(new_rays));
+    hits.emplace(std::move(new_hits));
+    capacity = ray_count;
+    if (!kernel) return;
+    for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);
+  }
+
+  void check_loops() const {
+    layout::Dispatch head;
+    hits->read(std::as_writable_bytes(std::span(&head, 1)));
+    if (head.outcome.x != 0) throw make_cut_loops_error("take another device");
+  }
+
+  double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
+    make_buffers(input.size());
+    rays->write(std::as_bytes(input));
+    double total_ms = 0.0;
+    layout::Dispatch dispatch = scene->dispatch();
+    const uint32_t most_parts = most_parts_of_dispatch(device);
+    const auto end = static_cast<uint32_t>(input.size());
+    const uint32_t group_rays = kGroupLanes * options.packet_size;
+    for (uint32_t first = 0; first < end;) {
+      // A workgroup takes as long with fewer rays; on a busy machine the pacer would come down to one.
+      const double paced = std::max<double>(pacer.units(), group_rays);
+      const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : paced;
+      const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
+      dispatch.range = uvec4(first, first + count, 0, 0);
+      // Those beyond the last ray do nothing.
+      const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
+      const double time_ms = kernel->run(dispatch, *hits, {groups});
+      if (device.is_lavapipe()) check_loops();
+      pacer.learn(count, time_ms);
+      total_ms += time_ms;
+      first += count;
+    }
+    hits->read(std::as_writable_bytes(records), sizeof(layout::Dispatch));
+    return total_ms;
+  }
+
+  const gpu::Device& device;
+  std::shared_ptr<const DeviceScene> scene;
+  RayKernelOptions options;
+  Pacer pacer;
+  std::optional<gpu::Buffer> frame;
+  std::optional<gpu::Buffer> rays;
+  vk::raii::BufferView ray_texels{nullptr};
+  std::optional<gpu::Buffer> hits;
+  size_t capacity = 0;
+  std::optional<TracingKernel> kernel;
+  double pipeline_ms = 0.0;
+};
+
+RayKernel::RayKernel(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
+                     const RayKernelOptions& options) {
+  gpu::translate_vulkan_errors([&] { impl_ = std::make_unique<Impl>(device, std::move(scene), options); });
+}
+RayKernel::~RayKernel() = default;
+RayKernel::RayKernel(RayKernel&&) noexcept = default;
+RayKernel& RayKernel::operator=(RayKernel&&) noexcept = default;
+
+double RayKernel::run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records) {
+  assert(rays.size() <= kMaxRays && rays.size() == records.size());
+  if (rays.empty()) return 0.0;
+  double time_ms = 0.0;
+  gpu::translate_vulkan_errors([&] { time_ms = impl_->run(rays, records); });
+  return time_ms;
+}
+
+double RayKernel::pipeline_ms() const {
+  return impl_->pipeline_ms;
+}
+
+}  // namespace promin

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "device_scene/pack_scene.h"
+#include "layout.h"
+#include "promin/ray.h"
+#include "scene/features.h"
+
+namespace promin {
+
+namespace gpu {
+class Device;
+}
+class DeviceScene;
+
+/// Copies a packed scene to the device. Throws RunError where memory does not suffice or a device limit is passed.
+std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed);
+
+/// SPIR-V of shaders/cast.comp.
+std::span<const uint32_t> cast_spirv();
+
+struct RayKernelOptions {
+  /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; its workgroups take
+  /// the shares that shaders/share_out.glsl gives them.
+  std::span<const uint32_t> spirv = cast_spirv();
+  FeatureMask features = all_features();
+  HitQuery query = HitQuery::kNearest;
+  /// Rays in a row that a lane traces together. It changes no answer, but step counts are then of the packet.
+  uint32_t packet_size = 1;
+  /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
+  bool avoids_texels = false;
+  /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (trace/tracing_kernel.h).
+  std::optional<double> target_dispatch_ms = std::nullopt;
+  /// Fixed number of rays a dispatch, for tests; 0 adapts.
+  uint32_t rays_per_dispatch = 0;
+};
+
+/// A kernel that takes rays and gives a record for each; under Caster, and the bare device for tests.
+class RayKernel {
+ public:
+  /// Compiles; throws RunError.
+  RayKernel(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, const RayKernelOptions& options);
+  ~RayKernel();
+  RayKernel(RayKernel&&) noexcept;
+  RayKernel& operator=(RayKernel&&) noexcept;
+
+  /// Most rays that one call of run takes.
+  static constexpr size_t kMaxRays = size_t{1} << 20;
+
+  /// Fills as many records as there are rays, at most kMaxRays; what layout.h says is not told of any hit stays as it
+  /// was before. Returns device milliseconds.
+  double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records);
+
+  /// Time that compiling took.
+  double pipeline_ms() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace promin

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "layout.h"
+#include "promin/view.h"
+
+namespace promin {
+
+/// A sample of each pixel of some blocks: one dispatch of each stage of a picture.
+struct TileSample {
+  /// But for the place of the queue.
+  layout::Dispatch dispatch{};
+  /// Workgroups of shaders/camera_stage.comp (y = parts) and of shaders/mirror_stage.comp (y = 1).
+  std::array<uvec2, 2> group_counts{};
+  /// What it takes: blocks of 8x8 pixels.
+  double units = 0.0;
+  /// Most rays that a lane may count in it.
+  double most_rays_a_lane = 0.0;
+};
+
+struct TileOptions {
+  /// Pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
+  uint32_t packet_size = 1;
+  /// See trace/share_out.h.
+  uint32_t most_parts = 1;
+  /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
+  uint32_t wanted_groups = 0;
+  /// Paths that a lane of the mirror stage takes one after the other, at most. llvmpipe lets a lane's loops turn 65535
+  /// times, all together (shaders/loop_check.glsl).
+  uint32_t most_paths_a_lane = 1;
+  /// Fixed number of blocks a piece, for tests of tile independence; 0 follows the units asked for.
+  uint32_t blocks_per_piece = 0;
+};
+
+/// A picture cut into pieces: a range of blocks at a time, and of that a sample at a time. Every cut gives the same
+/// bits. Vulkan-free.
+class TileScheduler {
+ public:
+  /// Of `window` of the picture. `frame` and `dispatch` hold what they take from the scene (PackedScene).
+  TileScheduler(const layout::Frame& frame, const layout::Dispatch& dispatch, const View& view,
+                const PixelWindow& window, const TileOptions& options = {});
+
+  /// The constants that all pieces share.
+  const layout::Frame& frame() const { return frame_; }
+  uint32_t pixel_count() const { return pixel_count_; }
+  bool is_done() const { return first_block_ == block_total_; }
+  double fraction_done() const;
+
+  /// The next piece, of about `units`; at least kMinBlocks blocks, which keep a device's cores busy. Not when done.
+  TileSample next(double units);
+
+  static constexpr uint32_t kMinBlocks = 64;
+  /// Nor more blocks than these: that bounds the queue of paths.
+  static constexpr uint32_t kMaxBlocks = 8192;
+
+ private:
+  uint32_t pick_block_count(double units) const;
+
+  layout::Frame frame_;
+  layout::Dispatch dispatch_;
+  TileOptions options_;
+  uint32_t samples_;
+  uint32_t max_depth_;
+  uint32_t pixel_count_;
+  uint32_t block_total_;
+  uint32_t first_block_ = 0;
+  /// Of the blocks under way, and of these the next sample.
+  uint32_t block_count_ = 0;
+  uint32_t sample_ = 0;
+};
+
+}  // namespace promin

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/tracing_kernel.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "device/buffer.h"
+#include "device/device.h"
+
+namespace promin {
+namespace {
+
+using Access = vk::AccessFlagBits;
+using Stage = vk::PipelineStageFlagBits;
+
+}  // namespace
+
+void Pacer::aim(double target_ms) {
+  units_ = std::max(1.0, units_ * target_ms / target_ms_);
+  target_ms_ = target_ms;
+}
+
+void Pacer::learn(double units, double time_ms) {
+  // No faster than fourfold a step: the next tile may be dearer than the last.
+  const double ideal = units * target_ms_ / std::max(time_ms, 1e-3);
+  units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
+}
+
+double dispatch_target_ms(const gpu::Device& device) {
+  return device.is_cpu() ? 100.0 : 25.0;
+}
+
+uint32_t most_parts_of_dispatch(const gpu::Device& device) {
+  // As many as llvmpipe has threads unless it is told otherwise (Mesa's LP_MAX_THREADS).
+  constexpr uint32_t kMostThreads = 32;
+  return device.is_cpu() ? std::min(core_count(), kMostThreads) : 1;
+}
+
+RunError make_cut_loops_error(const std::string& cure) {
+  return RunError(
+      {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure});
+}
+
+TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
+                             std::span<const gpu::SpecializationConstant> constants,
+                             std::span<const gpu::BoundBuffer> buffers)
+    : device_(&device) {
+  add_stage(spirv, constants, buffers);
+  if (device.timestamp_period_ns() > 0.0) {
+    queries_ = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
+  }
+}
+
+void TracingKernel::add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
+                              std::span<const gpu::BoundBuffer> buffers) {
+  stages_.emplace_back(*device_, spirv, constants, buffers);
+}
+
+void TracingKernel::bind(const gpu::BoundBuffer& buffer) {
+  for (gpu::ComputePipeline& stage : stages_) stage.bind(buffer);
+}
+
+void TracingKernel::dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const {
+  for (size_t i = 0; i < stages_.size(); ++i) {
+    if (i > 0) {
+      const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite,
+                                         Access::eShaderRead | Access::eShaderWrite);
+      commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader, {}, after_last, {}, {});
+    }
+    stages_[i].dispatch(commands, group_counts[i]);
+  }
+}
+
+void TracingKernel::put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
+                                  const gpu::Buffer& head) {
+  const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite, Access::eTransferWrite);
+  commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, after_last, {}, {});
+  commands.updateBuffer<layout::Dispatch>(*head.handle(), 0, constants);
+  const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite,
+                                 Access::eShaderRead | Access::eShaderWrite | Access::eUniformRead);
+  commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader, {}, before, {}, {});
+}
+
+void TracingKernel::record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
+                           const gpu::Buffer& head, const GroupCounts& group_counts) const {
+  put_constants(commands, constants, head);
+  dispatch_stages(commands, group_counts);
+}
+
+double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head,
+                          const GroupCounts& group_counts) const {
+  return run([&](const vk::raii::CommandBuffer& commands) { record(commands, constants, head, group_counts); });
+}
+
+double TracingKernel::run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const {
+  const Stopwatch waiting;
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    if (*queries_) {
+      commands.resetQueryPool(*queries_, 0, 2);
+      commands.writeTimestamp(Stage::eTopOfPipe, *queries_, 0);
+    }
+    record_all(commands);
+    if (*queries_) commands.writeTimestamp(Stage::eBottomOfPipe, *queries_, 1);
+    const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead);
+    commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost, {}, after, {}, {});
+  });
+  if (!*queries_) return waiting.ms();
+  const auto [result, ticks] = queries_.getResults<uint64_t>(
+      0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+  return static_cast<double>(device_->ticks_between(ticks[0], ticks[1])) * device_->timestamp_period_ns() * 1e-6;
+}
+
+}  // namespace promin

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/pipeline.h"
+#include "layout.h"
+#include "promin/error.h"
+
+namespace promin {
+
+/// How much work the next dispatch takes so that it lasts about the target: drivers kill dispatches of seconds.
+class Pacer {
+ public:
+  Pacer(double target_ms, double first_units) : target_ms_(target_ms), units_(first_units) {}
+
+  double units() const { return units_; }
+  /// Another target from now on; what was learnt stays.
+  void aim(double target_ms);
+  /// The last dispatch covered `units` in `time_ms`.
+  void learn(double units, double time_ms);
+
+ private:
+  double target_ms_;
+  double units_;
+};
+
+/// How long a dispatch should take: GPU drivers kill those of seconds; CPU drivers do not, and at the end of each
+/// dispatch their threads wait for the last one.
+double dispatch_target_ms(const gpu::Device& device);
+
+/// To how many parts the work of a dispatch is dealt out at most (trace/share_out.h).
+uint32_t most_parts_of_dispatch(const gpu::Device& device);
+
+/// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
+RunError make_cut_loops_error(const std::string& cure);
+
+/// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
+using GroupCounts = std::array<uvec2, 2>;
+
+/// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
+class TracingKernel {
+ public:
+  TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
+                std::span<const gpu::SpecializationConstant> constants, std::span<const gpu::BoundBuffer> buffers);
+
+  /// Another pipeline, to run after the first and see what that wrote.
+  void add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
+                 std::span<const gpu::BoundBuffer> buffers);
+
+  void bind(const gpu::BoundBuffer& buffer);
+
+  /// Records that `constants` go to the head of `head` and the workgroups run, after all that compute shaders and
+  /// transfers recorded before.
+  void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
+              const GroupCounts& group_counts) const;
+
+  /// Runs what `record` records and waits. Returns device milliseconds (waiting time on the host where the queue has no
+  /// timestamps).
+  double run(const layout::Dispatch& constants, const gpu::Buffer& head, const GroupCounts& group_counts) const;
+  /// The same of all that `record_all` records, which calls `record` as often as it likes.
+  double run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const;
+
+ private:
+  void dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const;
+  static void put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
+                            const gpu::Buffer& head);
+
+  const gpu::Device* device_;
+  std::vector<gpu::ComputePipeline> stages_;
+  vk::raii::QueryPool queries_{nullptr};
+};
+
+}  // namespace promin

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "promin/math.h"
+
+namespace promin {
+
+/// A linear RGB picture; row 0 is the top.
+struct Image {
+  uvec2 size{0};
+  std::vector<vec3> pixels;
+
+  const vec3& at(uint32_t x, uint32_t y) const { return pixels[static_cast<size_t>(y) * size.x + x]; }
+  vec3& at(uint32_t x, uint32_t y) { return pixels[static_cast<size_t>(y) * size.x + x]; }
+};
+
+/// A channel of a picture beside R, G and B, a value a pixel: 32-bit floats, or numbers where `is_integer`.
+struct Channel {
+  /// As the EXR names it: "Z", "N.X".
+  std::string name;
+  bool is_integer = false;
+  /// Of the floats their bits.
+  std::vector<uint32_t> values;
+};
+
+/// Name and value pairs that an EXR carries in its header, e.g. {"promin:scene", "showcase.gltf"}.
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+/// Where a crop lies in the whole picture.
+struct CropPlacement {
+  uvec2 lo{0};
+  uvec2 full_size{0};
+};
+
+/// Whether write_image knows the file's ending: .exr or .png.
+bool is_writable_format(const std::filesystem::path& file);
+
+/// Whether a file of this ending holds channels beside R, G and B: .exr.
+bool has_named_channels(const std::filesystem::path& file);
+
+/// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
+/// picture's display window) or .png (sRGB, 8 bit, clamped, without `channels`; a crop is a picture of its own). Equal
+/// arguments give equal bytes. Atomic: the picture is written to a temporary file beside the target and renamed; on
+/// failure the target is as it was. Throws RunError.
+void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
+                 const std::optional<CropPlacement>& crop = std::nullopt, std::span<const Channel> channels = {});
+
+/// Larger pictures are refused before their pixels are read.
+inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
+
+/// Reads R, G, B of any format OpenImageIO knows, as fp32 without conversion; of an EXR the data window.
+/// Throws InputError.
+Image read_image(const std::filesystem::path& file);
+
+/// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.
+float encode_srgb(float linear);
+
+}  // namespace promin

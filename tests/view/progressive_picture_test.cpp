@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/progressive_picture.h"
+
+#include <gtest/gtest.h>
+
+#include "device/device.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "promin/renderer.h"
+
+namespace promin::app {
+namespace {
+
+const uvec2 kSize(150, 100);  // neither is a multiple of the block
+
+class ProgressivePictureTest : public test::DeviceTest {
+ protected:
+  ProgressivePicture make_picture() const {
+    const PackedScene packed = pack_scene(scene_, "sah");
+    ProgressivePicture picture(device(), std::make_shared<const DeviceScene>(device(), packed), features_of(scene_),
+                               1.0);
+    picture.resize(kSize);
+    return picture;
+  }
+
+  /// Records a frame's tracing and waits for it, without telling how long it took: budgets stay the smallest.
+  double trace(ProgressivePicture& picture) const {
+    double units = 0.0;
+    device().run([&](const vk::raii::CommandBuffer& commands) { units = picture.record(commands); });
+    return units;
+  }
+
+  /// What is shown.
+  static Image read(const ProgressivePicture& picture) {
+    const ShownPicture& shown = *picture.shown();
+    Image image{shown.size, std::vector<vec3>(size_t{shown.size.x} * shown.size.y)};
+    std::vector<uvec4> records(image.pixels.size());
+    picture.film(shown.film).read(std::as_writable_bytes(std::span(records)), Film::kPixelsOffset);
+    average_samples(records, shown.samples_per_pixel, image.pixels);
+    return image;
+  }
+
+  const Scene scene_ = test::make_scene_of_everything();
+};
+
+TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {
+  ProgressivePicture picture = make_picture();
+  Renderer renderer(device(), scene_);
+  View view = test::make_view(kSize);
+  picture.want(view);
+  for (const uint32_t samples : {1U, 4U, 16U}) {
+    view.samples_per_pixel = samples;
+    while (!picture.is_complete() || picture.shown()->samples_per_pixel != samples) trace(picture);
+    EXPECT_TRUE(test::has_same_bits(read(picture), renderer.render(view).image)) << samples << " spp";
+  }
+}
+
+// Frames in which one piece ends and the next begins, with all samples of some blocks and a few of others.
+TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
+  Renderer renderer(device(), scene_);
+  View view = test::make_view(kSize);
+  view.samples_per_pixel = 16;
+  const Image expected = renderer.render(view).image;
+  for (const double units : {150.0, 1050.0, 3000.0}) {
+    ProgressivePicture picture = make_picture();
+    picture.learn(1.0, 1.0);  // the first is not taken
+    picture.want(view);
+    while (!picture.is_complete() || picture.shown()->samples_per_pixel != 16) {
+      picture.learn(units, 1.0);
+      trace(picture);
+    }
+    EXPECT_TRUE(test::has_same_bits(read(picture), expected)) << units << " units a frame";
+  }
+}
+
+TEST_F(ProgressivePictureTest, IsRefinedStepByStepAndThenRests) {
+  ProgressivePicture picture = make_picture();
+  picture.resize(uvec2(16, 16));
+  picture.want(test::make_view(kSize));
+  std::vector<uint32_t> levels;
+  while (!picture.is_settled()) {
+    trace(picture);
+    const uint32_t samples = picture.shown()->samples_per_pixel;
+    if (levels.empty() || levels.back() != samples) levels.push_back(samples);
+  }
+  EXPECT_EQ(levels, (std::vector<uint32_t>{1, 4, 16, 64}));
+  EXPECT_EQ(trace(picture), 0.0);
+}
+
+TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
+  ProgressivePicture picture = make_picture();
+  View view = test::make_view(kSize);
+  picture.want(view);
+  while (!picture.is_complete()) trace(picture);
+  trace(picture);  // refining is under way
+  view.camera.eye.x += 0.25F;
+  picture.want(view);
+  EXPECT_FALSE(picture.is_complete());
+  trace(picture);
+  EXPECT_LT(picture.shown()->size.x, kSize.x);
+  // It has the aspect ratio of the window, to a pixel, and shows the new view.
+  view.size = picture.shown()->size;
+  EXPECT_NEAR(view.size.x * kSize.y, view.size.y * kSize.x, kSize.x + kSize.y);
+  EXPECT_TRUE(test::has_same_bits(read(picture), Renderer(device(), scene_).render(view).image));
+}
+
+TEST_F(ProgressivePictureTest, AFirstPictureIsFinishedAlthoughTheViewChanges) {
+  ProgressivePicture picture = make_picture();
+  picture.fix_scale(1.0);
+  View view = test::make_view(kSize);
+  for (int frame = 0; !picture.shown(); ++frame) {
+    ASSERT_LT(frame, 100);
+    view.camera.eye.x += 0.01F;
+    picture.want(view);
+    trace(picture);
+  }
+  EXPECT_FALSE(picture.is_complete());
+}
+
+TEST_F(ProgressivePictureTest, APausedPictureIsNotRefined) {
+  ProgressivePicture picture = make_picture();
+  picture.want(test::make_view(kSize));
+  picture.pause(true);
+  while (!picture.is_settled()) trace(picture);
+  ASSERT_TRUE(picture.shown());
+  EXPECT_LT(picture.shown()->size.x, kSize.x);
+  EXPECT_EQ(trace(picture), 0.0);
+  picture.pause(false);
+  EXPECT_FALSE(picture.is_settled());
+}
+
+TEST_F(ProgressivePictureTest, RestsWhenPausedWhileItIsRefined) {
+  ProgressivePicture picture = make_picture();
+  picture.want(test::make_view(kSize));
+  while (!picture.is_complete()) trace(picture);
+  trace(picture);  // refining is under way
+  ASSERT_LT(picture.fraction_done(), 1.0);
+  picture.pause(true);
+  EXPECT_TRUE(picture.is_settled());
+  EXPECT_EQ(trace(picture), 0.0);
+  picture.pause(false);
+  EXPECT_FALSE(picture.is_settled());
+}
+
+TEST_F(ProgressivePictureTest, IsTracedAgainWhereLoopsWereCut) {
+  ProgressivePicture picture = make_picture();
+  View view = test::make_view(kSize);
+  picture.want(view);
+  while (!picture.is_complete()) trace(picture);
+  trace(picture);  // refining is under way
+  picture.shorten_loops();
+  EXPECT_FALSE(picture.takes_many_paths());
+  EXPECT_FALSE(picture.is_complete());
+  view.samples_per_pixel = 4;
+  while (!picture.is_complete() || picture.shown()->samples_per_pixel != 4) trace(picture);
+  EXPECT_TRUE(test::has_same_bits(read(picture), Renderer(device(), scene_).render(view).image));
+}
+
+TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
+  ProgressivePicture picture = make_picture();
+  View view = test::make_view(kSize);
+  picture.want(view);
+  const double units = trace(picture);
+  const uvec2 before = picture.shown()->size;
+  picture.learn(units, 1.0);  // the first, which compiles, is not taken
+  picture.learn(units, 0.5);
+  view.camera.eye.x += 0.25F;
+  picture.want(view);
+  trace(picture);
+  // Twice the pixels, but for blocks that are not full.
+  EXPECT_NEAR(picture.shown()->size.x, std::sqrt(2.0) * before.x, 0.12 * before.x);
+}
+
+}  // namespace
+}  // namespace promin::app
