@@ -7,6 +7,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "formats/gltf/checks.h"
+
 namespace promin {
 namespace {
 
@@ -44,15 +46,15 @@ void copy_as(const Source& source, To* out) {
 template <class To>
 void copy(const Source& source, To* out) {
   switch (source.component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case kGltfByte:
       return copy_as<int8_t>(source, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case kGltfUnsignedByte:
       return copy_as<uint8_t>(source, out);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case kGltfShort:
       return copy_as<int16_t>(source, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case kGltfUnsignedShort:
       return copy_as<uint16_t>(source, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case kGltfUnsignedInt:
       return copy_as<uint32_t>(source, out);
     default:
       return copy_as<float>(source, out);
@@ -60,37 +62,31 @@ void copy(const Source& source, To* out) {
 }
 
 const std::byte* bytes_of_view(const GltfDocument& document, int view) {
-  const tinygltf::BufferView& v = document.model.bufferViews[static_cast<size_t>(view)];
-  return document.buffers[static_cast<size_t>(v.buffer)].data() + v.byteOffset;
+  const GltfBufferView& v = document.views[static_cast<size_t>(view)];
+  return document.buffers[static_cast<size_t>(v.buffer)].data() + v.byte_offset;
 }
 
 template <class To>
 std::vector<To> read_accessor(const GltfDocument& document, int index, LoadReport& report) {
-  const tinygltf::Accessor& accessor = document.model.accessors[static_cast<size_t>(index)];
-  const auto components = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
-  const auto component_bytes =
-      static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType)));
-  const size_t packed_stride = components * component_bytes;
+  const GltfAccessor& accessor = document.accessors[static_cast<size_t>(index)];
+  const size_t components = accessor.component_count;
+  const size_t packed_stride = components * component_bytes(accessor.component_type);
   std::vector<To> values(accessor.count * components, To{});
-  if (accessor.bufferView >= 0) {
-    const size_t stride = document.model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
-    copy(
-        Source{bytes_of_view(document, accessor.bufferView) + accessor.byteOffset, stride == 0 ? packed_stride : stride,
-               accessor.count, components, accessor.componentType, accessor.normalized},
-        values.data());
+  if (accessor.view >= 0) {
+    const size_t stride = document.views[static_cast<size_t>(accessor.view)].byte_stride;
+    copy(Source{bytes_of_view(document, accessor.view) + accessor.byte_offset, stride == 0 ? packed_stride : stride,
+                accessor.count, components, accessor.component_type, accessor.is_normalized},
+         values.data());
   }
-  if (!accessor.sparse.isSparse) return values;
+  if (!accessor.sparse) return values;
 
-  const auto& sparse = accessor.sparse;
-  const auto count = static_cast<size_t>(sparse.count);
-  std::vector<uint32_t> places(count);
-  copy(Source{bytes_of_view(document, sparse.indices.bufferView) + sparse.indices.byteOffset,
-              static_cast<size_t>(
-                  tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType))),
-              count, 1, sparse.indices.componentType, false},
+  const GltfSparse& sparse = *accessor.sparse;
+  std::vector<uint32_t> places(sparse.count);
+  copy(Source{bytes_of_view(document, sparse.index_view) + sparse.index_offset, component_bytes(sparse.index_type),
+              sparse.count, 1, sparse.index_type, false},
        places.data());
-  const std::byte* replacements = bytes_of_view(document, sparse.values.bufferView) + sparse.values.byteOffset;
-  for (size_t i = 0; i < count; ++i) {
+  const std::byte* replacements = bytes_of_view(document, sparse.value_view) + sparse.value_offset;
+  for (size_t i = 0; i < sparse.count; ++i) {
     if (places[i] >= accessor.count) {
       report.refuse("sparse index " + std::to_string(places[i]) + " is out of range, the accessor has " +
                         std::to_string(accessor.count) + " elements",
@@ -98,8 +94,8 @@ std::vector<To> read_accessor(const GltfDocument& document, int index, LoadRepor
                     "export the file again");
       break;
     }
-    copy(Source{replacements + i * packed_stride, packed_stride, 1, components, accessor.componentType,
-                accessor.normalized},
+    copy(Source{replacements + i * packed_stride, packed_stride, 1, components, accessor.component_type,
+                accessor.is_normalized},
          values.data() + places[i] * components);
   }
   return values;

@@ -36,20 +36,24 @@ void read_pose(const PlacedNode& placed, Camera& camera, LoadReport& report) {
 }  // namespace
 
 std::optional<Camera> read_gltf_camera(const GltfDocument& document, const PlacedNode& placed, LoadReport& report) {
-  const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(placed.node)];
+  const GltfNode& node = document.nodes[static_cast<size_t>(placed.node)];
   if (node.camera < 0) return std::nullopt;
-  const tinygltf::Camera& source = document.model.cameras[static_cast<size_t>(node.camera)];
+  const nlohmann::json& source = document.json["cameras"][static_cast<size_t>(node.camera)];
+  const std::string type = source["type"];
+  const nlohmann::json& parameters = source[type];
   Camera camera;
-  camera.name = node.name.empty() ? source.name : node.name;
-  if (source.type == "perspective") {
-    camera.yfov = static_cast<float>(source.perspective.yfov);
-    camera.aspect_ratio = static_cast<float>(source.perspective.aspectRatio);
-    camera.near = static_cast<float>(source.perspective.znear);
+  camera.name = node.name.empty() ? source.value("name", "") : node.name;
+  // A camera without znear starts at the eye; zfar is never used.
+  camera.near = static_cast<float>(parameters.value("znear", 0.0));
+  if (type == "perspective") {
+    camera.yfov = static_cast<float>(parameters["yfov"].get<double>());
+    camera.aspect_ratio = static_cast<float>(parameters.value("aspectRatio", 0.0));
   } else {
+    const double xmag = parameters["xmag"];
+    const double ymag = parameters["ymag"];
     camera.projection = Projection::kOrthographic;
-    camera.ymag = static_cast<float>(source.orthographic.ymag);
-    camera.aspect_ratio = static_cast<float>(source.orthographic.xmag / source.orthographic.ymag);
-    camera.near = static_cast<float>(source.orthographic.znear);
+    camera.ymag = static_cast<float>(ymag);
+    camera.aspect_ratio = static_cast<float>(xmag / ymag);
   }
   read_pose(placed, camera, report);
   return camera;

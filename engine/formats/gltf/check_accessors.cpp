@@ -15,13 +15,6 @@ using nlohmann::json;
 /// An accessor that is nothing but zeros needs no bytes in the file, so the file's size does not bound it.
 constexpr uint64_t kMaxZeroElements = 1 << 24;
 
-constexpr int kByte = 5120;
-constexpr int kUnsignedByte = 5121;
-constexpr int kShort = 5122;
-constexpr int kUnsignedShort = 5123;
-constexpr int kUnsignedInt = 5125;
-constexpr int kFloat = 5126;
-
 struct Format {
   std::string_view attribute;
   std::string_view type;
@@ -32,23 +25,23 @@ struct Format {
 
 /// What the loader reads; "indices" stands for a primitive's indices.
 constexpr Format kFormats[] = {
-    {"POSITION", "VEC3", kFloat, {}},
-    {"POSITION", "VEC3", kByte, {}},
-    {"POSITION", "VEC3", kUnsignedByte, {}},
-    {"POSITION", "VEC3", kShort, {}},
-    {"POSITION", "VEC3", kUnsignedShort, {}},
-    {"NORMAL", "VEC3", kFloat, {}},
-    {"NORMAL", "VEC3", kByte, true},
-    {"NORMAL", "VEC3", kShort, true},
-    {"COLOR_0", "VEC3", kFloat, {}},
-    {"COLOR_0", "VEC3", kUnsignedByte, true},
-    {"COLOR_0", "VEC3", kUnsignedShort, true},
-    {"COLOR_0", "VEC4", kFloat, {}},
-    {"COLOR_0", "VEC4", kUnsignedByte, true},
-    {"COLOR_0", "VEC4", kUnsignedShort, true},
-    {"indices", "SCALAR", kUnsignedByte, false},
-    {"indices", "SCALAR", kUnsignedShort, false},
-    {"indices", "SCALAR", kUnsignedInt, false},
+    {"POSITION", "VEC3", kGltfFloat, {}},
+    {"POSITION", "VEC3", kGltfByte, {}},
+    {"POSITION", "VEC3", kGltfUnsignedByte, {}},
+    {"POSITION", "VEC3", kGltfShort, {}},
+    {"POSITION", "VEC3", kGltfUnsignedShort, {}},
+    {"NORMAL", "VEC3", kGltfFloat, {}},
+    {"NORMAL", "VEC3", kGltfByte, true},
+    {"NORMAL", "VEC3", kGltfShort, true},
+    {"COLOR_0", "VEC3", kGltfFloat, {}},
+    {"COLOR_0", "VEC3", kGltfUnsignedByte, true},
+    {"COLOR_0", "VEC3", kGltfUnsignedShort, true},
+    {"COLOR_0", "VEC4", kGltfFloat, {}},
+    {"COLOR_0", "VEC4", kGltfUnsignedByte, true},
+    {"COLOR_0", "VEC4", kGltfUnsignedShort, true},
+    {"indices", "SCALAR", kGltfUnsignedByte, false},
+    {"indices", "SCALAR", kGltfUnsignedShort, false},
+    {"indices", "SCALAR", kGltfUnsignedInt, false},
 };
 
 std::string at(const char* array, size_t index) {
@@ -149,8 +142,8 @@ void check_primitive(const json& primitive, const json& accessors, const std::st
 }  // namespace
 
 uint64_t component_bytes(int component_type) {
-  if (component_type == kByte || component_type == kUnsignedByte) return 1;
-  return component_type == kShort || component_type == kUnsignedShort ? 2 : 4;
+  if (component_type == kGltfByte || component_type == kGltfUnsignedByte) return 1;
+  return component_type == kGltfShort || component_type == kGltfUnsignedShort ? 2 : 4;
 }
 
 uint64_t component_count(const std::string& type) {

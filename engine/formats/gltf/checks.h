@@ -4,12 +4,13 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "formats/load_report.h"
 
 namespace promin {
 
-// What a glTF document must hold beyond its schema (gltf_schema.h), checked before tinygltf or anything else uses it.
+// What a glTF document must hold beyond its schema (schema.h), checked before any reader uses it.
 
 /// Version, required extensions, parts that belong together.
 void check_gltf_asset(const nlohmann::json& document, LoadReport& report);
@@ -22,7 +23,15 @@ void check_gltf_nodes(const nlohmann::json& document, LoadReport& report);
 /// and counts that the specification (section 3.7.2.1) and KHR_mesh_quantization allow.
 void check_gltf_accessors(const nlohmann::json& document, LoadReport& report);
 
-/// Bytes of one component of a type such as 5126 (float); components of a type such as "VEC3".
+/// Types of components, by their numbers in the file.
+inline constexpr int kGltfByte = 5120;
+inline constexpr int kGltfUnsignedByte = 5121;
+inline constexpr int kGltfShort = 5122;
+inline constexpr int kGltfUnsignedShort = 5123;
+inline constexpr int kGltfUnsignedInt = 5125;
+inline constexpr int kGltfFloat = 5126;
+
+/// Bytes of one component of a type such as kGltfFloat; components of a type such as "VEC3".
 uint64_t component_bytes(int component_type);
 uint64_t component_count(const std::string& type);
 

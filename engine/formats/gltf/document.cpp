@@ -6,6 +6,7 @@
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/checks.h"
 #include "formats/gltf/container.h"
+#include "formats/gltf/json_lookup.h"
 #include "formats/gltf/parse_json.h"
 #include "formats/gltf/schema.h"
 
@@ -14,45 +15,63 @@ namespace {
 
 using nlohmann::json;
 
-/// Removes members that the loader reads elsewhere or not at all.
-void erase_members(json& value, std::initializer_list<const char*> names) {
-  if (value.is_object()) {
-    for (const char* name : names) value.erase(name);
-  }
-  if (value.is_structured()) {
-    for (json& element : value) erase_members(element, names);
-  }
+int index_of(const json& object, const char* name) {
+  return object.value(name, -1);
 }
 
-/// tinygltf gets what it is good at, the checked core of the document; never bytes, files, images or extensions,
-/// where its own checks are thin.
-tinygltf::Model make_model(const json& document, LoadReport& report) {
-  json core = json::object();
-  for (const char* part :
-       {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "materials", "cameras"}) {
-    if (document.contains(part)) core[part] = document[part];
-  }
-  core.emplace("cameras", json::array());
-  erase_members(core, {"extensions", "extras", "min", "max", "targets", "weights", "skin"});
-  // tinygltf insists on both; here a camera without znear starts at the eye, and zfar is never used.
-  for (json& camera : core["cameras"]) {
-    json& parameters = camera[camera["type"].get<std::string>()];
-    for (const char* plane : {"znear", "zfar"}) {
-      if (!parameters.contains(plane)) parameters[plane] = 0.0;
-    }
-  }
+GltfBufferView view_of(const json& source) {
+  return {index_of(source, "buffer"), source.value("byteOffset", size_t{0}), source.value("byteStride", size_t{0})};
+}
 
-  const std::string text = core.dump();
-  tinygltf::Model model;
-  tinygltf::TinyGLTF parser;
-  std::string errors;
-  std::string warnings;
-  if (!parser.LoadASCIIFromString(&model, &errors, &warnings, text.c_str(), static_cast<unsigned int>(text.size()),
-                                  "")) {
-    report.refuse("tinygltf cannot read the document: " + errors, "", "export the file again");
-    report.throw_if_refused();
-  }
-  return model;
+GltfSparse sparse_of(const json& source) {
+  const json& indices = source["indices"];
+  const json& values = source["values"];
+  GltfSparse sparse;
+  sparse.count = source["count"];
+  sparse.index_view = index_of(indices, "bufferView");
+  sparse.index_offset = indices.value("byteOffset", size_t{0});
+  sparse.index_type = indices["componentType"];
+  sparse.value_view = index_of(values, "bufferView");
+  sparse.value_offset = values.value("byteOffset", size_t{0});
+  return sparse;
+}
+
+GltfAccessor accessor_of(const json& source) {
+  GltfAccessor accessor;
+  accessor.view = index_of(source, "bufferView");
+  accessor.byte_offset = source.value("byteOffset", size_t{0});
+  accessor.component_type = source["componentType"];
+  accessor.component_count = component_count(source["type"]);
+  accessor.count = source["count"];
+  accessor.is_normalized = source.value("normalized", false);
+  if (source.contains("sparse")) accessor.sparse = sparse_of(source["sparse"]);
+  return accessor;
+}
+
+GltfPrimitive primitive_of(const json& source) {
+  return {source["attributes"], index_of(source, "indices"), index_of(source, "material"),
+          source.value("mode", kGltfTriangles)};
+}
+
+GltfMesh mesh_of(const json& source) {
+  GltfMesh mesh{source.value("name", ""), {}};
+  for (const json& primitive : source["primitives"]) mesh.primitives.push_back(primitive_of(primitive));
+  return mesh;
+}
+
+GltfNode node_of(const json& source) {
+  return {source.value("name", ""), index_of(source, "mesh"), index_of(source, "camera"),
+          elements_of(source, "children")};
+}
+
+/// Fills the typed views from a document that has been checked.
+void fill_views(GltfDocument& document) {
+  const json& source = document.json;
+  for (const json& view : elements_of(source, "bufferViews")) document.views.push_back(view_of(view));
+  for (const json& accessor : elements_of(source, "accessors")) document.accessors.push_back(accessor_of(accessor));
+  for (const json& mesh : elements_of(source, "meshes")) document.meshes.push_back(mesh_of(mesh));
+  for (const json& node : elements_of(source, "nodes")) document.nodes.push_back(node_of(node));
+  document.scene = source.value("scene", size_t{0});
 }
 
 }  // namespace
@@ -72,7 +91,7 @@ GltfDocument read_gltf_document(LoadReport& report) {
   document.buffers = read_gltf_buffers(document.json, container.binary, report);
   report.throw_if_refused();
 
-  document.model = make_model(document.json, report);
+  fill_views(document);
   return document;
 }
 

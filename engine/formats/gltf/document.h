@@ -2,22 +2,82 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tiny_gltf.h>
-
 #include <cstddef>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "formats/load_report.h"
 
 namespace promin {
 
-/// A glTF file, read and checked: every index, type, range and length in it can be relied on. What the core
-/// specification defines lies in `model`; extensions are read from `json`.
+// Typed views of the parts of a document that several readers share, with the specification's defaults. An index that
+// the file leaves out is -1.
+
+/// Modes of a mesh primitive; lower ones are points and lines, 6 is a fan.
+inline constexpr int kGltfTriangles = 4;
+inline constexpr int kGltfTriangleStrip = 5;
+
+struct GltfBufferView {
+  int buffer = -1;
+  size_t byte_offset = 0;
+  /// 0: the elements are tightly packed.
+  size_t byte_stride = 0;
+};
+
+struct GltfSparse {
+  size_t count = 0;
+  int index_view = -1;
+  size_t index_offset = 0;
+  int index_type = 0;
+  int value_view = -1;
+  size_t value_offset = 0;
+};
+
+struct GltfAccessor {
+  int view = -1;
+  size_t byte_offset = 0;
+  int component_type = 0;
+  /// Components of an element.
+  size_t component_count = 0;
+  size_t count = 0;
+  bool is_normalized = false;
+  std::optional<GltfSparse> sparse;
+};
+
+struct GltfPrimitive {
+  /// The accessor of each attribute.
+  std::map<std::string, int> attributes;
+  int indices = -1;
+  int material = -1;
+  int mode = kGltfTriangles;
+};
+
+struct GltfMesh {
+  std::string name;
+  std::vector<GltfPrimitive> primitives;
+};
+
+struct GltfNode {
+  std::string name;
+  int mesh = -1;
+  int camera = -1;
+  std::vector<int> children;
+};
+
+/// A glTF file, read and checked: every index, type, range and length in it can be relied on. What only one reader
+/// needs (materials, cameras, extensions) it takes from `json`.
 struct GltfDocument {
   nlohmann::json json;
-  tinygltf::Model model;
-  /// The bytes of model.bufferViews[].buffer (model.buffers stays empty).
+  std::vector<GltfBufferView> views;
+  std::vector<GltfAccessor> accessors;
+  std::vector<GltfMesh> meshes;
+  std::vector<GltfNode> nodes;
+  /// The scene that is shown, if there are any.
+  size_t scene = 0;
+  /// The bytes of views[].buffer.
   std::vector<std::vector<std::byte>> buffers;
 };
 

@@ -9,7 +9,7 @@
 
 namespace promin {
 
-// Short ways into a glTF document that follows the schema (gltf_schema.h).
+// Short ways into a glTF document that follows the schema (schema.h).
 
 /// The array `name` of an object; an empty one if there is none.
 const nlohmann::json& elements_of(const nlohmann::json& object, const char* name);

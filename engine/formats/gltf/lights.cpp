@@ -89,7 +89,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
   size_t index = 0;
   const json& scenes = elements_of(document.json, "scenes");
   if (!scenes.empty()) {
-    const json& shown = scenes[static_cast<size_t>(std::max(document.model.defaultScene, 0))];
+    const json& shown = scenes[document.scene];
     if (const json* choice = find_extension(shown, "OMI_environment_sky")) index = choice->value("sky", size_t{0});
   }
 

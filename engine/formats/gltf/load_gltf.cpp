@@ -42,10 +42,10 @@ class SceneReader {
     if (placed.is_visible) {
       if (const auto light = read_gltf_light(document_, placed, report_)) scene_.lights.push_back(*light);
     }
-    const tinygltf::Node& node = document_.model.nodes[static_cast<size_t>(placed.node)];
+    const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
     if (node.mesh < 0) return;
     const auto mesh = static_cast<size_t>(node.mesh);
-    const tinygltf::Mesh& source = document_.model.meshes[mesh];
+    const GltfMesh& source = document_.meshes[mesh];
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;

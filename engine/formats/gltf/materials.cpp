@@ -68,12 +68,17 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   }
 }
 
-Material read_material(const tinygltf::Material& core, const json& source) {
-  const std::vector<double>& base = core.pbrMetallicRoughness.baseColorFactor;
-  const MetallicRoughness pbr{dvec3(base[0], base[1], base[2]), core.pbrMetallicRoughness.metallicFactor,
-                              core.pbrMetallicRoughness.roughnessFactor};
+MetallicRoughness metallic_roughness_of(const json& source) {
+  const auto pbr = source.find("pbrMetallicRoughness");
+  if (pbr == source.end()) return {};
+  return {dvec3(vec4_of(*pbr, "baseColorFactor", dvec4(1.0))), pbr->value("metallicFactor", 1.0),
+          pbr->value("roughnessFactor", 1.0)};
+}
+
+Material read_material(const json& source) {
+  const MetallicRoughness pbr = metallic_roughness_of(source);
   Material material;
-  material.name = core.name;
+  material.name = source.value("name", "");
   if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
     shade_as_written(*phong, pbr.base, material);
   } else if (find_extension(source, "KHR_materials_unlit") != nullptr) {
@@ -95,10 +100,10 @@ Material read_material(const tinygltf::Material& core, const json& source) {
 
 std::vector<Material> read_gltf_materials(const GltfDocument& document, LoadReport& report) {
   std::vector<Material> materials;
-  for (size_t i = 0; i < document.model.materials.size(); ++i) {
-    const auto& source = document.json["materials"][i];
-    materials.push_back(read_material(document.model.materials[i], source));
-    warn_about_what_is_ignored(source, title_of(document.json, "materials", i), report);
+  for (const json& source : elements_of(document.json, "materials")) {
+    const size_t index = materials.size();
+    materials.push_back(read_material(source));
+    warn_about_what_is_ignored(source, title_of(document.json, "materials", index), report);
   }
   return materials;
 }

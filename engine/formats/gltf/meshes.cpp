@@ -21,14 +21,14 @@ class PrimitiveReader {
   PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const PlacedNode& placed,
                   LoadReport& report)
       : document_(document),
-        primitive_(document.model.meshes[mesh].primitives[primitive]),
+        primitive_(document.meshes[mesh].primitives[primitive]),
         place_("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]"),
         placed_(placed),
         report_(report) {}
 
   Mesh read() {
     const int positions = accessor_of("POSITION");
-    if (primitive_.mode < TINYGLTF_MODE_TRIANGLES) {
+    if (primitive_.mode < kGltfTriangles) {
       report_.warn(place_ + " holds points or lines, which are not drawn");
       return {};
     }
@@ -36,7 +36,7 @@ class PrimitiveReader {
       report_.warn(place_ + " has no POSITION and is not drawn");
       return {};
     }
-    vertex_count_ = document_.model.accessors[static_cast<size_t>(positions)].count;
+    vertex_count_ = document_.accessors[static_cast<size_t>(positions)].count;
 
     Mesh mesh;
     mesh.triangles = assemble(read_corners());
@@ -79,11 +79,11 @@ class PrimitiveReader {
   std::vector<uvec3> assemble(const std::vector<uint32_t>& corners) {
     std::vector<uvec3> triangles;
     const size_t count = corners.size();
-    if (primitive_.mode == TINYGLTF_MODE_TRIANGLES) {
+    if (primitive_.mode == kGltfTriangles) {
       triangles.reserve(count / 3);
       for (size_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
       if (count % 3 != 0) report_.warn(place_ + " ends in an incomplete triangle, which is ignored");
-    } else if (primitive_.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+    } else if (primitive_.mode == kGltfTriangleStrip) {
       for (size_t i = 0; i + 2 < count; ++i) {
         triangles.emplace_back(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
       }
@@ -179,7 +179,7 @@ class PrimitiveReader {
   }
 
   const GltfDocument& document_;
-  const tinygltf::Primitive& primitive_;
+  const GltfPrimitive& primitive_;
   std::string place_;
   const PlacedNode& placed_;
   LoadReport& report_;

@@ -11,21 +11,19 @@
 namespace promin {
 namespace {
 
-dmat4 local_transform(const tinygltf::Node& node) {
+dmat4 local_transform(const nlohmann::json& node) {
   dmat4 matrix(1.0);
-  if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
+  if (const auto given = node.find("matrix"); given != node.end()) {
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = (*given)[static_cast<size_t>(i)].get<double>();
     return matrix;
   }
-  if (!node.rotation.empty()) {
-    const std::vector<double>& q = node.rotation;
-    matrix = glm::mat4_cast(glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])));
+  if (node.contains("rotation")) {
+    const dvec4 q = vec4_of(node, "rotation", {});
+    matrix = glm::mat4_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
   }
-  for (int i = 0; i < 3; ++i) {
-    const auto axis = static_cast<size_t>(i);
-    if (!node.scale.empty()) matrix[i] *= node.scale[axis];
-    if (!node.translation.empty()) matrix[3][i] = node.translation[axis];
-  }
+  const dvec3 scale = vec3_of(node, "scale", dvec3(1.0));
+  for (int i = 0; i < 3; ++i) matrix[i] *= scale[i];
+  matrix[3] = dvec4(vec3_of(node, "translation", dvec3(0.0)), 1.0);
   return matrix;
 }
 
@@ -38,11 +36,12 @@ bool is_finite(const dmat4& matrix) {
   return true;
 }
 
-/// The default scene's roots, or every root in a file without scenes (a library of parts).
-std::vector<int> root_nodes(const tinygltf::Model& model) {
-  if (!model.scenes.empty()) return model.scenes[static_cast<size_t>(std::max(model.defaultScene, 0))].nodes;
-  std::vector<bool> is_child(model.nodes.size(), false);
-  for (const tinygltf::Node& node : model.nodes) {
+/// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
+std::vector<int> root_nodes(const GltfDocument& document) {
+  const nlohmann::json& scenes = elements_of(document.json, "scenes");
+  if (!scenes.empty()) return elements_of(scenes[document.scene], "nodes");
+  std::vector<bool> is_child(document.nodes.size(), false);
+  for (const GltfNode& node : document.nodes) {
     for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
   }
   std::vector<int> roots;
@@ -58,15 +57,15 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
   std::vector<PlacedNode> placed;
   // An own stack, last node first: files may nest deeper than the machine's stack.
   std::vector<PlacedNode> pending;
-  const std::vector<int> roots = root_nodes(document.model);
+  const std::vector<int> roots = root_nodes(document);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), true});
   while (!pending.empty()) {
     PlacedNode next = pending.back();
     pending.pop_back();
-    const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(next.node)];
-    next.world_from_object = next.world_from_object * local_transform(node);
-    const nlohmann::json* visibility =
-        find_extension(document.json["nodes"][static_cast<size_t>(next.node)], "KHR_node_visibility");
+    const GltfNode& node = document.nodes[static_cast<size_t>(next.node)];
+    const nlohmann::json& source = document.json["nodes"][static_cast<size_t>(next.node)];
+    next.world_from_object = next.world_from_object * local_transform(source);
+    const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
     if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
     if (!is_finite(next.world_from_object)) {
       report.refuse("the node's place in the world overflows", "nodes[" + std::to_string(next.node) + "]",
