@@ -78,8 +78,7 @@ void build(const BvhOptions& options) {
   PackedScene packed;
   {
     Progress progress(console.is_quiet(), kProgram);
-    packed =
-        pack_scene(scene, options.builder, {options.thread_count, [&](double fraction) { progress.update(fraction); }});
+    packed = pack_scene(world::flatten(scene), options.builder, {options.thread_count, progress.callback()});
   }
   const TreeView tree = packed.tree();
   console.detail(fmt::format("built {} nodes, depth {}: {:.1f} ms", tree.stats.nodes, tree.stats.depth, packed.bvh_ms));
@@ -138,12 +137,12 @@ void print_info(const std::filesystem::path& path) {
 void verify(const BvhOptions& options) {
   const Console console(options.verbosity(), kProgram);
   const Scene scene = load(options, console);
-  const PackedScene packed = pack_scene_with(options.file, scene);
+  const PackedScene packed = pack_scene_with(options.file, world::flatten(scene));
   console.detail(fmt::format("read {}: {:.1f} ms", options.file.string(), packed.bvh_ms));
   TreeFaults faults;
   {
     Progress progress(console.is_quiet(), kProgram);
-    faults = find_tree_faults(packed, {options.thread_count, [&](double fraction) { progress.update(fraction); }});
+    faults = find_tree_faults(packed, {options.thread_count, progress.callback()});
   }
   if (faults.count > 0) {
     throw InputError({fmt::format("the tree is wrong in {} places, first: {}", faults.count, faults.first),

@@ -59,11 +59,6 @@ dmat3 make_rotation_z(double alpha) {
 }
 
 // Q's columns are the images of X, Y and Z, which start as right, up and -look.
-bool shows_same(const Camera& a, const Camera& b) {
-  return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
-         a.ymag == b.ymag && a.near == b.near;
-}
-
 FreeCamera::FreeCamera(const Camera& camera)
     : position_(camera.eye),
       rotation_(glm::cross(dvec3(camera.look), dvec3(camera.up)), dvec3(camera.up), -dvec3(camera.look)),

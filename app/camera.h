@@ -4,6 +4,7 @@
 
 #include "promin/math.h"
 #include "promin/scene.h"
+#include "promin/view.h"
 
 namespace promin {
 
@@ -16,9 +17,6 @@ dmat3 make_rotation_y(double beta);
 /// Mz(alpha): X towards Y. A camera at the start pose rolls anticlockwise for alpha > 0, seen from behind it: its up
 /// tips to the left, and the picture turns clockwise.
 dmat3 make_rotation_z(double alpha);
-
-/// Whether the two show the same: all but their names and aspect ratios.
-bool shows_same(const Camera& a, const Camera& b);
 
 /// The thesis' free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
 ///   M(alpha, beta, gamma) = Mz(alpha) My(beta) Mx(gamma),  Q <- Q M

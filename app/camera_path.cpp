@@ -16,7 +16,7 @@
 #include "formats/gltf/json_rule.h"
 #include "formats/gltf/parse_json.h"
 #include "promin/error.h"
-#include "promin/load_scene.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {

@@ -141,16 +141,4 @@ std::string explain_text(const Explanation& explanation, const Scene& scene) {
   return text;
 }
 
-void number_lights_of_whole(Explanation& explanation, const std::vector<uint32_t>& lights_off) {
-  const std::set<uint32_t> off(lights_off.begin(), lights_off.end());
-  for (ExplainedSample& sample : explanation.samples) {
-    for (ExplainedRay& ray : sample.rays) {
-      for (ExplainedSource& source : ray.sources) {
-        // In rising order: each that is left out up to here moves the index on by one.
-        for (const uint32_t light : off) source.light += light <= source.light ? 1 : 0;
-      }
-    }
-  }
-}
-
 }  // namespace promin::app

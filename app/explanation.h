@@ -18,7 +18,4 @@ std::string explain_json(const Explanation& explanation, const Scene& scene);
 /// A line for each ray and source, indented under what sends it.
 std::string explain_text(const Explanation& explanation, const Scene& scene);
 
-/// Makes the light indices of what leave_out_lights left of a scene those of the whole scene.
-void number_lights_of_whole(Explanation& explanation, const std::vector<uint32_t>& lights_off);
-
 }  // namespace promin::app

@@ -23,7 +23,7 @@ namespace {
 std::string describe_objects(const SceneCounts& counts, size_t object_count) {
   std::vector<std::string> kinds;
   for (size_t i = 0; i < counts.objects.size(); ++i) {
-    std::string name(kShapeNames[i]);
+    std::string name(kObjectNames[i]);
     std::replace(name.begin(), name.end(), '_', ' ');
     if (counts.objects[i] > 0) kinds.push_back(fmt::format("{}: {}", name, counts.objects[i]));
   }
@@ -33,9 +33,14 @@ std::string describe_objects(const SceneCounts& counts, size_t object_count) {
 std::string describe_lights(const std::vector<Light>& lights, const vec3& ambient) {
   if (lights.empty() && ambient == vec3(0.0F)) return "0; a headlight along the view and ambient light stand in";
   if (lights.empty()) return "0; a headlight along the view stands in";
-  size_t counts[3] = {};
-  for (const Light& light : lights) ++counts[static_cast<size_t>(light.kind)];
-  return fmt::format("{} (point: {}, directional: {}, spot: {})", lights.size(), counts[0], counts[1], counts[2]);
+  std::vector<std::string> kinds;
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)                     \
+  if (LightKind::ENUMERATOR != LightKind::kHeadlight) {                                        \
+    const auto is_it = [](const Light& light) { return light.kind == LightKind::ENUMERATOR; }; \
+    kinds.push_back(fmt::format("{}: {}", #PREFIX, std::ranges::count_if(lights, is_it)));     \
+  }
+#include "promin/kinds/lights.def"
+  return fmt::format("{} ({})", lights.size(), fmt::join(kinds, ", "));
 }
 
 std::string describe_camera(size_t index, const Camera& camera) {
@@ -69,20 +74,24 @@ void print_info(const std::filesystem::path& file) {
   print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene.objects.size()));
   print_row("primitives", std::to_string(counts.primitives));
-  print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, counts.degenerate_triangles));
+  const std::string lights = describe_lights(scene.lights, scene.environment.ambient);
+  // The features and the tree are of the scene as it would be rendered, with the lights that stand in.
+  light_up(scene, Console(Verbosity::kQuiet));
+  const world::Scene flat = world::flatten(scene);
+  const PackedScene packed = pack_scene(flat, builder_names().front());
+  print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
   print_row("materials", std::to_string(scene.materials.size()));
-  print_row("lights", describe_lights(scene.lights, scene.ambient));
+  print_row("lights", lights);
   print_rows("cameras", describe_cameras(scene.cameras));
   print_row("bounds", describe_bounds(bounds_of(scene)));
-  // What follows is of the scene as it would be rendered, with the lights that stand in.
-  light_up(scene, Console(Verbosity::kQuiet));
-  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(scene)), ", ")));
-  const PackedScene packed = pack_scene(scene, builder_names().front());
+  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(flat)), ", ")));
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
                                packed.bvh.depth, packed.bvh.sah_cost));
+  const uint64_t shading_bytes = pack_materials(scene.materials).size() * sizeof(layout::MaterialRecord) +
+                                 pack_lights(scene.lights).records.size() * sizeof(layout::LightRecord);
   print_row("memory", fmt::format("{:.3f} MB of geometry on the host, {:.3f} MB on the device",
                                   1e-6 * static_cast<double>(counts.geometry_bytes),
-                                  1e-6 * static_cast<double>(packed.size_bytes())));
+                                  1e-6 * static_cast<double>(packed.size_bytes() + shading_bytes)));
   print_rows("warnings", scene.warnings.empty() ? std::vector<std::string>{"none"} : scene.warnings);
 }
 

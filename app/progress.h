@@ -5,6 +5,8 @@
 #include <chrono>
 #include <string>
 
+#include "promin/progress.h"
+
 namespace promin::app {
 
 /// Shows how far long work is, on the standard error stream: a bar with the time left on a terminal, a plain line
@@ -20,6 +22,13 @@ class Progress {
 
   /// The fraction of the whole work that is done, 0...1, and what it is at, which may be empty.
   void update(double fraction, const std::string& at = {});
+  /// For work that tells only how far it is.
+  ProgressCallback callback() {
+    return [this](double fraction) {
+      update(fraction);
+      return true;
+    };
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

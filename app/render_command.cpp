@@ -16,11 +16,11 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "frame_plan.h"
-#include "layout.h"
 #include "outputs.h"
 #include "progress.h"
 #include "promin/error.h"
 #include "promin/image.h"
+#include "render/renderer_impl.h"
 #include "render_options.h"
 #include "tracing_run.h"
 #include "view_setup.h"
@@ -28,13 +28,12 @@
 namespace promin::app {
 namespace {
 
-RendererOptions make_renderer_options(const RenderOptions& options) {
-  RendererOptions result;
+TunedRendererOptions make_renderer_options(const RenderOptions& options) {
+  TunedRendererOptions result;
   choose_tree(options.tracing, result);
   result.force_all_features = options.has_all_features;
-  result.shading = options.view.shading;
+  result.mode = {options.view.debug_view, !options.view.has_no_shadows};
   result.with_aovs = options.aovs.any();
-  if (options.view.has_no_shadows) result.left_out_features = layout::FEATURE_SHADOWS;
   return result;
 }
 
@@ -48,29 +47,41 @@ TracedFrame trace(Renderer& renderer, const View& view, uint32_t repeats,
                   const std::function<void(double)>& on_progress) {
   TracedFrame frame;
   for (uint32_t i = 0; i < repeats; ++i) {
-    frame.result = renderer.render(view, [&](double fraction) { on_progress((i + fraction) / repeats); });
+    frame.result = renderer.render(view, [&](double fraction) {
+      on_progress((i + fraction) / repeats);
+      return true;
+    });
     frame.trace_ms.push_back(frame.result.trace_ms);
   }
   return frame;
 }
 
-Channel channel_of(const std::string& name, std::span<const float> values) {
+// An AOV's channels, by the type of its values.
+
+void add_channels(const std::string& name, const std::vector<uint32_t>& values, std::vector<Channel>& channels) {
+  channels.push_back({name, true, values});
+}
+
+void add_channels(const std::string& name, const std::vector<float>& values, std::vector<Channel>& channels) {
   Channel channel{name, false, std::vector<uint32_t>(values.size())};
   std::transform(values.begin(), values.end(), channel.values.begin(),
                  [](float value) { return std::bit_cast<uint32_t>(value); });
-  return channel;
+  channels.push_back(std::move(channel));
+}
+
+void add_channels(const std::string& name, const std::vector<vec3>& values, std::vector<Channel>& channels) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> component;
+    for (const vec3& value : values) component.push_back(value[axis]);
+    add_channels(name + "." + "XYZ"[axis], component, channels);
+  }
 }
 
 std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
   std::vector<Channel> channels;
-  if (choice.depth) channels.push_back(channel_of("Z", aovs.depth));
-  for (int axis = 0; choice.normal && axis < 3; ++axis) {
-    std::vector<float> component;
-    for (const vec3& normal : aovs.normal) component.push_back(normal[axis]);
-    channels.push_back(channel_of(std::array{"N.X", "N.Y", "N.Z"}[static_cast<size_t>(axis)], component));
-  }
-  if (choice.object) channels.push_back({"object", true, aovs.object});
-  if (choice.primitive) channels.push_back({"primitive", true, aovs.primitive});
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) \
+  if (choice.FIELD) add_channels(CHANNEL, aovs.FIELD, channels);
+#include "promin/kinds/aovs.def"
   return channels;
 }
 
@@ -175,18 +186,15 @@ void render(const RenderOptions& options) {
   check_explained_pixel(options, stats.view->size);
   light_up(scene, console);
   check_lights(scene, options.view.lights_off);
-  std::vector<Light> all_lights = scene.lights;
-  leave_out_lights(scene, options.view.lights_off);
-  stats.light_count = scene.lights.size();
+  switch_lights(scene.lights, options.view.lights_off);
+  stats.light_count = scene.lights.size() - options.view.lights_off.size();
 
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
-  Renderer renderer(*device, scene, make_renderer_options(options));
+  Renderer renderer = make_renderer(*device, scene, make_renderer_options(options));
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {
-    Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
+    const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
     check_validation(*device, stats);
-    number_lights_of_whole(explanation, options.view.lights_off);
-    scene.lights = std::move(all_lights);
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }

@@ -11,35 +11,33 @@
 
 #include "arguments.h"
 #include "camera_path.h"
+#include "promin/aovs.h"
 #include "promin/error.h"
 #include "promin/image.h"
-#include "promin/load_scene.h"
-#include "trace/sampling.h"
+#include "promin/validate.h"
+#include "promin/view.h"
 
 namespace promin::app {
 namespace {
 
-constexpr uint32_t kMaxDepth = 1000;
 /// The limits 0 and 180 themselves show nothing.
 constexpr double kMinFovDeg = 1e-3;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 constexpr uint32_t kMaxFrame = 9999999;
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
-constexpr std::array<std::string_view, 4> kAovNames = {"depth", "normal", "object", "primitive"};
 
 /// From names between commas.
 AovChoice read_aovs(const OptionValues& words) {
   AovChoice choice;
-  const std::array<bool*, kAovNames.size()> switches = {&choice.depth, &choice.normal, &choice.object,
-                                                        &choice.primitive};
   std::istringstream list(words.text() + ",");
   for (std::string name; std::getline(list, name, ',');) {
-    const auto known = std::find(kAovNames.begin(), kAovNames.end(), name);
-    if (known == kAovNames.end()) {
-      words.refuse(
-          fmt::format("--aov takes names of {} with commas between, not \"{}\"", fmt::join(kAovNames, ", "), name));
-    }
-    *switches[static_cast<size_t>(known - kAovNames.begin())] = true;
+    bool is_known = false;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) \
+  if (name == #FIELD) is_known = choice.FIELD = true;
+#include "promin/kinds/aovs.def"
+    if (is_known) continue;
+    words.refuse(
+        fmt::format("--aov takes names of {} with commas between, not \"{}\"", fmt::join(aov_names(), ", "), name));
   }
   return choice;
 }
@@ -53,10 +51,10 @@ PixelWindow read_window(const OptionValues& words) {
   return window;
 }
 
-Shading read_shading(const OptionValues& words) {
-  const std::span<const std::string_view> names = shading_names();
+DebugView read_debug_view(const OptionValues& words) {
+  const std::span<const std::string_view> names = debug_view_names();
   const auto place = std::find(names.begin(), names.end(), words.choice(names));
-  return static_cast<Shading>(place - names.begin());
+  return static_cast<DebugView>(place - names.begin());
 }
 
 /// "3-7", or "3" alone.
@@ -90,7 +88,7 @@ void check_explain_options(const RenderOptions& options) {
                                                       {options.path.has_value(), "--path"},
                                                       {options.aovs.any(), "--aov"},
                                                       {options.view.crop.has_value(), "--crop"},
-                                                      {options.view.shading != Shading::kFull, "--shading"},
+                                                      {options.view.debug_view != DebugView::kNone, "--shading"},
                                                       {options.tracing.stats.has_value(), "--stats"},
                                                       {options.tracing.repeat_count > 1, "--repeat"}};
   for (const auto& [is_given, name] : others) {
@@ -109,8 +107,8 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--max-depth", "N",
             fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
             [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
-  table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(shading_names(), ", ")),
-            [&](const OptionValues& w) { view.shading = read_shading(w); });
+  table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(debug_view_names(), ", ")),
+            [&](const OptionValues& w) { view.debug_view = read_debug_view(w); });
   table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
   table.add("--lights-off", "INDICES", "Sources to leave out, by their numbers from 0 with commas between",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
@@ -162,7 +160,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
 
-  table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(kAovNames, ",")),
+  table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(aov_names(), ",")),
             [&](const OptionValues& w) { options.aovs = read_aovs(w); });
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });

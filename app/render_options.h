@@ -40,7 +40,7 @@ struct ViewOptions {
   std::optional<PixelWindow> crop;
   uint32_t samples_per_pixel = View{}.samples_per_pixel;
   uint32_t max_depth = View{}.max_depth;
-  Shading shading = Shading::kFull;
+  DebugView debug_view = DebugView::kNone;
   bool has_no_shadows = false;
   /// Indices of the scene's lights.
   std::vector<uint32_t> lights_off;
@@ -53,12 +53,15 @@ struct ViewOptions {
 
 /// What --aov asks for.
 struct AovChoice {
-  bool depth = false;
-  bool normal = false;
-  bool object = false;
-  bool primitive = false;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) bool FIELD = false;
+#include "promin/kinds/aovs.def"
 
-  bool any() const { return depth || normal || object || primitive; }
+  bool any() const {
+    return false
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) || FIELD
+#include "promin/kinds/aovs.def"
+        ;
+  }
 };
 
 /// Numbers of frames from 0, both included.

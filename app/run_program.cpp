@@ -17,6 +17,26 @@ namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4 };
 
+/// What the library says without words of a command line, with the options that it comes down to here.
+std::string name_options(std::string message) {
+  constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
+      {"asked for as the device", "asked for by --device"},
+      {"take a smaller depth or another device", "lower --max-depth or take another device"},
+      {"take a smaller depth", "lower --max-depth"},
+      {"with so many bounces", "with its --max-depth"},
+      {"or another device", "or another --device"},
+      {"try another device", "try another --device"},
+      {"take the builder sah", "take --builder sah"},
+  };
+  for (const auto& [words, with_option] : kOptions) {
+    const size_t at = message.find(words);
+    if (at == std::string::npos || message.find(with_option) != std::string::npos) continue;
+    message.replace(at, words.size(), with_option);
+    break;
+  }
+  return message;
+}
+
 void run_command(const std::string& name, const std::string& help,
                  std::initializer_list<Command (*)(CLI::App& program)> add_commands, int argc,
                  const char* const* argv) {
@@ -38,7 +58,7 @@ int run_program(const std::string& name, const std::string& help,
                 std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv) {
   const auto report = [&](ExitCode code, const std::string& message) {
     std::fflush(stdout);
-    std::fputs(fmt::format("{}: error: {}\n", name, message).c_str(), stderr);
+    std::fputs(fmt::format("{}: error: {}\n", name, name_options(message)).c_str(), stderr);
     return code;
   };
   try {
@@ -53,7 +73,7 @@ int run_program(const std::string& name, const std::string& help,
     return report(kBadInput, error.what());
   } catch (const DeviceError& error) {
     return report(kNoDevice, error.what());
-  } catch (const RunError& error) {
+  } catch (const Error& error) {
     return report(kRunFailed, error.what());
   } catch (const std::bad_alloc&) {
     return report(kRunFailed, fmt::format("out of memory, in {}; use a smaller picture or scene", name));

@@ -15,10 +15,10 @@ using Json = nlohmann::ordered_json;
 
 Json json_of_scene(const RunStats& stats) {
   Json json = {{"file", stats.scene_file}, {"objects", stats.object_count}};
-  for (size_t i = 0; i < kShapeNames.size(); ++i) json[std::string(kShapeNames[i])] = stats.scene.objects[i];
+  for (size_t i = 0; i < kObjectNames.size(); ++i) json[std::string(kObjectNames[i])] = stats.scene.objects[i];
   json["primitives"] = stats.scene.primitives;
   json["triangles"] = stats.scene.triangles;
-  json["degenerate_triangles"] = stats.scene.degenerate_triangles;
+  json["degenerate_triangles"] = stats.setup.degenerate_triangles;
   json["materials"] = stats.material_count;
   json["lights"] = stats.light_count;
   return json;
@@ -74,7 +74,7 @@ std::string to_json(const RunStats& stats) {
       {"device_type", stats.device.type},
       {"driver", stats.device.driver},
       {"scene", json_of_scene(stats)},
-      {"features", feature_names(stats.setup.features)},
+      {"features", stats.setup.features},
       {"bvh", json_of_bvh(stats.setup.bvh)},
       {"device_bytes", stats.setup.device_bytes},
       {"times_ms",

@@ -11,18 +11,19 @@
 
 namespace promin::app {
 
-/// Names of the alternatives of Shape, in its order, in the plural.
-inline constexpr std::array<std::string_view, 6> kShapeNames = {"not_drawn", "meshes",    "spheres",
-                                                                "planes",    "cylinders", "cones"};
-static_assert(kShapeNames.size() == std::variant_size_v<Shape>);
+/// What an object may be: not drawn, or of the alternatives of Geometry, in its order; in the plural.
+inline constexpr auto kObjectNames = [] {
+  std::array<std::string_view, 1 + std::variant_size_v<Geometry>> names{"not_drawn"};
+  for (size_t i = 1; i < names.size(); ++i) names[i] = kGeometryNames[i - 1];
+  return names;
+}();
 
 /// What a scene holds, for `promin info` and `--stats`.
 struct SceneCounts {
-  /// Objects of each kind, as kShapeNames.
-  std::array<uint64_t, kShapeNames.size()> objects{};
+  /// Objects of each kind, as kObjectNames.
+  std::array<uint64_t, kObjectNames.size()> objects{};
   uint64_t primitives = 0;
   uint64_t triangles = 0;
-  uint64_t degenerate_triangles = 0;
   /// Of the vertices, triangles and shapes in the host's memory.
   uint64_t geometry_bytes = 0;
 };

@@ -42,7 +42,7 @@ void take_setup(const SetupStats& setup, RunStats& stats, const Console& console
   stats.setup = setup;
   console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,
                              setup.bvh.nodes, setup.bvh.depth, setup.bvh.sah_cost, setup.bvh_ms));
-  console.detail(fmt::format("features: {}", fmt::join(feature_names(setup.features), ", ")));
+  console.detail(fmt::format("features: {}", fmt::join(setup.features, ", ")));
   console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms", setup.upload_ms,
                              1e-6 * static_cast<double>(setup.device_bytes), setup.pipeline_ms));
 }

@@ -16,7 +16,6 @@ namespace {
 
 constexpr uint32_t kDefaultHeight = 720;
 constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
-constexpr float kDefaultAmbient = 0.1F;
 
 std::string list_cameras(const Scene& scene) {
   std::string text;
@@ -97,18 +96,17 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   }
   view.samples_per_pixel = options.samples_per_pixel;
   view.max_depth = options.max_depth;
-  view.shading = options.shading;
+  view.mode = {options.debug_view, !options.has_no_shadows};
   return view;
 }
 
 void light_up(Scene& scene, const Console& console) {
-  if (!scene.lights.empty()) return;
-  scene.lights.push_back(make_headlight());
-  if (scene.ambient != vec3(0.0F)) {
+  const AddedLights added = add_default_lights(scene);
+  if (!added.has_headlight) return;
+  if (!added.has_ambient) {
     console.note("the scene has no lights; a headlight along the view is used");
     return;
   }
-  scene.ambient = vec3(kDefaultAmbient);
   console.note(fmt::format("the scene has no lights; a headlight along the view and ambient light of {} are used",
                            kDefaultAmbient));
 }
@@ -121,12 +119,10 @@ void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
   }
 }
 
-void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices) {
-  std::vector<Light> kept;
-  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
-    if (std::find(indices.begin(), indices.end(), i) == indices.end()) kept.push_back(scene.lights[i]);
+void switch_lights(std::vector<Light>& lights, const std::vector<uint32_t>& off) {
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    lights[i].is_on = std::find(off.begin(), off.end(), i) == off.end();
   }
-  scene.lights = std::move(kept);
 }
 
 }  // namespace promin::app

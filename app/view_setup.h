@@ -20,7 +20,7 @@ void light_up(Scene& scene, const Console& console);
 /// Throws UsageError where the scene, lit up, has no light of such an index.
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices);
 
-/// Removes lights by their indices, which are checked.
-void leave_out_lights(Scene& scene, const std::vector<uint32_t>& indices);
+/// Switches lights off by their indices, and all others on.
+void switch_lights(std::vector<Light>& lights, const std::vector<uint32_t>& off);
 
 }  // namespace promin::app

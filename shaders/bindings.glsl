@@ -4,6 +4,7 @@
 // head, before it includes the rest.
 
 layout(constant_id = CONSTANT_FEATURES) const uint FEATURES = 0xFFFFFFFFu;
+layout(constant_id = CONSTANT_MORE_FEATURES) const uint MORE_FEATURES = 0xFFFFFFFFu;
 // Entries that the traversal stack needs: one for each node above the deepest, known when the tree is built.
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
 // Rays that an invocation traces together (traversal.glsl).
@@ -11,17 +12,28 @@ layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
 // All of the kernel's rays ask for any hit.
 layout(constant_id = CONSTANT_ANY_HIT) const uint ANY_HIT = 0u;
 
-bool has(uint feature) { return (FEATURES & feature) != 0u; }
+// 1 where the pipeline has the feature FEATURE_*, else 0; a constant.
+#define FEATURE_BIT(FEATURE) ((((FEATURE) < 32u ? FEATURES : MORE_FEATURES) >> ((FEATURE) & 31u)) & 1u)
 
-const uint SOLID_FEATURES = FEATURE_TRIANGLES | FEATURE_SPHERES | FEATURE_CYLINDERS | FEATURE_CONES;
+bool has(uint feature) { return FEATURE_BIT(feature) != 0u; }
+
+// How many kinds of primitive the tree holds, and how many of lights there are.
+const uint TREE_KIND_COUNT = 0u
+#define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
+#include "promin/kinds/primitives.def"
+    ;
+const uint LIGHT_KIND_COUNT = 0u
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
+#include "promin/kinds/lights.def"
+    ;
 
 // Whether a primitive of the tree is of this kind; without a test where the scene has no other.
 bool is_kind(uint kind, uint wanted, uint feature) {
-  if ((FEATURES & SOLID_FEATURES) == feature) return true;
-  return has(feature) && kind == wanted;
+  if (!has(feature)) return false;
+  return TREE_KIND_COUNT == 1u || kind == wanted;
 }
 
-layout(std140, set = 0, binding = BINDING_FRAME) uniform FrameBlock { Frame frame; };
+layout(std140, set = 0, binding = BINDING_VIEW) uniform ViewBlock { ViewConstants view; };
 
 // Nodes and primitives come as storage buffers, which every device has for any scene, and as texel buffers of the same
 // memory: lavapipe gathers a load from a storage buffer word by word, a texel at once.
@@ -40,24 +52,44 @@ struct NodeBoxes {
 
 NodeBoxes load_boxes(uint index) {
   if (FETCHES_TEXELS == 0u) return NodeBoxes(nodes[index].frame, nodes[index].lo, nodes[index].hi);
-  int first = int(4u * index);
+  int first = int(NODE_TEXELS * index);
   return NodeBoxes(texelFetch(node_texels, first), texelFetch(node_texels, first + 1),
                    texelFetch(node_texels, first + 2));
 }
 
 uvec4 load_children(uint index) {
   if (FETCHES_TEXELS == 0u) return nodes[index].children;
-  return texelFetch(node_texels, int(4u * index + 3u));
+  return texelFetch(node_texels, int(NODE_TEXELS * index + 3u));
 }
 
 Primitive load_primitive(uint index) {
   if (FETCHES_TEXELS == 0u) return primitives[index];
-  int first = int(3u * index);
+  int first = int(PRIMITIVE_TEXELS * index);
   return Primitive(uintBitsToFloat(texelFetch(primitive_texels, first)),
                    uintBitsToFloat(texelFetch(primitive_texels, first + 1)), texelFetch(primitive_texels, first + 2));
 }
 
 uint load_primitive_kind(uint index) {
   if (FETCHES_TEXELS == 0u) return primitives[index].c.z;
-  return texelFetch(primitive_texels, int(3u * index + 2u)).z;
+  return texelFetch(primitive_texels, int(PRIMITIVE_TEXELS * index + 2u)).z;
 }
+
+// What the last four words of a Primitive are (layout.h).
+uint kind_of(Primitive p) { return p.c.z; }
+uint order_of(Primitive p) { return p.c.y; }
+uint object_hash_of(Primitive p) { return p.c.w & 0xFFFFu; }
+uint primitive_hash_of(Primitive p) { return p.c.w >> 16; }
+
+// What the words of a node are.
+vec3 origin_of(NodeBoxes node) { return uintBitsToFloat(node.frame.xyz); }
+vec3 steps_of(NodeBoxes node) {
+  return uintBitsToFloat(((uvec3(node.frame.w) >> uvec3(0u, 8u, 16u)) & 0xFFu) << 23);
+}
+uint child_count_of(NodeBoxes node) { return node.frame.w >> 24; }
+uvec3 low_planes_of(NodeBoxes node) { return node.lo.xyz; }
+uvec3 high_planes_of(NodeBoxes node) { return uvec3(node.lo.w, node.hi.xy); }
+
+// What the words of a child are.
+bool is_inner(uint child) { return (child & CHILD_IS_LEAF) == 0u; }
+uint first_of_leaf(uint child) { return child & CHILD_FIRST_MASK; }
+uint count_of_leaf(uint child) { return ((child >> CHILD_COUNT_SHIFT) & CHILD_COUNT_MASK) + 1u; }

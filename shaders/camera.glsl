@@ -12,23 +12,23 @@ uvec2 pixel_in_block(uint lane) {
 // The i-th of n sample points in the unit square: a lattice with one point in each of n columns and rows, symmetric
 // about the centre, (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n; n = 1 is the centre, n = 4 the rotated grid. The host
 // chooses g (trace/sampling.h).
-vec2 sample_point(uint index) {
-  uint count = dispatch.sampling.x;
-  uint row = (dispatch.sampling.y * (index + 1u)) % (count + 1u) - 1u;
-  precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * frame.film_center.z;
+vec2 lattice_point(uint index) {
+  uint count = samples_per_pixel();
+  uint row = (lattice_generator() * (index + 1u)) % (count + 1u) - 1u;
+  precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * view.film_center.z;
   return point;
 }
 
 // D = V - O with V on the viewport at distance 1 along `look`, so that t counts in viewport distances and t > near is
 // what lies beyond the near plane. It is not normalised.
 Ray camera_ray(uvec2 window_pixel, uint sample_index) {
-  vec2 corner = vec2(dispatch.window.xy + window_pixel);
-  precise vec2 from_center = (corner - frame.film_center.xy) + sample_point(sample_index);
-  precise vec3 on_film = from_center.x * frame.right.xyz - from_center.y * frame.up.xyz;
-  if (dispatch.sampling.w == 0u) {
-    precise vec3 direction = frame.look.xyz + on_film;
-    return make_ray(frame.eye.xyz, direction, frame.eye.w, INFINITY);
+  vec2 corner = vec2(window_corner() + window_pixel);
+  precise vec2 from_center = (corner - view.film_center.xy) + lattice_point(sample_index);
+  precise vec3 on_film = from_center.x * view.right.xyz - from_center.y * view.up.xyz;
+  if (!is_orthographic()) {
+    precise vec3 direction = view.look.xyz + on_film;
+    return make_ray(view.eye.xyz, direction, view.eye.w, INFINITY);
   }
-  precise vec3 origin = frame.eye.xyz + on_film;
-  return make_ray(origin, frame.look.xyz, frame.eye.w, INFINITY);
+  precise vec3 origin = view.eye.xyz + on_film;
+  return make_ray(origin, view.look.xyz, view.eye.w, INFINITY);
 }

@@ -16,7 +16,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "make_ray.glsl"
 #include "primitives.glsl"
 #include "traversal.glsl"
-#include "debug_shading.glsl"
+#include "debug_views.glsl"
 #include "ray_log.glsl"
 #include "secondary.glsl"
 #include "lights.glsl"
@@ -47,17 +47,17 @@ uvec4 normal_and_depth(Ray ray, Hit hit) {
 // Of the packet's pixels those in the window, with their camera rays. False where there is none.
 bool begin_packet() {
   uint place = PACKET_SIZE * (shared_out_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
-  uint block = dispatch.range.x + place / (BLOCK_SIZE * BLOCK_SIZE);
-  uvec2 corner = BLOCK_SIZE * uvec2(block % dispatch.sampling.z, block / dispatch.sampling.z);
+  uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);
+  uvec2 corner = BLOCK_SIZE * uvec2(block % blocks_per_row(), block / blocks_per_row());
   bool is_any_inside = false;
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     uvec2 pixel = corner + pixel_in_block((place + i) % (BLOCK_SIZE * BLOCK_SIZE));
-    is_inside[i] = block < dispatch.range.y && all(lessThan(pixel, dispatch.window.zw));
+    is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
     is_any_inside = is_any_inside || is_inside[i];
-    packet[i] = camera_ray(pixel, dispatch.range.z);
+    packet[i] = camera_ray(pixel, sample_at_hand());
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
-    uint index = pixel.y * dispatch.window.z + pixel.x;
+    uint index = pixel.y * window_size().x + pixel.x;
     paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index);
   }
   return is_any_inside;
@@ -65,10 +65,10 @@ bool begin_packet() {
 
 // The pixel's record, new or of the samples before, with what the AOVs want of this one.
 void put_record(Path path, Ray ray, Hit hit) {
-  bool is_first = dispatch.range.z == 0u;
+  bool is_first = sample_at_hand() == 0u;
   // Depths and ids have no average: the middle sample stands for the pixel. Of an odd number it is the centre.
-  bool is_middle = has(FEATURE_AOVS) && dispatch.range.z == dispatch.sampling.x / 2u;
-  if (is_middle) pixels[dispatch.window.z * dispatch.window.w + path.pixel] = normal_and_depth(ray, hit);
+  bool is_middle = has(FEATURE_AOVS) && sample_at_hand() == samples_per_pixel() / 2u;
+  if (is_middle) pixels[window_pixel_count() + path.pixel] = normal_and_depth(ray, hit);
   if (is_first) pixels[path.pixel] = uvec4(0u, 0u, 0u, NO_ORDER);
   if (is_middle) pixels[path.pixel].w = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
 }
@@ -80,12 +80,12 @@ void arrive() {
     if (!is_inside[i]) continue;
     Ray ray = packet[i];
     put_record(paths[i], ray, found[i]);
-    if (SHADING != SHADING_FULL) {
+    if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
       seen[i] = debug_color(found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
       continue;
     }
     begin_path_log(ray, found[i], 0u, paths[i].weight);
-    seen[i] = frame.background.xyz;
+    seen[i] = view.background.xyz;
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
       points[i] = make_shading_point(ray, found[i]);
@@ -129,8 +129,8 @@ void leave() {
     if (!is_inside[i]) continue;
     Path path = paths[i];
     add_radiance(path, seen[i]);
-    if (SHADING == SHADING_FULL) end_path_log(path.radiance);
-    if (has(FEATURE_MIRRORS) && is_lit[i] && dispatch.range.w > 0u && bounce(path, points[i])) {
+    if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance);
+    if (has(FEATURE_MIRRORS) && is_lit[i] && most_bounces() > 0u && bounce(path, points[i])) {
       put_path(path);
     } else {
       finish_path(path);
@@ -141,7 +141,7 @@ void leave() {
 // Camera rays in the first turn, in each of the others shadow rays to one source: one copy of the traversal for both,
 // which halves what drivers compile.
 void trace_pixels() {
-  uint sources = SHADING == SHADING_FULL ? source_count() : 0u;
+  uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
   uint source = 0u;
   bool is_first_turn = true;
   for (;;) {
@@ -156,7 +156,7 @@ void trace_pixels() {
       is_first_turn = false;
     }
     if (source >= sources) break;
-    aim_at_source(load_light(frame.first_index.y + source));
+    aim_at_source(load_light(view.first_index.y + source));
   }
 }
 

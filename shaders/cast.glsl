@@ -23,13 +23,13 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
 }
 
 void main() {
-  uint first = dispatch.range.x + PACKET_SIZE * (shared_out_group() * LANES + gl_LocalInvocationIndex);
-  if (first >= dispatch.range.y) return;
+  uint first = first_ray() + PACKET_SIZE * (shared_out_group() * LANES + gl_LocalInvocationIndex);
+  if (first >= end_ray()) return;
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     // What is beyond the end casts the last ray once more.
-    indices[i] = min(first + i, dispatch.range.y - 1u);
+    indices[i] = min(first + i, end_ray() - 1u);
     requests[i] = load_ray(indices[i]);
     packet[i] = make_ray(requests[i].origin_tmin.xyz, requests[i].direction_tmax.xyz, requests[i].origin_tmin.w,
                          requests[i].direction_tmax.w);

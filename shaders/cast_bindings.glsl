@@ -9,8 +9,10 @@ layout(std430, set = 0, binding = BINDING_HITS) buffer Hits {
   HitRecord hits[];
 };
 
+#include "dispatch.glsl"
+
 RayRecord load_ray(uint index) {
   if (FETCHES_TEXELS == 0u) return rays[index];
-  return RayRecord(uintBitsToFloat(texelFetch(ray_texels, int(2u * index))),
-                   uintBitsToFloat(texelFetch(ray_texels, int(2u * index + 1u))));
+  return RayRecord(uintBitsToFloat(texelFetch(ray_texels, int(RAY_TEXELS * index))),
+                   uintBitsToFloat(texelFetch(ray_texels, int(RAY_TEXELS * index + 1u))));
 }

@@ -13,6 +13,8 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 pixels[];
 };
+
+#include "dispatch.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
 
 vec3 encode_srgb(vec3 linear) {
@@ -21,8 +23,8 @@ vec3 encode_srgb(vec3 linear) {
 }
 
 void main() {
-  uint count = dispatch.window.z * dispatch.window.w;
-  float samples = float(dispatch.sampling.x);
+  uint count = window_pixel_count();
+  float samples = float(samples_per_pixel());
   uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
     vec3 radiance = uintBitsToFloat(pixels[i].xyz) / samples;

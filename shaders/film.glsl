@@ -13,6 +13,8 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   uvec4 pixels[];
 };
 
+#include "dispatch.glsl"
+
 // A lane's last words.
 void add_counts(uvec3 rays, bool is_cut) {
   uint lane = gl_LocalInvocationIndex;

@@ -17,54 +17,40 @@ using uint = uint32_t;
 #define LAYOUT_CONSTANT const uint
 #endif
 
-// What a scene may use; a pipeline is specialised to the mask of what it does use. Names for people: features.cpp.
-LAYOUT_CONSTANT FEATURE_TRIANGLES = 1u << 0;
-LAYOUT_CONSTANT FEATURE_SPHERES = 1u << 1;
-LAYOUT_CONSTANT FEATURE_CYLINDERS = 1u << 2;
-LAYOUT_CONSTANT FEATURE_CONES = 1u << 3;
-LAYOUT_CONSTANT FEATURE_PLANES = 1u << 4;
-LAYOUT_CONSTANT FEATURE_POINT_LIGHTS = 1u << 5;
-LAYOUT_CONSTANT FEATURE_DIRECTIONAL_LIGHTS = 1u << 6;
-LAYOUT_CONSTANT FEATURE_SPOT_LIGHTS = 1u << 7;
-LAYOUT_CONSTANT FEATURE_FALLOFF = 1u << 8;
-LAYOUT_CONSTANT FEATURE_SHADOWS = 1u << 9;
-LAYOUT_CONSTANT FEATURE_SPECULAR = 1u << 10;
-LAYOUT_CONSTANT FEATURE_MIRRORS = 1u << 11;
-LAYOUT_CONSTANT FEATURE_SMOOTH_NORMALS = 1u << 12;
-LAYOUT_CONSTANT FEATURE_VERTEX_COLORS = 1u << 13;
-LAYOUT_CONSTANT FEATURE_HEADLIGHT = 1u << 14;
-LAYOUT_CONSTANT FEATURE_COUNT = 15u;
-// What a caller may ask of a pipeline whatever the scene. Three bits hold what a picture shows, SHADING_*.
-LAYOUT_CONSTANT SHADING_SHIFT = 26u;
-LAYOUT_CONSTANT SHADING_MASK = 7u;
-LAYOUT_CONSTANT FEATURE_RAY_LOG = 1u << 29;      // each ray and source of one pixel: RayLog
-LAYOUT_CONSTANT FEATURE_AOVS = 1u << 30;         // depth, normal and id of each pixel
-LAYOUT_CONSTANT FEATURE_STEP_COUNTS = 1u << 31;  // node steps and primitive tests of each ray
+// What a scene may use, and what a caller may ask of a pipeline whatever the scene: numbers of bits in two words, to
+// which a pipeline is specialised. The tables of promin/kinds bring kinds, lights, features and debug views.
+#ifdef __cplusplus
+enum class Feature : uint {};
+#define LAYOUT_FEATURE(NAME, BIT) inline constexpr Feature NAME{BIT};
+#else
+#define LAYOUT_FEATURE(NAME, BIT) const uint NAME = BIT;
+#endif
+LAYOUT_CONSTANT FEATURE_WORDS = 2u;
 
-// Kinds of primitive that live in the tree, and of light.
-LAYOUT_CONSTANT KIND_TRIANGLE = 0u;
-LAYOUT_CONSTANT KIND_SPHERE = 1u;
-LAYOUT_CONSTANT KIND_CYLINDER = 2u;
-LAYOUT_CONSTANT KIND_CONE = 3u;
-LAYOUT_CONSTANT KIND_PLANE = 4u;
-LAYOUT_CONSTANT LIGHT_POINT = 0u;
-LAYOUT_CONSTANT LIGHT_DIRECTIONAL = 1u;
-LAYOUT_CONSTANT LIGHT_SPOT = 2u;
-LAYOUT_CONSTANT LIGHT_HEADLIGHT = 3u;
+#define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  LAYOUT_CONSTANT KIND_##KIND = NUMBER;                                  \
+  LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
+#include "promin/kinds/primitives.def"
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  LAYOUT_CONSTANT LIGHT_##KIND = NUMBER;                                   \
+  LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
+#include "promin/kinds/lights.def"
+#define PROMIN_FEATURE(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
+#define PROMIN_REQUEST(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
+#include "promin/kinds/features.def"
 
-// What a picture shows: light, or what debug shadings do (debug_shading.glsl).
-LAYOUT_CONSTANT SHADING_FULL = 0u;
-LAYOUT_CONSTANT SHADING_NORMALS = 1u;
-LAYOUT_CONSTANT SHADING_UV = 2u;
-LAYOUT_CONSTANT SHADING_OBJECT = 3u;
-LAYOUT_CONSTANT SHADING_PRIMITIVE = 4u;
-LAYOUT_CONSTANT SHADING_DEPTH = 5u;
-LAYOUT_CONSTANT SHADING_STEPS = 6u;
-// Steps at which the heat map of SHADING_STEPS is white.
+// What a picture shows: light, or a debug view. The number lies in the second word of features.
+LAYOUT_CONSTANT DEBUG_VIEW_NONE = 0u;
+#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
+  LAYOUT_CONSTANT DEBUG_VIEW_##VIEW = NUMBER;
+#include "promin/kinds/debug_views.def"
+LAYOUT_CONSTANT DEBUG_VIEW_SHIFT = 24u;
+LAYOUT_CONSTANT DEBUG_VIEW_MASK = 0xFFu;
+// Steps at which the heat map of DEBUG_VIEW_STEPS is white.
 LAYOUT_CONSTANT HEAT_STEPS = 64u;
 
 // Descriptor bindings; Vulkan's required minimum is four storage buffers a stage.
-LAYOUT_CONSTANT BINDING_FRAME = 0u;
+LAYOUT_CONSTANT BINDING_VIEW = 0u;
 LAYOUT_CONSTANT BINDING_NODES = 1u;
 LAYOUT_CONSTANT BINDING_PRIMITIVES = 2u;
 LAYOUT_CONSTANT BINDING_SHADING = 3u;
@@ -77,11 +63,12 @@ LAYOUT_CONSTANT BINDING_RAY_TEXELS = 9u;
 LAYOUT_CONSTANT BINDING_SHADING_TEXELS = 10u;
 
 // Specialisation constants.
-LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;
+LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;  // the first word
 LAYOUT_CONSTANT CONSTANT_STACK_SIZE = 1u;
 LAYOUT_CONSTANT CONSTANT_ANY_HIT = 2u;
 LAYOUT_CONSTANT CONSTANT_FETCHES_TEXELS = 3u;
 LAYOUT_CONSTANT CONSTANT_PACKET_SIZE = 4u;
+LAYOUT_CONSTANT CONSTANT_MORE_FEATURES = 5u;  // the second word
 
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
@@ -97,25 +84,24 @@ struct Node {
   uvec4 children;  // 0 beyond the last
 };
 LAYOUT_CONSTANT NODE_WIDTH = 4u;
+LAYOUT_CONSTANT NODE_TEXELS = 4u;
 LAYOUT_CONSTANT CHILD_IS_LEAF = 0x80000000u;
 LAYOUT_CONSTANT CHILD_COUNT_SHIFT = 27u;
+LAYOUT_CONSTANT CHILD_COUNT_MASK = 15u;
 LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
 // Traversal keeps a node's index in 24 bits (traversal.glsl, NO_FAMILY).
 LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
 
 // One primitive in leaf order; planes follow after those of the tree.
-//   triangle  a = corner 0, corner 1 x   b = corner 1 yz, corner 2 xy    c.x = bits of corner 2 z
-//   sphere    a = center, radius
-//   cylinder  a = center, radius         b = axis, half height
-//   cone      a = center, bottom radius  b = axis, half height           c.x = bits of the top radius
-//   plane     a = point                  b = normal
+// a, b and c.x are the kind's own: the comment at its pack() and its shader file in primitives/ say what.
 // c.y is the scene-wide number in (object, primitive) order, which breaks ties; c.z the kind; c.w hashes of the object,
-// in the lower 16 bits, and of the primitive, which debug shadings make colours of.
+// in the lower 16 bits, and of the primitive, which debug views make colours of.
 struct Primitive {
   vec4 a;
   vec4 b;
   uvec4 c;
 };
+LAYOUT_CONSTANT PRIMITIVE_TEXELS = 3u;
 
 // What shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with vertex
 // normals or colours), w = material index and SURFACE_* bits.
@@ -133,6 +119,7 @@ struct MaterialRecord {
   vec4 reflection;
   vec4 emissive;
 };
+LAYOUT_CONSTANT MATERIAL_TEXELS = 5u;
 
 struct LightRecord {
   vec4 position;   // w = 1 / range
@@ -141,9 +128,10 @@ struct LightRecord {
   vec4 specular;
   uvec4 kind;  // x = LIGHT_*, y = 1 if it falls off with distance
 };
+LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 
-// A picture's constants (uniform buffer). None of them decides a branch or a loop: see Dispatch.
-struct Frame {
+// Constants of a view of a scene (uniform buffer). None of them decides a branch or a loop: see Dispatch.
+struct ViewConstants {
   vec4 eye;  // w = near: distance of the viewport plane
   vec4 look;
   vec4 right;  // from one pixel to the next on the projection plane at distance 1 (orthographic: in the world)
@@ -176,6 +164,7 @@ struct RayRecord {
   vec4 origin_tmin;
   vec4 direction_tmax;
 };
+LAYOUT_CONSTANT RAY_TEXELS = 2u;
 
 // What it meets. FEATURE_STEP_COUNTS brings the counts, each clamped to its 16 bits. Who asks for any hit is told a.x,
 // 0 or infinite on a miss, and a.y, and without the counts nothing else is written.
@@ -207,9 +196,13 @@ LAYOUT_CONSTANT LOG_SOURCE = 1u;
 static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(Frame) == 144);
+static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 144);
 static_assert(sizeof(Dispatch) == 96);
+static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
+static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
+static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS);
 #undef LAYOUT_CONSTANT
+#undef LAYOUT_FEATURE
 }  // namespace promin::layout
 #endif
 #endif

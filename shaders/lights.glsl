@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The list of lights: a new one is its file, an #include and a line here.
+// Lights as a surface point sees them, each kind of promin/kinds/lights.def by its sample_* function.
 
 // A source as a surface point sees it: the shadow ray's direction (not normalised) and its tmax, and a factor to the
 // source's powers.
@@ -10,14 +10,13 @@ struct LightSample {
   float strength;
 };
 
-#include "lights/point.glsl"
-#include "lights/directional.glsl"
-#include "lights/spot.glsl"
-#include "lights/headlight.glsl"
+#define PROMIN_LIGHT_SOURCES
+#include "promin/kinds/lights.def"
 
 LightSample sample_light(LightRecord light, vec3 position) {
-  if (has(FEATURE_POINT_LIGHTS) && light.kind.x == LIGHT_POINT) return sample_point(light, position);
-  if (has(FEATURE_SPOT_LIGHTS) && light.kind.x == LIGHT_SPOT) return sample_spot(light, position);
-  if (has(FEATURE_HEADLIGHT) && light.kind.x == LIGHT_HEADLIGHT) return sample_headlight();
-  return sample_directional(light);
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (has(FEATURE_##FEATURE) && (LIGHT_KIND_COUNT == 1u || light.kind.x == NUMBER)) return sample_##PREFIX(light, position);
+#include "promin/kinds/lights.def"
+  // No kind that the pipeline was specialised to: it lights nothing.
+  return LightSample(vec3(0.0), 0.0, 0.0);
 }

@@ -6,6 +6,6 @@
 // Whether that has come. As the last thing that an invocation does.
 bool were_loops_cut() {
   uint turns = 0u;
-  while (turns < dispatch.counts.w) ++turns;
-  return turns < dispatch.counts.w;
+  while (turns < loop_check_turns()) ++turns;
+  return turns < loop_check_turns();
 }

@@ -46,7 +46,7 @@ void follow_path() {
 bool arrive(Hit hit) {
   begin_path_log(ray, hit, bounces, path.weight);
   bool is_miss = hit.primitive == NO_PRIMITIVE;
-  seen = frame.background.xyz;
+  seen = view.background.xyz;
   if (!is_miss) {
     path.direction = normalize3(ray.direction);
     point = make_shading_point(ray, hit);
@@ -68,7 +68,7 @@ void add_share(vec3 unblocked) {
 bool aim_at_source() {
   while (source < source_count()) {
     begin_source_log(source);
-    LightRecord light = load_light(frame.first_index.y + source);
+    LightRecord light = load_light(view.first_index.y + source);
     LightSample sampled = sample_light(light, point.position);
     share = unshadowed_share(point, -path.direction, light, sampled);
     if (has(FEATURE_SHADOWS) && max_abs(share) > 0.0) {
@@ -86,7 +86,7 @@ bool aim_at_source() {
 bool leave(bool is_on_surface) {
   add_radiance(path, seen);
   end_path_log(path.radiance);
-  return is_on_surface && bounces < dispatch.range.w && bounce(path, point);
+  return is_on_surface && bounces < most_bounces() && bounce(path, point);
 }
 
 void main() {

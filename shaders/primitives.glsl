@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The list of primitives: a new one is its file, an #include, a line in surface_point and one in traversal.glsl's
-// intersect_leaf.
+// Primitives as promin/kinds/primitives.def lists them, each with its file in primitives/.
 
 // A hit rebuilt on its primitive.
 struct SurfacePoint {
@@ -10,17 +9,16 @@ struct SurfacePoint {
   float lift;   // how far along the normal a secondary ray must start so that rounding cannot bring it back
 };
 
-#include "primitives/triangle.glsl"
-#include "primitives/sphere.glsl"
-#include "primitives/plane.glsl"
-#include "primitives/frustum.glsl"
-#include "primitives/cylinder.glsl"
-#include "primitives/cone.glsl"
+#define PROMIN_SHAPE_SOURCES
+#include "promin/kinds/primitives.def"
 
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
-  if (has(FEATURE_PLANES) && p.c.z == KIND_PLANE) return plane_surface(ray, p, hit);
-  if (is_kind(p.c.z, KIND_TRIANGLE, FEATURE_TRIANGLES)) return triangle_surface(p, hit);
-  if (is_kind(p.c.z, KIND_SPHERE, FEATURE_SPHERES)) return sphere_surface(ray, p, hit);
-  if (is_kind(p.c.z, KIND_CYLINDER, FEATURE_CYLINDERS)) return cylinder_surface(ray, p, hit);
-  return cone_surface(ray, p, hit);
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (has(FEATURE_##FEATURE) && kind_of(p) == NUMBER) return PREFIX##_surface(ray, p, hit);
+#include "promin/kinds/primitives.def"
+#define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (is_kind(kind_of(p), NUMBER, FEATURE_##FEATURE)) return PREFIX##_surface(ray, p, hit);
+#include "promin/kinds/primitives.def"
+  // No kind that the pipeline was specialised to: nothing has been hit.
+  return SurfacePoint(vec3(0.0), vec3(0.0), 0.0);
 }

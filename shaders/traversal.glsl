@@ -27,10 +27,10 @@ void keep_nearest(uint ray, Crossing crossing, uint primitive, uint order, bool 
   }
 }
 
-// Each ray against the primitive `p` at index `i`.
-#define INTERSECT_PACKET(INTERSECT)                                  \
-  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {         \
-    keep_nearest(ray, INTERSECT(packet[ray], p), i, p.c.y, any_hit); \
+// Each ray against a primitive.
+#define INTERSECT_PACKET(INTERSECT, PRIMITIVE, INDEX, ASKS_FOR_ANY)                                                  \
+  [[unroll]] for (uint each = 0u; each < PACKET_SIZE; ++each) {                                                      \
+    keep_nearest(each, INTERSECT(packet[each], PRIMITIVE), INDEX, order_of(PRIMITIVE), ASKS_FOR_ANY);                \
   }
 
 // What is left of the leaf at hand.
@@ -44,17 +44,18 @@ bool is_next_in_leaf(uint kind, uint feature) {
 }
 
 // The primitives of one kind that come next: leaves hold them sorted by kind.
-#define INTERSECT_RUN(KIND, FEATURE, INTERSECT) \
-  while (is_next_in_leaf(KIND, FEATURE)) {      \
-    uint i = leaf_next;                         \
-    Primitive p = load_primitive(i);            \
-    INTERSECT_PACKET(INTERSECT)                 \
-    ++leaf_next;                                \
+#define INTERSECT_RUN(KIND, FEATURE, INTERSECT, ASKS_FOR_ANY)                     \
+  while (is_next_in_leaf(KIND, FEATURE)) {                                        \
+    Primitive next_of_run = load_primitive(leaf_next);                            \
+    INTERSECT_PACKET(INTERSECT, next_of_run, leaf_next, ASKS_FOR_ANY)             \
+    ++leaf_next;                                                                  \
   }
 
 // A kernel to compare with may bring triangles of its own (tools/plain).
 #ifdef OTHER_TRIANGLES
-void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) { INTERSECT_PACKET(intersect_triangle) }
+void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) {
+  INTERSECT_PACKET(intersect_triangle, p, i, any_hit)
+}
 void glance_at_triangle(Primitive p, uint i) { intersect_packet_with_triangle(p, i, true); }
 #else
 // Few of a packet's rays meet a triangle whose box they meet: first whether they may, then where, one after the other.
@@ -81,7 +82,7 @@ void intersect_packet_with_triangle(Primitive p, uint i, bool any_hit) {
     may_another_be_met = false;
     [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
       if (ray == next) {
-        keep_nearest(ray, crossing, i, p.c.y, any_hit);
+        keep_nearest(ray, crossing, i, order_of(p), any_hit);
         sheared[ray].may_be_met = false;
       }
       may_another_be_met = may_another_be_met || sheared[ray].may_be_met;
@@ -101,16 +102,23 @@ void glance_at_triangle(Primitive p, uint i) {
     needs_second_look = needs_second_look || (may_be_met && !is_met && !glance.is_missed);
     if (is_met) {
       found[ray].primitive = i;
-      found[ray].order = p.c.y;
+      found[ray].order = order_of(p);
       limits[ray] = -1.0;
     }
   }
 }
 #endif
 
+// The closed shapes that come next, kind by kind.
+void intersect_solids(bool any_hit) {
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  INTERSECT_RUN(NUMBER, FEATURE_##FEATURE, intersect_##PREFIX, any_hit)
+#include "promin/kinds/primitives.def"
+}
+
 void enter_leaf(uint child) {
-  leaf_next = child & CHILD_FIRST_MASK;
-  leaf_end = leaf_next + ((child >> CHILD_COUNT_SHIFT) & 15u) + 1u;
+  leaf_next = first_of_leaf(child);
+  leaf_end = leaf_next + count_of_leaf(child);
   count_steps(0u, leaf_end - leaf_next);
 }
 
@@ -126,15 +134,18 @@ void intersect_leaf(bool any_hit) {
     ++leaf_next;
   }
   if (needs_second_look) return;
-  INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
-  INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
-  INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)
+  intersect_solids(any_hit);
 }
 
-void intersect_planes(bool any_hit) {
-  for (uint i = dispatch.counts.x; i < dispatch.counts.x + dispatch.counts.y; ++i) {
+// What has no box lies behind the tree's primitives.
+void intersect_unbounded(bool any_hit) {
+  for (uint i = first_plane(); i < end_plane(); ++i) {
     Primitive p = load_primitive(i);
-    INTERSECT_PACKET(intersect_plane)
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (kind_of(p) == NUMBER) {                                            \
+    INTERSECT_PACKET(intersect_##PREFIX, p, i, any_hit)                  \
+  }
+#include "promin/kinds/primitives.def"
   }
 }
 
@@ -249,10 +260,10 @@ uint family_of(uint index, uint count, uvec4 met) {
 // corners, offset 0...1e5 (hard case 28; 5 % without padding), nor in 1e6 through mixed scenes (hard case 38).
 uint meet_children(uint index) {
   NodeBoxes node = load_boxes(index);
-  vec3 origin = uintBitsToFloat(node.frame.xyz);
-  vec3 scale = uintBitsToFloat(((uvec3(node.frame.w) >> uvec3(0u, 8u, 16u)) & 0xFFu) << 23);
-  uvec3 lo = node.lo.xyz;
-  uvec3 hi = uvec3(node.lo.w, node.hi.xy);
+  vec3 origin = origin_of(node);
+  vec3 scale = steps_of(node);
+  uvec3 lo = low_planes_of(node);
+  uvec3 hi = high_planes_of(node);
   bvec3 is_backward = lessThan(octant, vec3(0.0));
   uvec3 near = uvec3(is_backward.x ? hi.x : lo.x, is_backward.y ? hi.y : lo.y, is_backward.z ? hi.z : lo.z);
   uvec3 far = uvec3(is_backward.x ? lo.x : hi.x, is_backward.y ? lo.y : hi.y, is_backward.z ? lo.z : hi.z);
@@ -282,7 +293,7 @@ uint meet_children(uint index) {
     met = add_met(met, lessThanEqual(entry, lesser(exit, vec4(limit))), entry);
   }
 
-  return family_of(index, node.frame.w >> 24, met);
+  return family_of(index, child_count_of(node), met);
 }
 #endif
 
@@ -302,7 +313,7 @@ void descend(bool any_hit) {
   // loop as soon as no lane is in it.
   for (;;) {
     while (current != DONE && !needs_second_look) {
-      while ((current & CHILD_IS_LEAF) == 0u) {
+      while (is_inner(current)) {
         count_steps(1u, 0u);
         enter_family(meet_children(current));
         current = take_child();
@@ -388,8 +399,10 @@ void trace_packet(bool any_hit) {
     found[ray] = Hit(packet[ray].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
     limits[ray] = packet[ray].tmin < packet[ray].tmax ? packet[ray].tmax : -1.0;
   }
-  if (has(FEATURE_PLANES)) intersect_planes(any_hit);
-  if ((FEATURES & SOLID_FEATURES) == 0u) return;
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (has(FEATURE_##FEATURE)) intersect_unbounded(any_hit);
+#include "promin/kinds/primitives.def"
+  if (TREE_KIND_COUNT == 0u) return;
   descend_from_nearby(any_hit);
 }
 

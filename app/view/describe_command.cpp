@@ -38,8 +38,8 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   std::string command =
       fmt::format("promin render {} -o view.exr --size {} {} --spp {} --max-depth {}", quote(scene.file.string()),
                   view.size.x, view.size.y, view.samples_per_pixel, view.max_depth);
-  if (view.shading != Shading::kFull) {
-    command += fmt::format(" --shading {}", shading_names()[static_cast<size_t>(view.shading)]);
+  if (view.mode.debug_view != DebugView::kNone) {
+    command += fmt::format(" --shading {}", debug_view_names()[static_cast<size_t>(view.mode.debug_view)]);
   }
   if (!scene.has_shadows) command += " --no-shadows";
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
@@ -51,7 +51,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   }
   command += fmt::format(" --near {:.9g}", camera.near);
   // No other picture depends on the tree.
-  if (view.shading != Shading::kSteps) return command;
+  if (view.mode.debug_view != DebugView::kSteps) return command;
   return command + (scene.bvh ? " --bvh " + quote(scene.bvh->string()) : " --builder " + scene.builder);
 }
 

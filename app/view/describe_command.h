@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "promin/scene.h"
 #include "promin/view.h"
 
 namespace promin::app {

@@ -8,18 +8,10 @@
 #include "device/buffer.h"
 #include "device/pipeline.h"
 #include "promin/math.h"
+#include "trace/progressive_picture.h"
 #include "view/swapchain.h"
 
 namespace promin::app {
-
-/// A complete picture in device memory.
-struct ShownPicture {
-  /// Which of the films, below kFilmCount.
-  size_t film = 0;
-  uvec2 size{0};
-  uint32_t samples_per_pixel = 1;
-};
-inline constexpr size_t kFilmCount = 2;
 
 /// Draws pictures to the window: a film is encoded once (shaders/encode_film.comp), then drawn as often as the window
 /// wants it, scaled to all of the window (shaders/display.frag).

@@ -13,8 +13,13 @@ constexpr Press camera(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstCamera) + number - 1);
 }
 
-constexpr Press shading(int number) {
-  return static_cast<Press>(static_cast<int>(Press::kFirstShading) + number - 1);
+#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ", " HELP
+constexpr const char* kDebugViewHelp = "light"
+#include "promin/kinds/debug_views.def"
+    ;
+
+constexpr Press debug_view(int number) {
+  return static_cast<Press>(static_cast<int>(Press::kFirstDebugView) + number);
 }
 
 // A row without an effect shares its neighbour's.
@@ -43,13 +48,11 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_8, "", "", {}, camera(8)},
     KeyBinding{GLFW_KEY_9, "", "", {}, camera(9)},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
-    KeyBinding{GLFW_KEY_F1, "F1...F7", "light, normals, uv, objects, primitives, depth, steps", {}, shading(1)},
-    KeyBinding{GLFW_KEY_F2, "", "", {}, shading(2)},
-    KeyBinding{GLFW_KEY_F3, "", "", {}, shading(3)},
-    KeyBinding{GLFW_KEY_F4, "", "", {}, shading(4)},
-    KeyBinding{GLFW_KEY_F5, "", "", {}, shading(5)},
-    KeyBinding{GLFW_KEY_F6, "", "", {}, shading(6)},
-    KeyBinding{GLFW_KEY_F7, "", "", {}, shading(7)},
+    KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
+// F1 shows light, F2 the first debug view, and so on; F12 is the screenshot's.
+#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
+  KeyBinding{GLFW_KEY_F1 + static_cast<int>(NUMBER), "", "", {}, debug_view(NUMBER)},
+#include "promin/kinds/debug_views.def"
     KeyBinding{GLFW_KEY_P, "P", "pause refining, or a replay", {}, Press::kPause},
     KeyBinding{GLFW_KEY_C, "C", "print the command that renders this view", {}, Press::kPrintCommand},
     KeyBinding{GLFW_KEY_F12, "F12", "write promin-NNNN.exr and .png", {}, Press::kScreenshot},

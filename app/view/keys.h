@@ -23,8 +23,8 @@ enum class Press {
   kQuit,
   /// Cameras 1...9 follow each other.
   kFirstCamera,
-  /// Shadings, in the order of Shading's values.
-  kFirstShading = kFirstCamera + 9
+  /// Light and the debug views, in the order of DebugView's values.
+  kFirstDebugView = kFirstCamera + 9
 };
 
 /// A key, by GLFW's number, and its effect: a row of the help too.

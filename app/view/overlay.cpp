@@ -90,12 +90,12 @@ void choose_lights(const Scene& scene, std::vector<uint32_t>& lights_off) {
   }
 }
 
-void choose_shading(Shading& shading) {
-  const auto names = shading_names();
-  if (!ImGui::BeginCombo("shading", std::string(names[static_cast<size_t>(shading)]).c_str())) return;
+void choose_debug_view(DebugView& view) {
+  const auto names = debug_view_names();
+  if (!ImGui::BeginCombo("shading", std::string(names[static_cast<size_t>(view)]).c_str())) return;
   for (size_t i = 0; i < names.size(); ++i) {
-    const auto candidate = static_cast<Shading>(i);
-    if (ImGui::Selectable(std::string(names[i]).c_str(), candidate == shading)) shading = candidate;
+    const auto candidate = static_cast<DebugView>(i);
+    if (ImGui::Selectable(std::string(names[i]).c_str(), candidate == view)) view = candidate;
   }
   ImGui::EndCombo();
 }
@@ -108,7 +108,7 @@ void show_switches(const Scene& scene, Switches& switches) {
   ImGui::Checkbox("pause", &switches.is_paused);
   auto depth = static_cast<int>(switches.max_depth);
   if (ImGui::SliderInt("depth", &depth, 0, 20)) switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
-  choose_shading(switches.shading);
+  choose_debug_view(switches.debug_view);
   choose_scale(switches.scale);
   choose_builder(switches.scene);
   if (ImGui::TreeNode("sources")) {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "trace/progressive_picture.h"
 #include "view/frame_queue.h"
 #include "view/overlay_scale.h"
-#include "view/progressive_picture.h"
-#include "view/scene_loader.h"
+#include "view/scene_preparer.h"
 
 namespace promin::app {
 
@@ -38,7 +38,7 @@ struct Switches {
   uint32_t max_depth = View{}.max_depth;
   bool has_mirrors = true;
   bool has_shadows = true;
-  Shading shading = Shading::kFull;
+  DebugView debug_view = DebugView::kNone;
   /// As ProgressivePicture::fix_scale.
   std::optional<double> scale;
   bool is_paused = false;

@@ -19,13 +19,11 @@ struct PixelText {
 /// Traces single pixels of a shown scene beside its picture, each question on a thread of its own.
 class PixelQuery {
  public:
-  explicit PixelQuery(const gpu::Device& device) : device_(&device) {}
-
   /// What a pixel of the view is made of, as it is with one sample. A question that comes before the answer to the one
   /// before is passed over.
-  void ask_why(std::shared_ptr<const ShownScene> scene, const RenderMode& look, const View& view, const uvec2& pixel);
+  void ask_why(std::shared_ptr<const ShownScene> scene, const View& view, const uvec2& pixel);
   /// What is in the middle of what the camera sees; likewise.
-  void ask_middle(std::shared_ptr<const ShownScene> scene, const RenderMode& look, const Camera& camera);
+  void ask_middle(std::shared_ptr<const ShownScene> scene, const Camera& camera);
 
   bool is_busy() const { return text_.is_busy() || middle_.is_busy(); }
   bool is_looking_for_middle() const { return middle_.is_busy(); }
@@ -38,7 +36,6 @@ class PixelQuery {
   void wait() const;
 
  private:
-  const gpu::Device* device_;
   Background<PixelText> text_;
   Background<std::optional<dvec3>> middle_;
 };

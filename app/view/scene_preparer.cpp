@@ -6,8 +6,9 @@
 
 #include "console.h"
 #include "device/device.h"
+#include "formats/source_file.h"
 #include "promin/error.h"
-#include "promin/load_scene.h"
+#include "render/renderer_impl.h"
 #include "view_setup.h"
 
 namespace promin::app {
@@ -16,10 +17,19 @@ namespace {
 /// At the files of the scene, in seconds.
 constexpr double kLookInterval = 0.1;
 
+/// Those lights that a scene has.
+std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
+  std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
+  return lights;
+}
+
 }  // namespace
 
-FeatureMask ShownScene::light_features(const RenderMode& look) const {
-  return features & ~(look.has_shadows ? 0 : layout::FEATURE_SHADOWS);
+void ReadyPicture::take_lights() {
+  std::vector<Light> lights = scene->scene->lights;
+  switch_lights(lights, scene->choice.lights_off);
+  scene->renderer->set_lights(lights);
+  picture.take_scene_change();
 }
 
 ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
@@ -40,9 +50,10 @@ bool ScenePreparer::update(const std::shared_ptr<const ShownScene>& shown, const
                            double time_s) {
   if (is_busy()) return false;
   const PictureRequest last = std::exchange(asked_, request);
-  if (last.choice != request.choice) {
+  const bool has_another_tree = last.choice.builder != request.choice.builder || last.choice.bvh != request.choice.bvh;
+  if (has_another_tree) {
     pack(shown->scene);
-  } else if (last.look != request.look) {
+  } else if (last.choice != request.choice || last.mode != request.mode) {
     compile(shown);
   } else {
     if (time_s < next_look_at_files_s_) return false;
@@ -64,20 +75,23 @@ void ScenePreparer::read() {
   work_.start([this, request = asked_] {
     const auto scene = std::make_shared<Scene>(load_scene(file_, sources_));
     light_up(*scene, Console(Verbosity::kQuiet));
-    return make(put_on_device(scene, request.choice), request);
+    return make(put_on_device(scene, request), request);
   });
 }
 
 void ScenePreparer::pack(std::shared_ptr<const Scene> scene) {
   step_ = Step::kBuilding;
-  work_.start([this, scene = std::move(scene), request = asked_] {
-    return make(put_on_device(scene, request.choice), request);
-  });
+  work_.start(
+      [this, scene = std::move(scene), request = asked_] { return make(put_on_device(scene, request), request); });
 }
 
 void ScenePreparer::compile(std::shared_ptr<const ShownScene> scene) {
   step_ = Step::kCompiling;
-  work_.start([this, scene = std::move(scene), request = asked_] { return make(scene, request); });
+  work_.start([this, scene = std::move(scene), request = asked_] {
+    ShownScene chosen = *scene;
+    chosen.choice.lights_off = keep_known(request.choice.lights_off, *scene->scene);
+    return make(std::make_shared<const ShownScene>(std::move(chosen)), request);
+  });
 }
 
 std::string ScenePreparer::describe() const {
@@ -102,30 +116,35 @@ void ScenePreparer::enter(Step step) {
 }
 
 std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const Scene> scene,
-                                                               const SceneChoice& choice) {
+                                                               const PictureRequest& request) {
   built_ = 0.0;
   enter(Step::kBuilding);
-  // A builder ends by what its callback throws.
-  PackedChoice packed = pack_choice(*scene, choice, [this](double fraction) {
+  ShownScene shown{scene, request.choice, nullptr};
+  shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
+  RendererOptions options;
+  options.builder = request.choice.builder;
+  options.bvh = request.choice.bvh;
+  options.mode = request.mode;
+  options.progress = [this](double fraction) {
     built_ = fraction;
-    enter(Step::kBuilding);
-  });
-  enter(Step::kUploading);
-  ShownScene shown{std::move(scene), std::move(packed.choice), packed.features, {}, nullptr};
-  gpu::translate_vulkan_errors([&] { shown.on_device = std::make_shared<const DeviceScene>(*device_, packed.packed); });
-  shown.numbers = std::move(packed.packed.numbers);
+    if (fraction == 1.0) step_ = Step::kUploading;
+    return !is_given_up_;
+  };
+  shown.renderer = std::make_shared<Renderer>(*device_, *scene, options);
   return std::make_shared<const ShownScene>(std::move(shown));
 }
 
 ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, const PictureRequest& request) {
   enter(Step::kCompiling);
+  std::vector<Light> lights = scene->scene->lights;
+  switch_lights(lights, scene->choice.lights_off);
   std::optional<ProgressivePicture> picture;
   gpu::translate_vulkan_errors([&] {
-    const FeatureMask features = scene->light_features(request.look) | features_of(request.look.shading);
-    picture.emplace(*device_, scene->on_device, features, budget_ms_);
+    const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene->renderer));
+    picture.emplace(*device_, on_device.device_scene(), on_device.features_with(lights, request.mode), budget_ms_);
     picture->resize(request.size);
   });
-  return {std::move(scene), request.look, std::move(*picture)};
+  return {std::move(scene), request.mode, std::move(*picture)};
 }
 
 }  // namespace promin::app

@@ -7,45 +7,47 @@
 #include <optional>
 #include <string>
 
+#include "promin/renderer.h"
+#include "trace/progressive_picture.h"
 #include "view/background.h"
-#include "view/progressive_picture.h"
-#include "view/scene_loader.h"
+#include "view/scene_watch.h"
 
 namespace promin::app {
 
-/// What a picture's pipeline depends on beside the scene.
-struct RenderMode {
-  bool has_shadows = true;
-  Shading shading = Shading::kFull;
+/// With which tree a scene is shown, and which of its lights are on.
+struct SceneChoice {
+  std::string builder;
+  std::optional<std::filesystem::path> bvh;
+  /// Indices of the scene's lights, in their order; those that a scene does not have are passed over.
+  std::vector<uint32_t> lights_off;
 
-  bool operator==(const RenderMode&) const = default;
+  bool operator==(const SceneChoice&) const = default;
 };
 
 /// A scene in device memory.
 struct ShownScene {
-  /// As its file has it, lit up.
+  /// As its file has it, lit up, whatever lights are on.
   std::shared_ptr<const Scene> scene;
   /// What of it is on the device.
   SceneChoice choice;
-  FeatureMask features = 0;
-  PrimitiveNumbers numbers;
-  std::shared_ptr<const DeviceScene> on_device;
-
-  /// Of a picture that shows light.
-  FeatureMask light_features(const RenderMode& look) const;
+  std::shared_ptr<Renderer> renderer;
 };
 
 /// A picture that can be traced at once.
 struct ReadyPicture {
+  /// Its lights may be others than those on the device: take_lights() comes before anything is traced.
   std::shared_ptr<const ShownScene> scene;
-  RenderMode look;
+  RenderMode mode;
   ProgressivePicture picture;
+
+  /// Brings the lights that are on to the device; nothing is being traced there.
+  void take_lights();
 };
 
 /// A scene and how it is to be shown.
 struct PictureRequest {
   SceneChoice choice;
-  RenderMode look;
+  RenderMode mode;
   /// The window's, for which room is made.
   uvec2 size{0};
 };
@@ -65,8 +67,8 @@ class ScenePreparer {
   /// Makes another picture than the one shown where the request is another than the last, or where files of the scene
   /// have changed. Returns whether it has begun to. What failed is not tried again.
   bool update(const std::shared_ptr<const ShownScene>& shown, const PictureRequest& request, double time_s);
-  /// Whether a picture in that look, which is not shown, is still to come.
-  bool will_show(const RenderMode& look) const { return is_busy() || asked_.look != look; }
+  /// Whether a picture in that mode, which is not shown, is still to come.
+  bool will_show(const RenderMode& mode) const { return is_busy() || asked_.mode != mode; }
 
   bool is_busy() const { return work_.is_busy(); }
   bool is_ready() const { return work_.is_ready(); }
@@ -81,11 +83,12 @@ class ScenePreparer {
   // Start the work; not while busy.
   void read();
   void pack(std::shared_ptr<const Scene> scene);
+  /// For other lights or another mode of a scene on the device.
   void compile(std::shared_ptr<const ShownScene> scene);
 
   // Parts of the work.
   void enter(Step step);
-  std::shared_ptr<const ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const SceneChoice& choice);
+  std::shared_ptr<const ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   ReadyPicture make(std::shared_ptr<const ShownScene> scene, const PictureRequest& request);
 
   const gpu::Device* device_;

@@ -121,8 +121,7 @@ void view(const WindowOptions& options) {
   console.detail(device.choice());
   ScenePreparer maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
   // The longest last: without a window it would be in vain.
-  const RenderMode look{!options.view.has_no_shadows, start.view.shading};
-  maker.begin(scene, {start.choice, look, window.framebuffer_size()});
+  maker.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
   if (!picture) return;
   gpu::translate_vulkan_errors(

@@ -32,7 +32,6 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       stats_(std::move(stats)),
       follows_display_(!start.target_ms && !device.is_cpu()),
       target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
-      asker_(device),
       control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
       stays_open_(start.stays_open),
       record_file_(start.record),
@@ -47,8 +46,8 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
   if (start.replay) replay_.emplace(std::move(*start.replay));
   switches_.scene = start.choice;
   switches_.scale = start.scale;
-  switches_.has_shadows = picture.look.has_shadows;
-  switches_.shading = picture.look.shading;
+  switches_.has_shadows = picture.mode.has_shadows;
+  switches_.debug_view = picture.mode.debug_view;
   switches_.max_depth = start.view.max_depth;
   show_picture(std::move(picture));
   fit_window();
@@ -156,8 +155,8 @@ void Viewer::update_screenshot() {
 }
 
 void Viewer::update_picture() {
-  // A frame in flight traces the picture that would go.
-  if (maker_.is_ready() && frames_.is_idle()) {
+  // A frame in flight traces the picture that would go, and a question the lights that would change.
+  if (maker_.is_ready() && frames_.is_idle() && !asker_.is_busy()) {
     try {
       show_picture(std::move(*maker_.take()));
     } catch (const std::exception& error) {
@@ -165,18 +164,19 @@ void Viewer::update_picture() {
       report_failure(error.what());
     }
   }
-  const PictureRequest request{switches_.scene, asked_look(), swapchain_.size()};
+  const PictureRequest request{switches_.scene, asked_mode(), swapchain_.size()};
   if (maker_.update(scene_, request, Window::now())) draw_again();
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
   // It may be too large for the memory: before the old one goes.
   if (asked_size_ != uvec2(0)) ready.picture.resize(swapchain_.size());
+  ready.take_lights();
   const bool is_new = scene_ && scene_->scene != ready.scene->scene;
   if (!scene_ || scene_ != ready.scene) explanation_.text.clear();
   picture_.emplace(std::move(ready.picture));
   scene_ = std::move(ready.scene);
-  look_ = ready.look;
+  mode_ = ready.mode;
   // Before the window has images it has no size.
   if (asked_size_ != uvec2(0)) fit_picture();
   draw_again();
@@ -210,8 +210,8 @@ void Viewer::update_answers() {
   }
 }
 
-bool Viewer::awaits_look() const {
-  return look_ != asked_look() && maker_.will_show(asked_look());
+bool Viewer::awaits_mode() const {
+  return mode_ != asked_mode() && maker_.will_show(asked_mode());
 }
 
 std::string Viewer::describe_awaited() const {
@@ -254,15 +254,15 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   statistics_.add(finished);
   if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
-  if (finished.has_cut_loops) {
-    if (finished.takes_many_paths) {
-      picture_->shorten_loops();
-    } else if (!is_failure_) {
-      report_failure(make_cut_loops_error("lower the depth").what());
-    }
-  }
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
-  picture_->learn(finished.units, trace_ms);
+  try {
+    picture_->take_finished({.units = finished.units,
+                             .time_ms = trace_ms,
+                             .has_cut_loops = finished.has_cut_loops,
+                             .took_many_paths = finished.takes_many_paths});
+  } catch (const RunError& error) {
+    if (!is_failure_) report_failure(error.what());
+  }
   picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
 }
 
@@ -292,7 +292,7 @@ void Viewer::record_tracing(Frame& frame) {
   frame.takes_many_paths = picture_->takes_many_paths();
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
-  if (wants_screenshot_ && picture_->is_complete() && !awaits_look() && !screenshot_.is_busy()) {
+  if (wants_screenshot_ && picture_->is_complete() && !awaits_mode() && !screenshot_.is_busy()) {
     View view = picture_->wanted();
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
@@ -363,7 +363,7 @@ View Viewer::current_view() const {
   view.camera = control_.camera();
   view.size = picture_->full_size();
   view.max_depth = switches_.effective_depth();
-  view.shading = look_.shading;
+  view.mode = mode_;
   return view;
 }
 

@@ -9,6 +9,7 @@
 #include "console.h"
 #include "deferred_signals.h"
 #include "run_stats.h"
+#include "trace/progressive_picture.h"
 #include "view/camera_control.h"
 #include "view/describe_command.h"
 #include "view/display_pass.h"
@@ -17,7 +18,6 @@
 #include "view/imgui_renderer.h"
 #include "view/overlay.h"
 #include "view/pixel_query.h"
-#include "view/progressive_picture.h"
 #include "view/scene_preparer.h"
 #include "view/screenshot.h"
 #include "view/window.h"
@@ -75,9 +75,9 @@ class Viewer {
   void show_picture(ReadyPicture ready);
   /// Says what has become of questions about pixels.
   void update_answers();
-  RenderMode asked_look() const { return {switches_.has_shadows, switches_.shading}; }
-  /// Whether another look than the one shown is on its way.
-  bool awaits_look() const;
+  RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
+  /// Whether another mode than the one shown is on its way.
+  bool awaits_mode() const;
   /// What is under way beside the picture, in words.
   std::string describe_awaited() const;
   /// Fits everything to the window. False while it has no pixels.
@@ -116,7 +116,7 @@ class Viewer {
 
   std::shared_ptr<const ShownScene> scene_;
   /// Of the picture.
-  RenderMode look_;
+  RenderMode mode_;
   Switches switches_;
   PixelQuery asker_;
   /// Whether an orbit begins when its center is found.

@@ -17,7 +17,7 @@ void Viewer::handle_input() {
   for (const dvec2& place : window_.take_clicks()) {
     const dvec2 full_size(picture_->full_size());
     const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
-    asker_.ask_why(scene_, look_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+    asker_.ask_why(scene_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
   }
   if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
   if (window_.take_activity()) draw_again();
@@ -40,7 +40,7 @@ void Viewer::handle_press(Press press) {
       return;
     case Press::kOrbit:
       wants_orbit_ = !wants_orbit_ && !control_.is_orbiting();
-      if (wants_orbit_) return asker_.ask_middle(scene_, look_, control_.camera());
+      if (wants_orbit_) return asker_.ask_middle(scene_, control_.camera());
       return control_.fly();
     case Press::kBookmark:
       bookmarks_.push_back(control_.camera());
@@ -68,8 +68,8 @@ void Viewer::handle_press(Press press) {
     default:
       break;
   }
-  if (press >= Press::kFirstShading) {
-    switches_.shading = static_cast<Shading>(static_cast<int>(press) - static_cast<int>(Press::kFirstShading));
+  if (press >= Press::kFirstDebugView) {
+    switches_.debug_view = static_cast<DebugView>(static_cast<int>(press) - static_cast<int>(Press::kFirstDebugView));
     return;
   }
   const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
@@ -80,7 +80,7 @@ void Viewer::handle_press(Press press) {
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   const std::optional<size_t> camera = find_half_height(*scene_->scene, view.camera);
-  return {file_, look_.has_shadows, on.lights_off, camera, on.builder, on.bvh};
+  return {file_, mode_.has_shadows, on.lights_off, camera, on.builder, on.bvh};
 }
 
 }  // namespace promin::app

@@ -9,9 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/shared_progress.h"
 #include "core/unset_vector.h"
 #include "promin/math.h"
+#include "promin/progress.h"
+#include "promin/setup_stats.h"
 
 namespace promin {
 
@@ -30,20 +31,6 @@ struct Bvh {
   /// Indices of primitives in leaf order, each at least once. A primitive that a builder has split is in several
   /// leaves, whose boxes hold it together.
   UnsetVector<uint32_t> references;
-};
-
-struct BvhStats {
-  std::string builder;
-  uint64_t nodes = 0;
-  uint64_t leaves = 0;
-  /// Nodes on the longest way from the root to a leaf, both counted; 0 for an empty tree.
-  uint32_t depth = 0;
-  uint32_t max_leaf_size = 0;
-  /// Expected cost of a random ray that meets the root: kNodeCost for each inner node visited and kTestCost for each
-  /// primitive tested (Goldsmith & Salmon 1987).
-  double sah_cost = 0.0;
-  /// On the device; 0 until it is uploaded.
-  uint64_t bytes = 0;
 };
 
 /// No builder makes leaves larger, or trees deeper, than this: the device's leaf encoding and its traversal stack
@@ -72,12 +59,8 @@ struct BuildInput {
 struct BuildOptions {
   /// 0: one per core. The tree is the same, to the bit, for any number.
   unsigned thread_count = 0;
-  /// Called by any of the build's threads, one call at a time.
   ProgressCallback progress = {};
 };
-
-/// Names of the builders, the default first.
-std::span<const std::string_view> builder_names();
 
 /// A tree depends on the input alone; a node comes after its parent. Throws UsageError for an unknown name.
 Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOptions& options = {});

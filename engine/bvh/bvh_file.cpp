@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "bvh/pack_tree.h"
 #include "bvh/read_node.h"
 #include "core/file.h"
 #include "core/hash.h"
-#include "device_scene/pack_scene.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -51,16 +51,31 @@ struct Header {
   uint32_t depth = 0;
   uint32_t max_leaf_size = 0;
   /// Filled up with zeros, at least one.
-  std::array<char, 40> builder{};
+  std::array<char, 36> builder{};
+  /// Of the kinds of primitive in the tree, those beyond kFirstKinds, as bits 1 << KIND_*.
+  uint32_t further_kinds = 0;
 };
 static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && std::is_trivially_copyable_v<Header>);
 
 /// The traversal stack of a tree of kMaxBvhDepth cannot need more: an entry for each node above the deepest.
 constexpr uint32_t kMaxStackSize = kMaxBvhDepth - 1;
 
-/// Of what pack_tree makes of a small tree, and of the kinds' order: a change of what a node's bits mean, or of how
-/// many entries the stack takes, changes it.
-uint64_t hash_layout() {
+/// The kinds that the first files told of, whatever they held: triangles, spheres, cylinders and cones. Their numbers
+/// are in the hash of every file, those of further kinds where the tree holds them, so that a new kind leaves older
+/// files valid.
+constexpr uint32_t kFirstKinds = 4;
+
+/// The kinds of primitive that lie in trees, as bits 1 << KIND_*.
+constexpr uint32_t kTreeKinds = 0
+#define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) | 1U << (NUMBER)
+#include "promin/kinds/primitives.def"
+    ;
+constexpr uint32_t kFirstKindBits = (1U << kFirstKinds) - 1;
+static_assert((kTreeKinds & kFirstKindBits) == kFirstKindBits);
+
+/// Of what pack_tree makes of a small tree, and of the kinds that it holds: a change of what a node's bits mean, or of
+/// how many entries the stack takes, changes it.
+uint64_t hash_layout(uint32_t further_kinds) {
   Bvh probe;
   // Five leaves, one more than a node holds: inner, leaf and absent children.
   for (uint32_t i = 0; i < 5; ++i) {
@@ -79,8 +94,8 @@ uint64_t hash_layout() {
   Hash64 hash;
   hash.add(std::as_bytes(std::span(packed.nodes)));
   hash.add(packed.stack_size);
-  for (const uint32_t kind : {layout::KIND_TRIANGLE, layout::KIND_SPHERE, layout::KIND_CYLINDER, layout::KIND_CONE}) {
-    hash.add(kind);
+  for (uint32_t kind = 0; kind < 32; ++kind) {
+    if (((kFirstKindBits | further_kinds) >> kind & 1) != 0) hash.add(kind);
   }
   return hash.value();
 }
@@ -110,7 +125,8 @@ Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
     refuse(file, "the BVH file is of version " + std::to_string(header.version) + " and this promin reads version " +
                      std::to_string(kVersion));
   }
-  if (header.layout_hash != hash_layout()) {
+  const bool has_known_kinds = (header.further_kinds & ~kTreeKinds) == 0;
+  if (!has_known_kinds || header.layout_hash != hash_layout(header.further_kinds)) {
     refuse(file, "the BVH file has nodes of another layout than this promin's");
   }
   return header;
@@ -249,6 +265,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   tree_.references = {reinterpret_cast<const uint32_t*>(references.data()), header.reference_count};
   tree_.primitive_count = header.primitive_count;
   tree_.stack_size = header.stack_size;
+  tree_.kinds = header.further_kinds;
   tree_.geometry_hash = header.geometry_hash;
   tree_.stats = {.builder = read_builder(header, file),
                  .nodes = header.tree_nodes,
@@ -271,7 +288,8 @@ void BvhFile::check_scene(uint64_t geometry_hash, size_t solid_count) const {
 
 void write_bvh_file(const fs::path& file, const TreeView& tree) {
   Header header;
-  header.layout_hash = hash_layout();
+  header.further_kinds = tree.kinds & ~kFirstKindBits;
+  header.layout_hash = hash_layout(header.further_kinds);
   header.geometry_hash = tree.geometry_hash;
   header.node_count = static_cast<uint32_t>(tree.nodes.size());
   header.reference_count = static_cast<uint32_t>(tree.references.size());

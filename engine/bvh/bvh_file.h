@@ -6,27 +6,10 @@
 #include <filesystem>
 #include <span>
 
-#include "bvh/builder.h"
+#include "bvh/tree_view.h"
 #include "core/mapped_file.h"
-#include "layout.h"
 
 namespace promin {
-
-/// A tree over the primitives of a scene, as the device takes it: pack_tree's nodes, and what its leaves hold. Keeps
-/// nothing alive.
-struct TreeView {
-  /// At least one. A node comes after its parent.
-  std::span<const layout::Node> nodes;
-  /// What the leaves' ranges are of: primitives by their place in (object, primitive) order, planes and degenerate
-  /// triangles left out. Sorted by kind in each leaf. A primitive may be in several leaves.
-  std::span<const uint32_t> references;
-  uint32_t primitive_count = 0;
-  /// Entries that the traversal stack needs.
-  uint32_t stack_size = 1;
-  /// PackedScene::geometry_hash of the scene that it was built over.
-  uint64_t geometry_hash = 0;
-  BvhStats stats;
-};
 
 /// A tree in a file that can be uploaded as it lies there; docs/bvh_file.md has the format.
 class BvhFile {

@@ -10,6 +10,7 @@
 
 #include "bvh/read_node.h"
 #include "core/parallel.h"
+#include "core/shared_progress.h"
 
 namespace promin {
 namespace {
@@ -126,9 +127,10 @@ bool contains(const Box& outer, const Box& inner) {
 
 class Inspection {
  public:
-  explicit Inspection(const PackedScene& packed)
-      : packed_(packed),
-        tree_(packed.tree()),
+  Inspection(const TreeView& tree, std::span<const Primitive> primitives, const PrimitiveNumbers& numbers)
+      : tree_(tree),
+        primitives_(primitives),
+        numbers_(numbers),
         node_boxes_(tree_.nodes.size()),
         leaf_of_slot_(tree_.references.size()),
         slots_(tree_.references.size()),
@@ -165,7 +167,7 @@ class Inspection {
         node_boxes_[child.first] = box;
         continue;
       }
-      const auto slots = std::span(packed_.primitives).subspan(child.first, child.count);
+      const auto slots = primitives_.subspan(child.first, child.count);
       const auto has_lower_kind = [](const Primitive& a, const Primitive& b) { return a.c.z < b.c.z; };
       if (!std::is_sorted(slots.begin(), slots.end(), has_lower_kind)) {
         add_fault(faults_, "a leaf of node " + std::to_string(index) + " is not sorted by kind");
@@ -184,7 +186,7 @@ class Inspection {
 
   void inspect(uint32_t index, TreeFaults& faults) const {
     const auto slots = std::span(slots_).subspan(first_slot_[index], first_slot_[index + 1] - first_slot_[index]);
-    const Primitive& primitive = packed_.primitives[slots.front()];
+    const Primitive& primitive = primitives_[slots.front()];
     const Bounds bounds = primitive_bounds(primitive);
     const Box whole{bounds.lo, bounds.hi};
     if (slots.size() == 1) {
@@ -206,7 +208,7 @@ class Inspection {
   const Box& box_of(uint32_t slot) const { return leaf_boxes_[leaf_of_slot_[slot]]; }
 
   std::string name_of(const Primitive& primitive) const {
-    const PrimitiveId id = primitive_of_order(packed_.numbers, primitive.c.y);
+    const PrimitiveId id = primitive_of_order(numbers_, primitive.c.y);
     return "primitive " + std::to_string(id.primitive) + " of object " + std::to_string(id.object);
   }
 
@@ -214,8 +216,9 @@ class Inspection {
     if (faults.count++ == 0) faults.first = sentence;
   }
 
-  const PackedScene& packed_;
-  TreeView tree_;
+  const TreeView& tree_;
+  std::span<const Primitive> primitives_;
+  const PrimitiveNumbers& numbers_;
   /// Of each node, and of each leaf: what its own box and those of all nodes above have in common.
   std::vector<Box> node_boxes_;
   std::vector<Box> leaf_boxes_;
@@ -227,8 +230,9 @@ class Inspection {
 
 }  // namespace
 
-TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options) {
-  return Inspection(packed).run(options);
+TreeFaults find_tree_faults(const TreeView& tree, std::span<const Primitive> primitives,
+                            const PrimitiveNumbers& numbers, const TreeFaultOptions& options) {
+  return Inspection(tree, primitives, numbers).run(options);
 }
 
 }  // namespace promin

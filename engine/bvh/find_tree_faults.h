@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
-#include "core/shared_progress.h"
-#include "device_scene/pack_scene.h"
+#include "bvh/primitive_numbers.h"
+#include "bvh/tree_view.h"
+#include "promin/progress.h"
 
 namespace promin {
 
@@ -23,13 +25,14 @@ struct TreeFaultOptions {
   ProgressCallback progress = {};
 };
 
-/// Holds the tree of a packed scene against the scene's primitives, whoever built it: a ray that meets a primitive must
-/// come to it through the boxes, as the device decodes them, of a leaf and of all nodes above it.
-/// A primitive in one leaf must lie within these boxes; of one in several leaves nothing may be left when what each
+/// Holds a tree against the primitives that its leaves refer to, in leaf order, whoever built it: a ray that meets a
+/// primitive must come to it through the boxes, as the device decodes them, of a leaf and of all nodes above it. A
+/// primitive in one leaf must lie within these boxes; of one in several leaves nothing may be left when what each
 /// leaf's boxes hold is taken away. A triangle counts as the polygon that it is, other primitives by their bounds.
 /// Split primitives may lie outside by one rounding of fp32 of their largest coordinate, a tenth of what the device's
 /// box test allows for. Also checks that leaves are sorted by kind. That the nodes are a tree over all primitives is
 /// taken for granted (BvhFile, pack_tree).
-TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});
+TreeFaults find_tree_faults(const TreeView& tree, std::span<const layout::Primitive> primitives,
+                            const PrimitiveNumbers& numbers, const TreeFaultOptions& options = {});
 
 }  // namespace promin

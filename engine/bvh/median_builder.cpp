@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "bvh/builders.h"
+#include "core/shared_progress.h"
 
 namespace promin {
 namespace {

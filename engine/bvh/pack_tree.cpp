@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
+#include "bvh/pack_tree.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,7 +10,6 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "device_scene/pack_scene.h"
 
 namespace promin {
 namespace {

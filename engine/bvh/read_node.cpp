@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "scene/shapes.h"
+#include "shapes/shapes.h"
 
 namespace promin {
 namespace {
@@ -39,21 +39,18 @@ Box child_box(const layout::Node& node, uint32_t child) {
 }
 
 Bounds primitive_bounds(const layout::Primitive& p) {
-  const vec3 center(p.a);
-  const vec3 axis(p.b);
   switch (p.c.z) {
-    case layout::KIND_SPHERE:
-      return bounds_of(Sphere{center, p.a.w});
-    case layout::KIND_CYLINDER:
-      return bounds_of(Cylinder{center, axis, p.b.w, p.a.w});
-    case layout::KIND_CONE:
-      return bounds_of(Cone{center, axis, p.b.w, p.a.w, std::bit_cast<float>(p.c.x)});
-    default: {
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  case layout::KIND_##KIND:                                          \
+    return bounds_of(unpack<world::TYPE>(p));
+#include "promin/kinds/primitives.def"
+    case layout::KIND_TRIANGLE: {
       Bounds bounds;
       for (const vec3& corner : triangle_corners(p)) bounds.extend(corner);
       return bounds;
     }
   }
+  return {};
 }
 
 std::array<vec3, 3> triangle_corners(const layout::Primitive& p) {

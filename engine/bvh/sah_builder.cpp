@@ -8,6 +8,7 @@
 #include "bvh/binning.h"
 #include "bvh/builders.h"
 #include "core/parallel.h"
+#include "core/shared_progress.h"
 
 // In two phases. The top of the tree is split breadth first: the ranges of one level are cut into chunks, which all
 // threads bin and scatter. Ranges below kSubtreeSize are then subtrees, one task each, and are put behind the top in

@@ -9,6 +9,7 @@
 #include "bvh/binning.h"
 #include "bvh/builders.h"
 #include "core/parallel.h"
+#include "core/shared_progress.h"
 
 // Large sets of references are split one after the other, each by all threads in chunks of fixed size; the small ones
 // are subtrees, a task each. Chunks and subtrees are put together in their order.
@@ -395,8 +396,8 @@ Bvh build_spatial(const BuildInput& input, const BuildOptions& options) {
   BuildOptions of_cut = options;
   BuildOptions of_whole = options;
   if (options.progress) {
-    of_cut.progress = [&](double fraction) { options.progress(kCutShare * fraction); };
-    of_whole.progress = [&](double fraction) { options.progress(kCutShare + (1.0 - kCutShare) * fraction); };
+    of_cut.progress = [&](double fraction) { return options.progress(kCutShare * fraction); };
+    of_whole.progress = [&](double fraction) { return options.progress(kCutShare + (1.0 - kCutShare) * fraction); };
   }
   Bvh cut = SpatialBuild(input, of_cut).run();
   // Greed does not always pay: in a few scenes the tree without cuts is the better one as a whole.

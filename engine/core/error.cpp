@@ -22,6 +22,7 @@ std::string Problem::sentence() const {
   return text;
 }
 
-Error::Error(const std::vector<Problem>& problems) : std::runtime_error(join_sentences(problems)) {}
+Error::Error(const std::vector<Problem>& problems)
+    : std::runtime_error(join_sentences(problems)), problems_(problems) {}
 
 }  // namespace promin

@@ -3,29 +3,36 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <mutex>
+
+#include "promin/error.h"
+#include "promin/progress.h"
 
 namespace promin {
 
-/// Is called with the fraction of some work that is done, 0...1.
-using ProgressCallback = std::function<void(double)>;
+/// Tells a callback, which may be empty, how far a work is. Throws Cancelled where it wants an end.
+inline void tell_progress(const ProgressCallback& callback, double fraction) {
+  if (callback && !callback(fraction)) throw Cancelled();
+}
 
-/// Gathers what several threads have done of a work and tells a callback, one call at a time and not for less than a
-/// thousandth.
+/// Sums progress from several threads; reports in steps of at least 0.1 %, one call at a time.
 class SharedProgress {
  public:
   /// `callback` may be empty and must outlive this. `total` > 0 may be an estimate; more than all is told as all.
   SharedProgress(const ProgressCallback& callback, double total) : callback_(callback), total_(total) {}
 
+  /// Throws Cancelled, from each call on after the callback wanted an end.
   void add(double amount) {
     if (!callback_) return;
     const std::lock_guard lock(mutex_);
+    if (is_cancelled_) throw Cancelled();
     done_ += amount;
     const double fraction = std::min(done_ / total_, 1.0);
     if (fraction - told_ < 1e-3) return;
     told_ = fraction;
-    callback_(fraction);
+    is_cancelled_ = true;
+    tell_progress(callback_, fraction);
+    is_cancelled_ = false;
   }
 
  private:
@@ -34,6 +41,7 @@ class SharedProgress {
   std::mutex mutex_;
   double done_ = 0.0;
   double told_ = 0.0;
+  bool is_cancelled_ = false;
 };
 
 }  // namespace promin

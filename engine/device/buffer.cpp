@@ -41,7 +41,7 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
   if (size_bytes > most_bytes) {
     throw RunError({"the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB",
                     "on a device that allows " + std::to_string(most_bytes >> 20) + " MiB",
-                    "use a smaller scene or another --device"});
+                    "use a smaller scene or another device"});
   }
   buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, size_bytes, usage));
   const vk::MemoryRequirements requirements = buffer_.getMemoryRequirements();
@@ -71,17 +71,17 @@ vk::raii::BufferView Buffer::make_texel_view() const {
           vk::BufferViewCreateInfo({}, *buffer_, vk::Format::eR32G32B32A32Uint, 0, std::min(size_bytes_, most_bytes))};
 }
 
-void Buffer::write(std::span<const std::byte> data) {
-  assert(data.size() <= size_bytes_);
+void Buffer::write(std::span<const std::byte> data, vk::DeviceSize offset_bytes) {
+  assert(offset_bytes + data.size() <= size_bytes_);
   if (data.empty()) return;
   if (mapped_ != nullptr) {
-    std::memcpy(mapped_, data.data(), data.size());
+    std::memcpy(mapped_ + offset_bytes, data.data(), data.size());
     return;
   }
   const Buffer staging(*device_, data.size(), vk::BufferUsageFlagBits::eTransferSrc, kStagingPreferences);
   std::memcpy(staging.mapped_, data.data(), data.size());
   device_->run([&](const vk::raii::CommandBuffer& commands) {
-    commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, 0, data.size()));
+    commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, offset_bytes, data.size()));
   });
 }
 
@@ -102,6 +102,18 @@ void Buffer::read(std::span<std::byte> data, vk::DeviceSize offset_bytes) const 
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, after, {}, {});
   });
   std::memcpy(data.data(), staging.mapped_, data.size());
+}
+
+void Buffer::copy_from(const Buffer& other, vk::DeviceSize byte_count) {
+  assert(byte_count <= size_bytes_ && byte_count <= other.size_bytes_);
+  if (byte_count == 0) return;
+  if (mapped_ != nullptr && other.mapped_ != nullptr) {
+    std::memcpy(mapped_, other.mapped_, byte_count);
+    return;
+  }
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    commands.copyBuffer(*other.buffer_, *buffer_, vk::BufferCopy(0, 0, byte_count));
+  });
 }
 
 }  // namespace promin::gpu

@@ -33,10 +33,12 @@ class Buffer {
   /// The buffer, or as much of it as the device allows, as texels of four words.
   vk::raii::BufferView make_texel_view() const;
 
-  /// Copies to the start of the buffer, and from `offset_bytes` of it. The device is idle with respect to this buffer
-  /// before and after.
-  void write(std::span<const std::byte> data);
+  /// Copies to the buffer and from it, at `offset_bytes` of it. The device is idle with respect to this buffer before
+  /// and after.
+  void write(std::span<const std::byte> data, vk::DeviceSize offset_bytes = 0);
   void read(std::span<std::byte> data, vk::DeviceSize offset_bytes = 0) const;
+  /// Copies the first bytes of another buffer to the start of this one; the device is idle with respect to both.
+  void copy_from(const Buffer& other, vk::DeviceSize byte_count);
 
  private:
   Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,

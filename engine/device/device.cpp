@@ -159,11 +159,11 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
       throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],
-                         "asked for by --device", "choose another of: " + list_names(infos)});
+                         "asked for as the device", "choose another of: " + list_names(infos)});
     }
     return i;
   }
-  throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "asked for by --device",
+  throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "asked for as the device",
                      "choose one of: " + list_names(infos)});
 }
 
@@ -173,13 +173,13 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   try {
     work();
   } catch (const vk::OutOfDeviceMemoryError& error) {
-    throw RunError({"out of device memory", error.what(), "use a smaller scene or picture, or another --device"});
+    throw RunError({"out of device memory", error.what(), "use a smaller scene or picture, or another device"});
   } catch (const vk::OutOfHostMemoryError& error) {
     throw RunError({"out of host memory", error.what(), "use a smaller scene or picture"});
   } catch (const vk::DeviceLostError& error) {
-    throw RunError({"the device was lost", error.what(), "try again, or another --device"});
+    throw RunError({"the device was lost", error.what(), "try again, or another device"});
   } catch (const vk::SystemError& error) {
-    throw RunError({"a Vulkan call failed", error.what(), "try another --device"});
+    throw RunError({"a Vulkan call failed", error.what(), "try another device"});
   }
 }
 
@@ -198,7 +198,7 @@ Device::Device(const std::optional<std::string>& selection, const Presentation* 
   physical_ = std::move(devices[index]);
   info_ = infos[index];
   choice_ = "using " + info_.name + " (" + info_.type + ", " + info_.driver + "), " +
-            (selection           ? "asked for by --device"
+            (selection           ? "asked for as the device"
              : infos.size() == 1 ? "the only Vulkan device"
                                  : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
   translate_vulkan_errors([&] {

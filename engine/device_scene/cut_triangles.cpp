@@ -90,7 +90,7 @@ std::vector<uint32_t> find_degenerate(const Mesh& mesh) {
   for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const auto triangle = static_cast<uint32_t>(i);
-      if (is_degenerate(mesh, triangle)) found[begin / kChunkSize].push_back(triangle);
+      if (world::is_degenerate(mesh, triangle)) found[begin / kChunkSize].push_back(triangle);
     }
   });
   std::vector<uint32_t> all;
@@ -106,9 +106,9 @@ TrianglePart whole_triangle(const Mesh& mesh, uint32_t triangle) {
           PartCorner{mesh.positions[corners.z], dvec2(0, 1)}};
 }
 
-CutTriangles::CutTriangles(const Scene& scene) {
+CutTriangles::CutTriangles(const world::Scene& scene) {
   Groups groups;
-  for (const Object& object : scene.objects) {
+  for (const world::Object& object : scene.objects) {
     const Mesh* mesh = std::get_if<Mesh>(&object.shape);
     degenerate_.push_back(mesh == nullptr ? std::vector<uint32_t>() : find_degenerate(*mesh));
     for (const uint32_t i : degenerate_.back()) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 namespace promin {
 
@@ -34,7 +34,7 @@ class CutTriangles {
   static constexpr size_t kMaxParts = 64;
 
   /// Finds the corners in the middle of edges, of all meshes together.
-  explicit CutTriangles(const Scene& scene);
+  explicit CutTriangles(const world::Scene& scene);
 
   /// Whether any triangle may be in more than one part.
   bool cut_any() const { return !line_of_edge_.empty(); }

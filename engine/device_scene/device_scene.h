@@ -2,25 +2,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "device/buffer.h"
 #include "device/pipeline.h"
 #include "device_scene/pack_scene.h"
+#include "device_scene/scene_constants.h"
 
 namespace promin {
 
-/// A packed scene in device memory, with what of it goes along with each dispatch. Keeps no reference to the
-/// PackedScene.
+/// A scene in device memory, in parts that are replaced apart: tree, primitives and surfaces for good; materials,
+/// lights and environment as often as they change. Keeps no reference to the PackedScene.
 class DeviceScene {
  public:
-  /// Throws vk::SystemError, and RunError where a device limit is passed.
+  /// Uploads geometry and surfaces; there are no materials and lights yet, which only pictures need. Throws
+  /// vk::SystemError, and RunError where a device limit is passed.
   DeviceScene(const gpu::Device& device, const PackedScene& packed);
 
-  /// What a picture's or a cast's constants take from the scene.
-  const layout::Frame& frame() const { return frame_; }
-  const layout::Dispatch& dispatch() const { return dispatch_; }
+  // Nothing on the device reads the scene meanwhile. Where they need more room than there is, the buffer of shading is
+  // another one afterwards: what is bound to it must be bound anew (Film::bind_scene).
+  void set_materials(std::span<const Material> materials);
+  void set_lights(std::span<const Light> lights);
+  void set_environment(const Environment& environment);
+
+  /// What the constants of pictures and casts take from the scene.
+  const SceneConstants& constants() const { return constants_; }
+  /// Of each light on the device its index in Scene::lights.
+  const std::vector<uint32_t>& light_numbers() const { return light_numbers_; }
   uint32_t stack_size() const { return stack_size_; }
+  /// Of all that it holds in device memory.
+  uint64_t size_bytes() const;
 
   /// What traversal reads: nodes and primitives, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> geometry() const;
@@ -29,17 +43,43 @@ class DeviceScene {
   /// What shading reads, likewise.
   std::vector<gpu::BoundBuffer> shading() const;
 
+  /// Bytes that have been copied to the device so far, of geometry and surfaces and of all else: what a change uploads
+  /// can be counted.
+  struct Uploads {
+    uint64_t geometry = 0;
+    uint64_t shading = 0;
+  };
+  const Uploads& uploads() const { return uploads_; }
+
  private:
+  /// Copies materials and lights behind the surfaces, into a larger buffer where they need one.
+  void write_tail();
+
+  const gpu::Device* device_;
   gpu::Buffer nodes_;
   gpu::Buffer primitives_;
   vk::raii::BufferView node_texels_;
   vk::raii::BufferView primitive_texels_;
-  gpu::Buffer shading_;
-  vk::raii::BufferView shading_texels_;
-  layout::Frame frame_;
-  layout::Dispatch dispatch_;
+  /// Of surfaces and vertices, at the head of the buffer of shading.
+  std::vector<std::byte> head_;
+  uint64_t head_bytes_ = 0;
+  std::optional<gpu::Buffer> shading_;
+  vk::raii::BufferView shading_texels_{nullptr};
+  std::vector<layout::MaterialRecord> materials_;
+  std::vector<layout::LightRecord> lights_;
+  std::vector<uint32_t> light_numbers_;
+  SceneConstants constants_;
   uint32_t stack_size_;
-  bool fetches_texels_;
+  bool fetches_texels_ = false;
+  Uploads uploads_;
 };
+
+/// Copies a packed scene's geometry and surfaces to the device. Throws RunError where memory does not suffice or a
+/// device limit is passed.
+std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed);
+
+/// The same of all of a scene.
+std::shared_ptr<DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed,
+                                          const world::Scene& scene);
 
 }  // namespace promin

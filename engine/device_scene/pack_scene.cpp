@@ -11,13 +11,15 @@
 #include <string>
 
 #include "bvh/clip_triangle.h"
+#include "bvh/pack_tree.h"
 #include "bvh/read_node.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "core/unset_vector.h"
 #include "device_scene/cut_triangles.h"
 #include "promin/error.h"
+#include "scene/features.h"
+#include "shapes/shapes.h"
 
 namespace promin {
 namespace {
@@ -31,23 +33,18 @@ uint32_t bits_of(float value) {
   return std::bit_cast<uint32_t>(value);
 }
 
-// How each shape becomes a primitive: the comment at layout::Primitive.
-Primitive pack(const Sphere& s) {
-  return {vec4(s.center, s.radius), vec4(0.0F), uvec4(0, 0, KIND_SPHERE, 0)};
-}
-Primitive pack(const Cylinder& c) {
-  return {vec4(c.center, c.radius), vec4(c.axis, c.half_height), uvec4(0, 0, KIND_CYLINDER, 0)};
-}
-Primitive pack(const Cone& c) {
-  return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height), uvec4(bits_of(c.radius_top), 0, KIND_CONE, 0)};
-}
-Primitive pack(const Plane& p) {
-  return {vec4(p.point, 0.0F), vec4(p.normal, 0.0F), uvec4(0, 0, KIND_PLANE, 0)};
-}
+/// As corner0, corner1 and corner2 of shaders/primitives/triangle.glsl and triangle_corners read it.
 Primitive pack(const TrianglePart& part) {
   const auto& [a, b, c] = part;
   return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),
           uvec4(bits_of(c.position.z), 0, KIND_TRIANGLE, 0)};
+}
+
+template <class Shape>
+Primitive pack_with_kind(const Shape& shape) {
+  Primitive primitive = promin::pack(shape);
+  primitive.c.z = KindOf<Shape>::value;
+  return primitive;
 }
 
 Bounds bounds_of(const TrianglePart& part) {
@@ -72,36 +69,37 @@ struct Collected {
   UnsetVector<Primitive> solids;
   UnsetVector<SurfaceRecord> solid_surfaces;
   UnsetVector<Bounds> boxes;
-  std::vector<Primitive> planes;
-  std::vector<SurfaceRecord> plane_surfaces;
+  std::vector<Primitive> unbounded;
+  std::vector<SurfaceRecord> unbounded_surfaces;
   std::vector<vec4> normals;
   std::vector<vec4> colors;
   PrimitiveNumbers numbers;
   uint32_t order = 0;
+  uint64_t degenerate_count = 0;
 };
 
 /// Throws RunError for "`who` `count` `what`" beyond `most`.
-void check_at_most(uint32_t most, size_t count, const Scene& scene, const char* who, const char* what,
+void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
                    const char* cure = "") {
   if (count <= most) return;
   throw RunError({who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
                   "promin holds at most " + std::to_string(most) + cure});
 }
 
-void check_count(const Scene& scene, size_t count) {
+void check_count(const world::Scene& scene, size_t count) {
   check_at_most(CHILD_FIRST_MASK, count, scene, "the scene has", "primitives");
 }
 
 class Collector {
  public:
-  explicit Collector(const Scene& scene) : scene_(scene), cut_triangles_(scene) {
+  explicit Collector(const world::Scene& scene) : scene_(scene), cut_triangles_(scene) {
     size_t count = 0;
-    for (const Object& object : scene.objects) count += primitive_count(object.shape);
+    for (const world::Object& object : scene.objects) count += world::primitive_count(object.shape);
     check_count(scene, count);
     result_.solids.reserve(count);
     result_.solid_surfaces.reserve(count);
     result_.boxes.reserve(count);
-    for (const Object& object : scene.objects) {
+    for (const world::Object& object : scene.objects) {
       object_ = static_cast<size_t>(&object - scene.objects.data());
       material_ = object.material;
       result_.numbers.first_order.push_back(result_.order);
@@ -113,19 +111,23 @@ class Collector {
   Collected take() { return std::move(result_); }
 
  private:
-  void add(const NotDrawn&) {}
+  void add(const world::NotDrawn&) {}
 
-  void add(const Plane& plane) {
-    Primitive primitive = pack(plane);
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                          \
+  void add(const world::TYPE& shape) {                                                        \
+    add_solid(pack_with_kind(shape), 0, promin::bounds_of(shape), uvec4(0, 0, 0, material_)); \
+  }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  void add(const world::TYPE& shape) {                                   \
+    add_unbounded(pack_with_kind(shape));                                \
+  }
+#include "promin/kinds/primitives.def"
+
+  void add_unbounded(Primitive primitive) {
     primitive.c.y = result_.order++;
     primitive.c.w = hashes_of(object_, 0);
-    result_.planes.push_back(primitive);
-    result_.plane_surfaces.push_back({uvec4(0, 0, 0, material_)});
-  }
-
-  template <typename Solid>
-  void add(const Solid& solid) {
-    add_solid(pack(solid), 0, bounds_of(solid), uvec4(0, 0, 0, material_));
+    result_.unbounded.push_back(primitive);
+    result_.unbounded_surfaces.push_back({uvec4(0, 0, 0, material_)});
   }
 
   void add(const Mesh& mesh) {
@@ -155,6 +157,7 @@ class Collector {
   /// The triangles of a mesh, none of which is in parts: each has its place.
   void add_whole(const Mesh& mesh, uint32_t flags) {
     const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
+    result_.degenerate_count += degenerate.size();
     const size_t first = result_.solids.size();
     const size_t count = mesh.triangles.size() - degenerate.size();
     result_.solids.resize(first + count);
@@ -186,6 +189,7 @@ class Collector {
   /// The triangles of a mesh, some of which may be in parts.
   void add_cut(const Mesh& mesh, uint32_t flags) {
     auto skipped = cut_triangles_.degenerate_triangles(object_).begin();
+    result_.degenerate_count += cut_triangles_.degenerate_triangles(object_).size();
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       if (skipped != cut_triangles_.degenerate_triangles(object_).end() && *skipped == i) {
         ++skipped;
@@ -242,7 +246,7 @@ class Collector {
     result_.boxes.push_back(box);
   }
 
-  const Scene& scene_;
+  const world::Scene& scene_;
   CutTriangles cut_triangles_;
   Collected result_;
   size_t object_ = 0;
@@ -258,47 +262,13 @@ MaterialRecord pack(const Material& m) {
           vec4(m.emissive, 0.0F)};
 }
 
-uint32_t kind_of(const Light& light) {
-  switch (light.kind) {
-    case LightKind::kPoint:
-      return LIGHT_POINT;
-    case LightKind::kDirectional:
-      return LIGHT_DIRECTIONAL;
-    case LightKind::kSpot:
-      return LIGHT_SPOT;
-    case LightKind::kHeadlight:
-      return LIGHT_HEADLIGHT;
-  }
-  return LIGHT_POINT;
-}
-
 LightRecord pack(const Light& light) {
   const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
   const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
   return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
           vec4(light.diffuse, static_cast<float>(1.0 / std::max(0.001, cos_inner - cos_outer))),
           vec4(light.specular, 0.0F),
-          uvec4(kind_of(light), light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
-}
-
-/// Appends records at the next multiple of their stride; returns their first index in that stride.
-template <typename Records>
-uint32_t append_records(std::vector<std::byte>& bytes, const Records& records) {
-  using Record = typename Records::value_type;
-  const size_t first = (bytes.size() + sizeof(Record) - 1) / sizeof(Record);
-  bytes.resize((first + records.size()) * sizeof(Record));
-  if (!records.empty()) {
-    std::memcpy(bytes.data() + first * sizeof(Record), records.data(), records.size() * sizeof(Record));
-  }
-  return static_cast<uint32_t>(first);
-}
-
-template <typename Host>
-auto pack_all(const std::vector<Host>& hosts) {
-  std::vector<decltype(pack(hosts.front()))> records;
-  records.reserve(hosts.size());
-  for (const Host& host : hosts) records.push_back(pack(host));
-  return records;
+          uvec4(light.kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
 }
 
 /// What builders that split primitives see of them: triangles exactly, other shapes by their boxes.
@@ -341,12 +311,24 @@ uint64_t hash_geometry(std::span<const Primitive> solids) {
   return hash.value();
 }
 
+/// As TreeView has them.
+uint32_t kinds_of(std::span<const Primitive> solids) {
+  uint32_t kinds = 0;
+  for (const Primitive& p : solids) kinds |= 1U << p.c.z;
+  return kinds;
+}
+
 /// What a scene is packed to beside its tree, whose references are there.
-void pack_contents(PackedScene& packed, const Scene& scene, Collected& collected) {
+void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected) {
   packed.numbers = std::move(collected.numbers);
+  packed.features = geometry_features(scene.objects);
+  packed.shown_materials = find_shown_materials(scene.objects, scene.materials.size());
+  packed.degenerate_count = collected.degenerate_count;
   packed.solid_count = static_cast<uint32_t>(collected.solids.size());
+  packed.kinds = kinds_of(collected.solids);
   const std::span<const uint32_t> references = packed.references;
-  UnsetVector<SurfaceRecord> surfaces(references.size());
+  UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
+  surfaces.resize(references.size());
   packed.primitives.resize(references.size());
   for_each_chunk(references.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -354,33 +336,55 @@ void pack_contents(PackedScene& packed, const Scene& scene, Collected& collected
       surfaces[i] = collected.solid_surfaces[references[i]];
     }
   });
-  packed.dispatch.counts =
-      uvec4(packed.primitives.size(), collected.planes.size(), scene.lights.size(), LOOP_CHECK_TURNS);
-  packed.primitives.insert(packed.primitives.end(), collected.planes.begin(), collected.planes.end());
-  surfaces.insert(surfaces.end(), collected.plane_surfaces.begin(), collected.plane_surfaces.end());
+  packed.unbounded_count = static_cast<uint32_t>(collected.unbounded.size());
+  packed.primitives.insert(packed.primitives.end(), collected.unbounded.begin(), collected.unbounded.end());
+  surfaces.insert(surfaces.end(), collected.unbounded_surfaces.begin(), collected.unbounded_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.push_back({});
+  packed.surfaces.normals = std::move(collected.normals);
+  packed.surfaces.colors = std::move(collected.colors);
 
-  append_records(packed.shading, surfaces);
-  packed.frame.first_index.x = append_records(packed.shading, pack_all(scene.materials));
-  packed.frame.first_index.y = append_records(packed.shading, pack_all(scene.lights));
-  packed.frame.first_index.z = append_records(packed.shading, collected.normals);
-  packed.frame.first_index.w = append_records(packed.shading, collected.colors);
-
-  packed.frame.ambient = vec4(scene.ambient, 0.0F);
-  packed.frame.background = vec4(scene.background, 0.0F);
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
-  packed.frame.tree_bounds = center_and_radius(tree_bounds);
+  packed.tree_bounds = center_and_radius(tree_bounds);
 }
 
 }  // namespace
 
 TreeView PackedScene::tree() const {
   if (file) return file->tree();
-  return {nodes, references, solid_count, stack_size, geometry_hash, bvh};
+  return {nodes, references, solid_count, stack_size, kinds, geometry_hash, bvh};
 }
 
-PackedScene pack_scene(const Scene& scene, std::string_view builder, const BuildOptions& options) {
+uint64_t PackedSurfaces::size_bytes() const {
+  return std::as_bytes(std::span(surfaces)).size() + std::as_bytes(std::span(normals)).size() +
+         std::as_bytes(std::span(colors)).size();
+}
+
+uint64_t PackedScene::size_bytes() const {
+  return tree().nodes.size_bytes() + std::as_bytes(std::span(primitives)).size() + surfaces.size_bytes();
+}
+
+TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options) {
+  return find_tree_faults(packed.tree(), packed.primitives, packed.numbers, options);
+}
+
+std::vector<MaterialRecord> pack_materials(std::span<const Material> materials) {
+  std::vector<MaterialRecord> records;
+  for (const Material& material : materials) records.push_back(pack(material));
+  return records;
+}
+
+PackedLights pack_lights(std::span<const Light> lights) {
+  PackedLights packed;
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    if (!lights[i].is_on) continue;
+    packed.records.push_back(pack(lights[i]));
+    packed.numbers.push_back(i);
+  }
+  return packed;
+}
+
+PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options) {
   Collected collected = Collector(scene).take();
 
   const Stopwatch building;
@@ -390,7 +394,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder, const Build
                  [&](uint32_t primitive, const Bounds& window) { return clip(collected.solids[primitive], window); }},
                 options);
   check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
-                "; take --builder sah");
+                "; take the builder sah");
   PackedScene packed;
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);
@@ -405,7 +409,7 @@ PackedScene pack_scene(const Scene& scene, std::string_view builder, const Build
   return packed;
 }
 
-PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const Scene& scene) {
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene) {
   Collected collected = Collector(scene).take();
 
   const Stopwatch reading;
@@ -420,37 +424,6 @@ PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const Scene& 
   packed.references.assign(tree.references.begin(), tree.references.end());
   pack_contents(packed, scene, collected);
   return packed;
-}
-
-namespace {
-
-/// The last part at or before a number; null if there is none.
-const PackedPart* find_part(const PrimitiveNumbers& numbers, uint32_t order) {
-  const auto next = std::upper_bound(numbers.parts.begin(), numbers.parts.end(), order,
-                                     [](uint32_t number, const PackedPart& part) { return number < part.order; });
-  return next == numbers.parts.begin() ? nullptr : &*(next - 1);
-}
-
-}  // namespace
-
-PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order) {
-  // The last object that begins at or before it: objects without primitives begin where the next one does.
-  const auto next = std::upper_bound(numbers.first_order.begin(), numbers.first_order.end(), order);
-  assert(next != numbers.first_order.begin() && next != numbers.first_order.end());
-  const auto further_parts = [&](uint32_t number) {
-    const PackedPart* part = find_part(numbers, number);
-    return part == nullptr ? 0 : part->further_parts;
-  };
-  const uint32_t first = *(next - 1);
-  return {static_cast<uint32_t>(next - numbers.first_order.begin()) - 1,
-          order - first - (further_parts(order) - further_parts(first))};
-}
-
-vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights) {
-  const PackedPart* part = find_part(numbers, order);
-  if (part == nullptr || part->order != order) return weights;
-  return part->weights[0] + weights.x * (part->weights[1] - part->weights[0]) +
-         weights.y * (part->weights[2] - part->weights[0]);
 }
 
 }  // namespace promin

@@ -9,6 +9,7 @@
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
 #include "formats/obj/load_obj.h"
+#include "formats/source_file.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -21,7 +22,7 @@ struct SceneFormat {
 
 bool has_anything_to_draw(const Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const Object& object) { return primitive_count(object.shape) > 0; });
+                     [&](const Object& object) { return primitive_count(scene, object) > 0; });
 }
 
 /// A triangle's area in the sheared plane must be a normal float (shaders/primitives/triangle.glsl).
@@ -30,10 +31,12 @@ constexpr float kSmallestMesh = 1e-18F;
 /// Meshes that are not refused for their size, but too small to be hit.
 void warn_of_tiny_meshes(Scene& scene) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
-    const auto* mesh = std::get_if<Mesh>(&scene.objects[i].shape);
-    if (mesh == nullptr || mesh->triangles.empty()) continue;
+    const Object& object = scene.objects[i];
+    if (primitive_count(scene, object) == 0) continue;
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
+    if (mesh == nullptr) continue;
     Bounds bounds;
-    for (const vec3& position : mesh->positions) bounds.extend(position);
+    for (const vec3& position : mesh->positions) bounds.extend(vec3(object.world_from_object * dvec4(position, 1.0)));
     if (max_component(bounds.extent()) >= kSmallestMesh) continue;
     scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
   }

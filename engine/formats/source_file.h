@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "core/file.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 
@@ -15,5 +17,8 @@ struct SourceFile {
   /// From just before it was read: what is written meanwhile differs. None where it was missing.
   std::optional<FileStamp> stamp;
 };
+
+/// load_scene that tells of each file that was read or missed, the scene's own first, also where it throws.
+Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources);
 
 }  // namespace promin

@@ -10,11 +10,14 @@
 #include <optional>
 #include <vector>
 
+#include "core/shared_progress.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
-#include "device_scene/pack_scene.h"
+#include "promin/validate.h"
 #include "rays/ray_order.h"
 #include "rays/ray_tiles.h"
+#include "render/caster_access.h"
+#include "scene/features.h"
 #include "trace/ray_kernel.h"
 
 namespace promin {
@@ -22,10 +25,6 @@ namespace {
 
 using layout::HitRecord;
 using layout::RayRecord;
-
-/// Features that decide what a ray meets; the others only colour it.
-constexpr FeatureMask kShapeFeatures = layout::FEATURE_TRIANGLES | layout::FEATURE_SPHERES | layout::FEATURE_CYLINDERS |
-                                       layout::FEATURE_CONES | layout::FEATURE_PLANES;
 
 /// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...8
 /// (docs/performance.md).
@@ -71,19 +70,21 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const Primit
 }  // namespace
 
 struct Caster::Impl {
-  Impl(const gpu::Device& the_device, const Scene& the_scene, const CasterOptions& options)
+  Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedCasterOptions& options)
       : device(the_device), spirv(options.spirv.begin(), options.spirv.end()) {
-    PackedScene packed =
-        options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
+    PackedScene packed = options.bvh ? pack_scene_with(*options.bvh, the_scene)
+                                     : pack_scene(the_scene, options.builder, {.progress = options.progress});
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
     stats.upload_ms = uploading.ms();
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
-    stats.device_bytes = packed.size_bytes();
-    stats.features = features_of(the_scene) & kShapeFeatures;
+    stats.device_bytes = scene->size_bytes();
+    stats.degenerate_triangles = packed.degenerate_count;
+    features = packed.features.common_with(primitive_features());
+    stats.features = feature_names(features);
     numbers = std::move(packed.numbers);
-    cube = {vec3(packed.frame.tree_bounds), packed.frame.tree_bounds.w};
+    cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
   }
 
   /// GPUs take rays as they come: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes
@@ -107,7 +108,7 @@ struct Caster::Impl {
     std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0][is_packet ? 1 : 0];
     if (!kernel) {
       RayKernelOptions options;
-      options.features = stats.features;
+      options.features = features;
       options.query = query;
       options.packet_size = is_packet ? kPacketSize : 1;
       if (!spirv.empty()) options.spirv = spirv;
@@ -141,6 +142,7 @@ struct Caster::Impl {
   std::vector<uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
   PrimitiveNumbers numbers;
+  FeatureMask features;
   SetupStats stats;
   SceneCube cube;
   std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
@@ -151,8 +153,11 @@ struct Caster::Impl {
   std::vector<HitRecord> records;
 };
 
-Caster::Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options)
-    : impl_(std::make_unique<Impl>(device, scene, options)) {}
+Caster::Caster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Caster::Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options) {
+  throw_if_invalid(scene);
+  impl_ = std::make_unique<Impl>(device, world::flatten(scene), TunedCasterOptions{options, {}});
+}
 Caster::~Caster() = default;
 Caster::Caster(Caster&&) noexcept = default;
 Caster& Caster::operator=(Caster&&) noexcept = default;
@@ -161,16 +166,22 @@ void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
   impl_->kernel_for(query, impl_->order_of(rays));
 }
 
-double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query,
-                    const std::function<void(double)>& progress) {
-  assert(rays.size() == hits.size());
+double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, const ProgressCallback& progress) {
+  if (rays.size() != hits.size()) {
+    throw UsageError({"there are " + std::to_string(hits.size()) + " hits for " + std::to_string(rays.size()) + " rays",
+                      "in Caster::cast", "give as many hits as rays"});
+  }
   double time_ms = 0.0;
   for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
     const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
     time_ms += impl_->cast(rays.subspan(first, count), hits.subspan(first, count), query);
-    if (progress) progress(static_cast<double>(first + count) / static_cast<double>(rays.size()));
+    tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
   }
   return time_ms;
+}
+
+Caster CasterAccess::make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options) {
+  return Caster(std::make_unique<Caster::Impl>(device, scene, options));
 }
 
 const SetupStats& Caster::setup_stats() const {

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 
+#include "core/shared_progress.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
-#include "device_scene/pack_scene.h"
 #include "layout.h"
+#include "promin/validate.h"
+#include "render/renderer_impl.h"
 #include "trace/explain_pixel.h"
-#include "trace/film.h"
-#include "trace/sampling.h"
+#include "trace/progressive_picture.h"
 
 namespace promin {
 namespace {
@@ -27,66 +27,128 @@ constexpr size_t kMostPiecesAtOnce = 64;
 /// A lane's counters have 32 bits: they are taken before they may have passed that.
 constexpr double kMaxRaysALane = 2e9;
 
+vec3 vec3_of(const uvec4& bits) {
+  return {std::bit_cast<float>(bits.x), std::bit_cast<float>(bits.y), std::bit_cast<float>(bits.z)};
+}
+
+PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options) {
+  PackedScene packed = options.bvh ? pack_scene_with(*options.bvh, scene)
+                                   : pack_scene(scene, options.builder, {.progress = options.progress});
+  return options.repack ? options.repack(std::move(packed)) : std::move(packed);
+}
+
+void check(bool is_so, const char* what, const char* cure) {
+  if (!is_so) throw UsageError({what, "in the view", cure});
+}
+
+void check_view(const View& view) {
+  check(view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "give it a width and a height");
+  check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
+        "the number of samples a pixel is out of range", "take 1 to 65535");
+  check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "take 0 to 1000");
+  if (!view.crop) return;
+  check(view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y, "the crop is empty",
+        "take a window of pixels with lo < hi");
+  check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop reaches beyond the picture",
+        "stay within its size");
+}
+
 }  // namespace
 
+SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
+                             SetupStats& stats)
+    : force_all_features_(options.force_all_features) {
+  PackedScene packed = pack(scene, options);
+  stats.bvh = packed.bvh;
+  stats.bvh_ms = packed.bvh_ms;
+  stats.degenerate_triangles = packed.degenerate_count;
+  geometry_features_ = packed.features;
+  shown_materials_ = packed.shown_materials;
+  primitive_count_ = packed.primitive_count();
+  material_features_ = promin::material_features(scene.materials, shown_materials_);
+  light_features_ = promin::light_features(scene.lights);
+  const Stopwatch uploading;
+  device_scene_ = upload_scene(device, packed, scene);
+  stats.upload_ms = uploading.ms();
+  stats.device_bytes = device_scene_->size_bytes();
+  numbers_ = std::move(packed.numbers);
+}
+
+FeatureMask SceneOnDevice::features_with(FeatureMask lights, const RenderMode& mode) const {
+  FeatureMask features = force_all_features_
+                             ? all_features()
+                             : picture_features(geometry_features_, material_features_, lights, primitive_count_);
+  if (!mode.has_shadows) features = features.without(layout::FEATURE_SHADOWS);
+  return features | features_of(mode.debug_view);
+}
+
+void SceneOnDevice::set_lights(std::span<const Light> lights) {
+  device_scene_->set_lights(lights);
+  light_features_ = promin::light_features(lights);
+}
+
+void SceneOnDevice::set_materials(std::span<const Material> materials) {
+  device_scene_->set_materials(materials);
+  material_features_ = promin::material_features(materials, shown_materials_);
+}
+
 struct Renderer::Impl {
-  Impl(const gpu::Device& the_device, const Scene& the_scene, const RendererOptions& the_options)
+  Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedRendererOptions& the_options)
       : device(the_device),
         options(the_options),
-        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), TileScheduler::kMinBlocks) {
-    PackedScene packed =
-        options.bvh ? pack_scene_with(*options.bvh, the_scene) : pack_scene(the_scene, options.builder);
-    if (options.repack) packed = options.repack(std::move(packed));
-    stats.bvh = packed.bvh;
-    stats.bvh_ms = packed.bvh_ms;
-    stats.device_bytes = packed.size_bytes();
-    stats.features = options.force_all_features ? all_features() : features_of(the_scene);
-    stats.features &= ~options.left_out_features;
-    numbers = std::move(packed.numbers);
-
-    const Stopwatch uploading;
-    scene = std::make_shared<const DeviceScene>(device, packed);
-    stats.upload_ms = uploading.ms();
-
+        pipelines_before(device.compiled_pipelines().size()),
+        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), TileScheduler::kMinBlocks),
+        scene(device, the_scene, options, stats) {
+    // It belonged to the constructor's caller.
+    options.progress = {};
     const Stopwatch compiling;
-    make_film(options.shading);
+    prepare_film(options.mode);
     stats.pipeline_ms = compiling.ms();
+    stats.features = feature_names(film_features);
   }
 
-  void make_film(Shading of) {
-    const FeatureMask features = stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0);
-    film.emplace(device, scene, features, FilmOptions{.packet_size = options.packet_size, .shaders = options.shaders});
+  /// Makes the film that a mode needs, unless it is there.
+  void prepare_film(const RenderMode& mode) {
+    FeatureMask features = scene.features(mode);
+    if (options.with_aovs) features |= layout::FEATURE_AOVS;
+    if (film && features == film_features) return;
+    film.emplace(
+        device, scene.device_scene(), features,
+        FilmOptions{
+            .packet_size = options.packet_size, .avoids_texels = options.avoids_texels, .shaders = options.shaders});
     film->warm_up();
-    shading = of;
+    film_features = features;
+  }
+
+  /// After a part of the scene has changed.
+  void take_change() {
+    if (film) film->bind_scene();
   }
 
   /// Traces one band: `window` of the picture, on a film of its size.
   void trace_band(const PixelWindow& window, const View& view, RenderResult& result,
-                  const std::function<void(double)>& on_progress) {
+                  const ProgressCallback& on_progress) {
     TileOptions cut = film->piece_options();
     cut.blocks_per_piece = options.blocks_per_dispatch;
     for (;;) {
-      if (!takes_many_paths) cut.most_paths_a_lane = 1;
-      const FilmCounts counts = trace_pieces(window, view, cut, result.trace_ms, on_progress);
-      if (!counts.has_cut_loops) {
-        result.rays += counts.rays;
-        return;
-      }
-      if (!takes_many_paths) throw make_cut_loops_error("lower --max-depth or take another device");
-      takes_many_paths = false;
+      const bool takes_many_paths = cut_loops.takes_many_paths();
+      const FilmCounts counts = trace_pieces(window, view, cut_loops.limit(cut), result.trace_ms, on_progress);
+      if (cut_loops.must_trace_again(counts.has_cut_loops, takes_many_paths)) continue;
+      result.rays += counts.rays;
+      return;
     }
   }
 
   FilmCounts trace_pieces(const PixelWindow& window, const View& view, const TileOptions& cut, double& trace_ms,
-                          const std::function<void(double)>& on_progress) {
+                          const ProgressCallback& on_progress) {
     FilmCounts counts;
     const auto collect = [&] {
       const FilmCounts taken = film->take_counts();
       counts.rays += taken.rays;
       counts.has_cut_loops = counts.has_cut_loops || taken.has_cut_loops;
     };
+    film->reserve((window.hi.x - window.lo.x) * (window.hi.y - window.lo.y));
     TileScheduler picture = film->cut(view, window, cut);
-    film->reserve(picture.pixel_count());
     film->begin(picture);
     double uncollected = 0.0;
     std::vector<TileSample> pieces;
@@ -106,7 +168,7 @@ struct Renderer::Impl {
         collect();
         uncollected = 0.0;
       }
-      on_progress(picture.fraction_done());
+      tell_progress(on_progress, picture.fraction_done());
     }
     collect();
     return counts;
@@ -118,93 +180,157 @@ struct Renderer::Impl {
     film->buffer().read(std::as_writable_bytes(std::span(film_records)), Film::kPixelsOffset);
     average_samples(film_records, samples, std::span(result.image.pixels).subspan(first, count));
     if (!options.with_aovs) return;
-    Aovs& aovs = result.aovs;
-    for (size_t i = 0; i < count; ++i) {
-      const uvec4& normal_and_depth = film_records[count + i];
-      aovs.normal[first + i] = vec3_of(normal_and_depth);
-      aovs.depth[first + i] = std::bit_cast<float>(normal_and_depth.w);
-      const uint32_t order = film_records[i].w;
-      if (order == layout::NO_ORDER) continue;
-      const PrimitiveId id = primitive_of_order(numbers, order);
-      aovs.object[first + i] = id.object;
-      aovs.primitive[first + i] = id.primitive;
+    for (size_t i = 0; i < count; ++i) read_aovs(film_records[i], film_records[count + i], first + i, result.aovs);
+  }
+
+  /// Of a pixel, from its two records (shaders/film.glsl).
+  void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, size_t at, Aovs& aovs) const {
+    aovs.normal[at] = vec3_of(normal_and_depth);
+    aovs.depth[at] = std::bit_cast<float>(normal_and_depth.w);
+    if (pixel.w == layout::NO_ORDER) return;
+    const PrimitiveId id = primitive_of_order(scene.numbers(), pixel.w);
+    aovs.object[at] = id.object;
+    aovs.primitive[at] = id.primitive;
+  }
+
+  RenderResult render(const View& view, const ProgressCallback& progress) {
+    const PixelWindow window = view.crop.value_or(PixelWindow{uvec2(0), view.size});
+    RenderResult result;
+    result.image.size = window.hi - window.lo;
+    const uint32_t width = result.image.size.x;
+    const size_t pixel_count = static_cast<size_t>(width) * result.image.size.y;
+    result.image.pixels.resize(pixel_count);
+    if (options.with_aovs) result.aovs.resize(pixel_count);
+    prepare_film(view.mode);
+    const uint32_t film_rows = kMaxFilmRecords / film->records_per_pixel() / width;
+    const uint32_t band_rows = std::max(layout::BLOCK_SIZE, film_rows / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
+    for (uint32_t y = window.lo.y; y < window.hi.y; y += band_rows) {
+      const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
+      const uint32_t rows = band.hi.y - band.lo.y;
+      const double done = static_cast<double>(y - window.lo.y) / result.image.size.y;
+      const double share = static_cast<double>(rows) / result.image.size.y;
+      trace_band(band, view, result, [&](double fraction) { return !progress || progress(done + share * fraction); });
+      read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width, view.samples_per_pixel,
+                result);
+    }
+    return result;
+  }
+
+  void render_progressively(const View& view, double budget_ms,
+                            const std::function<bool(const Image&, const View&)>& on_picture) {
+    ProgressivePicture picture(device, scene.device_scene(), scene.features(view.mode), budget_ms);
+    picture.resize(view.size);
+    picture.want(view);
+    uint64_t shown_count = 0;
+    while (!picture.is_settled()) {
+      picture.trace();
+      if (picture.shown_count() == shown_count) continue;
+      shown_count = picture.shown_count();
+      View shown = view;
+      shown.size = picture.shown()->size;
+      shown.samples_per_pixel = picture.shown()->samples_per_pixel;
+      if (!on_picture(picture.read(), shown)) return;
+      if (picture.is_complete() && shown.samples_per_pixel >= view.samples_per_pixel) return;
     }
   }
 
-  static vec3 vec3_of(const uvec4& bits) {
-    return {std::bit_cast<float>(bits.x), std::bit_cast<float>(bits.y), std::bit_cast<float>(bits.z)};
-  }
-
   const gpu::Device& device;
-  RendererOptions options;
+  TunedRendererOptions options;
+  size_t pipelines_before;
   Pacer pacer;
-  /// A lane, one after the other. Not once the driver has cut loops: the next band and picture would have it do so
-  /// again.
-  bool takes_many_paths = true;
+  CutLoops cut_loops;
   SetupStats stats;
-  PrimitiveNumbers numbers;
-  std::shared_ptr<const DeviceScene> scene;
+  SceneOnDevice scene;
   std::optional<Film> film;
-  /// The film's.
-  Shading shading = Shading::kFull;
+  FeatureMask film_features;
   std::vector<uvec4> film_records;
 };
 
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::Renderer(const gpu::Device& device, const Scene& scene, const RendererOptions& options) {
-  gpu::translate_vulkan_errors([&] { impl_ = std::make_unique<Impl>(device, scene, options); });
+  throw_if_invalid(scene);
+  *this = RendererAccess::make(device, world::flatten(scene), TunedRendererOptions{options});
 }
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+Renderer RendererAccess::make(const gpu::Device& device, const world::Scene& scene,
+                              const TunedRendererOptions& options) {
+  std::unique_ptr<Renderer::Impl> impl;
+  gpu::translate_vulkan_errors([&] { impl = std::make_unique<Renderer::Impl>(device, scene, options); });
+  return Renderer(std::move(impl));
+}
+
+SceneOnDevice& RendererAccess::scene_of(Renderer& renderer) {
+  return renderer.impl_->scene;
+}
+const SceneOnDevice& RendererAccess::scene_of(const Renderer& renderer) {
+  return renderer.impl_->scene;
+}
+
 const SetupStats& Renderer::setup_stats() const {
   return impl_->stats;
 }
 
+WorkDone Renderer::work_done() const {
+  const DeviceScene::Uploads& uploads = impl_->scene.device_scene()->uploads();
+  return {.trees_built = impl_->options.bvh ? 0U : 1U,
+          .geometry_bytes_uploaded = uploads.geometry,
+          .shading_bytes_uploaded = uploads.shading,
+          .pipelines_compiled = impl_->device.compiled_pipelines().size() - impl_->pipelines_before};
+}
+
+void Renderer::set_lights(std::span<const Light> lights) {
+  throw_if_invalid(lights);
+  gpu::translate_vulkan_errors([&] {
+    impl_->scene.set_lights(lights);
+    impl_->take_change();
+  });
+}
+
+void Renderer::set_materials(std::span<const Material> materials) {
+  throw_if_invalid(materials);
+  if (materials.size() != impl_->scene.material_count()) {
+    throw InputError({"there are " + std::to_string(materials.size()) + " materials for a scene of " +
+                          std::to_string(impl_->scene.material_count()),
+                      "in set_materials", "change the scene's own, in their order"});
+  }
+  gpu::translate_vulkan_errors([&] {
+    impl_->scene.set_materials(materials);
+    impl_->take_change();
+  });
+}
+
+void Renderer::set_environment(const Environment& environment) {
+  throw_if_invalid(environment);
+  impl_->scene.set_environment(environment);
+}
+
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
-  assert(!impl_->options.repack);
-  assert(pixel.x < view.size.x && pixel.y < view.size.y);
+  check_view(view);
+  check(pixel.x < view.size.x && pixel.y < view.size.y, "the pixel to explain lies beyond the picture",
+        "stay within its size");
   Explanation explanation;
   gpu::translate_vulkan_errors([&] {
-    explanation = explain_pixel(impl_->device, *impl_->scene, impl_->numbers, impl_->stats.features, view, pixel);
+    const SceneOnDevice& scene = impl_->scene;
+    const FeatureMask features = scene.features({.has_shadows = view.mode.has_shadows});
+    explanation = explain_pixel(impl_->device, *scene.device_scene(), scene.numbers(), features, view, pixel);
   });
   return explanation;
 }
 
-RenderResult Renderer::render(const View& view, const std::function<void(double)>& progress) {
-  const PixelWindow window = view.crop.value_or(PixelWindow{uvec2(0), view.size});
-  assert(window.lo.x < window.hi.x && window.lo.y < window.hi.y);
-  assert(window.hi.x <= view.size.x && window.hi.y <= view.size.y);
-  assert(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel);
-
+RenderResult Renderer::render(const View& view, const ProgressCallback& progress) {
+  check_view(view);
   RenderResult result;
-  result.image.size = window.hi - window.lo;
-  const uint32_t width = result.image.size.x;
-  const size_t pixel_count = static_cast<size_t>(width) * result.image.size.y;
-  result.image.pixels.resize(pixel_count);
-  if (impl_->options.with_aovs) {
-    result.aovs = {std::vector<float>(pixel_count), std::vector<vec3>(pixel_count),
-                   std::vector<uint32_t>(pixel_count, Aovs::kNoId), std::vector<uint32_t>(pixel_count, Aovs::kNoId)};
-  }
-  gpu::translate_vulkan_errors([&] {
-    if (view.shading != impl_->shading) impl_->make_film(view.shading);
-  });
-  const uint32_t film_rows = kMaxFilmRecords / impl_->film->records_per_pixel() / width;
-  const uint32_t band_rows = std::max(layout::BLOCK_SIZE, film_rows / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
-  for (uint32_t y = window.lo.y; y < window.hi.y; y += band_rows) {
-    const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
-    const uint32_t rows = band.hi.y - band.lo.y;
-    const double done = static_cast<double>(y - window.lo.y) / result.image.size.y;
-    const double share = static_cast<double>(rows) / result.image.size.y;
-    gpu::translate_vulkan_errors([&] {
-      impl_->trace_band(band, view, result, [&](double fraction) {
-        if (progress) progress(done + share * fraction);
-      });
-      impl_->read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width,
-                       view.samples_per_pixel, result);
-    });
-  }
+  gpu::translate_vulkan_errors([&] { result = impl_->render(view, progress); });
   return result;
+}
+
+void Renderer::render_progressively(const View& view, double budget_ms,
+                                    const std::function<bool(const Image&, const View&)>& on_picture) {
+  check_view(view);
+  gpu::translate_vulkan_errors([&] { impl_->render_progressively(view, budget_ms, on_picture); });
 }
 
 }  // namespace promin

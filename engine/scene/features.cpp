@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/features.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -12,100 +13,179 @@ namespace {
 
 using namespace layout;
 
-struct NamedFeature {
-  FeatureMask bit;
-  std::string_view name;
-};
+/// Of each bit what a scene may bring, the name of its feature; empty where there is none.
+constexpr auto kSceneFeatures = [] {
+  std::array<std::string_view, 32 * FEATURE_WORDS> names{};
+#define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;
+#include "promin/kinds/primitives.def"
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;
+#include "promin/kinds/lights.def"
+#define PROMIN_FEATURE(FEATURE, BIT, NAME) names[BIT] = NAME;
+#define PROMIN_REQUEST(FEATURE, BIT, NAME)
+#include "promin/kinds/features.def"
+  return names;
+}();
 
-constexpr std::array kFeatures{
-    NamedFeature{FEATURE_TRIANGLES, "triangles"},
-    NamedFeature{FEATURE_SPHERES, "spheres"},
-    NamedFeature{FEATURE_CYLINDERS, "cylinders"},
-    NamedFeature{FEATURE_CONES, "cones"},
-    NamedFeature{FEATURE_PLANES, "planes"},
-    NamedFeature{FEATURE_POINT_LIGHTS, "point lights"},
-    NamedFeature{FEATURE_DIRECTIONAL_LIGHTS, "directional lights"},
-    NamedFeature{FEATURE_SPOT_LIGHTS, "spot lights"},
-    NamedFeature{FEATURE_FALLOFF, "distance falloff"},
-    NamedFeature{FEATURE_SHADOWS, "shadows"},
-    NamedFeature{FEATURE_SPECULAR, "specular highlights"},
-    NamedFeature{FEATURE_MIRRORS, "mirrors"},
-    NamedFeature{FEATURE_SMOOTH_NORMALS, "smooth normals"},
-    NamedFeature{FEATURE_VERTEX_COLORS, "vertex colours"},
-    NamedFeature{FEATURE_HEADLIGHT, "headlight"},
-};
-static_assert(kFeatures.size() == FEATURE_COUNT);
+/// Whether every row of the tables has a bit of its own, apart from that of the debug view.
+constexpr bool are_bits_distinct() {
+  std::array<int, 32 * FEATURE_WORDS> uses{};
+#define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) ++uses[BIT];
+#include "promin/kinds/primitives.def"
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) ++uses[BIT];
+#include "promin/kinds/lights.def"
+#define PROMIN_FEATURE(FEATURE, BIT, NAME) ++uses[BIT];
+#define PROMIN_REQUEST(FEATURE, BIT, NAME) ++uses[BIT];
+#include "promin/kinds/features.def"
+  for (uint bit = 0; bit < 8; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
+  return std::ranges::all_of(uses, [](int count) { return count <= 1; });
+}
+static_assert(are_bits_distinct());
+
+/// Leaves are sorted by kind and traversed in the order of the table.
+constexpr bool do_kinds_ascend() {
+  uint next = 0;
+  bool result = true;
+#define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  result = result && (NUMBER) >= next;                                        \
+  next = (NUMBER) + 1;
+#include "promin/kinds/primitives.def"
+  return result;
+}
+static_assert(do_kinds_ascend());
 
 struct ShapeFeatures {
-  FeatureMask operator()(const NotDrawn&) const { return 0; }
+  FeatureMask operator()(const world::NotDrawn&) const { return {}; }
   FeatureMask operator()(const Mesh& mesh) const {
-    if (mesh.triangles.empty()) return 0;
-    return FEATURE_TRIANGLES | (mesh.normals.empty() ? 0 : FEATURE_SMOOTH_NORMALS) |
-           (mesh.colors.empty() ? 0 : FEATURE_VERTEX_COLORS);
+    FeatureMask features;
+    if (mesh.triangles.empty()) return features;
+    features |= FEATURE_TRIANGLES;
+    if (!mesh.normals.empty()) features |= FEATURE_SMOOTH_NORMALS;
+    if (!mesh.colors.empty()) features |= FEATURE_VERTEX_COLORS;
+    return features;
   }
-  FeatureMask operator()(const Sphere&) const { return FEATURE_SPHERES; }
-  FeatureMask operator()(const Plane&) const { return FEATURE_PLANES; }
-  FeatureMask operator()(const Cylinder&) const { return FEATURE_CYLINDERS; }
-  FeatureMask operator()(const Cone&) const { return FEATURE_CONES; }
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  FeatureMask operator()(const world::TYPE&) const {                 \
+    return FEATURE_##FEATURE;                                        \
+  }
+#include "promin/kinds/primitives.def"
 };
 
-FeatureMask features_of(const Material& material) {
-  const bool has_highlight = material.shininess > 0.0F && max_component(material.specular) > 0.0F;
-  return (has_highlight ? FEATURE_SPECULAR : 0) | (max_component(material.reflection) > 0.0F ? FEATURE_MIRRORS : 0);
+FeatureMask feature_of(LightKind kind) {
+  switch (kind) {
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  case LightKind::ENUMERATOR:                                              \
+    return FEATURE_##FEATURE;
+#include "promin/kinds/lights.def"
+  }
+  return {};
 }
 
-FeatureMask features_of(const Light& light) {
-  const FeatureMask falloff = light.attenuation == Attenuation::kInverseSquare ? FEATURE_FALLOFF : 0;
-  switch (light.kind) {
-    case LightKind::kDirectional:
-      return FEATURE_DIRECTIONAL_LIGHTS;
-    case LightKind::kSpot:
-      return FEATURE_SPOT_LIGHTS | falloff;
-    case LightKind::kPoint:
-      return FEATURE_POINT_LIGHTS | falloff;
-    case LightKind::kHeadlight:
-      return FEATURE_HEADLIGHT;
-  }
-  return 0;
+bool falls_off(const Light& light) {
+  const bool has_place = light.kind == LightKind::kPoint || light.kind == LightKind::kSpot;
+  return has_place && light.attenuation == Attenuation::kInverseSquare;
 }
 
 }  // namespace
 
-FeatureMask features_of(const Scene& scene) {
-  FeatureMask features = 0;
-  uint64_t primitives = 0;
-  std::vector<bool> is_used(scene.materials.size(), false);
-  for (const Object& object : scene.objects) {
-    features |= std::visit(ShapeFeatures(), object.shape);
-    const uint32_t count = primitive_count(object.shape);
-    primitives += count;
-    if (count == 0) continue;
-    const Mesh* mesh = std::get_if<Mesh>(&object.shape);
+FeatureMask geometry_features(std::span<const world::Object> objects) {
+  FeatureMask features;
+  for (const world::Object& object : objects) features |= std::visit(ShapeFeatures(), object.shape);
+  return features;
+}
+
+FeatureMask material_features(std::span<const Material> materials, const std::vector<bool>& is_shown) {
+  FeatureMask features;
+  for (size_t i = 0; i < materials.size(); ++i) {
+    const Material& material = materials[i];
+    if (!is_shown[i]) continue;
+    if (material.shininess > 0.0F && max_component(material.specular) > 0.0F) features |= FEATURE_SPECULAR;
+    if (max_component(material.reflection) > 0.0F) features |= FEATURE_MIRRORS;
+  }
+  return features;
+}
+
+FeatureMask light_features(std::span<const Light> lights) {
+  FeatureMask features;
+  for (const Light& light : lights) {
+    if (!light.is_on) continue;
+    features |= feature_of(light.kind);
+    if (falls_off(light)) features |= FEATURE_FALLOFF;
+  }
+  return features;
+}
+
+FeatureMask primitive_features() {
+  FeatureMask features;
+#define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
+#include "promin/kinds/primitives.def"
+  return features;
+}
+
+std::vector<bool> find_shown_materials(std::span<const world::Object> objects, size_t material_count) {
+  std::vector<bool> is_shown(material_count, false);
+  for (const world::Object& object : objects) {
+    if (world::primitive_count(object.shape) == 0) continue;
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (mesh == nullptr || mesh->triangle_materials.empty()) {
-      is_used[object.material] = true;
+      is_shown[object.material] = true;
     } else {
-      for (const uint32_t material : mesh->triangle_materials) is_used[material] = true;
+      for (const uint32_t material : mesh->triangle_materials) is_shown[material] = true;
     }
   }
-  for (size_t i = 0; i < is_used.size(); ++i) {
-    if (is_used[i]) features |= features_of(scene.materials[i]);
-  }
-  for (const Light& light : scene.lights) features |= features_of(light);
-  if (scene.lights.empty()) features &= ~FEATURE_SPECULAR;
+  return is_shown;
+}
+
+FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights,
+                             uint64_t primitive_count) {
+  FeatureMask features = geometry | materials | lights;
+  if (lights.is_empty()) return features.without(FEATURE_SPECULAR);
   // A flat primitive alone shadows nothing; a solid shadows its own inside.
-  const bool is_flat = (features & (FEATURE_SPHERES | FEATURE_CYLINDERS | FEATURE_CONES)) == 0;
-  if (!(primitives <= 1 && is_flat) && !scene.lights.empty()) features |= FEATURE_SHADOWS;
+  FeatureMask solids;
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) solids |= FEATURE_##FEATURE;
+#include "promin/kinds/primitives.def"
+  if (primitive_count > 1 || geometry.has_any(solids)) features |= FEATURE_SHADOWS;
+  return features;
+}
+
+FeatureMask features_of(const world::Scene& scene) {
+  uint64_t primitives = 0;
+  for (const world::Object& object : scene.objects) primitives += world::primitive_count(object.shape);
+  return picture_features(
+      geometry_features(scene.objects),
+      material_features(scene.materials, find_shown_materials(scene.objects, scene.materials.size())),
+      light_features(scene.lights), primitives);
+}
+
+FeatureMask features_of(DebugView view) {
+  FeatureMask features = FeatureMask::of_debug_view(static_cast<uint32_t>(view));
+  // NONE among the requests of debug_views.def.
+  const FeatureMask FEATURE_NONE;
+  switch (view) {
+    case DebugView::kNone:
+      break;
+#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
+  case DebugView::ENUMERATOR:                                                    \
+    features |= FEATURE_##REQUEST;                                               \
+    break;
+#include "promin/kinds/debug_views.def"
+  }
   return features;
 }
 
 FeatureMask all_features() {
-  return (1U << FEATURE_COUNT) - 1U;
+  FeatureMask features = primitive_features();
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
+#include "promin/kinds/lights.def"
+#define PROMIN_FEATURE(FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
+#define PROMIN_REQUEST(FEATURE, BIT, NAME)
+#include "promin/kinds/features.def"
+  return features;
 }
 
 std::vector<std::string> feature_names(FeatureMask features) {
   std::vector<std::string> names;
-  for (const NamedFeature& feature : kFeatures) {
-    if ((features & feature.bit) != 0) names.emplace_back(feature.name);
+  for (uint bit = 0; bit < kSceneFeatures.size(); ++bit) {
+    if (!kSceneFeatures[bit].empty() && features.has_any(Feature{bit})) names.emplace_back(kSceneFeatures[bit]);
   }
   return names;
 }

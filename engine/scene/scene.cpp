@@ -3,6 +3,11 @@
 #include "promin/scene.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "promin/view.h"
+#include "shapes/shapes.h"
 
 namespace promin {
 namespace {
@@ -12,18 +17,46 @@ constexpr double kFramePitch = 0.25;
 constexpr double kFrameMargin = 1.05;
 constexpr float kFrameYfov = 0.7F;
 
-struct BoundsOfShape {
-  Bounds operator()(const NotDrawn&) const { return {}; }
-  Bounds operator()(const Plane&) const { return {}; }
+/// Of an object in the world, without a copy of its mesh.
+struct BoundsInWorld {
+  const dmat4& world_from_object;
+
   Bounds operator()(const Mesh& mesh) const {
+    const bool is_moved = !Placement(world_from_object).is_identity();
     Bounds bounds;
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) bounds.extend(bounds_of_triangle(mesh, i));
+    for (const uvec3& triangle : mesh.triangles) {
+      for (int i = 0; i < 3; ++i) {
+        const vec3& p = mesh.positions[triangle[i]];
+        bounds.extend(is_moved ? vec3(world_from_object * dvec4(p, 1.0)) : p);
+      }
+    }
     return bounds;
   }
-  template <class Solid>
-  Bounds operator()(const Solid& solid) const {
-    return bounds_of(solid);
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)         \
+  Bounds operator()(const TYPE& shape) const {                               \
+    const std::optional placed = place(shape, Placement(world_from_object)); \
+    return placed ? bounds_of(*placed) : Bounds();                           \
   }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  Bounds operator()(const TYPE&) const {                                 \
+    return {};                                                           \
+  }
+#include "promin/kinds/primitives.def"
+};
+
+/// Where an unbounded shape lies; none of others.
+struct CenterOfUnbounded {
+  const dmat4& world_from_object;
+
+  template <class Bounded>
+  std::optional<vec3> operator()(const Bounded&) const {
+    return std::nullopt;
+  }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  std::optional<vec3> operator()(const TYPE& shape) const {              \
+    return vec3(center_of(shape, Placement(world_from_object)));         \
+  }
+#include "promin/kinds/primitives.def"
 };
 
 /// What to look at: everything finite, or else a box of size 2 around the first plane's point or the origin.
@@ -32,10 +65,11 @@ Bounds frame_of(const Scene& scene) {
   if (!bounds.is_empty()) return bounds;
   vec3 center(0.0F);
   for (const Object& object : scene.objects) {
-    if (const auto* plane = std::get_if<Plane>(&object.shape)) {
-      center = plane->point;
-      break;
-    }
+    if (object.geometry == Object::kNoGeometry) continue;
+    const auto found = std::visit(CenterOfUnbounded{object.world_from_object}, scene.geometries[object.geometry]);
+    if (!found) continue;
+    center = *found;
+    break;
   }
   bounds.extend(center - 1.0F);
   bounds.extend(center + 1.0F);
@@ -44,15 +78,28 @@ Bounds frame_of(const Scene& scene) {
 
 }  // namespace
 
+Object& Scene::add(std::string name, Geometry geometry, uint32_t material, const dmat4& world_from_object) {
+  geometries.push_back(std::move(geometry));
+  objects.push_back({std::move(name), static_cast<uint32_t>(geometries.size() - 1), material, world_from_object});
+  return objects.back();
+}
+
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
-  for (const Object& object : scene.objects) bounds.extend(std::visit(BoundsOfShape{}, object.shape));
+  for (const Object& object : scene.objects) {
+    if (object.geometry == Object::kNoGeometry) continue;
+    bounds.extend(std::visit(BoundsInWorld{object.world_from_object}, scene.geometries[object.geometry]));
+  }
   return bounds;
 }
 
-uint32_t primitive_count(const Shape& shape) {
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) return static_cast<uint32_t>(mesh->triangles.size());
-  return std::holds_alternative<NotDrawn>(shape) ? 0 : 1;
+uint32_t primitive_count(const Geometry& geometry) {
+  const auto* mesh = std::get_if<Mesh>(&geometry);
+  return mesh == nullptr ? 1 : static_cast<uint32_t>(mesh->triangles.size());
+}
+
+uint32_t primitive_count(const Scene& scene, const Object& object) {
+  return object.geometry == Object::kNoGeometry ? 0 : primitive_count(scene.geometries[object.geometry]);
 }
 
 Camera frame_scene(const Scene& scene, float aspect_ratio) {
@@ -88,6 +135,23 @@ Camera frame_scene(const Scene& scene, float aspect_ratio) {
   camera.yfov = kFrameYfov;
   camera.aspect_ratio = aspect_ratio;
   return camera;
+}
+
+bool shows_same(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
+         a.ymag == b.ymag && a.near == b.near;
+}
+
+bool shows_same(const View& a, const View& b) {
+  return a.size == b.size && a.mode == b.mode && a.max_depth == b.max_depth && shows_same(a.camera, b.camera);
+}
+
+AddedLights add_default_lights(Scene& scene) {
+  if (!scene.lights.empty()) return {};
+  scene.lights.push_back(make_headlight());
+  AddedLights added{.has_headlight = true, .has_ambient = scene.environment.ambient == vec3(0.0F)};
+  if (added.has_ambient) scene.environment.ambient = vec3(kDefaultAmbient);
+  return added;
 }
 
 Light make_headlight() {

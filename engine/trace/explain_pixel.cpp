@@ -9,6 +9,8 @@
 #include "device/device.h"
 #include "device_scene/device_scene.h"
 #include "promin/error.h"
+#include "trace/cut_loops.h"
+#include "trace/explain_sample.h"
 #include "trace/film.h"
 #include "trace/tile_scheduler.h"
 #include "trace/tracing_kernel.h"
@@ -29,10 +31,10 @@ constexpr uint64_t kMostLogBytes = 64U << 20;
 
 /// For one sample of the view, whatever it meets.
 uint64_t film_bytes(const DeviceScene& scene, const View& view) {
-  const uint64_t most_entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.dispatch().counts.z);
+  const uint64_t most_entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.constants().light_count);
   if (most_entries > kMostLogBytes / sizeof(layout::RayLog)) {
     throw RunError({"a pixel may take " + std::to_string(most_entries) + " rays and sources, too many to explain",
-                    "in this scene with its --max-depth", "give a smaller --max-depth"});
+                    "in this scene with so many bounces", "take a smaller depth"});
   }
   return sizeof(LoggedFilm) + most_entries * sizeof(layout::RayLog);
 }
@@ -41,34 +43,37 @@ constexpr uint64_t kQueuedPathBytes = Film::kQueuedPathRecords * sizeof(uvec4);
 
 class LoggingKernel {
  public:
-  LoggingKernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features, const layout::Frame& frame,
-                const View& view)
-      : frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer),
+  LoggingKernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features, const View& view)
+      : view_constants_(device, sizeof(layout::ViewConstants), vk::BufferUsageFlagBits::eUniformBuffer),
         queue_offset_(film_bytes(scene, view)),
         film_(device, queue_offset_ + kQueuedPathBytes, vk::BufferUsageFlagBits::eStorageBuffer),
-        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, 1, frame_, film_)) {
-    frame_.write(std::as_bytes(std::span(&frame, 1)));
+        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, 1, view_constants_, film_)) {
+    const layout::ViewConstants constants = make_view_constants(scene.constants(), view);
+    view_constants_.write(std::as_bytes(std::span(&constants, 1)));
   }
 
   /// Traces one sample of the pixel; they come in their order.
   std::vector<layout::RayLog> trace(const TileSample& sample) {
     head_.log_count = uvec4(0);
     film_.write(std::as_bytes(std::span(&head_, 1)));
-    layout::Dispatch dispatch = sample.dispatch;
-    dispatch.queue.x = static_cast<uint32_t>((queue_offset_ - offsetof(LoggedFilm, pixel)) / sizeof(uvec4));
-    kernel_.run(dispatch, film_, sample.group_counts);
+    kernel_.run(sample.dispatch, film_, sample.group_counts);
     film_.read(std::as_writable_bytes(std::span(&head_, 1)));
-    if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("lower --max-depth");
+    if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("take a smaller depth");
     std::vector<layout::RayLog> log(head_.log_count.x);
     film_.read(std::as_writable_bytes(std::span(log)), sizeof(LoggedFilm));
     return log;
+  }
+
+  /// Of the queue, in records of the film.
+  uint32_t first_queue_record() const {
+    return static_cast<uint32_t>((queue_offset_ - offsetof(LoggedFilm, pixel)) / sizeof(uvec4));
   }
 
   /// Of the samples so far.
   vec3 sum() const { return std::bit_cast<vec3>(std::array{head_.pixel.x, head_.pixel.y, head_.pixel.z}); }
 
  private:
-  gpu::Buffer frame_;
+  gpu::Buffer view_constants_;
   /// Of the queue of paths, behind the log.
   uint64_t queue_offset_;
   gpu::Buffer film_;
@@ -80,12 +85,13 @@ class LoggingKernel {
 
 Explanation explain_pixel(const gpu::Device& device, const DeviceScene& scene, const PrimitiveNumbers& numbers,
                           FeatureMask features, const View& view, const uvec2& pixel) {
-  TileScheduler samples(scene.frame(), scene.dispatch(), view, {pixel, pixel + 1U});
-  LoggingKernel kernel(device, scene, features, samples.frame(), view);
+  LoggingKernel kernel(device, scene, features, view);
+  TileScheduler samples(scene.constants(), view, {pixel, pixel + 1U},
+                        {.first_queue_record = kernel.first_queue_record()});
   Explanation explanation;
   explanation.pixel = pixel;
   while (!samples.is_done()) {
-    explanation.samples.push_back(explain_sample(kernel.trace(samples.next(1.0)), numbers));
+    explanation.samples.push_back(explain_sample(kernel.trace(samples.next(1.0)), numbers, scene.light_numbers()));
   }
   explanation.sum = kernel.sum();
   explanation.color = explanation.sum / static_cast<float>(view.samples_per_pixel);

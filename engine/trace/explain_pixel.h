@@ -7,6 +7,8 @@
 
 namespace promin {
 
+struct PrimitiveNumbers;
+
 namespace gpu {
 class Device;
 }

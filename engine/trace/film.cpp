@@ -43,7 +43,7 @@ constexpr uint32_t kMostQueuedPaths = TileScheduler::kMaxBlocks * kLanes;
 /// GPUs trace pixels alone: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes minutes
 /// to compile packets. Steps and logs are of single rays.
 uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
-  return device.is_lavapipe() && (features & layout::FEATURE_STEP_COUNTS) == 0 ? 4 : 1;
+  return device.is_lavapipe() && !features.has_any(layout::FEATURE_STEP_COUNTS) ? 4 : 1;
 }
 
 }  // namespace
@@ -61,9 +61,17 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
       scene_(std::move(scene)),
       features_(features),
       packet_size_(options.packet_size.value_or(pick_packet_size(device, features))),
-      frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
+      avoids_texels_(options.avoids_texels),
+      shaders_(options.shaders),
+      view_constants_(device, sizeof(layout::ViewConstants), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
-  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_, options.shaders));
+  bind_scene();
+}
+
+void Film::bind_scene() {
+  // The device has compiled it already unless the scene has outgrown its texel buffers.
+  kernel_.emplace(make_picture_kernel(*device_, *scene_, features_, packet_size_, view_constants_, *buffer_, shaders_,
+                                      avoids_texels_));
 }
 
 void Film::reserve(uint32_t pixel_count) {
@@ -88,19 +96,21 @@ TileOptions Film::piece_options() const {
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
-  return {scene_->frame(), scene_->dispatch(), view, window, options};
+  TileOptions placed = options;
+  placed.first_queue_record = capacity_ * records_per_pixel();
+  return {scene_->constants(), view, window, placed};
 }
 
 void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileScheduler& picture) const {
   assert(picture.pixel_count() <= capacity_);
   const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite, Access::eTransferWrite);
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eTransfer, {}, before, {}, {});
-  commands.updateBuffer<layout::Frame>(*frame_.handle(), 0, picture.frame());
+  commands.updateBuffer<layout::ViewConstants>(*view_constants_.handle(), 0, picture.view_constants());
   commands.fillBuffer(*buffer_->handle(), offsetof(FilmHead, ray_counts), kCountersBytes, 0);
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
-  kernel_->record(commands, dispatch_of(piece), *buffer_, piece.group_counts);
+  kernel_->record(commands, piece.dispatch, *buffer_, piece.group_counts);
 }
 
 void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
@@ -133,25 +143,19 @@ void Film::warm_up() const {
   View one_pixel;
   one_pixel.size = uvec2(1);
   one_pixel.max_depth = 0;
-  TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, {});
+  TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, piece_options());
   begin(picture);
   const TileSample piece = picture.next(1.0);
   run({&piece, 1});
 }
 
 uint32_t Film::records_per_pixel() const {
-  return (features_ & layout::FEATURE_AOVS) != 0 ? 2 : 1;
+  return features_.has_any(layout::FEATURE_AOVS) ? 2 : 1;
 }
 
 uint32_t Film::queue_records(uint32_t pixel_count) const {
-  if ((features_ & layout::FEATURE_MIRRORS) == 0) return 0;
+  if (!features_.has_any(layout::FEATURE_MIRRORS)) return 0;
   return kQueuedPathRecords * std::min(pixel_count, kMostQueuedPaths);
-}
-
-layout::Dispatch Film::dispatch_of(const TileSample& piece) const {
-  layout::Dispatch dispatch = piece.dispatch;
-  dispatch.queue.x = capacity_ * records_per_pixel();
-  return dispatch;
 }
 
 uint32_t Film::max_capacity() const {
@@ -160,19 +164,20 @@ uint32_t Film::max_capacity() const {
 }
 
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
-                                  const PictureShaders& shaders) {
+                                  uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
+                                  const PictureShaders& shaders, bool avoids_texels) {
   const std::array constants{
       gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
-      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
+      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features.words()[0]},
+      gpu::SpecializationConstant{layout::CONSTANT_MORE_FEATURES, features.words()[1]},
       gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
-      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() ? 1U : 0U}};
+      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() && !avoids_texels ? 1U : 0U}};
   std::vector<gpu::BoundBuffer> buffers = scene.geometry();
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
-  buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});
+  buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &view});
   buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
   TracingKernel kernel(device, shaders.camera_stage, constants, buffers);
-  if ((features & layout::FEATURE_MIRRORS) != 0) {
+  if (features.has_any(layout::FEATURE_MIRRORS)) {
     // Mirror rays go everywhere: each is traced alone.
     kernel.add_stage(shaders.mirror_stage, std::span(constants).subspan(1), buffers);
   }

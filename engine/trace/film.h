@@ -25,6 +25,8 @@ struct FilmCounts {
 struct FilmOptions {
   /// Pixels that a lane of the camera stage takes together, 1, 2 or 4; empty: as suits the device.
   std::optional<uint32_t> packet_size = std::nullopt;
+  /// Read the scene as storage buffers even where texel buffers hold it, for tests.
+  bool avoids_texels = false;
   /// Others with the same bindings are for measurements.
   PictureShaders shaders = picture_shaders();
 };
@@ -34,8 +36,8 @@ struct FilmOptions {
 /// run; nothing of that waits unless it says so.
 class Film {
  public:
-  /// Compiles unless the device has compiled the same already. `features` of the scene and of the shading
-  /// (render/shading.h), and FEATURE_AOVS.
+  /// Compiles unless the device has compiled the same already. `features` of the scene and of the debug view
+  /// (scene/features.h), and FEATURE_AOVS.
   Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
        const FilmOptions& options = {});
 
@@ -43,9 +45,12 @@ class Film {
   void reserve(uint32_t pixel_count);
   uint32_t capacity() const { return capacity_; }
 
+  /// Takes note that the scene has changed parts; the device is idle with respect to the film.
+  void bind_scene();
+
   /// How the device wants pictures cut.
   TileOptions piece_options() const;
-  /// A picture of the film's scene.
+  /// A picture of the film's scene, on the film as large as it is now: reserve() comes first.
   TileScheduler cut(const View& view, const PixelWindow& window, const TileOptions& options) const;
 
   /// Records the beginning of a picture that has room, after all that compute shaders and transfers recorded before.
@@ -77,13 +82,14 @@ class Film {
  private:
   /// Of the queue of paths, for a film of so many pixels.
   uint32_t queue_records(uint32_t pixel_count) const;
-  layout::Dispatch dispatch_of(const TileSample& piece) const;
 
   const gpu::Device* device_;
   std::shared_ptr<const DeviceScene> scene_;
   FeatureMask features_;
   uint32_t packet_size_;
-  gpu::Buffer frame_;
+  bool avoids_texels_;
+  PictureShaders shaders_;
+  gpu::Buffer view_constants_;
   std::optional<gpu::Buffer> buffer_;
   uint32_t capacity_ = 0;
   std::optional<TracingKernel> kernel_;
@@ -91,8 +97,8 @@ class Film {
 
 /// The stages of a picture for a scene's `features`, bound to the scene and to these buffers.
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
-                                  const PictureShaders& shaders = picture_shaders());
+                                  uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
+                                  const PictureShaders& shaders = picture_shaders(), bool avoids_texels = false);
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);

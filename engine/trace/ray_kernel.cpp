@@ -12,6 +12,7 @@
 #include "core/stopwatch.h"
 #include "device/device.h"
 #include "device_scene/device_scene.h"
+#include "trace/cut_loops.h"
 #include "trace/share_out.h"
 #include "trace/tracing_kernel.h"
 
@@ -29,12 +30,6 @@ vk::DeviceSize hits_size(size_t ray_count) {
 
 }  // namespace
 
-std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed) {
-  std::shared_ptr<const DeviceScene> scene;
-  gpu::translate_vulkan_errors([&] { scene = std::make_shared<const DeviceScene>(device, packed); });
-  return scene;
-}
-
 std::span<const uint32_t> cast_spirv() {
   return k_cast_spirv;
 }
@@ -46,21 +41,23 @@ struct RayKernel::Impl {
         options(the_options),
         pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), kFirstRays) {
     const Stopwatch compiling;
-    frame.emplace(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer);
-    frame->write(std::as_bytes(std::span(&scene->frame(), 1)));
+    const layout::ViewConstants values = make_cast_constants(scene->constants());
+    view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
+    view_constants->write(std::as_bytes(std::span(&values, 1)));
     make_buffers(1);
     const std::array constants{
-        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features},
+        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features.words()[0]},
+        gpu::SpecializationConstant{layout::CONSTANT_MORE_FEATURES, options.features.words()[1]},
         gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
         gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, fetches_texels() ? 1U : 0U},
         gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, options.packet_size},
         gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
-    buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &*frame});
+    buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &*view_constants});
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
     kernel.emplace(device, options.spirv, constants, buffers);
     // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
-    const layout::Dispatch no_rays = scene->dispatch();
+    const layout::Dispatch no_rays = make_cast_dispatch(scene->constants(), 0, 0);
     kernel->run(no_rays, *hits, {uvec2(1)});
     pipeline_ms = compiling.ms();
   }
@@ -102,7 +99,6 @@ struct RayKernel::Impl {
     make_buffers(input.size());
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
-    layout::Dispatch dispatch = scene->dispatch();
     const uint32_t most_parts = most_parts_of_dispatch(device);
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
@@ -111,7 +107,7 @@ struct RayKernel::Impl {
       const double paced = std::max<double>(pacer.units(), group_rays);
       const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : paced;
       const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
-      dispatch.range = uvec4(first, first + count, 0, 0);
+      const layout::Dispatch dispatch = make_cast_dispatch(scene->constants(), first, first + count);
       // Those beyond the last ray do nothing.
       const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
       const double time_ms = kernel->run(dispatch, *hits, {groups});
@@ -128,7 +124,7 @@ struct RayKernel::Impl {
   std::shared_ptr<const DeviceScene> scene;
   RayKernelOptions options;
   Pacer pacer;
-  std::optional<gpu::Buffer> frame;
+  std::optional<gpu::Buffer> view_constants;
   std::optional<gpu::Buffer> rays;
   vk::raii::BufferView ray_texels{nullptr};
   std::optional<gpu::Buffer> hits;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "device_scene/pack_scene.h"
+#include "device_scene/device_scene.h"
 #include "layout.h"
 #include "promin/ray.h"
 #include "scene/features.h"
@@ -17,10 +17,6 @@ namespace promin {
 namespace gpu {
 class Device;
 }
-class DeviceScene;
-
-/// Copies a packed scene to the device. Throws RunError where memory does not suffice or a device limit is passed.
-std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed);
 
 /// SPIR-V of shaders/cast.comp.
 std::span<const uint32_t> cast_spirv();

@@ -7,30 +7,11 @@
 #include <cmath>
 
 #include "core/divide_up.h"
-#include "trace/sampling.h"
+#include "device_scene/sampling.h"
 #include "trace/share_out.h"
 
 namespace promin {
 namespace {
-
-/// The camera's part of a frame, computed in double.
-void set_camera(layout::Frame& frame, layout::Dispatch& dispatch, const Camera& camera, const uvec2& size) {
-  const bool is_orthographic = camera.projection == Projection::kOrthographic;
-  const double half_height =
-      is_orthographic ? static_cast<double>(camera.ymag) : std::tan(0.5 * static_cast<double>(camera.yfov));
-  const double pixel = 2.0 * half_height / size.y;
-  const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
-  const dvec3 up = dvec3(camera.up) * pixel;
-  // A ray's interval is open, but what lies on the viewport itself is drawn.
-  const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
-  frame.eye = vec4(camera.eye, before_near);
-  frame.look = vec4(camera.look, 0.0F);
-  dispatch.sampling.w = is_orthographic ? 1 : 0;
-  frame.right = vec4(vec3(right), 0.0F);
-  frame.up = vec4(vec3(up), 0.0F);
-  frame.film_center.x = 0.5F * static_cast<float>(size.x);
-  frame.film_center.y = 0.5F * static_cast<float>(size.y);
-}
 
 /// Where a lane has several it does not wait for its neighbours'; but the device's cores want groups to share.
 uint32_t pick_paths_a_lane(uint32_t blocks, const TileOptions& options) {
@@ -40,27 +21,22 @@ uint32_t pick_paths_a_lane(uint32_t blocks, const TileOptions& options) {
 
 }  // namespace
 
-TileScheduler::TileScheduler(const layout::Frame& frame, const layout::Dispatch& dispatch, const View& view,
-                             const PixelWindow& window, const TileOptions& options)
-    : frame_(frame),
-      dispatch_(dispatch),
+TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,
+                             const TileOptions& options)
+    : scene_(scene),
+      view_(view),
+      window_(window),
       options_(options),
-      samples_(view.samples_per_pixel),
-      max_depth_(view.max_depth) {
+      lattice_generator_(lattice_generator(view.samples_per_pixel)) {
   static_assert(kMaxBlocks <= 65535, "Vulkan's guaranteed workgroup count");
-  assert(samples_ >= 1 && samples_ <= kMaxSamplesPerPixel);
-  set_camera(frame_, dispatch_, view.camera, view.size);
+  assert(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel);
   const uvec2 size = window.hi - window.lo;
-  const uint32_t block_columns = divide_up(size.x, layout::BLOCK_SIZE);
-  frame_.film_center.z = static_cast<float>(0.5 / samples_);
-  dispatch_.window = uvec4(window.lo, size);
-  dispatch_.sampling = uvec4(samples_, lattice_generator(samples_), block_columns, dispatch_.sampling.w);
   pixel_count_ = size.x * size.y;
-  block_total_ = block_columns * divide_up(size.y, layout::BLOCK_SIZE);
+  block_total_ = divide_up(size.x, layout::BLOCK_SIZE) * divide_up(size.y, layout::BLOCK_SIZE);
 }
 
 double TileScheduler::fraction_done() const {
-  return (first_block_ + block_count_ * (static_cast<double>(sample_) / samples_)) / block_total_;
+  return (first_block_ + block_count_ * (static_cast<double>(sample_) / view_.samples_per_pixel)) / block_total_;
 }
 
 TileSample TileScheduler::next(double units) {
@@ -69,16 +45,20 @@ TileSample TileScheduler::next(double units) {
   const uint32_t paths_a_lane = pick_paths_a_lane(block_count_, options_);
 
   TileSample piece;
-  piece.dispatch = dispatch_;
-  piece.dispatch.range = uvec4(first_block_, first_block_ + block_count_, sample_, max_depth_);
-  piece.dispatch.queue.w = paths_a_lane;
+  piece.dispatch = make_tile_dispatch(scene_, view_, window_,
+                                      {.first_block = first_block_,
+                                       .end_block = first_block_ + block_count_,
+                                       .sample = sample_,
+                                       .most_paths_a_lane = paths_a_lane,
+                                       .first_queue_record = options_.first_queue_record,
+                                       .lattice_generator = lattice_generator_});
   piece.group_counts = {share_out(divide_up(block_count_, options_.packet_size), options_.most_parts),
                         uvec2(divide_up(block_count_, paths_a_lane), 1)};
   piece.units = block_count_;
-  piece.most_rays_a_lane = (1.0 + max_depth_) * (1.0 + dispatch_.counts.z) * piece.units;
+  piece.most_rays_a_lane = (1.0 + view_.max_depth) * (1.0 + scene_.light_count) * piece.units;
 
   ++sample_;
-  if (sample_ == samples_) {
+  if (sample_ == view_.samples_per_pixel) {
     first_block_ += block_count_;
     block_count_ = 0;
     sample_ = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "device_scene/scene_constants.h"
 #include "layout.h"
 #include "promin/view.h"
 
@@ -12,7 +13,6 @@ namespace promin {
 
 /// A sample of each pixel of some blocks: one dispatch of each stage of a picture.
 struct TileSample {
-  /// But for the place of the queue.
   layout::Dispatch dispatch{};
   /// Workgroups of shaders/camera_stage.comp (y = parts) and of shaders/mirror_stage.comp (y = 1).
   std::array<uvec2, 2> group_counts{};
@@ -32,6 +32,8 @@ struct TileOptions {
   /// Paths that a lane of the mirror stage takes one after the other, at most. llvmpipe lets a lane's loops turn 65535
   /// times, all together (shaders/loop_check.glsl).
   uint32_t most_paths_a_lane = 1;
+  /// Where the queue of paths begins, in records of the film.
+  uint32_t first_queue_record = 0;
   /// Fixed number of blocks a piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
@@ -40,12 +42,12 @@ struct TileOptions {
 /// bits. Vulkan-free.
 class TileScheduler {
  public:
-  /// Of `window` of the picture. `frame` and `dispatch` hold what they take from the scene (PackedScene).
-  TileScheduler(const layout::Frame& frame, const layout::Dispatch& dispatch, const View& view,
-                const PixelWindow& window, const TileOptions& options = {});
+  /// Of `window` of the view's picture.
+  TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,
+                const TileOptions& options = {});
 
-  /// The constants that all pieces share.
-  const layout::Frame& frame() const { return frame_; }
+  /// What all pieces share.
+  layout::ViewConstants view_constants() const { return make_view_constants(scene_, view_); }
   uint32_t pixel_count() const { return pixel_count_; }
   bool is_done() const { return first_block_ == block_total_; }
   double fraction_done() const;
@@ -60,11 +62,11 @@ class TileScheduler {
  private:
   uint32_t pick_block_count(double units) const;
 
-  layout::Frame frame_;
-  layout::Dispatch dispatch_;
+  SceneConstants scene_;
+  View view_;
+  PixelWindow window_;
   TileOptions options_;
-  uint32_t samples_;
-  uint32_t max_depth_;
+  uint32_t lattice_generator_;
   uint32_t pixel_count_;
   uint32_t block_total_;
   uint32_t first_block_ = 0;

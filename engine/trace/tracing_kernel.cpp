@@ -38,11 +38,6 @@ uint32_t most_parts_of_dispatch(const gpu::Device& device) {
   return device.is_cpu() ? std::min(core_count(), kMostThreads) : 1;
 }
 
-RunError make_cut_loops_error(const std::string& cure) {
-  return RunError(
-      {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure});
-}
-
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                              std::span<const gpu::SpecializationConstant> constants,
                              std::span<const gpu::BoundBuffer> buffers)

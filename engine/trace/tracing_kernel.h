@@ -5,12 +5,10 @@
 #include <array>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "device/pipeline.h"
 #include "layout.h"
-#include "promin/error.h"
 
 namespace promin {
 
@@ -36,9 +34,6 @@ double dispatch_target_ms(const gpu::Device& device);
 
 /// To how many parts the work of a dispatch is dealt out at most (trace/share_out.h).
 uint32_t most_parts_of_dispatch(const gpu::Device& device);
-
-/// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
-RunError make_cut_loops_error(const std::string& cure);
 
 /// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
 using GroupCounts = std::array<uvec2, 2>;

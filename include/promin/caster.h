@@ -3,12 +3,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "promin/progress.h"
 #include "promin/ray.h"
 #include "promin/scene.h"
 #include "promin/setup_stats.h"
@@ -20,20 +20,21 @@ class Device;
 }
 
 struct CasterOptions {
+  /// How the tree is built: "sah", "median" or "spatial" (builder_names() in promin/setup_stats.h).
   std::string builder = "sah";
-  /// A BVH file (bvh/bvh_file.h) to take the tree from instead of building one.
+  /// A BVH file to take the tree from instead of building one.
   std::optional<std::filesystem::path> bvh = std::nullopt;
-  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; empty for
-  /// promin's own.
-  std::span<const uint32_t> spirv = {};
+  /// Of building the tree; false ends the constructor with Cancelled.
+  ProgressCallback progress = {};
 };
 
 /// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with. Keeps
-/// no reference to the Scene. One Caster serves one thread.
+/// no reference to the Scene; the Device must outlive it. One Caster serves one thread at a time.
 class Caster {
  public:
-  /// Builds the BVH and uploads. Throws UsageError for an unknown builder, InputError for a BVH file that is bad or not
-  /// the scene's, RunError where memory does not suffice or a device limit is passed.
+  /// Builds the BVH and uploads. Throws UsageError for an unknown builder, InputError for a scene that is not valid
+  /// (see validate) and for a BVH file that is bad or not the scene's, RunError where memory does not suffice or a
+  /// device limit is passed, Cancelled.
   Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options = {});
   ~Caster();
   Caster(Caster&&) noexcept;
@@ -43,17 +44,19 @@ class Caster {
   void prepare(HitQuery query, std::span<const Ray> rays);
 
   /// Answers each ray in the hit at the same place; as many hits as rays, any number. The answers do not depend on how
-  /// many rays are cast together, nor on their order: on lavapipe rays that run side by side are traced in packets,
-  /// those of rows tile by tile, and on every CPU device others are sorted first. `progress` is called with the
-  /// fraction done, 0...1. Returns milliseconds of the traversal dispatches, by the device's clock, and of ordering the
-  /// rays; not of copying rays and hits.
+  /// many rays are cast together, nor on their order: where that is faster they are traced in packets or sorted first.
+  /// Returns milliseconds of the traversal dispatches, by the device's clock, and of ordering the rays; not of copying
+  /// rays and hits. Throws UsageError where there are not as many hits as rays, RunError, Cancelled: then hits are
+  /// filled as far as it came.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
-              const std::function<void(double)>& progress = {});
+              const ProgressCallback& progress = {});
 
   const SetupStats& setup_stats() const;
 
  private:
   struct Impl;
+  friend struct CasterAccess;
+  explicit Caster(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -25,14 +25,19 @@ class Error : public std::runtime_error {
  public:
   explicit Error(const Problem& problem) : Error(std::vector<Problem>{problem}) {}
   explicit Error(const std::vector<Problem>& problems);
+
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
 };
 
-/// The command line is wrong (exit code 2).
+/// An argument or the command line is wrong (exit code 2).
 struct UsageError : Error {
   using Error::Error;
 };
 
-/// A scene, ray or BVH file is bad (exit code 3).
+/// A scene, ray or BVH file, or a scene in memory, is bad (exit code 3).
 struct InputError : Error {
   using Error::Error;
 };
@@ -40,6 +45,11 @@ struct InputError : Error {
 /// There is no usable Vulkan device, or none that was asked for (exit code 4).
 struct DeviceError : Error {
   using Error::Error;
+};
+
+/// A ProgressCallback wanted an end; what was being done is undone.
+struct Cancelled : Error {
+  Cancelled() : Error(Problem{"cancelled", "", ""}) {}
 };
 
 /// Failed while running: I/O, memory, a lost device (exit code 1).

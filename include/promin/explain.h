@@ -3,18 +3,12 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "promin/math.h"
 #include "promin/ray.h"
 
 namespace promin {
-
-namespace layout {
-struct RayLog;
-}
-struct PrimitiveNumbers;
 
 /// A source at a point that it may light.
 struct ExplainedSource {
@@ -65,8 +59,5 @@ struct Explanation {
   vec3 sum{0.0F};
   vec3 color{0.0F};
 };
-
-/// A sample from the log that a device wrote of it.
-ExplainedSample explain_sample(std::span<const layout::RayLog> log, const PrimitiveNumbers& numbers);
 
 }  // namespace promin

@@ -6,105 +6,77 @@
 #include <filesystem>
 #include <limits>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "scene/shapes.h"
+#include "promin/camera.h"
+#include "promin/lights.h"
+#include "promin/materials.h"
+#include "promin/math.h"
+#include "promin/shapes.h"
 
 namespace promin {
 
-/// Phong (docs/model.md, "Light"). All factors are linear RGB and not negative; nothing is clamped to 1.
-struct Material {
-  std::string name;
-  vec3 ambient{0.8F};
-  /// Kd as it multiplies N.L * i_d: a metallic-roughness material's base colour arrives divided by pi.
-  vec3 diffuse{0.8F};
-  vec3 specular{0.0F};
-  /// Phong's exponent; <= 0 means no specular term.
-  float shininess = 0.0F;
-  /// kr: weight of the mirror ray.
-  vec3 reflection{0.0F};
-  /// Added as it is.
-  vec3 emissive{0.0F};
-};
-
-/// A headlight is a directional source that shines along the view of whatever camera looks.
-enum class LightKind { kPoint, kDirectional, kSpot, kHeadlight };
-enum class Attenuation { kNone, kInverseSquare };
-
-/// A source with its own diffuse and specular power. Classic sources do not fall off with distance; physical ones
-/// (KHR_lights_punctual) have candela in both powers and fall off as clamp(1 - (d/range)^4, 0, 1) / d^2.
-struct Light {
-  std::string name;
-  LightKind kind = LightKind::kPoint;
-  /// Of point and spot sources.
-  vec3 position{0.0F};
-  /// Unit vector in which the light travels; of directional and spot sources.
-  vec3 direction{0.0F, 0.0F, -1.0F};
-  vec3 diffuse{1.0F};
-  vec3 specular{1.0F};
-  Attenuation attenuation = Attenuation::kNone;
-  float range = std::numeric_limits<float>::infinity();
-  /// Half angles of a spot, radians, 0 <= inner < outer <= pi/2.
-  float inner_cone_angle = 0.0F;
-  float outer_cone_angle = 0.785398163F;
-};
-
-enum class Projection { kPerspective, kOrthographic };
-
-/// A pose and a projection. `look` and `up` are orthonormal to rounding; right = look x up.
-struct Camera {
-  std::string name;
-  Projection projection = Projection::kPerspective;
-  vec3 eye{0.0F};
-  vec3 look{0.0F, 0.0F, -1.0F};
-  vec3 up{0.0F, 1.0F, 0.0F};
-  /// Vertical field of view of a perspective camera, radians in (0, pi).
-  float yfov = 0.7F;
-  /// Half height of what an orthographic camera sees, in world units.
-  float ymag = 1.0F;
-  /// Width over height that the file asks for; 0 where it does not say.
-  float aspect_ratio = 0.0F;
-  /// Distance of the viewport plane: nothing nearer is drawn. >= 0.
-  float near = 0.0F;
-};
-
-using Shape = std::variant<NotDrawn, Mesh, Sphere, Plane, Cylinder, Cone>;
-
-/// One numbered scene object: its index in Scene::objects is the number that `cast` and `--aov` give.
+/// A geometry in its place, with a material. Its index in Scene::objects is the number that hits and AOVs give.
 struct Object {
+  static constexpr uint32_t kNoGeometry = std::numeric_limits<uint32_t>::max();
+
   std::string name;
-  Shape shape;
+  /// Index into Scene::geometries, which several objects may share. kNoGeometry: nothing is drawn, the object only
+  /// takes its number (points, lines, something hidden).
+  uint32_t geometry = kNoGeometry;
   /// Index into Scene::materials.
   uint32_t material = 0;
+  /// Affine. A shape must keep its form under it (promin/shapes.h says how); meshes take any that is not singular.
+  dmat4 world_from_object{1.0};
 };
 
-/// Everything a renderer needs, validated: what load_scene returns can be uploaded without further checks.
+/// What there is beside objects and lights.
+struct Environment {
+  /// i_a of docs/model.md.
+  vec3 ambient{0.0F};
+  /// What a ray brings that leaves the scene.
+  vec3 background{0.0F};
+};
+
+/// A description of what is to be rendered. It has no tree and nothing of a device: any part may be changed, and what
+/// is made of it (Renderer, Caster) told of the change. load_scene gives one that is valid, validate() checks any
+/// other.
 struct Scene {
   std::filesystem::path file;
+  std::vector<Geometry> geometries;
   std::vector<Object> objects;
-  /// Never empty.
+  /// Not empty where there are objects with a geometry.
   std::vector<Material> materials;
   std::vector<Light> lights;
   /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene.
   std::vector<Camera> cameras;
-  vec3 ambient{0.0F};
-  vec3 background{0.0F};
+  Environment environment;
   /// What the file asks for and the renderer does not model, and what it assumed instead; one sentence each.
   std::vector<std::string> warnings;
+
+  /// Adds a geometry and an object that shows it.
+  Object& add(std::string name, Geometry geometry, uint32_t material = 0, const dmat4& world_from_object = dmat4(1.0));
 };
 
-/// Bounds of everything finite; empty if there is nothing finite.
+/// Bounds of everything finite in the world; empty if there is nothing finite.
 Bounds bounds_of(const Scene& scene);
 
-/// Number of triangles (degenerate ones included) or 1 for an analytic shape, 0 for NotDrawn.
-uint32_t primitive_count(const Shape& shape);
+/// Of an object: its geometry's, or 0 where it has none.
+uint32_t primitive_count(const Scene& scene, const Object& object);
 
 /// A perspective camera that looks down -Z, a little from above, and frames everything finite in the scene.
 /// `aspect_ratio` is width over height of the picture.
 Camera frame_scene(const Scene& scene, float aspect_ratio);
 
-/// The light of a scene without lights: i_d = i_s = 1.
-Light make_headlight();
+/// What add_default_lights has added.
+struct AddedLights {
+  bool has_headlight = false;
+  bool has_ambient = false;
+};
+
+/// Gives a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient light
+/// of kDefaultAmbient where it has none. A scene with lights stays as it is.
+AddedLights add_default_lights(Scene& scene);
+inline constexpr float kDefaultAmbient = 0.1F;
 
 }  // namespace promin

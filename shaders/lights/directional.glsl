@@ -2,4 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A source at infinity.
 
-LightSample sample_directional(LightRecord light) { return LightSample(-light.direction.xyz, INFINITY, 1.0); }
+LightSample sample_directional(LightRecord light, vec3 position) {
+  return LightSample(-light.direction.xyz, INFINITY, 1.0);
+}

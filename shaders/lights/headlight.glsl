@@ -2,4 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A source at infinity behind the camera, whichever way that looks.
 
-LightSample sample_headlight() { return LightSample(-frame.look.xyz, INFINITY, 1.0); }
+LightSample sample_headlight(LightRecord light, vec3 position) {
+  return LightSample(-view.look.xyz, INFINITY, 1.0);
+}

@@ -3,6 +3,8 @@
 // What cylinder and cone share: the solid |radial| <= radius + slope * z, |z| <= half height, around an axis through
 // its centre. It is convex, so a ray is inside it in one interval: that of the two cap planes cut with that of the
 // lateral surface. An end that both bound belongs to one of them, never to neither: rims do not leak.
+#ifndef FRUSTUM_GLSL
+#define FRUSTUM_GLSL
 
 struct Frustum {
   vec3 center;
@@ -129,3 +131,4 @@ SurfacePoint frustum_surface(Ray ray, Frustum f, Hit hit) {
   precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * size);
   return SurfacePoint(position, normal, lift);
 }
+#endif

@@ -3,12 +3,20 @@
 // |P - center| = radius. Solved around the ray's closest approach to the centre, with the discriminant as
 // (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) measured (hard cases 1-9).
 
+struct Sphere {
+  vec3 center;
+  float radius;
+};
+
+Sphere sphere_of(Primitive p) { return Sphere(p.a.xyz, p.a.w); }
+
 Crossing intersect_sphere(Ray ray, Primitive p) {
-  Approach near = approach(ray, p.a.xyz);
+  Sphere s = sphere_of(p);
+  Approach near = approach(ray, s.center);
   // In units of a power of two near the radius nothing overflows or underflows that matters.
-  float scale = power_of_two_inverse(p.a.w);
+  float scale = power_of_two_inverse(s.radius);
   precise vec3 offset = near.offset * scale;
-  precise float radius = p.a.w * scale;
+  precise float radius = s.radius * scale;
   precise float distance = length3(offset);
   precise float chord2 = (radius - distance) * (radius + distance) * ray.inverse_length2;
   if (!(chord2 >= 0.0)) return NO_CROSSING;
@@ -19,9 +27,10 @@ Crossing intersect_sphere(Ray ray, Primitive p) {
 }
 
 SurfacePoint sphere_surface(Ray ray, Primitive p, Hit hit) {
-  precise vec3 from_center = (ray.origin - p.a.xyz) + hit.t * ray.direction;
+  Sphere s = sphere_of(p);
+  precise vec3 from_center = (ray.origin - s.center) + hit.t * ray.direction;
   vec3 normal = normalize3(from_center);
-  precise vec3 position = p.a.xyz + p.a.w * normal;
-  precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * p.a.w);
+  precise vec3 position = s.center + s.radius * normal;
+  precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * s.radius);
   return SurfacePoint(position, normal, lift);
 }

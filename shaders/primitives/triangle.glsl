@@ -136,7 +136,7 @@ Crossing intersect_triangle(Ray ray, Primitive p) {
 }
 
 // P from the corners, not from the ray: the error does not grow with the ray's length.
-SurfacePoint triangle_surface(Primitive p, Hit hit) {
+SurfacePoint triangle_surface(Ray ray, Primitive p, Hit hit) {
   precise vec3 edge1 = corner1(p) - corner0(p);
   precise vec3 edge2 = corner2(p) - corner0(p);
   float size = max(max_abs(edge1), max_abs(edge2));

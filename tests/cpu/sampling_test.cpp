@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/sampling.h"
+#include "device_scene/sampling.h"
 
 #include <gtest/gtest.h>
 

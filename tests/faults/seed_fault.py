@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the shaders with a fault in them, for tests of the tests: what removes robustness must make a test fail.
 
-seed_fault.py FAULT SHADERS KERNELS GLSLANG OUT: copies the folder SHADERS and the .comp file KERNELS into OUT, puts the
-fault in, and compiles cast.comp and KERNELS to OUT/*.spv. A fault whose place is gone is an error."""
+seed_fault.py FAULT SHADERS INCLUDE KERNELS GLSLANG OUT: copies the folder SHADERS and the .comp file KERNELS into OUT, puts the
+fault in, and compiles cast.comp and KERNELS to OUT/*.spv, with the tables in INCLUDE. A fault whose place is gone is an error."""
 
 import pathlib
 import re
@@ -50,7 +50,7 @@ FAULTS = {
 
 
 def main():
-    fault, shaders, kernel, glslang, out = sys.argv[1], *map(pathlib.Path, sys.argv[2:])
+    fault, shaders, include, kernel, glslang, out = sys.argv[1], *map(pathlib.Path, sys.argv[2:])
     folder = out / "shaders"
     shutil.rmtree(out, ignore_errors=True)
     shutil.copytree(shaders, folder)
@@ -64,7 +64,7 @@ def main():
         (folder / file).write_text(text)
     for source in (folder / "cast.comp", folder / kernel.name):
         spirv = out / (source.stem + ".spv")
-        subprocess.run([glslang, "--quiet", "-V", "--target-env", "vulkan1.1", "-o", spirv, source], check=True)
+        subprocess.run([glslang, "--quiet", "-V", "--target-env", "vulkan1.1", "-I" + str(include), "-o", spirv, source], check=True)
 
 
 main()

@@ -22,8 +22,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "share_out.glsl"
 
 void main() {
-  uint index = dispatch.range.x + shared_out_group() * BLOCK_SIZE * BLOCK_SIZE + gl_LocalInvocationIndex;
-  if (index >= dispatch.range.y) return;
+  uint index = first_ray() + shared_out_group() * BLOCK_SIZE * BLOCK_SIZE + gl_LocalInvocationIndex;
+  if (index >= end_ray()) return;
   RayRecord request = load_ray(index);
   Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
                      request.direction_tmax.w);

@@ -10,7 +10,7 @@
 #include "view/describe_command.h"
 #include "view/flight.h"
 #include "view/keys.h"
-#include "view/scene_loader.h"
+#include "view/scene_preparer.h"
 #include "view/screen_area.h"
 #include "view/screenshot.h"
 

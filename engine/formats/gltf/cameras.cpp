@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "promin/load_scene.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "formats/gltf/json_lookup.h"
-#include "promin/load_scene.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {
@@ -101,8 +101,8 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
   } else if (sky.contains("plain")) {
     color = vec3_of(sky["plain"], "color", dvec3(0.0));
   }
-  scene.background = vec3(color);
-  scene.ambient =
+  scene.environment.background = vec3(color);
+  scene.environment.ambient =
       vec3(glm::mix(vec3_of(sky, "ambientLightColor", dvec3(0.0)), color, sky.value("ambientSkyContribution", 1.0)));
 }
 

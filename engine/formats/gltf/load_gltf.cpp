@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/load_gltf.h"
 
+#include <map>
+#include <utility>
+
 #include "formats/gltf/cameras.h"
 #include "formats/gltf/document.h"
 #include "formats/gltf/json_lookup.h"
@@ -49,31 +52,52 @@ class SceneReader {
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
-      object.shape = placed.is_visible ? read_shape(placed, mesh, primitive) : NotDrawn{};
-      if (!std::holds_alternative<NotDrawn>(object.shape)) {
-        object.material = read_material(source.primitives[primitive].material, object.shape);
+      if (placed.is_visible) read_geometry(placed, mesh, primitive, object);
+      if (object.geometry != Object::kNoGeometry) {
+        object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
       }
       scene_.objects.push_back(std::move(object));
     }
   }
 
-  Shape read_shape(const PlacedNode& placed, size_t mesh, size_t primitive) {
-    if (std::optional<Shape> shape = read_gltf_shape(document_, mesh, primitive, placed, report_)) return *shape;
-    if (triangle_count_ > kMaxTriangles) return NotDrawn{};
-    Mesh triangles = read_gltf_mesh(document_, mesh, primitive, placed, report_);
-    if (triangles.triangles.empty()) return NotDrawn{};
-    triangle_count_ += triangles.triangles.size();
+  void read_geometry(const PlacedNode& placed, size_t mesh, size_t primitive, Object& object) {
+    if (std::optional<Geometry> shape = read_gltf_shape(document_, mesh, primitive, placed, report_)) {
+      object.geometry = add(std::move(*shape));
+      object.world_from_object = placed.world_from_object;
+      return;
+    }
+    if (triangle_count_ > kMaxTriangles) return;
+    const uint32_t geometry = find_mesh(mesh, primitive);
+    if (geometry == Object::kNoGeometry) return;
+    triangle_count_ += primitive_count(scene_.geometries[geometry]);
     if (triangle_count_ > kMaxTriangles) {
       report_.refuse("the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
                      "nodes[" + std::to_string(placed.node) + "]", "show the mesh by fewer nodes, or simplify it");
     }
-    return triangles;
+    place_gltf_mesh(placed, geometry,
+                    "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]", scene_,
+                    object, report_);
   }
 
-  uint32_t read_material(int material, const Shape& shape) {
+  uint32_t add(Geometry geometry) {
+    scene_.geometries.push_back(std::move(geometry));
+    return static_cast<uint32_t>(scene_.geometries.size() - 1);
+  }
+
+  /// The geometry of a mesh primitive, read once however many nodes show it; kNoGeometry where nothing is drawn.
+  uint32_t find_mesh(size_t mesh, size_t primitive) {
+    const auto [known, is_new] = mesh_geometries_.try_emplace({mesh, primitive}, Object::kNoGeometry);
+    if (is_new) {
+      Mesh triangles = read_gltf_mesh(document_, mesh, primitive, report_);
+      if (!triangles.triangles.empty()) known->second = add(std::move(triangles));
+    }
+    return known->second;
+  }
+
+  uint32_t read_material(int material, const Geometry& geometry) {
     if (material >= 0) {
       const auto index = static_cast<size_t>(material);
-      const auto* mesh = std::get_if<Mesh>(&shape);
+      const auto* mesh = std::get_if<Mesh>(&geometry);
       if (mesh != nullptr && !mesh->colors.empty() &&
           find_extension(document_.json["materials"][index], "KHR_materials_unlit") != nullptr) {
         report_.warn("material " + title_of(document_.json, "materials", index) +
@@ -104,6 +128,7 @@ class SceneReader {
   const GltfDocument& document_;
   LoadReport& report_;
   Scene scene_;
+  std::map<std::pair<size_t, size_t>, uint32_t> mesh_geometries_;
   uint64_t triangle_count_ = 0;
   uint32_t default_material_ = kNoMaterial;
 };

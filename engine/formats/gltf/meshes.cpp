@@ -8,22 +8,53 @@
 #include <optional>
 
 #include "formats/gltf/accessors.h"
-#include "promin/load_scene.h"
+#include "promin/validate.h"
+#include "scene/world_scene.h"
+#include "shapes/placement.h"
 
 namespace promin {
 namespace {
 
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+/// Of transforms that are as good as singular, or overflow, where normals may vanish.
+constexpr double kLeastDeterminant = 1e-100;
 
-/// One mesh primitive on its way from the file to the world.
+bool is_in_range(const dvec3& p) {
+  // Written so that NaN fails.
+  return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
+}
+
+/// Whether all vertices are in range in the world: where the corners of their box are, which bounds them, or else each.
+bool is_in_range(const Mesh& mesh, const dmat4& world_from_object) {
+  Bounds box;
+  for (const vec3& position : mesh.positions) box.extend(position);
+  bool are_corners_in_range = true;
+  for (int corner = 0; corner < 8; ++corner) {
+    const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
+                  (corner & 4) != 0 ? box.hi.z : box.lo.z);
+    are_corners_in_range = are_corners_in_range && is_in_range(dvec3(world_from_object * dvec4(p, 1.0)));
+  }
+  return are_corners_in_range || std::ranges::all_of(mesh.positions, [&](const vec3& p) {
+           return is_in_range(dvec3(world_from_object * dvec4(p, 1.0)));
+         });
+}
+
+bool has_length(const dvec3& normal) {
+  const double length = glm::length(normal);
+  return length > 0.0 && std::isfinite(length);
+}
+
+void warn_of_normals(const std::string& place, LoadReport& report) {
+  report.warn(place + " has normals of no length, so it is drawn with sharp edges");
+}
+
+/// One mesh primitive.
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const PlacedNode& placed,
-                  LoadReport& report)
+  PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report)
       : document_(document),
         primitive_(document.meshes[mesh].primitives[primitive]),
         place_("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]"),
-        placed_(placed),
         report_(report) {}
 
   Mesh read() {
@@ -48,9 +79,6 @@ class PrimitiveReader {
     read_positions(positions, mesh);
     if (const int normals = accessor_of("NORMAL"); normals >= 0) read_normals(normals, mesh);
     if (const int colors = accessor_of("COLOR_0"); colors >= 0) read_colors(colors, mesh);
-    if (glm::determinant(glm::dmat3(placed_.world_from_object)) < 0.0) {
-      for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
-    }
     return mesh;
   }
 
@@ -118,45 +146,26 @@ class PrimitiveReader {
     mesh.positions.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* p = &values[3 * size_t{vertex}];
-      const dvec3 local(p[0], p[1], p[2]);
-      const dvec3 world(placed_.world_from_object * dvec4(local, 1.0));
-      if (!is_in_range(local)) {
+      if (!is_in_range(dvec3(p[0], p[1], p[2]))) {
         report_.refuse("a vertex coordinate is not finite or beyond 1e15", element_place("POSITION", vertex),
                        "export the mesh again, in a larger unit of length");
         return;
       }
-      if (!is_in_range(world)) {
-        report_.refuse("a vertex lies beyond 1e15 in the world", "nodes[" + std::to_string(placed_.node) + "]",
-                       "use a smaller translation or scale in it and its parents");
-        return;
-      }
-      mesh.positions.emplace_back(world);
+      // -0 becomes 0, as under a transform, so that none and one that moves nothing come to the same.
+      mesh.positions.emplace_back(p[0] + 0.0F, p[1] + 0.0F, p[2] + 0.0F);
     }
   }
 
-  static bool is_in_range(const dvec3& p) {
-    // Written so that NaN fails.
-    return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
-  }
-
-  /// Normals go with the inverse transpose, here as the matrix of cofactors, which needs no inverse: it is the same
-  /// up to the determinant, of which the sign counts.
   void read_normals(int accessor, Mesh& mesh) {
-    const dmat3 m(placed_.world_from_object);
-    const double sign = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
-    const dmat3 cofactors(sign * glm::cross(m[1], m[2]), sign * glm::cross(m[2], m[0]), sign * glm::cross(m[0], m[1]));
     const std::vector<float> values = read_floats(document_, accessor, report_);
     std::vector<vec3> normals;
     normals.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* n = &values[3 * size_t{vertex}];
-      const dvec3 normal = cofactors * dvec3(n[0], n[1], n[2]);
-      const double length = glm::length(normal);
-      if (!(length > 0.0) || !std::isfinite(length)) {
-        report_.warn(place_ + " has normals of no length, so it is drawn with sharp edges");
-        return;
-      }
-      normals.emplace_back(normal / length);
+      normals.emplace_back(n[0], n[1], n[2]);
+      if (has_length(dvec3(normals.back()))) continue;
+      warn_of_normals(place_, report_);
+      return;
     }
     mesh.normals = std::move(normals);
   }
@@ -181,7 +190,6 @@ class PrimitiveReader {
   const GltfDocument& document_;
   const GltfPrimitive& primitive_;
   std::string place_;
-  const PlacedNode& placed_;
   LoadReport& report_;
   size_t vertex_count_ = 0;
   std::vector<uint32_t> used_vertices_;
@@ -189,9 +197,33 @@ class PrimitiveReader {
 
 }  // namespace
 
-Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const PlacedNode& placed,
-                    LoadReport& report) {
-  return PrimitiveReader(document, mesh, primitive, placed, report).read();
+Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report) {
+  return PrimitiveReader(document, mesh, primitive, report).read();
+}
+
+void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
+                     Object& object, LoadReport& report) {
+  object.geometry = geometry;
+  object.world_from_object = placed.world_from_object;
+  const Mesh& mesh = std::get<Mesh>(scene.geometries[geometry]);
+  if (!is_in_range(mesh, placed.world_from_object)) {
+    report.refuse("a vertex lies beyond 1e15 in the world", "nodes[" + std::to_string(placed.node) + "]",
+                  "use a smaller translation or scale in it and its parents");
+    return;
+  }
+  const double determinant = std::abs(glm::determinant(dmat3(placed.world_from_object)));
+  if (determinant >= kLeastDeterminant && determinant <= 1.0 / kLeastDeterminant) return;
+  Mesh source = mesh;
+  const Placement placement(placed.world_from_object);
+  const bool has_normals = std::ranges::all_of(
+      source.normals, [&](const vec3& normal) { return has_length(placement.normal(dvec3(normal))); });
+  if (!has_normals) {
+    warn_of_normals(place, report);
+    source.normals.clear();
+  }
+  object.geometry = static_cast<uint32_t>(scene.geometries.size());
+  object.world_from_object = dmat4(1.0);
+  scene.geometries.emplace_back(world::place(source, placed.world_from_object));
 }
 
 }  // namespace promin

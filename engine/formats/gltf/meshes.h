@@ -4,15 +4,20 @@
 
 #include "formats/gltf/document.h"
 #include "formats/gltf/nodes.h"
-#include "scene/shapes.h"
+#include "promin/scene.h"
+#include "promin/shapes.h"
 
 namespace promin {
 
-/// A mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in world space, with the vertices they use
-/// alone. Under a mirroring transform corners 2 and 3 change places, so that counter-clockwise stays outside.
-/// Points, lines and primitives without a triangle come back empty, with a warning; bad indices and coordinates go to
-/// the report.
-Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const PlacedNode& placed,
-                    LoadReport& report);
+/// A mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space, with the vertices
+/// they use alone. Points, lines and primitives without a triangle come back empty, with a warning; bad indices and
+/// coordinates go to the report.
+Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report);
+
+/// The object that shows a mesh at a node: its geometry is the mesh at `geometry`, or where the node's transform is
+/// singular a new one that is flattened already, without normals if these vanish. A vertex beyond 1e15 in the world
+/// goes to the report. `place` names the primitive.
+void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
+                     Object& object, LoadReport& report);
 
 }  // namespace promin

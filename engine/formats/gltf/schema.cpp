@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/gltf/json_rule.h"
-#include "promin/load_scene.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {

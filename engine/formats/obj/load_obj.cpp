@@ -82,7 +82,7 @@ class MeshBuilder {
     previous_vertex_[vertex] = newest_vertex_[corner.position];
     newest_vertex_[corner.position] = vertex;
     normal_of_vertex_[vertex] = normal;
-    if (has_normals_) mesh_.normals.emplace_back(glm::normalize(dvec3(text_.normals[normal])));
+    if (has_normals_) mesh_.normals.push_back(text_.normals[normal]);
     return vertex;
   }
 
@@ -167,16 +167,13 @@ Scene load_obj(LoadReport& report) {
 
   MeshBuilder builder(text, report);
   for (const ObjGroup& group : text.groups) {
-    Object object;
-    object.name = group.name;
     Mesh mesh = builder.build(group);
     mesh.triangle_materials = materials_of(text, group, indices, default_material);
-    object.material = mesh.triangle_materials.front();
+    const uint32_t first = mesh.triangle_materials.front();
     const bool has_one_material = std::all_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
-                                              [&](uint32_t material) { return material == object.material; });
+                                              [&](uint32_t material) { return material == first; });
     if (has_one_material) mesh.triangle_materials.clear();
-    object.shape = std::move(mesh);
-    scene.objects.push_back(std::move(object));
+    scene.add(group.name, std::move(mesh), first);
   }
   scene.warnings = report.warnings();
   return scene;

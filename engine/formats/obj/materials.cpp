@@ -13,7 +13,7 @@
 #include "core/file.h"
 #include "formats/obj/text_lines.h"
 #include "formats/scene_path.h"
-#include "promin/load_scene.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {

@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "formats/obj/text_lines.h"
-#include "promin/load_scene.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {

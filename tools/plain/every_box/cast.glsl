@@ -21,7 +21,7 @@ void test_every_box(bool any_hit) {
   uint children = 0u;
   uint count = 0u;
   // A scene of boxes has as many nodes as its first plane's index says (tools/reporting/box_section.cpp).
-  for (uint i = 0u; i < dispatch.counts.x; ++i) {
+  for (uint i = 0u; i < first_plane(); ++i) {
     children = children_of(meet_children(i));
     count += uint(bitCount(children));
   }

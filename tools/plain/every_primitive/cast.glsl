@@ -7,14 +7,12 @@ void test_every_primitive(bool any_hit) {
   shifts[0] = 0.0;
   found[0] = Hit(packet[0].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
-  if (has(FEATURE_PLANES)) intersect_planes(any_hit);
-  if ((FEATURES & SOLID_FEATURES) == 0u) return;
+  if (has(FEATURE_PLANES)) intersect_unbounded(any_hit);
+  if (TREE_KIND_COUNT == 0u) return;
   leaf_next = 0u;
-  leaf_end = dispatch.counts.x;
-  INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle)
-  INTERSECT_RUN(KIND_SPHERE, FEATURE_SPHERES, intersect_sphere)
-  INTERSECT_RUN(KIND_CYLINDER, FEATURE_CYLINDERS, intersect_cylinder)
-  INTERSECT_RUN(KIND_CONE, FEATURE_CONES, intersect_cone)
+  leaf_end = first_plane();
+  INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle, any_hit)
+  intersect_solids(any_hit);
 }
 
 #define trace_packet test_every_primitive

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "promin/explain.h"
+#include "trace/explain_sample.h"
 
 #include <bit>
 #include <utility>
 
-#include "device_scene/pack_scene.h"
 #include "layout.h"
 
 namespace promin {
@@ -33,9 +32,9 @@ Hit hit_of(const RayLog& log, const PrimitiveNumbers& numbers) {
   return hit;
 }
 
-ExplainedSource source_of(const RayLog& log, const PrimitiveNumbers& numbers) {
+ExplainedSource source_of(const RayLog& log, const PrimitiveNumbers& numbers, std::span<const uint32_t> light_numbers) {
   ExplainedSource source;
-  source.light = log.ids.y;
+  source.light = light_numbers[log.ids.y];
   if (log.ids.w != 0) source.shadow_ray = ray_of(log);
   source.blocker = hit_of(log, numbers);
   source.contribution = vec3(log.radiance);
@@ -44,12 +43,13 @@ ExplainedSource source_of(const RayLog& log, const PrimitiveNumbers& numbers) {
 
 }  // namespace
 
-ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbers& numbers) {
+ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbers& numbers,
+                               std::span<const uint32_t> light_numbers) {
   ExplainedSample sample;
   std::vector<ExplainedSource> sources;
   for (const RayLog& entry : log) {
     if (entry.ids.x == layout::LOG_SOURCE) {
-      sources.push_back(source_of(entry, numbers));
+      sources.push_back(source_of(entry, numbers, light_numbers));
       continue;
     }
     ExplainedRay ray;

@@ -6,10 +6,21 @@
 #include <optional>
 #include <vector>
 
+#include "promin/image.h"
+#include "promin/view.h"
+#include "trace/cut_loops.h"
 #include "trace/film.h"
-#include "view/display_pass.h"
 
-namespace promin::app {
+namespace promin {
+
+/// A complete picture in device memory.
+struct ShownPicture {
+  /// Which of the films, below kFilmCount.
+  size_t film = 0;
+  uvec2 size{0};
+  uint32_t samples_per_pixel = 1;
+};
+inline constexpr size_t kFilmCount = 2;
 
 /// The picture of a view that may change any time, traced in pieces of about a frame's time each. A new view comes at
 /// once in as few pixels as a frame has time for; while it stands still it comes in full size, then with 4, 16 and 64
@@ -47,14 +58,29 @@ class ProgressivePicture {
   double record(const vk::raii::CommandBuffer& commands);
   /// Records taking the ray counts of that.
   void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
-  /// How long units of a frame took, by which the next budget is met.
-  void learn(double units, double time_ms);
+  /// What became of the pieces of a record(), once the device has finished them.
+  struct Finished {
+    double units = 0.0;
+    double time_ms = 0.0;
+    bool has_cut_loops = false;
+    /// As takes_many_paths() was when they were recorded.
+    bool took_many_paths = false;
+  };
+  /// Learns from their time, by which the next budget is met. Where the driver cut loops, what is shown is wrong and
+  /// all is traced again with one path a lane; throws RunError where that was done already.
+  void take_finished(const Finished& finished);
+  bool takes_many_paths() const { return cut_loops_.takes_many_paths(); }
   void set_budget(double budget_ms);
 
-  /// Whether lanes may take several paths (TileOptions::most_paths_a_lane).
-  bool takes_many_paths() const { return takes_many_paths_; }
-  /// After the driver cut loops short: what is shown is wrong, and all is traced again with one path a lane.
-  void shorten_loops();
+  /// The scene has changed parts that need no other pipeline: all is traced again. The device is idle with respect to
+  /// the films.
+  void take_scene_change();
+
+  // For callers without frames of their own.
+  /// Records the next pieces, runs them and waits.
+  void trace();
+  /// The pixels of what is shown.
+  Image read() const;
 
   static constexpr uint32_t kMostSamples = 64;
 
@@ -65,13 +91,16 @@ class ProgressivePicture {
   void begin(const vk::raii::CommandBuffer& commands, const View& view);
   void finish();
 
+  const gpu::Device* device_;
   std::vector<Film> films_;
+  /// Of trace().
+  std::optional<gpu::Buffer> counters_;
   /// Of one dispatch; a longer budget takes several.
   double longest_piece_ms_;
   double budget_ms_;
   Pacer pacer_;
   bool is_warm_ = false;
-  bool takes_many_paths_ = true;
+  CutLoops cut_loops_;
   uvec2 full_size_{1};
   std::optional<double> fixed_scale_;
   bool is_paused_ = false;
@@ -88,7 +117,4 @@ class ProgressivePicture {
   bool is_first_ = false;
 };
 
-/// Whether two views show the same but for their samples.
-bool shows_same(const View& a, const View& b);
-
-}  // namespace promin::app
+}  // namespace promin

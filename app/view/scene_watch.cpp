@@ -1,25 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "view/scene_loader.h"
+#include "view/scene_watch.h"
 
 #include <utility>
 
-#include "view_setup.h"
-
 namespace promin::app {
-
-PackedChoice pack_choice(const Scene& scene, const SceneChoice& choice, const ProgressCallback& progress) {
-  PackedChoice result{choice, {}, 0};
-  std::vector<uint32_t>& lights_off = result.choice.lights_off;
-  std::erase_if(lights_off, [&](uint32_t light) { return light >= scene.lights.size(); });
-  std::optional<Scene> lit;
-  if (!lights_off.empty()) leave_out_lights(lit.emplace(scene), lights_off);
-  const Scene& chosen = lit ? *lit : scene;
-  result.packed =
-      choice.bvh ? pack_scene_with(*choice.bvh, chosen) : pack_scene(chosen, choice.builder, {.progress = progress});
-  result.features = features_of(chosen);
-  return result;
-}
 
 void SceneWatch::follow(std::vector<SourceFile> sources) {
   sources_ = std::move(sources);

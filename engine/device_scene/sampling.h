@@ -4,13 +4,13 @@
 
 #include <cstdint>
 
+#include "promin/view.h"
+
 namespace promin {
 
-/// The largest number of samples a pixel: its lattice products fit 32 bits.
-inline constexpr uint32_t kMaxSamplesPerPixel = 65535;
-
 /// Generator g of the sample lattice (shaders/camera.glsl): coprime to count + 1, chosen for the longest shortest
-/// vector between points of the lattice modulo count + 1. 1 for count = 1. `count` is in 1...kMaxSamplesPerPixel.
+/// vector between points of the lattice modulo count + 1. 1 for count = 1. `count` is in 1...kMaxSamplesPerPixel: then
+/// the products fit 32 bits.
 uint32_t lattice_generator(uint32_t count);
 
 }  // namespace promin

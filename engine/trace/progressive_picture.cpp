@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "view/progressive_picture.h"
+#include "trace/progressive_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "camera.h"
 #include "core/divide_up.h"
+#include "core/stopwatch.h"
+#include "device/device.h"
 
-namespace promin::app {
+namespace promin {
 namespace {
 
 constexpr uint32_t kSampleStep = 4;
@@ -28,13 +29,10 @@ double count_blocks(const uvec2& size) {
 
 }  // namespace
 
-bool shows_same(const View& a, const View& b) {
-  return a.size == b.size && a.shading == b.shading && a.max_depth == b.max_depth && shows_same(a.camera, b.camera);
-}
-
 ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
                                        FeatureMask features, double budget_ms)
-    : longest_piece_ms_(dispatch_target_ms(device)),
+    : device_(&device),
+      longest_piece_ms_(dispatch_target_ms(device)),
       budget_ms_(budget_ms),
       pacer_(budget_ms, TileScheduler::kMinBlocks) {
   films_.reserve(kFilmCount);
@@ -94,8 +92,7 @@ uvec2 ProgressivePicture::first_size() const {
 void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
-  TileOptions options = films_[film].piece_options();
-  if (!takes_many_paths_) options.most_paths_a_lane = 1;
+  const TileOptions options = cut_loops_.limit(films_[film].piece_options());
   picture_ = films_[film].cut(view, {uvec2(0), view.size}, options);
   picture_when_done_ = {film, view.size, view.samples_per_pixel};
   picture_version_ = wanted_version_;
@@ -138,15 +135,42 @@ void ProgressivePicture::set_budget(double budget_ms) {
   pacer_.aim(budget_ms);
 }
 
-void ProgressivePicture::shorten_loops() {
-  takes_many_paths_ = false;
+void ProgressivePicture::take_finished(const Finished& finished) {
+  if (finished.units == 0.0) return;
+  // Drivers compile in a pipeline's first dispatch.
+  if (std::exchange(is_warm_, true)) pacer_.learn(finished.units, finished.time_ms);
+  if (!cut_loops_.must_trace_again(finished.has_cut_loops, finished.took_many_paths)) return;
   picture_.reset();
   ++wanted_version_;
 }
 
-void ProgressivePicture::learn(double units, double time_ms) {
-  // Drivers compile in a pipeline's first dispatch.
-  if (std::exchange(is_warm_, true)) pacer_.learn(units, time_ms);
+void ProgressivePicture::take_scene_change() {
+  for (Film& film : films_) film.bind_scene();
+  picture_.reset();
+  ++wanted_version_;
 }
 
-}  // namespace promin::app
+void ProgressivePicture::trace() {
+  if (!counters_) counters_.emplace(gpu::Buffer::make_readback(*device_, Film::kCountersBytes));
+  Finished finished{.took_many_paths = takes_many_paths()};
+  const Stopwatch waiting;
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    finished.units = record(commands);
+    record_take_counts(commands, *counters_);
+  });
+  finished.time_ms = waiting.ms();
+  finished.has_cut_loops = were_loops_cut(counters_->mapped());
+  take_finished(finished);
+}
+
+Image ProgressivePicture::read() const {
+  Image image;
+  image.size = shown_->size;
+  image.pixels.resize(static_cast<size_t>(image.size.x) * image.size.y);
+  std::vector<uvec4> records(image.pixels.size());
+  films_[shown_->film].buffer().read(std::as_writable_bytes(std::span(records)), Film::kPixelsOffset);
+  average_samples(records, shown_->samples_per_pixel, image.pixels);
+  return image;
+}
+
+}  // namespace promin

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "bvh/primitive_numbers.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace promin {
+namespace {
+
+/// The last part at or before a number; null if there is none.
+const PackedPart* find_part(const PrimitiveNumbers& numbers, uint32_t order) {
+  const auto next = std::upper_bound(numbers.parts.begin(), numbers.parts.end(), order,
+                                     [](uint32_t number, const PackedPart& part) { return number < part.order; });
+  return next == numbers.parts.begin() ? nullptr : &*(next - 1);
+}
+
+}  // namespace
+
+PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order) {
+  // The last object that begins at or before it: objects without primitives begin where the next one does.
+  const auto next = std::upper_bound(numbers.first_order.begin(), numbers.first_order.end(), order);
+  assert(next != numbers.first_order.begin() && next != numbers.first_order.end());
+  const auto further_parts = [&](uint32_t number) {
+    const PackedPart* part = find_part(numbers, number);
+    return part == nullptr ? 0 : part->further_parts;
+  };
+  const uint32_t first = *(next - 1);
+  return {static_cast<uint32_t>(next - numbers.first_order.begin()) - 1,
+          order - first - (further_parts(order) - further_parts(first))};
+}
+
+vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights) {
+  const PackedPart* part = find_part(numbers, order);
+  if (part == nullptr || part->order != order) return weights;
+  return part->weights[0] + weights.x * (part->weights[1] - part->weights[0]) +
+         weights.y * (part->weights[2] - part->weights[0]);
+}
+
+}  // namespace promin

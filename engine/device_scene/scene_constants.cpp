@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device_scene/scene_constants.h"
+
+#include <cmath>
+
+#include "core/divide_up.h"
+
+namespace promin {
+namespace {
+
+uvec4 counts_of(const SceneConstants& scene) {
+  return {scene.first_unbounded, scene.unbounded_count, scene.light_count, layout::LOOP_CHECK_TURNS};
+}
+
+}  // namespace
+
+layout::ViewConstants make_view_constants(const SceneConstants& scene, const View& view) {
+  const Camera& camera = view.camera;
+  const bool is_orthographic = camera.projection == Projection::kOrthographic;
+  const double half_height =
+      is_orthographic ? static_cast<double>(camera.ymag) : std::tan(0.5 * static_cast<double>(camera.yfov));
+  const double pixel = 2.0 * half_height / view.size.y;
+  const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
+  const dvec3 up = dvec3(camera.up) * pixel;
+  // A ray's interval is open, but what lies on the viewport itself is drawn.
+  const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
+  return {.eye = vec4(camera.eye, before_near),
+          .look = vec4(camera.look, 0.0F),
+          .right = vec4(vec3(right), 0.0F),
+          .up = vec4(vec3(up), 0.0F),
+          .ambient = vec4(scene.environment.ambient, 0.0F),
+          .background = vec4(scene.environment.background, 0.0F),
+          .tree_bounds = scene.tree_bounds,
+          .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
+                              static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),
+          .first_index = scene.first_index};
+}
+
+layout::ViewConstants make_cast_constants(const SceneConstants& scene) {
+  layout::ViewConstants constants{};
+  constants.tree_bounds = scene.tree_bounds;
+  return constants;
+}
+
+layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,
+                                    const TileRange& range) {
+  const uvec2 size = window.hi - window.lo;
+  const uint32_t is_orthographic = view.camera.projection == Projection::kOrthographic ? 1 : 0;
+  return {.range = uvec4(range.first_block, range.end_block, range.sample, view.max_depth),
+          .window = uvec4(window.lo, size),
+          .sampling = uvec4(view.samples_per_pixel, range.lattice_generator, divide_up(size.x, layout::BLOCK_SIZE),
+                            is_orthographic),
+          .counts = counts_of(scene),
+          .outcome = uvec4(0),
+          .queue = uvec4(range.first_queue_record, 0, 0, range.most_paths_a_lane)};
+}
+
+layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_ray, uint32_t end_ray) {
+  return {.range = uvec4(first_ray, end_ray, 0, 0),
+          .window = uvec4(0),
+          .sampling = uvec4(0),
+          .counts = counts_of(scene),
+          .outcome = uvec4(0),
+          .queue = uvec4(0)};
+}
+
+}  // namespace promin

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "promin/caster.h"
+#include "scene/world_scene.h"
+
+// What is behind Caster, for tests and measurements.
+namespace promin {
+
+struct TunedCasterOptions : CasterOptions {
+  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl; empty for promin's own.
+  std::span<const uint32_t> spirv = {};
+};
+
+struct CasterAccess {
+  /// As Caster's constructor, of a scene that is in the world already and is valid.
+  static Caster make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options);
+};
+
+inline Caster make_caster(const gpu::Device& device, const world::Scene& scene,
+                          const TunedCasterOptions& options = {}) {
+  return CasterAccess::make(device, scene, options);
+}
+inline Caster make_caster(const gpu::Device& device, const Scene& scene, const TunedCasterOptions& options = {}) {
+  return CasterAccess::make(device, world::flatten(scene), options);
+}
+
+}  // namespace promin

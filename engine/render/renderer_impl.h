@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "device_scene/device_scene.h"
+#include "promin/renderer.h"
+#include "scene/features.h"
+#include "trace/cut_loops.h"
+#include "trace/film.h"
+#include "trace/picture_shaders.h"
+
+// What is behind Renderer: for the window, which records its frames itself, and for tests and measurements.
+namespace promin {
+
+/// Options that pictures do not need: for tests and measurements.
+struct TunedRendererOptions : RendererOptions {
+  /// Compile every feature in, whether the scene uses it or not: for measuring what specialisation brings.
+  bool force_all_features = false;
+  /// A single dispatch is not meant to take longer. Where empty, as suits the device.
+  std::optional<double> target_dispatch_ms = std::nullopt;
+  /// Pixels that a lane traces together: 1, 2 or 4; where empty, as suits the device. The image's bits stay the same.
+  std::optional<uint32_t> packet_size = std::nullopt;
+  /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
+  uint32_t blocks_per_dispatch = 0;
+  /// Read the scene as storage buffers even where texel buffers hold it. The image's bits stay the same.
+  bool avoids_texels = false;
+  /// Others with the same bindings; Renderer::explain does not take them.
+  PictureShaders shaders = picture_shaders();
+  /// What such shaders make of the scene before it is uploaded, where they read another layout of it; empty: nothing.
+  std::function<PackedScene(PackedScene)> repack = {};
+};
+
+/// A scene on a device and what its parts use: which pipeline a picture of it needs.
+class SceneOnDevice {
+ public:
+  SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
+                SetupStats& stats);
+
+  const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
+  const PrimitiveNumbers& numbers() const { return numbers_; }
+  size_t material_count() const { return shown_materials_.size(); }
+
+  /// Features of a picture in a mode, with the lights that there are or with others.
+  FeatureMask features(const RenderMode& mode) const { return features_with(light_features_, mode); }
+  FeatureMask features_with(std::span<const Light> lights, const RenderMode& mode) const {
+    return features_with(light_features(lights), mode);
+  }
+
+  void set_lights(std::span<const Light> lights);
+  void set_materials(std::span<const Material> materials);
+  void set_environment(const Environment& environment) { device_scene_->set_environment(environment); }
+
+ private:
+  FeatureMask features_with(FeatureMask lights, const RenderMode& mode) const;
+
+  bool force_all_features_;
+  FeatureMask geometry_features_;
+  FeatureMask material_features_;
+  FeatureMask light_features_;
+  uint64_t primitive_count_ = 0;
+  std::vector<bool> shown_materials_;
+  PrimitiveNumbers numbers_;
+  std::shared_ptr<DeviceScene> device_scene_;
+};
+
+struct RendererAccess {
+  /// As Renderer's constructor, of a scene that is in the world already and is valid.
+  static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
+  static SceneOnDevice& scene_of(Renderer& renderer);
+  static const SceneOnDevice& scene_of(const Renderer& renderer);
+};
+
+inline Renderer make_renderer(const gpu::Device& device, const world::Scene& scene,
+                              const TunedRendererOptions& options = {}) {
+  return RendererAccess::make(device, scene, options);
+}
+inline Renderer make_renderer(const gpu::Device& device, const Scene& scene, const TunedRendererOptions& options = {}) {
+  return RendererAccess::make(device, world::flatten(scene), options);
+}
+
+}  // namespace promin

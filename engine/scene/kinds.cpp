@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Names of the tables of promin/kinds that C++ lists.
+#include <array>
+
+#include "promin/aovs.h"
+#include "promin/debug_view.h"
+
+namespace promin {
+
+std::span<const std::string_view> debug_view_names() {
+  static constexpr std::array kNames = {
+      std::string_view("full"),
+#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) std::string_view(NAME),
+#include "promin/kinds/debug_views.def"
+  };
+  return kNames;
+}
+
+#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) +1
+static_assert(0
+#include "promin/kinds/debug_views.def"
+                  < 256,
+              "the number of a debug view has 8 bits");
+
+std::span<const std::string_view> aov_names() {
+  static constexpr std::array kNames = {
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) std::string_view(#FIELD),
+#include "promin/kinds/aovs.def"
+  };
+  return kNames;
+}
+
+void Aovs::resize(size_t pixel_count) {
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) FIELD.assign(pixel_count, MISS);
+#include "promin/kinds/aovs.def"
+}
+
+}  // namespace promin

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "promin/validate.h"
+
+#include <algorithm>
+#include <string>
+
+#include "scene/limits.h"
+#include "shapes/shapes.h"
+
+namespace promin {
+namespace {
+
+/// A transform whose determinant is less, relative to its columns' lengths, flattens what it moves.
+constexpr double kLeastVolume = 1e-12;
+/// What unit vectors may be off by.
+constexpr float kUnitTolerance = 1e-3F;
+
+std::string place_of(const char* array, size_t index) {
+  return std::string(array) + "[" + std::to_string(index) + "]";
+}
+
+bool is_color(const vec3& color) {
+  return is_finite(color) && color.r >= 0.0F && color.g >= 0.0F && color.b >= 0.0F;
+}
+
+bool is_in_range(const dvec3& p) {
+  // Written so that NaN fails.
+  return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
+}
+
+/// Gathers what is wrong.
+class Validation {
+ public:
+  explicit Validation(std::vector<Problem>& problems) : problems_(problems) {}
+
+  /// Adds a problem unless it is so.
+  bool check(bool is_so, const std::string& what, const std::string& where, const std::string& cure) {
+    if (!is_so) problems_.push_back({what, where, cure});
+    return is_so;
+  }
+
+  void check_color(const vec3& color, const std::string& where) {
+    check(is_color(color), "a colour or factor is negative or not finite", where, "use finite numbers from 0 on");
+  }
+
+  void check_materials(std::span<const Material> materials) {
+    for (size_t i = 0; i < materials.size(); ++i) {
+      const Material& material = materials[i];
+      const std::string place = place_of("materials", i);
+      check_color(material.ambient, place + ".ambient");
+      check_color(material.diffuse, place + ".diffuse");
+      check_color(material.specular, place + ".specular");
+      check_color(material.reflection, place + ".reflection");
+      check_color(material.emissive, place + ".emissive");
+      check(std::isfinite(material.shininess), "the shininess is not finite", place + ".shininess",
+            "use a finite exponent");
+    }
+  }
+
+  void check_lights(std::span<const Light> lights) {
+    for (size_t i = 0; i < lights.size(); ++i) {
+      const Light& light = lights[i];
+      const std::string place = place_of("lights", i);
+      check_color(light.diffuse, place + ".diffuse");
+      check_color(light.specular, place + ".specular");
+      check(is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15", place + ".position",
+            "use a smaller coordinate");
+      check(std::abs(glm::length(light.direction) - 1.0F) <= kUnitTolerance, "the direction is no unit vector",
+            place + ".direction", "normalise it");
+      check(light.range > 0.0F, "the range is not positive", place + ".range", "use infinity where there is no limit");
+      const bool are_angles = light.inner_cone_angle >= 0.0F && light.inner_cone_angle < light.outer_cone_angle &&
+                              light.outer_cone_angle <= 1.5707964F;
+      check(light.kind != LightKind::kSpot || are_angles, "the cone's angles are out of order or range",
+            place + ".outer_cone_angle", "use 0 <= inner < outer <= pi/2");
+    }
+  }
+
+  void check_environment(const Environment& environment) {
+    check_color(environment.ambient, "environment.ambient");
+    check_color(environment.background, "environment.background");
+  }
+
+  void check_cameras(std::span<const Camera> cameras) {
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      const Camera& camera = cameras[i];
+      const std::string place = place_of("cameras", i);
+      check(is_in_range(dvec3(camera.eye)), "the eye is not finite or beyond 1e15", place + ".eye",
+            "use a smaller coordinate");
+      const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kUnitTolerance &&
+                            std::abs(glm::length(camera.up) - 1.0F) <= kUnitTolerance &&
+                            std::abs(glm::dot(camera.look, camera.up)) <= kUnitTolerance;
+      check(is_basis, "look and up are not orthonormal", place, "normalise them and make them perpendicular");
+      check(camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range", place + ".yfov",
+            "use an angle in (0, pi)");
+      check(camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive", place + ".ymag",
+            "use a positive number");
+      check(camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye", place + ".near",
+            "use a distance from 0 on");
+    }
+  }
+
+  void check_geometry(const Scene& scene, size_t index) {
+    if (const auto* mesh = std::get_if<Mesh>(&scene.geometries[index])) {
+      check_mesh(*mesh, scene, place_of("geometries", index));
+    }
+  }
+
+  /// False where an object names what is not there.
+  bool check_references(const Scene& scene, size_t index) {
+    const Object& object = scene.objects[index];
+    const std::string place = place_of("objects", index);
+    const bool has_material = check(object.material < scene.materials.size(),
+                                    "the material " + std::to_string(object.material) + " is out of range, there are " +
+                                        std::to_string(scene.materials.size()),
+                                    place + ".material", "name one that there is");
+    const bool has_geometry = check(object.geometry < scene.geometries.size(),
+                                    "the geometry " + std::to_string(object.geometry) + " is out of range, there are " +
+                                        std::to_string(scene.geometries.size()),
+                                    place + ".geometry", "name one that there is, or Object::kNoGeometry");
+    return has_material && has_geometry;
+  }
+
+  void check_transform(const Object& object, const std::string& place) {
+    const dmat4& m = object.world_from_object;
+    bool is_finite = true;
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 4; ++row) is_finite = is_finite && std::isfinite(m[column][row]);
+    }
+    if (!check(is_finite, "the transform is not finite", place, "use finite numbers")) return;
+    const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
+    check(is_affine, "the transform is not affine", place, "make its last row 0 0 0 1");
+    const dmat3 linear(m);
+    const double volume = std::abs(glm::determinant(linear));
+    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    check(volume > kLeastVolume * lengths && std::isfinite(lengths), "the transform is singular", place,
+          "use scales other than 0 and axes that differ");
+  }
+
+  /// An object whose references are there.
+  void check_placed(const Scene& scene, size_t index) {
+    const Object& object = scene.objects[index];
+    const std::string place = place_of("objects", index);
+    const size_t before = problems_.size();
+    check_transform(object, place + ".world_from_object");
+    if (problems_.size() > before) return;
+    std::visit([&](const auto& geometry) { check_in_world(geometry, object, place); },
+               scene.geometries[object.geometry]);
+  }
+
+ private:
+  void check_in_world(const Mesh& mesh, const Object& object, const std::string& place) {
+    Bounds box;
+    for (const vec3& position : mesh.positions) box.extend(position);
+    for (int corner = 0; corner < 8 && !mesh.positions.empty(); ++corner) {
+      const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
+                    (corner & 4) != 0 ? box.hi.z : box.lo.z);
+      if (!check(is_in_range(dvec3(object.world_from_object * dvec4(p, 1.0))),
+                 "the mesh reaches beyond 1e15 in the world", place, "use a smaller translation or scale")) {
+        return;
+      }
+    }
+  }
+
+  template <class Shape>
+  void check_in_world(const Shape& shape, const Object& object, const std::string& place) {
+    const Placement placement(object.world_from_object);
+    if (!check(promin::place(shape, placement).has_value(), "the shape does not keep its form under the transform",
+               place + ".world_from_object", "scale it alike, or use a mesh")) {
+      return;
+    }
+    check(is_in_range(center_of(shape, placement)), "the shape lies beyond 1e15 in the world", place,
+          "use a smaller translation");
+    for (const NamedSize& size : sizes_of(shape, placement)) {
+      check(is_valid(size), "the " + std::string(size.name) + " is " + std::to_string(size.size) + " in the world",
+            place, "use sizes and scales that leave it between 1e-22 and 1e15");
+    }
+  }
+
+  /// The first element that is wrong, if any is.
+  template <class Elements, class IsRight>
+  void check_each(const Elements& elements, const IsRight& is_right, const char* what, const std::string& place,
+                  const char* cure) {
+    const auto wrong = std::find_if_not(elements.begin(), elements.end(), is_right);
+    if (wrong == elements.end()) return;
+    check(false, what, place + "[" + std::to_string(wrong - elements.begin()) + "]", cure);
+  }
+
+  void check_mesh(const Mesh& mesh, const Scene& scene, const std::string& place) {
+    const size_t vertices = mesh.positions.size();
+    check_each(
+        mesh.positions, [](const vec3& p) { return is_in_range(dvec3(p)); },
+        "a vertex coordinate is not finite or beyond 1e15", place + ".positions", "use a larger unit of length");
+    check_each(
+        mesh.normals, [](const vec3& n) { return is_finite(n) && n != vec3(0.0F); },
+        "a normal has no length or is not finite", place + ".normals",
+        "leave the normals out, or give each a direction");
+    check_each(
+        mesh.colors, [](const vec4& c) { return is_color(vec3(c)) && std::isfinite(c.a); },
+        "a vertex colour is negative or not finite", place + ".colors", "use finite numbers from 0 on");
+    check_each(
+        mesh.triangles, [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
+        "a corner is out of range of the positions", place + ".triangles", "use indices of positions");
+    check_each(
+        mesh.triangle_materials, [&](uint32_t material) { return material < scene.materials.size(); },
+        "a material is out of range", place + ".triangle_materials", "name one that there is");
+    const auto check_count = [&](size_t count, size_t wanted, const char* array, const char* one) {
+      check(count == 0 || count == wanted,
+            "there are " + std::to_string(count) + " where there are " + std::to_string(wanted) + one, place + array,
+            "give none, or one each");
+    };
+    check_count(mesh.normals.size(), vertices, ".normals", " positions");
+    check_count(mesh.colors.size(), vertices, ".colors", " positions");
+    check_count(mesh.triangle_materials.size(), mesh.triangles.size(), ".triangle_materials", " triangles");
+  }
+
+  std::vector<Problem>& problems_;
+};
+
+}  // namespace
+
+std::vector<Problem> validate(const Scene& scene) {
+  std::vector<Problem> problems;
+  Validation validation(problems);
+  validation.check_materials(scene.materials);
+  validation.check_lights(scene.lights);
+  validation.check_cameras(scene.cameras);
+  validation.check_environment(scene.environment);
+  for (size_t i = 0; i < scene.geometries.size(); ++i) validation.check_geometry(scene, i);
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].geometry == Object::kNoGeometry) continue;
+    if (validation.check_references(scene, i)) validation.check_placed(scene, i);
+  }
+  return problems;
+}
+
+std::vector<Problem> validate(std::span<const Light> lights) {
+  std::vector<Problem> problems;
+  Validation(problems).check_lights(lights);
+  return problems;
+}
+
+std::vector<Problem> validate(std::span<const Material> materials) {
+  std::vector<Problem> problems;
+  Validation(problems).check_materials(materials);
+  return problems;
+}
+
+std::vector<Problem> validate(const Environment& environment) {
+  std::vector<Problem> problems;
+  Validation(problems).check_environment(environment);
+  return problems;
+}
+
+}  // namespace promin

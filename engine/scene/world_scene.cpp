@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/world_scene.h"
+
+#include <utility>
+
+#include "shapes/shapes.h"
+
+namespace promin::world {
+namespace {
+
+struct BoundsOfShape {
+  Bounds operator()(const NotDrawn&) const { return {}; }
+  Bounds operator()(const Mesh& mesh) const {
+    Bounds bounds;
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) bounds.extend(bounds_of_triangle(mesh, i));
+    return bounds;
+  }
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  Bounds operator()(const TYPE& shape) const {                       \
+    return promin::bounds_of(shape);                                 \
+  }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  Bounds operator()(const TYPE&) const {                                 \
+    return {};                                                           \
+  }
+#include "promin/kinds/primitives.def"
+};
+
+std::vector<vec3> place_normals(const std::vector<vec3>& normals, const Placement& placement) {
+  std::vector<vec3> placed;
+  placed.reserve(normals.size());
+  for (const vec3& n : normals) {
+    const dvec3 normal = placement.normal(dvec3(n));
+    placed.emplace_back(normal / glm::length(normal));
+  }
+  return placed;
+}
+
+struct ShapeInWorld {
+  const dmat4& world_from_object;
+
+  Shape operator()(const Mesh& mesh) const { return place(mesh, world_from_object); }
+  template <class Described>
+  Shape operator()(const Described& described) const {
+    auto placed = promin::place(described, Placement(world_from_object));
+    // A valid scene keeps the form of its shapes.
+    return placed ? Shape(*placed) : Shape(NotDrawn{});
+  }
+};
+
+}  // namespace
+
+Mesh place(const Mesh& mesh, const dmat4& world_from_object) {
+  const Placement placement(world_from_object);
+  Mesh placed;
+  if (placement.is_identity()) {
+    placed.positions = mesh.positions;
+  } else {
+    placed.positions.reserve(mesh.positions.size());
+    for (const vec3& p : mesh.positions) placed.positions.emplace_back(world_from_object * dvec4(p, 1.0));
+  }
+  placed.normals = place_normals(mesh.normals, placement);
+  placed.colors = mesh.colors;
+  placed.triangles = mesh.triangles;
+  placed.triangle_materials = mesh.triangle_materials;
+  if (placement.is_mirroring()) {
+    for (uvec3& triangle : placed.triangles) std::swap(triangle.y, triangle.z);
+  }
+  return placed;
+}
+
+Object flatten(const promin::Scene& scene, const promin::Object& object) {
+  Object result{object.name, NotDrawn{}, object.material};
+  if (object.geometry == promin::Object::kNoGeometry) return result;
+  result.shape = std::visit(ShapeInWorld{object.world_from_object}, scene.geometries[object.geometry]);
+  return result;
+}
+
+Scene flatten(const promin::Scene& scene) {
+  Scene result{scene.file, {}, scene.materials, scene.lights, scene.cameras, scene.environment};
+  result.objects.reserve(scene.objects.size());
+  for (const promin::Object& object : scene.objects) result.objects.push_back(flatten(scene, object));
+  return result;
+}
+
+uint32_t primitive_count(const Shape& shape) {
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) return static_cast<uint32_t>(mesh->triangles.size());
+  return std::holds_alternative<NotDrawn>(shape) ? 0 : 1;
+}
+
+Bounds bounds_of(const Scene& scene) {
+  Bounds bounds;
+  for (const Object& object : scene.objects) bounds.extend(std::visit(BoundsOfShape{}, object.shape));
+  return bounds;
+}
+
+Bounds bounds_of_triangle(const Mesh& mesh, uint32_t triangle) {
+  Bounds bounds;
+  const uvec3 corners = mesh.triangles[triangle];
+  for (int i = 0; i < 3; ++i) bounds.extend(mesh.positions[corners[i]]);
+  return bounds;
+}
+
+bool is_degenerate(const Mesh& mesh, uint32_t triangle) {
+  const uvec3 corners = mesh.triangles[triangle];
+  const dvec3 a(mesh.positions[corners.x]);
+  // Differences of nearby fp32 numbers and their products are exact in double, so collinear means exactly zero.
+  return glm::cross(dvec3(mesh.positions[corners.y]) - a, dvec3(mesh.positions[corners.z]) - a) == dvec3(0.0);
+}
+
+}  // namespace promin::world

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "promin/scene.h"
+
+// A scene on its way to the device: all in world space, in the fp32 numbers that the device sees. What is exact about a
+// picture or a hit is exact about these numbers.
+namespace promin::world {
+
+/// Something that takes an object number but is never drawn.
+struct NotDrawn {};
+
+/// Normals are unit vectors to fp32 rounding.
+using Mesh = promin::Mesh;
+
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , TYPE
+using Shape = std::variant<NotDrawn, Mesh
+#include "promin/kinds/primitives.def"
+                           >;
+
+struct Object {
+  std::string name;
+  Shape shape;
+  /// Index into Scene::materials.
+  uint32_t material = 0;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::vector<Object> objects;
+  std::vector<Material> materials;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  Environment environment;
+};
+
+/// A mesh in the world: positions and normals by the transform in double, rounded once; wound so that counter-clockwise
+/// stays outside under a mirroring one. Under no transform positions keep their bits.
+Mesh place(const Mesh& mesh, const dmat4& world_from_object);
+
+/// An object in the world. The scene is valid.
+Object flatten(const promin::Scene& scene, const promin::Object& object);
+
+/// All of them in their order. The scene is valid.
+Scene flatten(const promin::Scene& scene);
+
+/// Number of triangles (degenerate ones included), 1 for an analytic shape, 0 for NotDrawn.
+uint32_t primitive_count(const Shape& shape);
+
+/// Bounds of everything finite; empty if there is nothing finite.
+Bounds bounds_of(const Scene& scene);
+Bounds bounds_of_triangle(const Mesh& mesh, uint32_t triangle);
+
+/// Whether a triangle can be hit at all: its corners are distinct and not exactly collinear.
+bool is_degenerate(const Mesh& mesh, uint32_t triangle);
+
+}  // namespace promin::world

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include "shapes/shapes.h"
+
+namespace promin {
+namespace {
+
+constexpr double kMargin = 4.0 * static_cast<double>(kUnitRoundoff);
+
+struct Disk {
+  dvec3 center;
+  double radius;
+};
+
+}  // namespace
+
+Bounds round_outward(const dvec3& lo, const dvec3& hi, const dvec3& magnitude) {
+  Bounds bounds;
+  for (int i = 0; i < 3; ++i) {
+    bounds.lo[i] = round_down(lo[i] - kMargin * magnitude[i]);
+    bounds.hi[i] = round_up(hi[i] + kMargin * magnitude[i]);
+  }
+  return bounds;
+}
+
+// A disk with unit normal a reaches radius * sqrt(1 - a_i^2) along axis i; as the length of the other two components it
+// does not cancel near 1.
+Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
+                       double radius_top) {
+  const dvec3 unit = glm::normalize(dvec3(axis));
+  const dvec3 reach(std::hypot(unit.y, unit.z), std::hypot(unit.z, unit.x), std::hypot(unit.x, unit.y));
+  const dvec3 step = half_height * unit;
+  dvec3 lo(std::numeric_limits<double>::infinity());
+  dvec3 hi = -lo;
+  for (const Disk& disk : {Disk{dvec3(center) - step, radius_bottom}, Disk{dvec3(center) + step, radius_top}}) {
+    lo = glm::min(lo, disk.center - disk.radius * reach);
+    hi = glm::max(hi, disk.center + disk.radius * reach);
+  }
+  const double size = half_height + std::fmax(radius_bottom, radius_top);
+  return round_outward(lo, hi, glm::abs(dvec3(center)) + size);
+}
+
+}  // namespace promin

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "layout.h"
+#include "shapes/shapes.h"
+
+namespace promin {
+
+std::optional<world::Plane> place(const Plane& plane, const Placement& placement) {
+  const dvec3 normal = placement.normal(plane.normal);
+  const double length = glm::length(normal);
+  // A scale of 0 leaves no normal.
+  if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+  return world::Plane{vec3(center_of(plane, placement)), vec3(1.0 / length * normal)};
+}
+
+std::vector<NamedSize> sizes_of(const Plane&, const Placement&) {
+  return {};
+}
+
+dvec3 center_of(const Plane& plane, const Placement& placement) {
+  return placement.point(plane.point);
+}
+
+// a = point, b = normal.
+layout::Primitive pack(const world::Plane& p) {
+  return {vec4(p.point, 0.0F), vec4(p.normal, 0.0F), uvec4(0)};
+}
+
+template <>
+world::Plane unpack(const layout::Primitive& p) {
+  return {vec3(p.a), vec3(p.b)};
+}
+
+}  // namespace promin

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "promin/shapes.h"
+#include "shapes/placement.h"
+
+namespace promin {
+
+namespace layout {
+struct Primitive;
+}
+
+/// A size that a shape has in the world, in double.
+struct NamedSize {
+  const char* name = "";
+  double size = 0.0;
+  /// Where 0 is a size too: an apex.
+  bool may_be_zero = false;
+};
+
+/// From device records back to the numbers they hold; for each shape a specialisation in its own file.
+template <class Shape>
+Shape unpack(const layout::Primitive& primitive);
+
+// What each shape of promin/kinds/primitives.def defines in engine/shapes/<shape>.cpp:
+//   place      the shape in the world; none where it does not keep its form under the transform
+//   sizes_of   the sizes that it has there
+//   center_of  where it lies there, in double
+//   pack       its numbers in a device record; order, kind and hashes are the caller's
+//   unpack     the same numbers back
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)               \
+  std::optional<world::TYPE> place(const TYPE& shape, const Placement& placement); \
+  std::vector<NamedSize> sizes_of(const TYPE& shape, const Placement& placement);  \
+  dvec3 center_of(const TYPE& shape, const Placement& placement);                  \
+  layout::Primitive pack(const world::TYPE& shape);                                \
+  template <>                                                                      \
+  world::TYPE unpack(const layout::Primitive& primitive);
+#include "promin/kinds/primitives.def"
+
+// Conservative bounds in fp32, tight up to rounding, of each shape that has some.
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) Bounds bounds_of(const world::TYPE& shape);
+#include "promin/kinds/primitives.def"
+
+/// KIND_* of a shape.
+template <class Shape>
+struct KindOf;
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  template <>                                                        \
+  struct KindOf<world::TYPE> {                                       \
+    static constexpr uint32_t value = NUMBER;                        \
+  };
+#include "promin/kinds/primitives.def"
+
+/// fp32 axes are unit only to rounding, so a shape's true extent may exceed the computed one by a few roundings: 2 ulp
+/// of the largest magnitude that takes part are added.
+Bounds round_outward(const dvec3& lo, const dvec3& hi, const dvec3& magnitude);
+
+/// Of the convex hull of two disks around an axis (of any length but 0), half_height before and behind the center.
+Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
+                       double radius_top);
+
+}  // namespace promin

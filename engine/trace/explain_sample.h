@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bvh/primitive_numbers.h"
+#include "layout.h"
+#include "promin/explain.h"
+
+namespace promin {
+
+/// A sample from the log that a device wrote of it. `light_numbers`: of each light on the device its index in
+/// Scene::lights.
+ExplainedSample explain_sample(std::span<const layout::RayLog> log, const PrimitiveNumbers& numbers,
+                               std::span<const uint32_t> light_numbers);
+
+}  // namespace promin

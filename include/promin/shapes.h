@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "promin/math.h"
+
+// The shapes of promin/kinds/primitives.def, each in a header of its own: once as a scene describes it, in its own
+// space and in double, and once in namespace `world`, in the fp32 numbers that a device sees.
+#define PROMIN_SHAPE_SOURCES
+#include "promin/kinds/primitives.def"
+
+namespace promin {
+
+/// A triangle mesh in its own space. Corners run counter-clockwise seen from outside.
+struct Mesh {
+  std::vector<vec3> positions;
+  /// Vertex normals of any length but 0; empty (sharp polygons) or one per position.
+  std::vector<vec3> normals;
+  /// Linear RGBA vertex colours that multiply ambient and diffuse; empty or one per position.
+  std::vector<vec4> colors;
+  /// Indices into `positions`. Degenerate triangles stay here, so that numbering holds; they are never hit.
+  std::vector<uvec3> triangles;
+  /// Index into Scene::materials of each triangle; empty where Object::material holds for all.
+  std::vector<uint32_t> triangle_materials;
+};
+
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , TYPE
+/// What an object is made of: a mesh or an analytic shape, in its own space.
+using Geometry = std::variant<Mesh
+#include "promin/kinds/primitives.def"
+                              >;
+
+/// Names for people of Geometry's alternatives, in its order, in the plural: "meshes", "spheres", …
+inline constexpr std::string_view kGeometryNames[] = {
+    "meshes",
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) NAME,
+#include "promin/kinds/primitives.def"
+};
+
+/// Number of triangles (degenerate ones included), or 1 for an analytic shape.
+uint32_t primitive_count(const Geometry& geometry);
+
+}  // namespace promin

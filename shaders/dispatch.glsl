@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What the words of `dispatch` (layout.h, Dispatch) mean. Whoever declares the buffer with it includes this after.
+
+// Of pictures: blocks [first, end), one sample of each pixel.
+uint first_block() { return dispatch.range.x; }
+uint end_block() { return dispatch.range.y; }
+uint sample_at_hand() { return dispatch.range.z; }
+uint most_bounces() { return dispatch.range.w; }
+// Of rays to cast: [first, end).
+uint first_ray() { return dispatch.range.x; }
+uint end_ray() { return dispatch.range.y; }
+
+// In pixels.
+uvec2 window_corner() { return dispatch.window.xy; }
+uvec2 window_size() { return dispatch.window.zw; }
+uint window_pixel_count() { return dispatch.window.z * dispatch.window.w; }
+
+uint samples_per_pixel() { return dispatch.sampling.x; }
+uint lattice_generator() { return dispatch.sampling.y; }
+uint blocks_per_row() { return dispatch.sampling.z; }
+bool is_orthographic() { return dispatch.sampling.w != 0u; }
+
+uint first_plane() { return dispatch.counts.x; }
+uint end_plane() { return dispatch.counts.x + dispatch.counts.y; }
+uint light_count() { return dispatch.counts.z; }
+uint loop_check_turns() { return dispatch.counts.w; }
