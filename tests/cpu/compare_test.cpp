@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "image/compare.h"
+#include "measure/compare_images.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -86,6 +86,37 @@ TEST(CompareTest, OneLargeDifferenceFails) {
   CompareOptions loose;
   loose.hard_fail = 0.02F;
   EXPECT_TRUE(compare_images(a, b, loose).is_equal);
+}
+
+TEST(CompareTest, AShareOfEdgePixelsMayShowTheirNeighbour) {
+  Image golden = make_flat(100, 100, 0.0F);
+  for (uint32_t y = 0; y < 100; ++y) {
+    for (uint32_t x = 50; x < 100; ++x) golden.at(x, y) = vec3(1.0F);
+  }
+  CompareOptions options;
+  EXPECT_EQ(options.edge_percent, 0.0) << "edges are for those who ask for them";
+  Image picture = golden;
+  for (uint32_t y = 0; y < 50; ++y) picture.at(50, y) = vec3(y % 2 == 0 ? 0.0F : 0.7F);
+  EXPECT_FALSE(compare_images(picture, golden, options).is_equal);
+  options.edge_percent = 0.5;
+  const ImageDifference result = compare_images(picture, golden, options);
+  EXPECT_TRUE(result.is_equal) << "50 of 10000 pixels are 0.5 %";
+  EXPECT_EQ(result.edge_count, 50U);
+  EXPECT_EQ(result.failed_count, 0U);
+  EXPECT_TRUE(result.worst.empty());
+  EXPECT_THAT(result.summary(), HasSubstr("on edges 50"));
+
+  picture.at(49, 99) = vec3(1.0F);
+  EXPECT_FALSE(compare_images(picture, golden, options).is_equal) << "one more is too many";
+  picture = golden;
+  picture.at(50, 0) = vec3(0.0F, 1.0F, 1.013F);
+  EXPECT_FALSE(compare_images(picture, golden, options).is_equal) << "brighter than all around it";
+  picture = golden;
+  picture.at(53, 0) = vec3(0.0F);
+  EXPECT_FALSE(compare_images(picture, golden, options).is_equal) << "the edge is three pixels away";
+  picture = golden;
+  picture.at(50, 0).y = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(compare_images(picture, golden, options).is_equal) << "NaN is between nothing";
 }
 
 TEST(CompareTest, TheWorstPixelsComeFirst) {

@@ -425,9 +425,10 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   const size_t binary = 20 + json_length;
   EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasSubstr("GLB header is cut off"));
   EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 1)), HasSubstr("GLB header promises"));
-  EXPECT_THAT(refusal("a.glb", good + "x"), HasSubstr("GLB header promises"));
   EXPECT_THAT(spoiled(4, 1), HasSubstr("version 1"));
   EXPECT_THAT(spoiled(8, 0xFFFFFFFF), HasSubstr("promises 4294967295 bytes"));
+  EXPECT_THAT(spoiled(8, 19), HasSubstr("promises 19 bytes")) << "no room for a chunk";
+  EXPECT_THAT(spoiled(8, good.size() - 4), HasSubstr("chunk promises 44 bytes, 40 are left"));
   EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk promises"));
   EXPECT_THAT(spoiled(12, json_length + 8), testing::Not(""));
   EXPECT_THAT(spoiled(16, 7), HasSubstr("must be JSON"));
@@ -443,6 +444,40 @@ TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsBuffer) {
   const std::string length = "\"byteLength\":42";
   bytes.replace(bytes.rfind(length), length.size(), "\"byteLength\":45");
   EXPECT_THAT(refusal("a.glb", bytes), HasSubstr("has 44 bytes, less than its byteLength of 45"));
+}
+
+/// Whatever reads from a buffer makes its bytes needed.
+TEST_F(BadFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
+  const auto refuse_without = [&](const std::function<void(GltfBuilder&)>& use) {
+    GltfBuilder gltf = triangle_gltf();
+    gltf.text();
+    gltf.json["buffers"].push_back({{"byteLength", 36}, {"uri", "none.bin"}});
+    gltf.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 36}});
+    use(gltf);
+    return refusal("a.gltf", gltf.json.dump());
+  };
+  const auto add_vectors = [](GltfBuilder& gltf) {
+    gltf.json["accessors"].push_back({{"bufferView", 2}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    return gltf.json["accessors"].size() - 1;
+  };
+  for (const char* attribute : {"POSITION", "NORMAL", "COLOR_0"}) {
+    EXPECT_THAT(refuse_without([&](auto& g) { primitive(g)["attributes"][attribute] = add_vectors(g); }),
+                HasSubstr("buffers[1].uri"))
+        << attribute;
+  }
+  EXPECT_THAT(refuse_without([](auto& g) { g.json["accessors"][1]["bufferView"] = 2; }), HasSubstr("buffers[1].uri"));
+  for (const bool has_indices : {true, false}) {
+    EXPECT_THAT(refuse_without([&](auto& g) {
+                  g.json["accessors"][0]["sparse"] = {
+                      {"count", 1},
+                      {"indices", {{"bufferView", has_indices ? 2 : 0}, {"componentType", 5121}}},
+                      {"values", {{"bufferView", has_indices ? 0 : 2}}}};
+                }),
+                HasSubstr("buffers[1].uri"));
+  }
+  EXPECT_THAT(refuse_without([](auto& g) { g.json["buffers"][1]["uri"] = "../none.bin"; }),
+              HasSubstr("leaves the scene's folder"))
+      << "needed or not";
 }
 
 TEST_F(BadFileTest, AllProblemsOfAFileComeTogether) {

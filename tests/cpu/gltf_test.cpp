@@ -524,6 +524,48 @@ TEST_F(GltfTest, BuffersLieBesideTheScene) {
   EXPECT_THAT(SceneFolder::load("a.gltf", gltf.json.dump()).objects, SizeIs(1));
 }
 
+/// A triangle with texture coordinates, which nothing reads, in a buffer of their own.
+GltfBuilder two_buffer_gltf(const json& second_buffer) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.text();
+  json& document = gltf.json;
+  document["buffers"].push_back({{"byteLength", 24}});
+  document["buffers"][1].update(second_buffer);
+  document["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 24}});
+  document["accessors"].push_back(
+      {{"bufferView", document["bufferViews"].size() - 1}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}});
+  document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = document["accessors"].size() - 1;
+  return gltf;
+}
+
+TEST_F(GltfTest, BuffersThatNoMeshNeedsMayLackBytes) {
+  write("whole.bin", std::string(24, 'x'));
+  write("short.bin", "1234");
+  write("empty.bin", "");
+  const auto warnings_of = [&](const json& second_buffer) {
+    const Scene scene = SceneFolder::load("a.gltf", two_buffer_gltf(second_buffer).json.dump());
+    EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    return scene.warnings;
+  };
+  const auto lack = [](int size) {
+    return ElementsAre("buffers[1] has " + std::to_string(size) +
+                       " bytes, less than its byteLength of 24; no mesh needs it");
+  };
+  EXPECT_THAT(warnings_of({{"uri", "whole.bin"}}), IsEmpty());
+  EXPECT_THAT(warnings_of({{"uri", "none.bin"}}), lack(0));
+  EXPECT_THAT(warnings_of({{"uri", "short.bin"}}), lack(4));
+  EXPECT_THAT(warnings_of({{"uri", "empty.bin"}}), lack(0));
+  EXPECT_THAT(warnings_of({{"uri", "data:application/octet-stream;base64,AAAA"}}), lack(3));
+  EXPECT_THAT(warnings_of(json::object()), lack(0));
+}
+
+TEST_F(GltfTest, BytesAfterTheEndOfAGlbAreIgnored) {
+  GltfBuilder gltf = triangle_gltf();
+  const Scene scene = SceneFolder::load("a.glb", gltf.glb() + "more");
+  EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_THAT(scene.warnings, ElementsAre("the 4 bytes after the end of the GLB are ignored"));
+}
+
 TEST_F(GltfTest, ImagesAreNotTouched) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["images"] = {{{"uri", "missing.png"}}};

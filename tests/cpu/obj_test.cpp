@@ -205,6 +205,31 @@ TEST_F(ObjTest, FacesKeepTheirMaterials) {
 
 TEST_F(ObjTest, AColourOfOneNumberIsGrey) {
   EXPECT_EQ(material("Kd 0.5\n").diffuse, vec3(0.5F));
+  EXPECT_EQ(material("Kd 0.5 # grey\n").diffuse, vec3(0.5F));
+  EXPECT_EQ(material("Kd 0.5 0.25\n").diffuse, vec3(0.5F, 0.25F, 0.0F));
+  EXPECT_EQ(material("Kd\n").diffuse, vec3(0.8F));
+}
+
+TEST_F(ObjTest, StatementsBeforeTheFirstMaterialAreOfNone) {
+  write("two.mtl", "Kd 1 0 0\nd 0.5\nnewmtl a\nKs 1\nKs 0 1 0\nKd 0 0 1\nnewmtl b\n");
+  const Scene scene = load(kSquare + "mtllib two.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  ASSERT_THAT(scene.materials, SizeIs(2));
+  EXPECT_EQ(scene.materials[0].specular, vec3(0, 1, 0)) << "the last of equal statements holds";
+  EXPECT_EQ(scene.materials[1].diffuse, vec3(0.8F));
+  EXPECT_EQ(scene.materials[1].specular, vec3(0.0F));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(ObjTest, OpacityWinsOverTransparency) {
+  std::vector<std::string> warnings;
+  for (const char* opaque : {"d 1\n", "Tr 0\n", "d 1\nTr 1\n", "Tr 1\nd 1\n"}) {
+    material(opaque, &warnings);
+    EXPECT_THAT(warnings, IsEmpty()) << opaque;
+  }
+  for (const char* transparent : {"d 0.5\n", "Tr 0.5\n", "d 0.5\nTr 0\n", "d -halo 0.5\n", "illum 4\n"}) {
+    material(transparent, &warnings);
+    EXPECT_THAT(warnings, ElementsAre("material \"m\" is transparent, it is drawn opaque")) << transparent;
+  }
 }
 
 TEST_F(ObjTest, MtlNamesMayHoldSpaces) {

@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "gpu/device_fixture.h"
-#include "image/compare.h"
 #include "layout.h"
+#include "measure/compare_images.h"
 #include "promin/image.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
@@ -26,56 +26,12 @@ namespace fs = std::filesystem;
 const fs::path kScenes = PROMIN_SCENES_DIR;
 const fs::path kGoldens = PROMIN_GOLDENS_DIR;
 
-/// In linear light.
-constexpr float kFail = 0.004F;
-constexpr float kHardFail = 0.012F;
-constexpr double kFailShare = 0.0002;
-/// On an edge a driver's rounding may decide for the neighbour: a pixel may show anything between its golden
-/// neighbours' values, but only so many may, or a shifted picture would pass.
-constexpr double kEdgeShare = 0.005;
-
-/// False where there is a NaN.
-bool is_at_most(const vec3& v, float bound) {
-  return v.x <= bound && v.y <= bound && v.z <= bound;
-}
-
-bool is_between_neighbours(const Image& golden, uint32_t x, uint32_t y, const vec3& pixel) {
-  vec3 lo = golden.at(x, y);
-  vec3 hi = lo;
-  for (uint32_t j = y == 0 ? 0 : y - 1; j <= std::min(y + 1, golden.size.y - 1); ++j) {
-    for (uint32_t i = x == 0 ? 0 : x - 1; i <= std::min(x + 1, golden.size.x - 1); ++i) {
-      lo = glm::min(lo, golden.at(i, j));
-      hi = glm::max(hi, golden.at(i, j));
-    }
-  }
-  return glm::all(glm::greaterThanEqual(pixel, lo - kFail)) && glm::all(glm::lessThanEqual(pixel, hi + kFail));
-}
+constexpr CompareOptions kTolerance = {.fail = 0.004F, .fail_percent = 0.02, .hard_fail = 0.012F, .edge_percent = 0.5};
 
 /// Empty if the picture is the golden one; otherwise what is wrong.
 std::string compare_with_golden(const Image& picture, const Image& golden) {
-  if (picture.size != golden.size) return "the sizes differ";
-  size_t failed = 0;
-  size_t hard_failed = 0;
-  size_t edges = 0;
-  for (uint32_t y = 0; y < golden.size.y; ++y) {
-    for (uint32_t x = 0; x < golden.size.x; ++x) {
-      const vec3 difference = glm::abs(picture.at(x, y) - golden.at(x, y));
-      if (is_at_most(difference, kFail)) continue;
-      if (is_between_neighbours(golden, x, y, picture.at(x, y))) {
-        ++edges;
-        continue;
-      }
-      ++failed;  // NaN comes here: it is between nothing
-      if (!is_at_most(difference, kHardFail)) ++hard_failed;
-    }
-  }
-  const auto pixels = static_cast<double>(golden.pixels.size());
-  const bool passes = hard_failed == 0 && static_cast<double>(failed) <= kFailShare * pixels &&
-                      static_cast<double>(edges) <= kEdgeShare * pixels;
-  if (passes) return "";
-  return std::to_string(hard_failed) + " pixels differ by more than " + std::to_string(kHardFail) + ", " +
-         std::to_string(failed) + " by more than " + std::to_string(kFail) + ", " + std::to_string(edges) +
-         " show a neighbour";
+  const ImageDifference difference = compare_images(picture, golden, kTolerance);
+  return difference.is_equal ? "" : difference.summary();
 }
 
 std::vector<std::string> scene_names() {
@@ -127,7 +83,7 @@ TEST_P(SceneGoldenTest, LooksAsStored) {
   if (problem.empty()) return;
   fs::create_directories(PROMIN_FAILURES_DIR);
   const fs::path difference = fs::path(PROMIN_FAILURES_DIR) / (fs::path(GetParam()).stem().string() + ".png");
-  if (picture.size == golden.size) write_difference_image(difference, picture, golden, 4.0F);
+  write_difference_image(difference, picture, golden, 4.0F);
   FAIL() << problem << "; the difference, fourfold, is " << difference;
 }
 

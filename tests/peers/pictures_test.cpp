@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "cpu/process.h"
-#include "image/compare.h"
+#include "measure/compare_images.h"
 #include "promin/image.h"
 
 namespace promin {

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "image/compare.h"
+#include "measure/compare_images.h"
 #include "promin/error.h"
 
 namespace {

@@ -63,7 +63,7 @@ void copy(const Source& source, To* out) {
 
 const std::byte* bytes_of_view(const GltfDocument& document, int view) {
   const GltfBufferView& v = document.views[static_cast<size_t>(view)];
-  return document.buffers[static_cast<size_t>(v.buffer)].data() + v.byte_offset;
+  return document.buffers.bytes[static_cast<size_t>(v.buffer)].data() + v.byte_offset;
 }
 
 template <class To>

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/file.h"
+#include "formats/gltf/checks.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/scene_path.h"
 
@@ -46,24 +47,63 @@ std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& pl
   return bytes;
 }
 
-std::optional<Bytes> read_uri(const std::string& uri, const std::string& place, LoadReport& report) {
-  if (uri.starts_with("data:")) return read_data_uri(uri, place, report);
+bool is_data(const std::string& uri) {
+  return uri.starts_with("data:");
+}
+
+std::optional<std::filesystem::path> find_file(const std::string& uri, const std::string& place, bool must_exist,
+                                               LoadReport& report) {
   const std::optional<std::string> name = decode_percent(uri);
-  if (!name) {
-    report.refuse("the URI holds a broken percent escape", place, "write % as %25");
-    return std::nullopt;
-  }
-  const auto file = find_beside_scene(*name, place, true, report);
+  if (name) return find_beside_scene(*name, place, must_exist, report);
+  report.refuse("the URI holds a broken percent escape", place, "write % as %25");
+  return std::nullopt;
+}
+
+std::optional<Bytes> read_uri(const std::string& uri, const std::string& place, LoadReport& report) {
+  if (is_data(uri)) return read_data_uri(uri, place, report);
+  const auto file = find_file(uri, place, true, report);
   if (!file) return std::nullopt;
   return read_file(*file);
 }
 
-std::optional<Bytes> read_buffer(const json& buffer, const std::string& place,
-                                 std::optional<std::span<const std::byte>> glb_binary, LoadReport& report) {
-  if (buffer.contains("uri")) return read_uri(buffer["uri"], place + ".uri", report);
-  if (glb_binary) return Bytes(glb_binary->begin(), glb_binary->end());
-  report.refuse("the buffer has no bytes", place, "add a uri, or a binary chunk to the GLB file");
-  return std::nullopt;
+/// How many bytes there are; 0 where the file is missing. A URI that leads where it must not is refused.
+uint64_t size_of_uri(const std::string& uri, const std::string& place, LoadReport& report) {
+  if (is_data(uri)) return read_data_uri(uri, place, report).value_or(Bytes{}).size();
+  const auto file = find_file(uri, place, false, report);
+  if (!file) return 0;
+  std::error_code error;
+  const uintmax_t size = std::filesystem::file_size(*file, error);
+  return error ? 0 : size;
+}
+
+std::string say_too_short(uint64_t size, uint64_t length) {
+  return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
+}
+
+/// The buffers that attributes or indices of meshes lie in, as far as they are ever read.
+std::vector<bool> find_needed_buffers(const GltfDocument& document) {
+  std::vector<bool> is_needed(elements_of(document.json, "buffers").size(), false);
+  const auto need_view = [&](int view) {
+    if (view < 0) return;
+    is_needed[static_cast<size_t>(document.views[static_cast<size_t>(view)].buffer)] = true;
+  };
+  const auto need_accessor = [&](int index) {
+    if (index < 0) return;
+    const GltfAccessor& accessor = document.accessors[static_cast<size_t>(index)];
+    need_view(accessor.view);
+    if (!accessor.sparse) return;
+    need_view(accessor.sparse->index_view);
+    need_view(accessor.sparse->value_view);
+  };
+  for (const GltfMesh& mesh : document.meshes) {
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      need_accessor(primitive.indices);
+      for (const auto& [name, accessor] : primitive.attributes) {
+        if (is_read_attribute(name)) need_accessor(accessor);
+      }
+    }
+  }
+  return is_needed;
 }
 
 }  // namespace
@@ -103,20 +143,38 @@ std::optional<std::string> decode_percent(std::string_view text) {
   return decoded;
 }
 
-std::vector<Bytes> read_gltf_buffers(const json& document, std::optional<std::span<const std::byte>> glb_binary,
-                                     LoadReport& report) {
-  std::vector<Bytes> buffers;
-  for (const json& buffer : elements_of(document, "buffers")) {
-    const std::string place = "buffers[" + std::to_string(buffers.size()) + "]";
+GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
+                              LoadReport& report) {
+  const std::vector<bool> is_needed = find_needed_buffers(document);
+  GltfBuffers buffers;
+  for (const json& source : elements_of(document.json, "buffers")) {
+    const size_t index = buffers.bytes.size();
+    std::span<const std::byte>& bytes = buffers.bytes.emplace_back();
+    const std::string place = "buffers[" + std::to_string(index) + "]";
+    const auto length = source["byteLength"].get<uint64_t>();
+    const bool has_uri = source.contains("uri");
     // The binary chunk belongs to the first buffer alone.
-    std::optional<Bytes> bytes = read_buffer(buffer, place, buffers.empty() ? glb_binary : std::nullopt, report);
-    const auto length = buffer["byteLength"].get<uint64_t>();
-    if (bytes && bytes->size() < length) {
-      report.refuse("the buffer has " + std::to_string(bytes->size()) + " bytes, less than its byteLength of " +
-                        std::to_string(length),
-                    place, "export the file again");
+    const bool is_chunk = !has_uri && index == 0 && glb_binary;
+    if (!is_needed[index]) {
+      const uint64_t size = has_uri    ? size_of_uri(source["uri"], place + ".uri", report)
+                            : is_chunk ? glb_binary->size()
+                                       : 0;
+      if (size < length) report.warn(place + " " + say_too_short(size, length) + "; no mesh needs it");
+      continue;
     }
-    buffers.push_back(std::move(bytes).value_or(Bytes{}));
+    if (has_uri) {
+      std::optional<Bytes> own = read_uri(source["uri"], place + ".uri", report);
+      if (!own) continue;
+      bytes = buffers.own.emplace_back(std::move(*own));
+    } else if (is_chunk) {
+      bytes = *glb_binary;
+    } else {
+      report.refuse("the buffer has no bytes", place, "add a uri, or a binary chunk to the GLB file");
+      continue;
+    }
+    if (bytes.size() < length) {
+      report.refuse("the buffer " + say_too_short(bytes.size(), length), place, "export the file again");
+    }
   }
   return buffers;
 }

@@ -3,22 +3,22 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "formats/load_report.h"
+#include "formats/gltf/document.h"
 
 namespace promin {
 
 /// The bytes of every buffer of a document: from data: URIs, files beside the scene (see find_beside_scene) or the
-/// GLB's binary chunk, each at least its byteLength long. Problems go to the report.
-std::vector<std::vector<std::byte>> read_gltf_buffers(const nlohmann::json& document,
-                                                      std::optional<std::span<const std::byte>> glb_binary,
-                                                      LoadReport& report);
+/// GLB's binary chunk. A buffer that a mesh's attributes or indices lie in has at least its byteLength of them, any
+/// other has none. Only the former is refused where its bytes are missing or too few; of the latter that is a warning.
+/// Problems go to the report.
+GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
+                              LoadReport& report);
 
 /// RFC 4648, with or without padding; nullopt where the text is no base64.
 std::optional<std::vector<std::byte>> decode_base64(std::string_view text);

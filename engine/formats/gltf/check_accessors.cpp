@@ -102,16 +102,13 @@ void check_format(const json& accessor, std::string_view attribute, const std::s
   const std::string type = accessor["type"];
   const int component_type = accessor["componentType"];
   const bool normalized = accessor.value("normalized", false);
-  bool is_read = false;
   for (const Format& format : kFormats) {
-    if (format.attribute != attribute) continue;
-    is_read = true;
-    if (format.type == type && format.component_type == component_type &&
+    if (format.attribute == attribute && format.type == type && format.component_type == component_type &&
         format.normalized.value_or(normalized) == normalized) {
       return;
     }
   }
-  if (!is_read) return;
+  if (!is_read_attribute(attribute)) return;
   report.refuse("the accessor's format (" + type + " of " + std::to_string(component_type) +
                     (normalized ? ", normalized" : "") + ") is not allowed here",
                 place, "export it as the glTF specification has it");
@@ -140,6 +137,10 @@ void check_primitive(const json& primitive, const json& accessors, const std::st
 }
 
 }  // namespace
+
+bool is_read_attribute(std::string_view name) {
+  return std::any_of(std::begin(kFormats), std::end(kFormats), [&](auto& format) { return format.attribute == name; });
+}
 
 uint64_t component_bytes(int component_type) {
   if (component_type == kGltfByte || component_type == kGltfUnsignedByte) return 1;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "formats/load_report.h"
 
@@ -22,6 +23,9 @@ void check_gltf_nodes(const nlohmann::json& document, LoadReport& report);
 /// Buffer views lie within their buffers' byteLength and accessors within their views; attributes have the formats
 /// and counts that the specification (section 3.7.2.1) and KHR_mesh_quantization allow.
 void check_gltf_accessors(const nlohmann::json& document, LoadReport& report);
+
+/// Whether meshes are read with this attribute. Any other is ignored, and the buffer it lies in may lack its bytes.
+bool is_read_attribute(std::string_view name);
 
 /// Types of components, by their numbers in the file.
 inline constexpr int kGltfByte = 5120;

@@ -36,11 +36,16 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
   const uint32_t version = read_u32(bytes, 4);
   if (version != 2) refuse_file(report, "GLB version " + std::to_string(version) + " is not 2", "byte 4");
   const uint32_t length = read_u32(bytes, 8);
-  if (length != bytes.size()) {
+  if (length > bytes.size() || length < kHeaderBytes + kChunkHeaderBytes) {
     refuse_file(
         report,
         "the GLB header promises " + std::to_string(length) + " bytes, the file has " + std::to_string(bytes.size()),
         "byte 8");
+  }
+
+  if (length < bytes.size()) {
+    report.warn("the " + std::to_string(bytes.size() - length) + " bytes after the end of the GLB are ignored");
+    bytes = bytes.first(length);
   }
 
   GltfContainer container;

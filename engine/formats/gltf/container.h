@@ -19,7 +19,7 @@ struct GltfContainer {
 };
 
 /// Takes a file apart, GLB by its magic number (glTF 2.0, section 4.4). Every length is checked against the bytes
-/// there are. Throws InputError.
+/// there are; what follows the GLB's end is warned of. Throws InputError.
 GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report);
 
 }  // namespace promin

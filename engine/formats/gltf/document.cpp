@@ -64,7 +64,7 @@ GltfNode node_of(const json& source) {
           elements_of(source, "children")};
 }
 
-/// Fills the typed views from a document that has been checked.
+/// Fills the typed views from a document that follows the schema.
 void fill_views(GltfDocument& document) {
   const json& source = document.json;
   for (const json& view : elements_of(source, "bufferViews")) document.views.push_back(view_of(view));
@@ -77,21 +77,23 @@ void fill_views(GltfDocument& document) {
 }  // namespace
 
 GltfDocument read_gltf_document(LoadReport& report) {
-  const std::vector<std::byte> bytes = read_file(report.file());
+  std::vector<std::byte> bytes = read_file(report.file());
   const GltfContainer container = split_gltf(bytes, report);
   GltfDocument document;
   document.json = parse_json(container.json, report, "export the file again");
 
   check_gltf_schema(document.json, report);
   report.throw_if_refused();
+  fill_views(document);
 
   check_gltf_asset(document.json, report);
   check_gltf_nodes(document.json, report);
   check_gltf_accessors(document.json, report);
-  document.buffers = read_gltf_buffers(document.json, container.binary, report);
+  document.buffers = read_gltf_buffers(document, container.binary, report);
   report.throw_if_refused();
 
-  fill_views(document);
+  // Moving the bytes leaves them where they are: the views into them stay valid.
+  if (container.binary) document.glb = std::move(bytes);
   return document;
 }
 

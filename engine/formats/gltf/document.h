@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,17 @@ struct GltfNode {
   std::vector<int> children;
 };
 
+/// The bytes of a document's buffers. Not to be copied: one part points into another.
+struct GltfBuffers {
+  GltfBuffers() = default;
+  GltfBuffers(GltfBuffers&&) = default;
+  GltfBuffers& operator=(GltfBuffers&&) = default;
+
+  /// Of each buffer; empty where nothing reads it. Views into `own` and into GltfDocument::glb.
+  std::vector<std::span<const std::byte>> bytes;
+  std::vector<std::vector<std::byte>> own;
+};
+
 /// A glTF file, read and checked: every index, type, range and length in it can be relied on. What only one reader
 /// needs (materials, cameras, extensions) it takes from `json`.
 struct GltfDocument {
@@ -77,8 +89,9 @@ struct GltfDocument {
   std::vector<GltfNode> nodes;
   /// The scene that is shown, if there are any.
   size_t scene = 0;
-  /// The bytes of views[].buffer.
-  std::vector<std::vector<std::byte>> buffers;
+  GltfBuffers buffers;
+  /// A GLB file, whose binary chunk is a buffer; nothing of a text file.
+  std::vector<std::byte> glb;
 };
 
 /// Reads the file that the report is about. Checks come in three rounds (the file's frame, the schema, what the

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/obj/materials.h"
 
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <sstream>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/file.h"
 #include "formats/obj/text_lines.h"
@@ -18,9 +16,22 @@
 namespace promin {
 namespace {
 
-/// tinyobjloader takes what a material leaves out for black, illum 0 and Ns 1: state the defaults first.
-constexpr const char* kDefaults = "Ka -1 -1 -1\nKd 0.8 0.8 0.8\nillum 2\nNs 0\n";
-constexpr std::array<std::string_view, 6> kNumeric = {"Ka", "Kd", "Ks", "Ke", "Ns", "illum"};
+/// Statements with factors of light, which are checked; d and Tr, opacity and transparency, only lead to a warning.
+constexpr std::array<std::string_view, 6> kFactors = {"Ka", "Kd", "Ks", "Ke", "Ns", "illum"};
+
+/// A material as its lines have it.
+struct MtlMaterial {
+  std::string name;
+  /// By keyword, the last of equal ones; missing numbers are 0, but one alone is all three of a colour.
+  std::map<std::string, dvec3> numbers = {};
+  bool has_maps = false;
+
+  dvec3 find(const std::string& keyword, double otherwise) const {
+    const auto found = numbers.find(keyword);
+    return found == numbers.end() ? dvec3(otherwise) : found->second;
+  }
+  double illum() const { return std::floor(find("illum", 2.0).x); }
+};
 
 bool is_map(std::string_view keyword) {
   constexpr std::array<std::string_view, 5> kOthers = {"bump", "disp", "decal", "norm", "refl"};
@@ -43,81 +54,67 @@ std::vector<std::filesystem::path> find_library(const std::string& line, LoadRep
   return files;
 }
 
-/// An MTL file as tinyobjloader is to see it: defaults stated, numbers checked, which it would read as 0, and its
-/// materials numbered, because its versions differ in what they take of a name with spaces.
-struct PreparedMtl {
-  std::string text;
-  std::vector<std::string> names;
-};
-
-PreparedMtl prepare(std::string_view text, const std::string& file, LoadReport& report) {
-  PreparedMtl prepared;
-  std::string_view material;
-  bool has_maps = false;
+std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& file, LoadReport& report) {
+  // What stands before the first material is of none, but it is checked like the rest.
+  std::vector<MtlMaterial> materials(1);
   TextLines lines(text);
   while (lines.advance()) {
     std::string_view rest = lines.line();
-    const std::string_view keyword = take_word(rest);
-    if (keyword == "newmtl") {
-      material = trim(rest);
-      has_maps = false;
-      prepared.text += "newmtl " + std::to_string(prepared.names.size()) + '\n' + kDefaults;
-      prepared.names.emplace_back(material);
-      continue;
+    const std::string keyword(take_word(rest));
+    if (keyword == "newmtl") materials.push_back({.name = std::string(trim(rest))});
+    MtlMaterial& material = materials.back();
+    if (is_map(keyword) && !std::exchange(material.has_maps, true)) {
+      report.warn("material " + quote(material.name) + ": its texture maps are ignored, the first is " + keyword +
+                  " in " + file + " " + lines.place());
     }
-    prepared.text.append(lines.line());
-    // Of a colour with one number, that is all three: tinyobjloader would take the others for 0.
-    std::string_view numbers = rest;
-    const std::string_view first = take_word(numbers);
-    const bool is_color = keyword.size() == 2 && keyword[0] == 'K';
-    if (is_color && !first.empty() && trim(numbers).empty())
-      prepared.text.append(" ").append(first).append(" ").append(first);
-    prepared.text += '\n';
-    if (is_map(keyword) && !has_maps) {
-      has_maps = true;
-      report.warn("material " + quote(material) + ": its texture maps are ignored, the first is " +
-                  std::string(keyword) + " in " + file + " " + lines.place());
-    }
-    if (std::find(kNumeric.begin(), kNumeric.end(), keyword) == kNumeric.end()) continue;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
-      const std::optional<double> number = parse_number(word);
-      if (number && *number >= 0.0 && *number <= kMaxCoordinate) continue;
+    const bool is_factor = std::find(kFactors.begin(), kFactors.end(), keyword) != kFactors.end();
+    if (!is_factor && keyword != "d" && keyword != "Tr") continue;
+    dvec3 numbers(0.0);
+    int count = 0;
+    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
+      // An opacity that is no number ("-halo 0.5") is taken for 0, a transparency for 1.
+      const double number = parse_number(word).value_or(is_factor ? -1.0 : keyword == "d" ? 0.0 : 1.0);
+      if (count < 3) numbers[count] = number;
+      if (!is_factor || (number >= 0.0 && number <= kMaxCoordinate)) continue;
       report.refuse(quote(word) + " is no factor of light", "mtllib " + file + " " + lines.place(),
                     "use numbers from 0, with a decimal point");
     }
+    if (count > 0) material.numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
   }
-  return prepared;
+  materials.erase(materials.begin());
+  return materials;
 }
 
-vec3 rgb(const tinyobj::real_t* v) {
-  return {v[0], v[1], v[2]};
-}
-
-Material make_material(const tinyobj::material_t& source) {
+Material make_material(const MtlMaterial& source) {
+  const double illum = source.illum();
+  const dvec3 diffuse = source.find("Kd", 0.8);
   Material material;
   material.name = source.name;
-  material.diffuse = rgb(source.diffuse);
-  material.ambient = source.ambient[0] < 0 ? material.diffuse : rgb(source.ambient);
-  material.emissive = rgb(source.emission);
-  if (source.illum == 0) {
+  material.diffuse = vec3(diffuse);
+  material.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : vec3(diffuse);
+  material.emissive = vec3(source.find("Ke", 0.0));
+  if (illum == 0.0) {
     material.emissive += material.diffuse;
     material.ambient = material.diffuse = vec3(0.0F);
   }
-  if (source.illum >= 2) {
-    material.specular = rgb(source.specular);
-    material.shininess = source.shininess;
+  if (illum >= 2.0) {
+    material.specular = vec3(source.find("Ks", 0.0));
+    material.shininess = static_cast<float>(source.find("Ns", 0.0).x);
   }
-  if (source.illum >= 3 && source.illum < 10) material.reflection = material.specular;
+  if (illum >= 3.0 && illum < 10.0) material.reflection = material.specular;
   return material;
 }
 
-void warn_about_what_is_ignored(const tinyobj::material_t& source, LoadReport& report) {
+void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
-  const std::array<int, 4> kTransparent = {4, 6, 7, 9};
-  if (source.dissolve < 1 || std::find(kTransparent.begin(), kTransparent.end(), source.illum) != kTransparent.end()) {
+  const std::array<double, 4> kTransparent = {4, 6, 7, 9};
+  // Where a material has both, d holds.
+  const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
+  if (static_cast<float>(opacity) < 1.0F ||
+      std::find(kTransparent.begin(), kTransparent.end(), source.illum()) != kTransparent.end()) {
     report.warn(title + " is transparent, it is drawn opaque");
   }
-  if (source.illum == 10) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
+  if (source.illum() == 10.0) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
 }
 
 }  // namespace
@@ -128,17 +125,7 @@ std::map<std::string, Material> read_obj_materials(const std::vector<std::string
     for (const std::filesystem::path& file : find_library(library, report)) {
       const std::vector<std::byte> bytes = read_file(file);
       const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      const PreparedMtl prepared = prepare(text, file.filename().string(), report);
-      std::istringstream stream(prepared.text);
-      std::map<std::string, int> indices;
-      std::vector<tinyobj::material_t> sources;
-      std::string warnings;
-      std::string errors;
-      tinyobj::LoadMtl(&indices, &sources, &stream, &warnings, &errors);
-      // Without any newmtl there is still tinyobjloader's nameless default.
-      if (prepared.names.empty()) sources.clear();
-      for (tinyobj::material_t& source : sources) {
-        source.name = prepared.names.at(std::stoul(source.name));
+      for (const MtlMaterial& source : parse_mtl(text, file.filename().string(), report)) {
         warn_about_what_is_ignored(source, report);
         materials.emplace(source.name, make_material(source));
       }

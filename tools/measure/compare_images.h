@@ -12,8 +12,8 @@
 
 namespace promin {
 
-/// When two pictures count as equal: as OpenImageIO's idiff decides it, with the golden images' thresholds.
-/// A pixel's difference is the largest absolute one of its channels, in linear light.
+/// When two pictures count as equal: as OpenImageIO compares them, with the golden images' thresholds, and stricter
+/// with pixels that are not finite. A pixel's difference is the largest absolute one of its channels, in linear light.
 struct CompareOptions {
   /// A pixel that differs by more has failed; a share of them is allowed.
   float fail = 0.004F;
@@ -21,6 +21,11 @@ struct CompareOptions {
   double fail_percent = 0.02;
   /// One pixel that differs by more fails the comparison.
   float hard_fail = 0.012F;
+  /// Share of edge pixels that is allowed, in percent; 0 knows no edges. On an edge a driver's rounding may decide for
+  /// the neighbour: a pixel over `fail` is on one if it shows something between the values of the second picture there
+  /// and around it. It counts neither as failed nor for the other figures, but if many did, a shifted picture would
+  /// pass.
+  double edge_percent = 0.0;
   /// Length of the list ImageDifference::worst, at most.
   size_t worst_count = 10;
 };
@@ -33,19 +38,22 @@ struct PixelDifference {
 
 struct ImageDifference {
   bool is_equal = false;
-  /// Over all channels of all finite pixels.
+  /// Over all channels of all finite pixels; those on edges count as equal.
   double mean_absolute = 0.0;
   uint64_t pixel_count = 0;
   /// Pixels over CompareOptions::fail; those that are not finite are among them.
   uint64_t failed_count = 0;
   /// Pixels with a NaN or an infinity in either picture: any of them fails the comparison, equal or not.
   uint64_t non_finite_count = 0;
+  uint64_t edge_count = 0;
   /// Of all pixels.
   float largest = 0.0F;
   /// The worst pixels first, of equal ones the upper left; pixels without a difference are left out.
   std::vector<PixelDifference> worst;
 
-  double failed_percent() const;
+  /// Of all pixels.
+  double percent_of(uint64_t count) const;
+  double failed_percent() const { return percent_of(failed_count); }
   /// The numbers on a line and each of the worst pixels on a line of its own.
   std::string summary() const;
 };
