@@ -11,9 +11,9 @@
 #include <iostream>
 #include <limits>
 
-#include "cpu/process.h"
 #include "image/compare.h"
 #include "promin/image.h"
+#include "support/process.h"
 
 namespace promin {
 namespace {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "process.h"
 #include "promin/image.h"
 #include "promin/ray.h"
+#include "support/process.h"
 
 namespace promin {
 
