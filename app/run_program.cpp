@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <vector>
@@ -61,6 +62,9 @@ int run_program(const std::string& name, const std::string& help,
     std::fputs(fmt::format("{}: error: {}\n", name, name_options(message)).c_str(), stderr);
     return code;
   };
+  // At the file size limit (ulimit -f) this signal would end the program before it can say so and remove its temporary
+  // files; where it is ignored, the write fails.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     run_command(name, help, commands, argc, argv);
     if (std::fflush(stdout) != 0) {

@@ -50,7 +50,9 @@ prepare() {
   local log="$repository/build/build.log"
   "$repository/tools/setup"
   cd -- "$repository"
-  if [[ ! $build_dir/build.ninja -nt $repository/CMakePresets.json ]]; then
+  # What CMake found depends on the packages, which may have changed since.
+  if [[ ! $build_dir/build.ninja -nt $repository/CMakePresets.json ||
+    ! $build_dir/build.ninja -nt /var/lib/dpkg/status ]]; then
     say "Configuring build/release"
     run_logged configure.log cmake --preset release
   fi

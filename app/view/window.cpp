@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "promin/error.h"
@@ -46,6 +47,27 @@ GLFWmonitor* find_monitor(GLFWwindow* window) {
   return areas.empty() ? nullptr : monitors[find_display(areas, place)];
 }
 
+#ifdef GLFW_PLATFORM
+/// Whether the environment says where a Wayland compositor could be found. libwayland prints a line of its own where it
+/// does not.
+bool could_have_wayland() {
+  const auto is_path = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && value[0] == '/';
+  };
+  return std::getenv("WAYLAND_SOCKET") != nullptr || is_path("WAYLAND_DISPLAY") || is_path("XDG_RUNTIME_DIR");
+}
+#endif
+
+/// GLFW from 3.4 on asks for a Wayland compositor first, wherever it might be.
+void choose_platform() {
+#ifdef GLFW_PLATFORM
+  if (!could_have_wayland() && glfwPlatformSupported(GLFW_PLATFORM_X11) == GLFW_TRUE) {
+    glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+  }
+#endif
+}
+
 }  // namespace
 
 /// GLFW's C callbacks, which hand on to the window.
@@ -73,6 +95,7 @@ struct Window::Callbacks {
 };
 
 Window::Window(const uvec2& size, const std::string& title) {
+  choose_platform();
   if (glfwInit() == GLFW_FALSE) refuse("no display");
   if (glfwVulkanSupported() == GLFW_FALSE) {
     glfwTerminate();

@@ -35,7 +35,8 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 std::vector<std::byte> read_file(const std::filesystem::path& file);
 
 /// A file that appears whole or not at all: write to temporary(), then commit() renames it to the target. Without a
-/// commit the destructor removes the temporary file and the target stays as it was.
+/// commit the destructor removes the temporary file and the target stays as it was. At the file size limit that needs a
+/// program that ignores SIGXFSZ: the signal would end it before the destructor runs.
 class AtomicFile {
  public:
   /// Follows a symbolic link. Throws RunError if the target's folder does not exist or the target is anything but a

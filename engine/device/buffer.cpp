@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/buffer.h"
 
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "device/device.h"
@@ -22,6 +27,27 @@ constexpr vk::MemoryPropertyFlags kMappable = Memory::eHostVisible | Memory::eHo
 const std::array kDevicePreferences{Memory::eDeviceLocal | kMappable | Memory::eHostCached,
                                     vk::MemoryPropertyFlags(Memory::eDeviceLocal), vk::MemoryPropertyFlags()};
 const std::array kStagingPreferences{kMappable | Memory::eHostCached, kMappable};
+
+/// The file size limit in bytes; none where there is no limit.
+std::optional<rlim_t> file_size_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return limit.rlim_cur;
+}
+
+/// Some drivers of CPUs keep device memory in a file (lavapipe from Mesa 24.3 on), and do not notice where the file
+/// size limit keeps it from growing: the first touch would end the program by SIGBUS. When the kernel is asked to read
+/// from there it fails instead. `last_byte` is that of the memory. Throws RunError.
+void check_memory_is_there(const std::byte* last_byte) {
+  const std::optional<rlim_t> limit = file_size_limit();
+  std::array<int, 2> pipe_ends{};
+  if (!limit || pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return;
+  const bool is_there = ::write(pipe_ends[1], last_byte, 1) == 1;
+  for (const int end : pipe_ends) close(end);
+  if (is_there) return;
+  throw RunError({"the driver keeps device memory in a file that cannot grow",
+                  "at the file size limit of " + std::to_string(*limit) + " bytes", "raise the limit (ulimit -f)"});
+}
 
 }  // namespace
 
@@ -58,7 +84,14 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
   buffer_.bindMemory(*memory_, 0);
   if ((properties & kMappable) == kMappable) {
     mapped_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
+    check_memory_is_there(mapped_ + requirements.size - 1);
   }
+}
+
+void check_file_size_limit(const Device& device) {
+  // More than a driver needs beside buffers; what it gets then lies where this one lay.
+  constexpr vk::DeviceSize kDriverBytes = 1U << 20;
+  if (file_size_limit()) Buffer(device, kDriverBytes, vk::BufferUsageFlagBits::eTransferDst);
 }
 
 Buffer Buffer::make_readback(const Device& device, vk::DeviceSize size_bytes) {

@@ -18,7 +18,8 @@ inline constexpr vk::DeviceSize kTexelBytes = 16;
 class Buffer {
  public:
   /// `size_bytes` > 0. Throws vk::SystemError, or RunError if the buffer could not be bound: a storage buffer beyond
-  /// the device's maxStorageBufferRange that is not a texel buffer within its maxTexelBufferElements either.
+  /// the device's maxStorageBufferRange that is not a texel buffer within its maxTexelBufferElements either. RunError
+  /// too where a CPU driver keeps its memory in a file that would pass the process's file size limit.
   Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage);
 
   /// One that transfers write and the host reads, at mapped().
@@ -51,5 +52,9 @@ class Buffer {
   /// Null where the host cannot map the memory.
   std::byte* mapped_ = nullptr;
 };
+
+/// For a new device: throws RunError where its driver keeps memory in a file that the process's file size limit keeps
+/// so small that there is no room for what the driver allocates for itself.
+void check_file_size_limit(const Device& device);
 
 }  // namespace promin::gpu

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 
+#include "device/buffer.h"
 #include "device/instance.h"
 #include "promin/device.h"
 #include "promin/error.h"
@@ -233,6 +234,7 @@ Device::Device(const std::optional<std::string>& selection, const Presentation* 
         vk::raii::CommandBuffers(device_, vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1))
             .front());
     fence_ = vk::raii::Fence(device_, vk::FenceCreateInfo());
+    check_file_size_limit(*this);
   });
 }
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <random>
 
-#include "cpu/pipes.h"
 #include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
+#include "support/pipes.h"
 #include "trace/ray_kernel.h"
 
 namespace promin {

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "camera.h"
-#include "cpu/gltf_builder.h"
-#include "cpu/scene_folder.h"
 #include "hard/hard_case.h"
+#include "support/gltf_builder.h"
+#include "support/scene_folder.h"
 
 namespace promin::hard {
 namespace {

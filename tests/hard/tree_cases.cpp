@@ -4,9 +4,9 @@
 #include <array>
 
 #include "bvh/builder.h"
-#include "cpu/pipes.h"
 #include "gpu/test_scenes.h"
 #include "hard/hard_case.h"
+#include "support/pipes.h"
 
 namespace promin::hard {
 namespace {

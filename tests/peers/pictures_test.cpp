@@ -11,9 +11,9 @@
 #include <iostream>
 #include <limits>
 
-#include "cpu/process.h"
 #include "measure/compare_images.h"
 #include "promin/image.h"
+#include "support/process.h"
 
 namespace promin {
 namespace {

@@ -50,7 +50,9 @@ class Display:
             number = pipe.readline().strip()
         if not number:
             raise Failure("Xvfb does not start")
-        self.environment = {**os.environ, "DISPLAY": f":{number}"}
+        # GLFW looks for a Wayland compositor first, and in the user's own folder there may be one.
+        self.runtime_folder = tempfile.TemporaryDirectory(prefix="promin_display_")  # of mode 0700, as is required
+        self.environment = {**os.environ, "DISPLAY": f":{number}", "XDG_RUNTIME_DIR": self.runtime_folder.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
 
     def _answers(self):
@@ -60,6 +62,7 @@ class Display:
     def close(self):
         self.process.terminate()
         self.process.wait()
+        self.runtime_folder.cleanup()
 
 
 class Viewer:

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "gltf_builder.h"
-#include "scene_folder.h"
+#include "support/gltf_builder.h"
+#include "support/scene_folder.h"
 
 namespace promin {
 namespace {

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "bvh/builder.h"
-#include "cpu/expect_tree.h"
 #include "promin/error.h"
+#include "support/expect_tree.h"
 
 namespace promin {
 namespace {

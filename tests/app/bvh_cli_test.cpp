@@ -198,7 +198,7 @@ TEST_F(BvhCliTest, VerifyFindsABoxThatIsTooSmall) {
 TEST_F(BvhCliTest, AFullDiskLeavesTheOldFile) {
   write_triangles("many.obj", 1000);
   write("old.pbvh", "old");
-  options_.max_file_bytes = 2000;
+  fill_disk(2000);
   expect_bvh_failure({"build", "many.obj", "-o", "old.pbvh", "--quiet"}, 1, "cannot write the output file");
   EXPECT_EQ(read("old.pbvh"), "old");
   EXPECT_THAT(files(), ElementsAre("many.obj", "old.pbvh"));

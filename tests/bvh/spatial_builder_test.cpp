@@ -7,8 +7,8 @@
 
 #include "bvh/builder.h"
 #include "bvh/clip_triangle.h"
-#include "cpu/expect_tree.h"
-#include "cpu/pipes.h"
+#include "support/expect_tree.h"
+#include "support/pipes.h"
 
 namespace promin {
 namespace {

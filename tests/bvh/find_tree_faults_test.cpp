@@ -8,9 +8,9 @@
 #include <bit>
 
 #include "bvh/read_node.h"
-#include "cpu/scene_files.h"
 #include "gpu/test_scenes.h"
 #include "promin/load_scene.h"
+#include "support/scene_files.h"
 
 namespace promin {
 namespace {

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "camera.h"
-#include "cpu/temp_folder.h"
 #include "promin/error.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 namespace {

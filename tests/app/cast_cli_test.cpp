@@ -131,10 +131,8 @@ TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
 TEST_F(CastTest, AFullDiskLeavesTheOldFile) {
   write_rays("rays.npy", std::vector<Ray>(4000, kRays[0]));
   write("hits.npy", "old");
-  ProcessOptions small_disk = options_;
-  small_disk.max_file_bytes = 100000;
-  expect_failure(Process(PROMIN_EXECUTABLE, {"cast", "square.gltf", "rays.npy", "-o", "hits.npy"}, small_disk).wait(),
-                 1, "cannot write the output file");
+  fill_disk(100'000);
+  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"}), 1, "cannot write the output file");
   EXPECT_EQ(read("hits.npy"), "old");
   EXPECT_THAT(files(), ElementsAre("hits.npy", "rays.npy"));
 }

@@ -13,9 +13,9 @@
 #include <map>
 #include <variant>
 
-#include "cpu/scene_files.h"
-#include "process.h"
 #include "promin/load_scene.h"
+#include "support/process.h"
+#include "support/scene_files.h"
 
 namespace promin {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "cpu/temp_folder.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 namespace {

@@ -12,12 +12,12 @@
 #include "bvh/read_node.h"
 #include "core/file.h"
 #include "core/hash.h"
-#include "cpu/scene_files.h"
-#include "cpu/temp_folder.h"
 #include "device_scene/pack_scene.h"
 #include "gpu/test_scenes.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
+#include "support/scene_files.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "formats/obj/triangulate.h"
-#include "scene_folder.h"
+#include "support/scene_folder.h"
 
 namespace promin {
 namespace {

@@ -144,7 +144,7 @@ TEST_F(PathCliTest, AFailureKeepsTheFramesDoneAndNamesItsOwn) {
   std::string path = kPath;
   path.replace(path.find("[0, 0, -1]"), 10, "[0, 0, 1]");
   write("path.json", path);
-  options_.max_file_bytes = 2000;
+  fill_disk(2000);
   expect_failure(render_path({"--size", "300", "300", "-o", "f#.png", "--quiet"}), 1, "frame 1: ");
   EXPECT_THAT(files(), UnorderedElementsAre("path.json", "f0.png"));
   EXPECT_EQ(read_image(folder() / "f0.png").size, uvec2(300, 300));

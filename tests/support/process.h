@@ -16,7 +16,7 @@ struct ProcessOptions {
   std::filesystem::path folder;
   /// Set in the child only.
   std::map<std::string, std::string> environment;
-  /// No file may grow beyond this; stands for a full disk.
+  /// No file may grow beyond this, by the process's file size limit; see full_disk.cpp for what stands for a full disk.
   std::optional<size_t> max_file_bytes;
   /// The standard output; captured where not given.
   std::optional<std::filesystem::path> standard_output;

@@ -7,8 +7,8 @@
 
 #include <fstream>
 
-#include "cpu/temp_folder.h"
 #include "promin/error.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 namespace {

@@ -36,8 +36,11 @@ std::string read_capture(int descriptor) {
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   if (options.max_file_bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{*options.max_file_bytes, *options.max_file_bytes};
+    // As a shell starts it, whatever this process ignores.
+    std::signal(SIGXFSZ, SIG_DFL);
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    limit.rlim_cur = *options.max_file_bytes;
     setrlimit(RLIMIT_FSIZE, &limit);
   }
   std::vector<char*> words = {const_cast<char*>(program.c_str())};

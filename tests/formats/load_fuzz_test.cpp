@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <random>
 
-#include "gltf_builder.h"
-#include "scene_folder.h"
+#include "support/gltf_builder.h"
+#include "support/scene_folder.h"
 
 namespace promin {
 namespace {

@@ -131,7 +131,7 @@ TEST_F(CliTest, UnwritableOutputsAreFoundBeforeTheWork) {
 TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   write("old.exr", "old");
   write("old.png", "old");
-  options_.max_file_bytes = 2000;
+  fill_disk(2000);
   // Mesa's cache is no concern of this test, and newer ones do not survive a full disk.
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
   for (const char* output : {"old.exr", "old.png"}) {
@@ -139,6 +139,21 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
     EXPECT_EQ(read(output), "old");
   }
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
+}
+
+// Newer lavapipes keep device memory in a file, to which the limit applies.
+TEST_F(CliTest, AFileSizeLimitIsAFailureWhateverItStops) {
+  write("old.exr", "old");
+  write_rays("rays.npy", std::vector<Ray>(10'000, Ray{vec3(0.0F, 0.0F, 5.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F), 100.0F}));
+  options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
+  for (const size_t most_bytes : {2'000, 30'000, 200'000}) {
+    options_.max_file_bytes = most_bytes;
+    const OptionValues words = {"render", "square.gltf", "--size", "600", "400", "--shading", "uv", "-o", "old.exr"};
+    expect_failure(run(words), 1, ";");
+    expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"}), 1, ";");
+    EXPECT_EQ(read("old.exr"), "old");
+    EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "rays.npy"));
+  }
 }
 
 TEST_F(CliTest, AFullStandardOutputIsAFailure) {

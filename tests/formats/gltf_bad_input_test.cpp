@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "gltf_builder.h"
-#include "scene_folder.h"
+#include "support/gltf_builder.h"
+#include "support/scene_folder.h"
 
 namespace promin {
 namespace {

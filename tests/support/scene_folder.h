@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cpu/temp_folder.h"
 #include "promin/load_scene.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 

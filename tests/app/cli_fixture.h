@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "process.h"
 #include "promin/image.h"
 #include "promin/ray.h"
+#include "support/process.h"
 
 namespace promin {
 
@@ -92,6 +92,14 @@ class CliTest : public testing::Test {
     names.erase("triangle.obj");
     names.erase("square.gltf");
     return names;
+  }
+
+  /// The disk is full for any file beyond so many bytes.
+  void fill_disk(size_t most_bytes) {
+    options_.max_file_bytes = most_bytes;
+    options_.environment["LD_PRELOAD"] = PROMIN_FULL_DISK_LIBRARY;
+    // A sanitizer wants to be loaded first, which matters only where libraries take the place of what it watches.
+    options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
   }
 
   ProcessResult run(const OptionValues& arguments) const {

@@ -13,8 +13,8 @@
 #include <limits>
 
 #include "core/file.h"
-#include "cpu/temp_folder.h"
 #include "promin/error.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 namespace {
