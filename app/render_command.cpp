@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <future>
 #include <memory>
 
 #include "console.h"
@@ -16,6 +17,7 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "frame_plan.h"
+#include "image/open_pictures.h"
 #include "layout.h"
 #include "outputs.h"
 #include "progress.h"
@@ -158,6 +160,13 @@ void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
                     "stay within it or give a larger --size"});
 }
 
+/// Begins to open the plugin for pictures, which goes on while the scene is loaded and the pipeline compiled. Throws
+/// RunError at once where there is no such file; what else is wrong with it is thrown by the future.
+std::future<void> open_pictures_aside() {
+  find_pictures();
+  return std::async(std::launch::async, [] { open_pictures(); });
+}
+
 void render(const RenderOptions& options) {
   const Stopwatch total;
   const TracingOptions& tracing = options.tracing;
@@ -165,6 +174,8 @@ void render(const RenderOptions& options) {
   check_pictures(options.pictures);
   const std::vector<PlannedFrame> frames = plan_frames(options);
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
+  std::future<void> pictures;
+  if (!options.explained_pixel) pictures = open_pictures_aside();
   const Console console(tracing.verbosity());
 
   RunStats stats;
@@ -190,6 +201,8 @@ void render(const RenderOptions& options) {
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }
+  // A plugin that does not load is told of before the tracing, which may take long.
+  pictures.get();
   render_frames(frames, options, *device, renderer, stats, console);
 
   const DeferredSignals while_writing;
