@@ -120,5 +120,26 @@ TEST_F(PicturesPluginCliTest, AProgramFindsItBesideItselfWhateverItIsCalledBy) {
   EXPECT_EQ(read_image(folder() / "b.exr").pixels, read_image(folder() / "a.exr").pixels);
 }
 
+/// The list of libraries is only for speed: a wrong one, or none, changes nothing.
+TEST_F(PicturesPluginCliTest, AWrongListOfLibrariesDoesNoHarm) {
+  fs::copy_file(kPlugin, plugin());
+  write("plugins/libpromin_pictures.libraries", "libnone.so.1\n\nlibz.so.1\n\x01");
+  EXPECT_EQ(render({"square.gltf", "--size", "8", "8"}, "a.exr").size, uvec2(8));
+}
+
+TEST(PicturesPluginListTest, EachLibraryStandsAfterThoseThatItNeeds) {
+  fs::path list = kPlugin;
+  std::ifstream stream(list.replace_extension(".libraries"));
+  std::vector<std::string> names;
+  for (std::string name; std::getline(stream, name);) names.push_back(name);
+  const auto place_of = [&](const std::string& part) {
+    return std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.starts_with(part); });
+  };
+  EXPECT_LT(place_of("libc.so"), place_of("libstdc++.so"));
+  EXPECT_LT(place_of("libstdc++.so"), place_of("libOpenImageIO_Util.so"));
+  EXPECT_LT(place_of("libOpenImageIO_Util.so"), place_of("libOpenImageIO.so"));
+  EXPECT_NE(place_of("libOpenImageIO.so"), names.end());
+}
+
 }  // namespace
 }  // namespace promin
