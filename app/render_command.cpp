@@ -160,10 +160,10 @@ void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
                     "stay within it or give a larger --size"});
 }
 
-/// Begins to open the plugin for pictures, which goes on while the scene is loaded and the pipeline compiled. Throws
-/// RunError at once where there is no such file; what else is wrong with it is thrown by the future.
+/// Opens the plugin for pictures on a thread, while the tree is built and the pipeline compiled. Not before there is a
+/// device: the dynamic loader takes turns, and a Vulkan driver that has to wait for the plugin's libraries costs a
+/// tenth of a second.
 std::future<void> open_pictures_aside() {
-  find_pictures();
   return std::async(std::launch::async, [] { open_pictures(); });
 }
 
@@ -174,8 +174,8 @@ void render(const RenderOptions& options) {
   check_pictures(options.pictures);
   const std::vector<PlannedFrame> frames = plan_frames(options);
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
-  std::future<void> pictures;
-  if (!options.explained_pixel) pictures = open_pictures_aside();
+  const bool has_pictures = !options.explained_pixel;
+  if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
 
   RunStats stats;
@@ -191,6 +191,8 @@ void render(const RenderOptions& options) {
   stats.light_count = scene.lights.size();
 
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
+  std::future<void> pictures;
+  if (has_pictures) pictures = open_pictures_aside();
   Renderer renderer(*device, scene, make_renderer_options(options));
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {

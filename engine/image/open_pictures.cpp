@@ -78,8 +78,8 @@ void find_function(void* library, const char* name, const fs::path& file, Functi
 constexpr int kHow = RTLD_LAZY | RTLD_LOCAL;
 
 /// Opens what the plugin needs one by one, each library after those that it needs itself: its symbols are then sought
-/// among those few instead of among all 260, which halves the time, and a thread that opens a Vulkan driver meanwhile
-/// has to wait for one of them only. Whatever fails here, or stands no longer in the list, is opened with the plugin.
+/// among those few instead of among all 260, which halves the processor time. Whatever fails here, or stands no longer
+/// in the list, is opened with the plugin.
 void open_libraries_of(const fs::path& plugin) {
   std::ifstream list(fs::path(plugin).replace_extension(kListEnding));
   for (std::string name; std::getline(list, name);) dlopen(name.c_str(), kHow);
