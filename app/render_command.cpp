@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <future>
 #include <memory>
 
 #include "console.h"
@@ -16,6 +17,7 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "frame_plan.h"
+#include "image/open_pictures.h"
 #include "outputs.h"
 #include "progress.h"
 #include "promin/error.h"
@@ -169,6 +171,13 @@ void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
                     "stay within it or give a larger --size"});
 }
 
+/// Opens the plugin for pictures on a thread, while the tree is built and the pipeline compiled. Not before there is a
+/// device: the dynamic loader takes turns, and a Vulkan driver that has to wait for the plugin's libraries costs a
+/// tenth of a second.
+std::future<void> open_pictures_aside() {
+  return std::async(std::launch::async, [] { open_pictures(); });
+}
+
 void render(const RenderOptions& options) {
   const Stopwatch total;
   const TracingOptions& tracing = options.tracing;
@@ -176,6 +185,8 @@ void render(const RenderOptions& options) {
   check_pictures(options.pictures);
   const std::vector<PlannedFrame> frames = plan_frames(options);
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
+  const bool has_pictures = !options.explained_pixel;
+  if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
 
   RunStats stats;
@@ -190,6 +201,8 @@ void render(const RenderOptions& options) {
   stats.light_count = scene.lights.size() - options.view.lights_off.size();
 
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
+  std::future<void> pictures;
+  if (has_pictures) pictures = open_pictures_aside();
   Renderer renderer = make_renderer(*device, scene, make_renderer_options(options));
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {
@@ -198,6 +211,8 @@ void render(const RenderOptions& options) {
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }
+  // A plugin that does not load is told of before the tracing, which may take long.
+  pictures.get();
   render_frames(frames, options, *device, renderer, stats, console);
 
   const DeferredSignals while_writing;

@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/image.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <exception>
 #include <memory>
-#include <span>
+#include <new>
 
 #include "core/file.h"
+#include "image/open_pictures.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -25,40 +24,6 @@ std::string format_of(const fs::path& file) {
   if (ending == ".exr") return "openexr";
   if (ending == ".png") return "png";
   return "";
-}
-
-/// OpenImageIO's explanations may run over several lines; an error of ours is one.
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
-OIIO::ImageSpec make_exr_spec(const Image& image, const Metadata& metadata, const std::optional<CropPlacement>& crop,
-                              std::span<const Channel> channels) {
-  OIIO::ImageSpec spec(static_cast<int>(image.size.x), static_cast<int>(image.size.y),
-                       static_cast<int>(3 + channels.size()), OIIO::TypeDesc::FLOAT);
-  spec.channelnames = {"R", "G", "B"};
-  spec.channelformats.assign(3, OIIO::TypeDesc::FLOAT);
-  for (const Channel& channel : channels) {
-    spec.channelnames.push_back(channel.name);
-    spec.channelformats.push_back(channel.is_integer ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT);
-  }
-  spec.attribute("compression", "zip");
-  // Otherwise the writer puts the time of day in, and equal pictures would differ.
-  spec.attribute("DateTime", "");
-  for (const auto& [name, value] : metadata) spec.attribute(name, value);
-  if (crop) {
-    spec.x = static_cast<int>(crop->lo.x);
-    spec.y = static_cast<int>(crop->lo.y);
-    spec.full_width = static_cast<int>(crop->full_size.x);
-    spec.full_height = static_cast<int>(crop->full_size.y);
-  }
-  return spec;
-}
-
-OIIO::ImageSpec make_png_spec(const Image& image) {
-  OIIO::ImageSpec spec(static_cast<int>(image.size.x), static_cast<int>(image.size.y), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  return spec;
 }
 
 /// A pixel after the other, its channels in the order of the EXR's spec; each is four bytes.
@@ -83,14 +48,54 @@ std::vector<uint8_t> encode_pixels(const Image& image) {
   return bytes;
 }
 
-/// The place of the R, G, B triple among a file's channels; -1 if it has none.
-int find_rgb(const OIIO::ImageSpec& spec) {
-  const auto& names = spec.channelnames;
-  for (int first = 0; first + 2 < spec.nchannels; ++first) {
-    const auto i = static_cast<size_t>(first);
-    if (names[i] == "R" && names[i + 1] == "G" && names[i + 2] == "B") return first;
+std::vector<ProminPicturesChannel> list_channels(std::span<const Channel> channels) {
+  std::vector<ProminPicturesChannel> result = {
+      {"R", PROMIN_PICTURES_FLOAT}, {"G", PROMIN_PICTURES_FLOAT}, {"B", PROMIN_PICTURES_FLOAT}};
+  for (const Channel& channel : channels) {
+    result.push_back({channel.name.c_str(), channel.is_integer ? PROMIN_PICTURES_UINT32 : PROMIN_PICTURES_FLOAT});
   }
-  return -1;
+  return result;
+}
+
+/// Whether a call of the plugin was done; the message has the reason where not.
+bool is_done(int status) {
+  if (status == PROMIN_PICTURES_OUT_OF_MEMORY) throw std::bad_alloc();
+  return status == PROMIN_PICTURES_DONE;
+}
+
+/// What the plugin hands an encoded picture to: writes the file. What it throws must not pass through the plugin.
+struct FileSink {
+  fs::path file;
+  std::exception_ptr failure;
+
+  static void take(void* context, const void* bytes, size_t byte_count) {
+    auto& sink = *static_cast<FileSink*>(context);
+    try {
+      write_file(sink.file, {std::span(static_cast<const std::byte*>(bytes), byte_count)});
+    } catch (...) {
+      sink.failure = std::current_exception();
+    }
+  }
+};
+
+/// Completes the source by what it points to, encodes it and writes the file.
+void encode_and_write(const PicturesPlugin& plugin, ProminPicturesSource source, const fs::path& file,
+                      const void* pixels, std::span<const ProminPicturesChannel> channels, const Metadata& metadata) {
+  std::vector<ProminPicturesAttribute> attributes;
+  for (const auto& [name, value] : metadata) attributes.push_back({name.c_str(), value.c_str()});
+  source.channels = channels.data();
+  source.channel_count = channels.size();
+  source.attributes = attributes.data();
+  source.attribute_count = attributes.size();
+  source.pixels = pixels;
+
+  FileSink sink{file, nullptr};
+  ProminPicturesMessage message{};
+  if (!is_done(plugin.encode(&source, FileSink::take, &sink, &message))) {
+    throw RunError({std::string("cannot encode the picture (") + message.text + ")", file.string(),
+                    "try the other format, .exr or .png"});
+  }
+  if (sink.failure) std::rethrow_exception(sink.failure);
 }
 
 }  // namespace
@@ -116,49 +121,58 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
   if (format.empty()) {
     throw RunError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
   }
-  // In memory first: OpenImageIO's PNG writer does not notice a full disk.
-  OIIO::Filesystem::IOVecOutput encoded;
-  const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(format);
-  const bool is_exr = format == "openexr";
-  const bool is_encoded = writer && writer->set_ioproxy(&encoded) &&
-                          writer->open(file.filename().string(), is_exr ? make_exr_spec(image, metadata, crop, channels)
-                                                                        : make_png_spec(image)) &&
-                          (is_exr ? writer->write_image(OIIO::TypeDesc::UNKNOWN, interleave(image, channels).data())
-                                  : writer->write_image(OIIO::TypeDesc::UINT8, encode_pixels(image).data())) &&
-                          writer->close();
-  if (!is_encoded) {
-    throw RunError({"cannot encode the picture (" + first_line(writer ? writer->geterror() : OIIO::geterror()) + ")",
-                    file.string(), "try the other format, .exr or .png"});
+  const PicturesPlugin& plugin = open_pictures();
+  const std::string name = file.filename().string();
+  ProminPicturesSource source{};
+  source.format = format.c_str();
+  source.file_name = name.c_str();
+  source.width = image.size.x;
+  source.height = image.size.y;
+  if (crop) {
+    source.x = crop->lo.x;
+    source.y = crop->lo.y;
+    source.full_width = crop->full_size.x;
+    source.full_height = crop->full_size.y;
   }
-  write_file(file, {std::as_bytes(std::span(encoded.buffer()))});
+  if (has_named_channels(file)) {
+    encode_and_write(plugin, source, file, interleave(image, channels).data(), list_channels(channels), metadata);
+  } else {
+    const ProminPicturesChannel bytes[] = {
+        {"R", PROMIN_PICTURES_UINT8}, {"G", PROMIN_PICTURES_UINT8}, {"B", PROMIN_PICTURES_UINT8}};
+    encode_and_write(plugin, source, file, encode_pixels(image).data(), bytes, {});
+  }
 }
 
 Image read_image(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) throw InputError({"no such picture", file.string(), "check the path"});
-  const std::unique_ptr<OIIO::ImageInput> reader = OIIO::ImageInput::open(file.string());
-  if (!reader) {
-    throw InputError({"cannot read the picture (" + first_line(OIIO::geterror()) + ")", file.string(),
+  const PicturesPlugin& plugin = open_pictures();
+  ProminPicturesInfo info{};
+  ProminPicturesMessage message{};
+  ProminPicturesReader* opened = nullptr;
+  const bool is_open = is_done(plugin.open(file.c_str(), &opened, &info, &message));
+  const std::unique_ptr<ProminPicturesReader, decltype(plugin.close)> reader(opened, plugin.close);
+  if (!is_open) {
+    throw InputError({std::string("cannot read the picture (") + message.text + ")", file.string(),
                       "name a picture such as .exr or .png"});
   }
-  const OIIO::ImageSpec& spec = reader->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.deep) {
-    throw InputError({"not a flat picture", file.string(), "name a two-dimensional picture"});
-  }
-  const uint64_t pixel_count = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height);
+  if (info.is_flat == 0) throw InputError({"not a flat picture", file.string(), "name a two-dimensional picture"});
+  const uint64_t pixel_count = info.width * info.height;
   if (pixel_count > kMaxReadPixels) {
     throw InputError({"the picture is too large (" + std::to_string(pixel_count) + " pixels)", file.string(),
                       "at most " + std::to_string(kMaxReadPixels) + " pixels are read"});
   }
-  const int first = find_rgb(spec);
-  if (first < 0) throw InputError({"the picture has no channels R, G, B", file.string(), "convert it to RGB"});
+  if (info.first_rgb_channel < 0) {
+    throw InputError({"the picture has no channels R, G, B", file.string(), "convert it to RGB"});
+  }
 
   Image image;
-  image.size = uvec2(spec.width, spec.height);
+  image.size = uvec2(info.width, info.height);
   image.pixels.resize(pixel_count);
-  if (!reader->read_image(0, 0, first, first + 3, OIIO::TypeDesc::FLOAT, image.pixels.data())) {
+  static_assert(sizeof(vec3) == 3 * sizeof(float));
+  if (!is_done(plugin.read_rgb(reader.get(), &image.pixels.data()->x, &message))) {
     throw InputError(
-        {"the picture is damaged (" + first_line(reader->geterror()) + ")", file.string(), "write or export it again"});
+        {std::string("the picture is damaged (") + message.text + ")", file.string(), "write or export it again"});
   }
   return image;
 }

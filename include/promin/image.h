@@ -50,7 +50,7 @@ bool has_named_channels(const std::filesystem::path& file);
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
 /// picture's display window) or .png (sRGB, 8 bit, clamped, without `channels`; a crop is a picture of its own). Equal
 /// arguments give equal bytes. Atomic: the picture is written to a temporary file beside the target and renamed; on
-/// failure the target is as it was. Throws RunError.
+/// failure the target is as it was. Throws RunError, also where the plugin that does it is missing.
 void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                  const std::optional<CropPlacement>& crop = std::nullopt, std::span<const Channel> channels = {});
 
@@ -58,7 +58,7 @@ void write_image(const std::filesystem::path& file, const Image& image, const Me
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
 /// Reads R, G, B of any format OpenImageIO knows, as fp32 without conversion; of an EXR the data window.
-/// Throws InputError.
+/// Throws InputError, and RunError where the plugin that does it is missing.
 Image read_image(const std::filesystem::path& file);
 
 /// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "image/open_pictures.h"
+
+#include <dlfcn.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "promin/error.h"
+
+namespace promin {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kFileName = "libpromin_pictures.so";
+constexpr const char* kListEnding = ".libraries";
+constexpr const char* kProgram = "/proc/self/exe";
+constexpr const char* kCure = "install promin whole, or name the plugin's folder in PROMIN_PLUGINS";
+
+/// The file that holds this code: a shared library, or the program itself.
+fs::path find_own_file() {
+  Dl_info info{};
+  link_map* map = nullptr;
+  const bool is_found = dladdr1(reinterpret_cast<const void*>(&find_pictures), &info, reinterpret_cast<void**>(&map),
+                                RTLD_DL_LINKMAP) != 0;
+  // The loader knows the program by no name, and dladdr only by the one it was called by.
+  return is_found && map != nullptr && *map->l_name != '\0' ? map->l_name : kProgram;
+}
+
+std::vector<fs::path> list_folders() {
+  if (const char* given = secure_getenv("PROMIN_PLUGINS"); given != nullptr && *given != '\0') return {given};
+  std::vector<fs::path> folders;
+  const auto add = [&](const fs::path& folder) {
+    const fs::path normal = folder.lexically_normal();
+    if (std::find(folders.begin(), folders.end(), normal) == folders.end()) folders.push_back(normal);
+  };
+  for (const fs::path& file : {find_own_file(), fs::path(kProgram)}) {
+    std::error_code error;
+    const fs::path folder = fs::canonical(file, error).parent_path();
+    if (error) continue;
+    // Beside a program: as built, and as installed where libraries have a folder of their own for each machine type.
+    add(folder / "../lib/promin");
+    add(folder / PROMIN_PLUGIN_FOLDER);
+    // Beside a library.
+    add(folder / "promin");
+  }
+  return folders;
+}
+
+std::string list_names(const std::vector<fs::path>& folders) {
+  std::string names;
+  for (const fs::path& folder : folders) names += (names.empty() ? "" : ", ") + folder.string();
+  return names;
+}
+
+std::string take_loader_error() {
+  const char* text = dlerror();
+  return text == nullptr ? "no reason given" : text;
+}
+
+template <typename Function>
+void find_function(void* library, const char* name, const fs::path& file, Function& function) {
+  function = reinterpret_cast<Function>(dlsym(library, name));
+  if (function == nullptr) {
+    throw RunError(
+        {"the plugin that reads and writes pictures is damaged (" + take_loader_error() + ")", file.string(), kCure});
+  }
+}
+
+/// Local, so that what OpenImageIO brings along meets no symbol of a Vulkan driver; and lazy, because few functions of
+/// its libraries are ever called. Nothing is closed again: they leave things to be done at the end of the process.
+constexpr int kHow = RTLD_LAZY | RTLD_LOCAL;
+
+/// Opens what the plugin needs one by one, each library after those that it needs itself: its symbols are then sought
+/// among those few instead of among all 260, which halves the processor time. Whatever fails here, or stands no longer
+/// in the list, is opened with the plugin.
+void open_libraries_of(const fs::path& plugin) {
+  std::ifstream list(fs::path(plugin).replace_extension(kListEnding));
+  for (std::string name; std::getline(list, name);) dlopen(name.c_str(), kHow);
+}
+
+PicturesPlugin load_plugin() {
+  const fs::path file = find_pictures();
+  open_libraries_of(file);
+  void* library = dlopen(file.c_str(), kHow);
+  if (library == nullptr) {
+    throw RunError({"cannot load the plugin that reads and writes pictures (" + take_loader_error() + ")",
+                    file.string(), "install OpenImageIO, for example with the package libopenimageio-dev"});
+  }
+  PicturesPlugin plugin;
+  find_function(library, "promin_pictures_interface", file, plugin.interface);
+  if (const uint32_t version = plugin.interface(); version != PROMIN_PICTURES_INTERFACE) {
+    throw RunError(
+        {"the plugin that reads and writes pictures belongs to another version of promin (its interface is " +
+             std::to_string(version) + ", not " + std::to_string(PROMIN_PICTURES_INTERFACE) + ")",
+         file.string(), kCure});
+  }
+  find_function(library, "promin_pictures_encode", file, plugin.encode);
+  find_function(library, "promin_pictures_open", file, plugin.open);
+  find_function(library, "promin_pictures_read_rgb", file, plugin.read_rgb);
+  find_function(library, "promin_pictures_close", file, plugin.close);
+  return plugin;
+}
+
+}  // namespace
+
+fs::path find_pictures() {
+  const std::vector<fs::path> folders = list_folders();
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    if (fs::is_regular_file(folder / kFileName, error)) return folder / kFileName;
+  }
+  throw RunError({std::string("the plugin that reads and writes pictures, ") + kFileName + ", is missing",
+                  "sought in " + list_names(folders), kCure});
+}
+
+const PicturesPlugin& open_pictures() {
+  static const PicturesPlugin plugin = load_plugin();
+  return plugin;
+}
+
+}  // namespace promin

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "image/plugin/pictures.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+struct ProminPicturesReader {
+  std::unique_ptr<OIIO::ImageInput> input;
+  int first_channel = -1;
+};
+
+namespace {
+
+/// OpenImageIO's explanations may run over several lines; an error of ours is one.
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+void tell(ProminPicturesMessage& message, std::string_view text) {
+  const size_t size = std::min(text.size(), sizeof message.text - 1);
+  std::memcpy(message.text, text.data(), size);
+  message.text[size] = '\0';
+}
+
+/// Runs the body of a call, and makes a status of what it throws: nothing is thrown beyond this.
+template <typename Body>
+int guard(ProminPicturesMessage* message, const Body& body) noexcept {
+  try {
+    body();
+    return PROMIN_PICTURES_DONE;
+  } catch (const std::bad_alloc&) {
+    return PROMIN_PICTURES_OUT_OF_MEMORY;
+  } catch (const std::exception& error) {
+    tell(*message, error.what());
+  } catch (...) {
+    tell(*message, "unknown failure");
+  }
+  return PROMIN_PICTURES_FAILED;
+}
+
+OIIO::TypeDesc type_of(uint32_t sample) {
+  switch (sample) {
+    case PROMIN_PICTURES_UINT8:
+      return OIIO::TypeDesc::UINT8;
+    case PROMIN_PICTURES_UINT32:
+      return OIIO::TypeDesc::UINT32;
+    default:
+      return OIIO::TypeDesc::FLOAT;
+  }
+}
+
+OIIO::ImageSpec make_exr_spec(const ProminPicturesSource& source) {
+  OIIO::ImageSpec spec(static_cast<int>(source.width), static_cast<int>(source.height),
+                       static_cast<int>(source.channel_count), OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  for (const ProminPicturesChannel& channel : std::span(source.channels, source.channel_count)) {
+    spec.channelnames.emplace_back(channel.name);
+    spec.channelformats.push_back(type_of(channel.sample));
+  }
+  spec.attribute("compression", "zip");
+  // Otherwise the writer puts the time of day in, and equal pictures would differ.
+  spec.attribute("DateTime", "");
+  for (const ProminPicturesAttribute& attribute : std::span(source.attributes, source.attribute_count)) {
+    spec.attribute(attribute.name, attribute.value);
+  }
+  if (source.full_width > 0) {
+    spec.x = static_cast<int>(source.x);
+    spec.y = static_cast<int>(source.y);
+    spec.full_width = static_cast<int>(source.full_width);
+    spec.full_height = static_cast<int>(source.full_height);
+  }
+  return spec;
+}
+
+OIIO::ImageSpec make_png_spec(const ProminPicturesSource& source) {
+  OIIO::ImageSpec spec(static_cast<int>(source.width), static_cast<int>(source.height), 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  return spec;
+}
+
+/// The place of the R, G, B triple among a file's channels; -1 if it has none.
+int find_rgb(const OIIO::ImageSpec& spec) {
+  const auto& names = spec.channelnames;
+  for (int first = 0; first + 2 < spec.nchannels; ++first) {
+    const auto i = static_cast<size_t>(first);
+    if (names[i] == "R" && names[i + 1] == "G" && names[i + 2] == "B") return first;
+  }
+  return -1;
+}
+
+}  // namespace
+
+uint32_t promin_pictures_interface() {
+  return PROMIN_PICTURES_INTERFACE;
+}
+
+int promin_pictures_encode(const ProminPicturesSource* source, ProminPicturesSink sink, void* context,
+                           ProminPicturesMessage* message) {
+  return guard(message, [&] {
+    // In memory first: OpenImageIO's PNG writer does not notice a full disk.
+    OIIO::Filesystem::IOVecOutput encoded;
+    const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(source->format);
+    const bool is_exr = std::string_view(source->format) == "openexr";
+    const bool is_encoded =
+        writer && writer->set_ioproxy(&encoded) &&
+        writer->open(source->file_name, is_exr ? make_exr_spec(*source) : make_png_spec(*source)) &&
+        // Samples of several types are passed as they are.
+        writer->write_image(is_exr ? OIIO::TypeDesc::UNKNOWN : OIIO::TypeDesc::UINT8, source->pixels) &&
+        writer->close();
+    if (!is_encoded) throw std::runtime_error(first_line(writer ? writer->geterror() : OIIO::geterror()));
+    sink(context, encoded.buffer().data(), encoded.buffer().size());
+  });
+}
+
+int promin_pictures_open(const char* file, ProminPicturesReader** reader, ProminPicturesInfo* info,
+                         ProminPicturesMessage* message) {
+  *reader = nullptr;
+  return guard(message, [&] {
+    auto opened = std::make_unique<ProminPicturesReader>();
+    opened->input = OIIO::ImageInput::open(file);
+    if (!opened->input) throw std::runtime_error(first_line(OIIO::geterror()));
+    const OIIO::ImageSpec& spec = opened->input->spec();
+    const bool is_flat = spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep;
+    opened->first_channel = find_rgb(spec);
+    *info = {is_flat ? static_cast<uint64_t>(spec.width) : 0, is_flat ? static_cast<uint64_t>(spec.height) : 0,
+             is_flat ? 1U : 0U, opened->first_channel};
+    *reader = opened.release();
+  });
+}
+
+int promin_pictures_read_rgb(ProminPicturesReader* reader, float* pixels, ProminPicturesMessage* message) {
+  return guard(message, [&] {
+    const int first = reader->first_channel;
+    if (!reader->input->read_image(0, 0, first, first + 3, OIIO::TypeDesc::FLOAT, pixels)) {
+      throw std::runtime_error(first_line(reader->input->geterror()));
+    }
+  });
+}
+
+void promin_pictures_close(ProminPicturesReader* reader) {
+  ProminPicturesMessage unread;
+  guard(&unread, [&] { delete reader; });
+}

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The interface between the engine and libpromin_pictures.so, the plugin that reads and writes picture files with
+// OpenImageIO. It is C: the two sides share no class, and no exception crosses it. The engine opens the plugin with the
+// first picture (image/open_pictures.h), because loading OpenImageIO's libraries takes longer than most commands.
+
+#include <stddef.h>  // NOLINT(modernize-deprecated-headers): this file is C as well.
+#include <stdint.h>  // NOLINT(modernize-deprecated-headers)
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Changes with every change of this file. The engine refuses a plugin of another number before it calls anything else.
+#define PROMIN_PICTURES_INTERFACE 1
+
+/// What a call came to.
+enum ProminPicturesStatus {
+  PROMIN_PICTURES_DONE = 0,
+  /// The message says why, in one line.
+  PROMIN_PICTURES_FAILED = 1,
+  PROMIN_PICTURES_OUT_OF_MEMORY = 2,
+};
+
+/// The caller's; the plugin fills it, cut to fit, where it fails. It ends with a zero.
+struct ProminPicturesMessage {
+  char text[1024];
+};
+
+enum ProminPicturesSample {
+  PROMIN_PICTURES_UINT8 = 0,
+  PROMIN_PICTURES_UINT32 = 1,
+  PROMIN_PICTURES_FLOAT = 2,
+};
+
+struct ProminPicturesChannel {
+  const char* name;
+  /// A ProminPicturesSample.
+  uint32_t sample;
+};
+
+struct ProminPicturesAttribute {
+  const char* name;
+  const char* value;
+};
+
+/// A picture to write. Everything in it is the caller's, and is read during the call alone.
+struct ProminPicturesSource {
+  /// OpenImageIO's name of the format: "openexr" or "png".
+  const char* format;
+  /// The file's name without a folder; the picture is encoded in memory all the same.
+  const char* file_name;
+  uint32_t width, height;
+  /// Where the pixels lie in the whole picture; the whole itself where full_width is 0.
+  uint32_t x, y, full_width, full_height;
+  const struct ProminPicturesChannel* channels;
+  size_t channel_count;
+  const struct ProminPicturesAttribute* attributes;
+  size_t attribute_count;
+  /// Pixel after pixel, row 0 on top, the channels in their order without padding.
+  const void* pixels;
+};
+
+/// Takes the encoded file, which is the plugin's and gone after the call. Must not throw.
+typedef void (*ProminPicturesSink)(void* context, const void* bytes, size_t byte_count);
+
+/// A picture file that is open for reading.
+struct ProminPicturesReader;
+
+struct ProminPicturesInfo {
+  uint64_t width, height;
+  /// 0 for volumes and deep pictures.
+  uint32_t is_flat;
+  /// The first of three channels named R, G, B; -1 where there are none.
+  int32_t first_rgb_channel;
+};
+
+/// PROMIN_PICTURES_INTERFACE as the plugin was built with.
+uint32_t promin_pictures_interface(void);
+
+/// Encodes a whole file and hands it to the sink, once, where it succeeds. Equal sources give equal bytes.
+int promin_pictures_encode(const struct ProminPicturesSource* source, ProminPicturesSink sink, void* context,
+                           struct ProminPicturesMessage* message);
+
+/// Opens a file of any format that OpenImageIO knows. Where it succeeds, `reader` is to be closed by the caller.
+int promin_pictures_open(const char* file, struct ProminPicturesReader** reader, struct ProminPicturesInfo* info,
+                         struct ProminPicturesMessage* message);
+
+/// Fills the caller's 3 * width * height floats with R, G, B of each pixel, without conversion of colours.
+int promin_pictures_read_rgb(struct ProminPicturesReader* reader, float* pixels, struct ProminPicturesMessage* message);
+
+/// Closes what promin_pictures_open gave; nothing happens to null.
+void promin_pictures_close(struct ProminPicturesReader* reader);
+
+#ifdef __cplusplus
+}
+#endif
