@@ -63,10 +63,37 @@ prepare() {
   cd -- "$OLDPWD"
 }
 
-# on_driver ICD COMMAND...: runs the command with the driver of this ICD file alone and the libraries beside it.
-on_driver() {
-  local icd="$1"
+# list_drivers: a line for the system's driver and each of tools/drivers: its name, a tab, its ICD file, of which the
+# system's has none. Fails after the first where tools/drivers does.
+list_drivers() {
+  printf 'system\t\n'
+  "$repository/tools/drivers"
+}
+
+# on_driver ICD COMMAND...: runs the command with the driver of this ICD file alone and the libraries beside it; without
+# one with the system's.
+on_driver() (
+  icd="$1"
   shift
-  env VK_DRIVER_FILES="$icd" VK_ICD_FILENAMES="$icd" \
-    LD_LIBRARY_PATH="${icd%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" "$@"
+  if [[ $icd ]]; then
+    export VK_DRIVER_FILES="$icd" VK_ICD_FILENAMES="$icd"
+    export LD_LIBRARY_PATH="${icd%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+  fi
+  "$@"
+)
+
+# run_python SCRIPT ARGUMENT...: a script of tools/reporting, by PROMIN_PYTHON or the system's Python, for which
+# matplotlib is packaged.
+run_python() {
+  local python=python3
+  [[ ! -x /usr/bin/python3 ]] || python=/usr/bin/python3
+  "${PROMIN_PYTHON:-$python}" "$repository/tools/reporting/$1" "${@:2}"
+}
+
+# describe_commit: that of the sources, with -dirty where any but docs differ from it, as no program is made of those.
+describe_commit() {
+  local commit
+  commit="$(git -C "$repository" describe --always 2>/dev/null)" || commit=unknown
+  git -C "$repository" diff --quiet HEAD -- ":/" ":(top,exclude)docs" 2>/dev/null || commit+="-dirty"
+  printf '%s\n' "${commit/unknown-dirty/unknown}"
 }

@@ -15,68 +15,15 @@
 #include "measure/samples.h"
 #include "oracle/oracle.h"
 #include "promin/load_scene.h"
-#include "reporting/front.h"
 #include "reporting/misjudged.h"
 #include "reporting/scene_hash.h"
 #include "reporting/scene_names.h"
-#include "reporting/scripts.h"
+#include "reporting/session.h"
 
 namespace promin::report {
 namespace {
 
 using testing::ElementsAre;
-
-TEST(ReportInterval, IsBetweenOrderStatistics) {
-  std::vector<double> values;
-  for (int i = 20; i >= 1; --i) values.push_back(i);
-  const measure::MedianInterval interval = measure::median_interval_of(values);
-  // Tables of the sign test: 6th and 15th of 20, 95.86 %.
-  EXPECT_EQ(interval.lower, 6.0);
-  EXPECT_EQ(interval.upper, 15.0);
-  EXPECT_EQ(interval.median, 10.5);
-  EXPECT_NEAR(interval.confidence, 0.9586, 5e-5);
-}
-
-TEST(ReportInterval, SaysHowLittleFewValuesTell) {
-  EXPECT_EQ(measure::median_interval_of({3.0}).confidence, 0.0);
-  const measure::MedianInterval three = measure::median_interval_of({3.0, 1.0, 2.0});
-  EXPECT_EQ(three.lower, 1.0);
-  EXPECT_EQ(three.upper, 3.0);
-  EXPECT_EQ(three.confidence, 0.75);
-  EXPECT_LT(measure::median_interval_of({1, 2, 3, 4, 5}).confidence, 0.95);
-  EXPECT_GT(measure::median_interval_of({1, 2, 3, 4, 5, 6}).confidence, 0.95);
-}
-
-TEST(ReportInterval, HoldsTheMedianAsOftenAsItSaysAndNarrows) {
-  measure::Random random(7);
-  double last_width = HUGE_VAL;
-  for (const size_t count : {20, 80, 320}) {
-    constexpr int kTrials = 4000;
-    int held = 0;
-    double width = 0.0;
-    double confidence = 0.0;
-    for (int trial = 0; trial < kTrials; ++trial) {
-      // Skewed, as times are; its median is ln 2.
-      std::vector<double> values;
-      for (size_t i = 0; i < count; ++i) values.push_back(-std::log(1.0 - random.uniform()));
-      const measure::MedianInterval interval = measure::median_interval_of(values);
-      held += interval.lower <= std::log(2.0) && std::log(2.0) <= interval.upper ? 1 : 0;
-      width += (interval.upper - interval.lower) / kTrials;
-      confidence = interval.confidence;
-    }
-    EXPECT_NEAR(static_cast<double>(held) / kTrials, confidence, 0.012) << count;
-    EXPECT_LT(width, 0.6 * last_width) << count;
-    last_width = width;
-  }
-}
-
-TEST(ReportFront, HasWhatNothingIsAheadOf) {
-  EXPECT_THAT(find_front({{3, 1}, {1, 5}, {2, 5}, {2, 3}, {4, 2}, {1, 6}}),
-              ElementsAre(true, true, false, true, false, false));
-  // Of two that are alike neither is ahead.
-  EXPECT_THAT(find_front({{1, 1}, {1, 1}}), ElementsAre(true, true));
-  EXPECT_TRUE(find_front({}).empty());
-}
 
 TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
   const Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / "all_primitives.gltf");
@@ -163,20 +110,6 @@ TEST_F(ReportMisjudged, ChoosesAllThatDiffer) {
   EXPECT_EQ(few.size(), 64);
   EXPECT_THAT(few, testing::IsSupersetOf({17, 990}));
   EXPECT_EQ(choose_rays(a, b, 1, 1'000'000).size(), 1000);
-}
-
-TEST(ReportScripts, TellWhatAProgramSaidLast) {
-  const ProgramResult fine = run_program({"sh", "-c", "echo out; echo noise >&2"});
-  EXPECT_TRUE(fine.has_succeeded);
-  EXPECT_EQ(fine.output, "out\n");
-  const ProgramResult failed = run_program({"sh", "-c", "echo first >&2; echo ' the reason ' >&2; echo >&2; exit 3"});
-  EXPECT_FALSE(failed.has_succeeded);
-  EXPECT_EQ(failed.last_line, "the reason");
-  const ProgramResult absent = run_program({"no-such-program-anywhere"});
-  EXPECT_FALSE(absent.has_succeeded);
-  EXPECT_EQ(absent.last_line, "no-such-program-anywhere cannot be run");
-  // More than a pipe holds, of which nobody reads the errors meanwhile.
-  EXPECT_TRUE(run_program({"sh", "-c", "head -c 300000 /dev/zero >&2"}).has_succeeded);
 }
 
 TEST(ReportGap, TellsWhatIsAbsentFromWhatFailed) {

@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""promin-report as a user runs it, quick, and the checks of its figures.
+"""Reports as a user makes them, quick, and the checks of their figures.
 
 report_test.py TEST BIN TOOLS SCENES: TEST is a function below, BIN the folder of the programs."""
 
 import copy
 import csv
+import html.parser
 import json
+import math
 import os
 import pathlib
+import random
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -21,7 +25,19 @@ sys.path.insert(0, str(TOOLS / "reporting"))
 import check_report
 import compare
 import front_text
-from figures import beyond_noise_text, judge, number, ratio_of_few, ratio_of_reports
+from figures import beyond_noise_text, number
+from report_file import read_report, read_runs, tables, write_report
+from stats import (
+    figures_of_few,
+    figures_of_times,
+    find_front,
+    fit_doublings,
+    fit_power,
+    judge,
+    median_interval,
+    ratio_of_few,
+    ratio_of_reports,
+)
 
 
 def expect(condition, what):
@@ -29,9 +45,19 @@ def expect(condition, what):
         sys.exit(f"report_test.py: {what}")
 
 
+def run_program(*words, environment=None):
+    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=280, env=environment)
+
+
 def run(*words, environment=None):
-    command = [str(BIN / "promin-report"), *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=280, env=environment)
+    return run_program(BIN / "promin-report", *words, environment=environment)
+
+
+def has_lists_of_numbers(value):
+    if isinstance(value, list) and any(isinstance(part, (int, float)) for part in value):
+        return True
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return any(has_lists_of_numbers(part) for part in parts)
 
 
 def count_lines(file):
@@ -40,13 +66,19 @@ def count_lines(file):
 
 
 def check_files(folder, report):
-    """A CSV line for each row, with what every figure stands under; a page that needs nothing else."""
-    for name in ("kernels", "boxes", "frames", "robustness", "specialisation", "scaling", "peers"):
+    """A line for each row; and CSV files of these lines, with what every figure stands under."""
+    done = run_python("csv_files.py", folder)
+    expect(done.returncode == 0, f"csv_files.py: {done.stderr}")
+    for name in ("kernels", "boxes", "frames", "robustness", "specialisation", "scaling", "rates", "peers"):
         rows = report[name]["rows"]
         if rows:
             expect(count_lines(folder / f"{name}.csv") == len(rows), f"{name}.csv has other rows than report.json")
-    expect('"values"' not in (folder / "report.json").read_text(encoding="utf-8"), "report.json has the single runs")
-    runs = check_report.read_runs(folder / "runs.csv")
+    expect(not has_lists_of_numbers(report), "report.json has the single runs")
+    lines = (folder / "report.json").read_text(encoding="utf-8").count("\n")
+    rows = sum(len(rows) for _, rows in tables(report))
+    expect(lines < rows + 50, f"report.json has {lines} lines for {rows} rows")
+    runs = read_runs(folder / "runs.json")
+    expect(count_lines(folder / "runs.csv") == sum(map(len, runs.values())), "runs.csv has other runs than runs.json")
     faults = list(check_report.find_run_faults(report, runs))
     expect(not faults, "the single runs do not give the figures:\n" + "\n".join(faults[:10]))
     own = runs["frames", report["frames"]["rows"][1]["id"], "ms"]
@@ -54,33 +86,74 @@ def check_files(folder, report):
     expect(list(check_report.find_run_faults(report, runs)), "not noticed: other runs than the medians'")
     with open(folder / "frames.csv", encoding="utf-8", newline="") as lines:
         row = next(csv.DictReader(lines))
-    for column in ("device", "driver", "compiler", "commit", "date", "scene_hash", "ms.median", "ms.runs"):
+    for column in ("device", "driver", "compiler", "commit", "date", "cpu", "scene_hash", "ms.median", "ms.runs"):
         expect(row.get(column), f"frames.csv tells of no {column}")
     expect(not [f for f in folder.iterdir() if f.name.startswith(".")], "temporary files are left")
+    for row in report["rates"]["rows"]:
+        expect({"hits", "node_steps_per_ray", "primitive_tests_per_ray", "promin_ms"} <= row.keys(), f"lacking: {row}")
+    expect({"nodes", "sah_cost", "promin_ms", "bvh_ms"} <= report["rates"]["builds"][0].keys(), "no build is measured")
+    first = report["peers"]["first"][0]
+    expect(0 < first["trace_ms"]["median"] < first["process_ms"]["median"], f"the first picture: {first}")
+    cpus = {line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")}
+    expect(not cpus or any(report["provenance"]["cpu"].startswith(cpu) for cpu in cpus), "the CPU's model is another")
+
+
+class SectionReader(html.parser.HTMLParser):
+    """The page's sections, each as text outside of its tags by the tag; and how many tags of each kind it has."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.sections, self.tags = [], []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        if tag == "section":
+            self.sections.append({})
+        self.tags.append(tag)
+        if self.sections:
+            self.sections[-1].setdefault(tag, "")
+
+    def handle_endtag(self, tag):
+        while self.tags and self.tags.pop() != tag:
+            pass
+
+    def handle_data(self, data):
+        for tag in self.tags if self.sections else ():
+            self.sections[-1][tag] = self.sections[-1].get(tag, "") + data
 
 
 def check_page(folder):
     page = (folder / "report.html").read_text(encoding="utf-8")
     expect(not re.search(r"(src|href)=['\"]?(http|//|file)", page), "the page needs other files")
     expect("quick report" in page, "the page does not say that it is quick")
-    device_type = json.loads((folder / "report.json").read_text(encoding="utf-8"))["provenance"]["device_type"]
-    expect(("a CPU driver" in page) == (device_type == "CPU"), "the page does not call a CPU driver one")
-    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-    faults = list(check_report.find_page_faults(report, page))
+    report = read_report(folder / "report.json")
+    p = report["provenance"]
+    expect(("a CPU driver" in page) == (p["device_type"] == "CPU"), "the page does not call a CPU driver one")
+    expect(p["cpu"] in page, "the page does not name the CPU's model")
+    claims = check_report.read_claims(page)
+    faults = list(check_report.find_claim_faults(report, claims))
     expect(not faults, "the page is at odds with the figures:\n" + "\n".join(faults))
-    for said, otherwise in (("on the front", "off the front"), ('class="front"', 'class="back"')):
-        other = page.replace(said, otherwise)
-        expect(list(check_report.find_page_faults(report, other)), f"not noticed: {otherwise} instead of {said}")
+    for claim in claims["fronts"]:
+        expect(front_text.front_sentence(claim) in page, f"claimed, but not said: {claim}")
+    for said, otherwise in (
+        ('"place":"on', '"place":"off'),
+        ('id="claims"', 'id="other"'),
+        ('quick":true', 'quick":false'),
+    ):
+        other = check_report.read_claims(page.replace(said, otherwise))
+        expect(list(check_report.find_claim_faults(report, other)), f"not noticed: {otherwise} instead of {said}")
     distances = [row["value"] for row in report["kernels"]["range"] if row["variable"] == "distance"]
     said = f"From a distance of {number(min(distances), 2)} to {number(max(distances), 2)} sizes"
     expect(said in page, f"the page does not say: {said}")
     expect(page.count("<svg") >= 20, "the page has too few plots")
     expect("<metadata" not in page and "<dc:date" not in page, "the plots carry metadata")
+    expect(page.count("\n") < 1000, "the page has lines without need")
     expect((folder / "frames.png").stat().st_size > 10_000, "there is no picture of the main plot")
-    for section in re.findall(r"<section>.*?</section>", page, flags=re.DOTALL):
+    for section in SectionReader(page).sections:
+        said = section.get("p", "") + section.get("li", "")
         # Beside other renderers, where none is installed.
-        is_gap = "<p>Not measured" in section and "<svg" not in section and "<table" not in section
-        expect(is_gap or re.search(r"<(p|li)>[^<]*\d", section), f"a section's text has no figure: {section[:200]}")
+        is_gap = "Not measured" in said and "svg" not in section and "table" not in section
+        expect(is_gap or any(map(str.isdigit, said)), f"a section's text has no figure: {section}"[:300])
 
 
 GAP = {"name": "FLIP", "is_installed": True, "reason": "it failed"}
@@ -139,6 +212,11 @@ def check_that_faults_are_found(report):
     spoil(lambda: find("scaling", "fits").update(exponent=0.9), "an exponent that is not the rows'")
     spoil(lambda: spoilt["boxes"]["rows"].append(spoilt["boxes"]["rows"][0]), "two rows of one id")
     spoil(lambda: spoilt["peers"].update(rows=[], gaps=[]), "a gap that is not named")
+    spoil(lambda: find("frames", "rows").update(rmse=math.nan), "a number that is none")
+    spoil(lambda: find("frames", "rows").update(scene_hash="short"), "a hash too short")
+    spoil(lambda: find("rates", "rows").update(promin_mrays_per_s=1e9), "a rate that is not of its time")
+    spoil(lambda: find("rates", "rows").update(hits=10**9), "more hits than rays")
+    spoil(lambda: find("robustness", "rows", **edges).update(only_promin_hits=0), "rays that differ by nothing")
 
 
 def times_in(value):
@@ -185,35 +263,46 @@ def check_front_text(report):
         times.update(interval_lower=0.9 * times["median"], interval_upper=1.1 * times["median"], confidence=SURE)
     for row in rows:
         row["rmse"] = 2 * default["rmse"] if not row["is_default"] else row["rmse"]
-    alone = front_text.front_sentence(other, scene)
-    expect(not list(check_report.find_page_faults(other, alone)), f"at odds: {alone}")
+    page = {"is_quick": True, "is_cpu": other["provenance"]["device_type"] == "CPU"}
+
+    def faults_of(claim):
+        return list(check_report.find_claim_faults(other, {**page, "fronts": [claim]}))
+
+    alone = front_text.front_claim(other, scene)
+    expect(not faults_of(alone), f"at odds: {alone}")
     ahead = next(row for row in rows if row["knob"] == "methods")
     ahead["rmse"] = default["rmse"]
     ahead["time_ratio"].update(median=0.65, interval_lower=0.6, interval_upper=0.7)
-    expect(list(check_report.find_page_faults(other, alone)), "not noticed: a dominator that the page leaves out")
-    text = front_text.front_sentence(other, scene)
-    expect(not list(check_report.find_page_faults(other, text)), f"at odds: {text}")
+    expect(faults_of(alone), "not noticed: a dominator that the page leaves out")
+    claim = front_text.front_claim(other, scene)
+    expect(not faults_of(claim), f"at odds: {claim}")
+    text = front_text.front_sentence(claim)
     expect("methods textbook takes 0.65 of its time" in text.replace("Methods", "methods"), f"no figures: {text}")
     expect("rounding alone takes" in text and "leak between its triangles" in text, f"no reasons: {text}")
+    claim["ahead"][0]["gives_up"][0]["figure"] = 0
+    expect(faults_of(claim), "not noticed: a reason without a figure")
     other["frames"]["errors"] = [row for row in other["frames"]["errors"] if row["method"] == "promin"]
     other["kernels"]["rows"] = []
     ahead.update(device_bytes=default["device_bytes"], build_ms=default["build_ms"])
     ahead.pop("flip", None)
-    text = front_text.front_sentence(other, scene)
+    text = front_text.front_sentence(front_text.front_claim(other, scene))
     expect("gives up nothing that is measured here" in text, f"reasons without figures: {text}")
     # Beyond noise alone counts.
     ahead["time_ratio"]["interval_upper"] = 1.05
-    expect("off the front" not in front_text.front_sentence(other, scene), "noise takes the default off the front")
+    claim = front_text.front_claim(other, scene)
+    expect(claim["place"] != "off", "noise takes the default off the front")
+    expect("off the front" not in front_text.front_sentence(claim), "noise takes the default off the front")
 
 
 def writes_a_report(folder):
-    done = run("--quick", "-o", folder)
+    done = run_program(TOOLS / "reporting" / "run", BIN, "--quick", "-o", folder)
     expect(done.returncode == 0, f"exit code {done.returncode}: {done.stderr[-2000:]}")
-    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    expect(done.stderr.strip().endswith("sound"), f"the report is not checked: {done.stderr[-2000:]}")
+    report = read_report(folder / "report.json")
     faults = check_report.find_faults(report)
     expect(not faults, "the report is not sound:\n" + "\n".join(faults))
     check_files(folder, report)
-    if "matplotlib" in done.stderr:
+    if "matplotlib" in done.stdout:
         expect(not (folder / "report.html").exists(), "a page without matplotlib")
         print("no page: this machine has no matplotlib")
     else:
@@ -257,6 +346,9 @@ def refuses_what_is_wrong(folder):
         (2, ("--quick",), None),
         (2, ("--quick", *out, "--runs", "0"), None),
         (2, ("--quick", *out, "--nonsense"), None),
+        (2, ("--quick", *out, "--only", "kernels,nonsense"), None),
+        (2, ("--quick", *out, "--builder", "nonsense"), None),
+        (2, ("--quick", *out, "wavy:3"), None),
         (3, ("--quick", *out, folder / "missing.gltf"), None),
         (3, ("--quick", *out, folder / "bad.gltf"), None),
         (3, ("--quick", *out, scene, folder / "missing.gltf"), None),
@@ -271,7 +363,51 @@ def refuses_what_is_wrong(folder):
         lines = [line for line in done.stderr.splitlines() if "promin-report: error: " in line]
         expect(done.returncode == code, f"{words} gives {done.returncode}, not {code}: {done.stderr}")
         expect(len(lines) == 1, f"{words} does not say what is wrong in one line: {done.stderr}")
-        expect(not (folder / "out" / "report.json").exists(), f"{words} leaves a report")
+        expect(not (folder / "out" / "runs.json").exists(), f"{words} leaves a report")
+    (folder / "old.json").write_text('{"format": 2, "provenance": {}}', encoding="utf-8")
+    done = run("--quick", *out, scene, "--compare", folder / "old.json")
+    expect(done.returncode == 3, f"a report of another format is compared with: {done.stderr}")
+    done = run_program(TOOLS / "reporting" / "run", BIN, "--quick", *out, "--compare", folder / "old.json")
+    expect(done.returncode == 3, f"tools/report goes on: {done.returncode}, {done.stderr}")
+    done = run_python("page.py", folder)
+    expect(done.returncode != 0 and "runs.json" not in done.stderr, f"a page of nothing: {done.stderr}")
+
+
+def computes_figures(folder):
+    lower, upper, confidence = median_interval(list(range(20, 0, -1)))
+    # Tables of the sign test: 6th and 15th of 20, 95.86 %.
+    expect((lower, upper) == (6, 15) and abs(confidence - 0.9586) < 5e-5, f"of 20: {lower}, {upper}, {confidence}")
+    times = figures_of_times(list(range(20, 0, -1)))
+    expect((times["median"], times["lower_quartile"], times["upper_quartile"]) == (10.5, 5.75, 15.25), f"{times}")
+    expect((times["interval_lower"], times["interval_upper"], times["runs"]) == (6, 15, 20), f"{times}")
+    # How little few values tell.
+    expect(figures_of_times([3.0])["median"] == 3.0 and median_interval([3.0])[2] == 0, "one value tells too much")
+    expect(median_interval([3.0, 1.0, 2.0]) == (1.0, 3.0, 0.75), "three values")
+    expect(median_interval([1, 2, 3, 4, 5])[2] < 0.95 < median_interval([1, 2, 3, 4, 5, 6])[2], "five and six values")
+    expect(figures_of_few([3, 1, 2]) == {"median": 2, "least": 1, "most": 3, "runs": 3}, "three times")
+    # It holds the median as often as it says, and narrows.
+    generator, last_width, trials = random.Random(7), math.inf, 4000
+    for count in (20, 80, 320):
+        # Skewed, as times are; its median is ln 2.
+        found = [median_interval([generator.expovariate(1) for _ in range(count)]) for _ in range(trials)]
+        held = sum(lower <= math.log(2) <= upper for lower, upper, _ in found) / trials
+        width = statistics.fmean(upper - lower for lower, upper, _ in found)
+        expect(abs(held - found[0][2]) < 0.012, f"{count} values: it holds the median in {held}, not {found[0][2]}")
+        expect(width < 0.6 * last_width, f"{count} values: {width} wide after {last_width}")
+        last_width = width
+    expect(
+        find_front([(3, 1), (1, 5), (2, 5), (2, 3), (4, 2), (1, 6)]) == [True, True, False, True, False, False],
+        "the front has what nothing is ahead of",
+    )
+    expect(find_front([(1, 1), (1, 1)]) == [True, True] and find_front([]) == [], "of two alike neither is ahead")
+    # y = 3 x^0.5, then with one point off the line: the interval by hand, 12.706 times the slope's standard error.
+    fit = fit_power([1, 4, 16], [3, 6, 12])
+    expect(max(abs(fit[key] - 0.5) for key in ("exponent", "lower", "upper")) < 1e-9, f"{fit}")
+    fit = fit_power([1, math.e, math.e**2], [1, math.e**2, math.e**2])
+    error = math.sqrt(2 / 3 / 2)
+    expect(abs(fit["exponent"] - 1) < 1e-9 and abs(fit["upper"] - 1 - 12.706 * error) < 1e-9, f"{fit}")
+    line = fit_doublings([1, 2, 4, 8], [5, 7, 9, 11])
+    expect(abs(line["per_doubling"] - 2) < 1e-9 and abs(line["r_squared"] - 1) < 1e-9, f"{line}")
 
 
 def judges_times(folder):
@@ -302,8 +438,10 @@ def judges_times(folder):
 
 def run_python(script, *words, environment=None):
     python = os.environ.get("PROMIN_PYTHON", "/usr/bin/python3")
-    words = [python, TOOLS / "reporting" / script, *words]
-    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=120, env=environment)
+    return run_program(python, TOOLS / "reporting" / script, *words, environment=environment)
+
+
+PROVENANCE = {"runs": 1, "is_quick": True, "device_type": "CPU"}
 
 
 def tells_gaps(folder):
@@ -311,13 +449,28 @@ def tells_gaps(folder):
     module = folder / "flip_evaluator"
     module.mkdir()
     modules = {**os.environ, "PYTHONPATH": str(folder)}
+    file = folder / "runs.json"
+
+    def measure_flip():
+        write_report({"format": 3, "frames": {"rows": [{"id": "a"}, {"id": "b"}], "gaps": []}}, file)
+        (folder / "0.truth.exr").touch()
+        return run_python("flip.py", folder, folder, environment=modules), read_report(file)["frames"]
+
     (module / "__init__.py").write_text("raise OSError('its library is gone')\n", encoding="utf-8")
-    done = run_python("flip.py", "a.exr", "b.exr", environment=modules)
-    expect(done.returncode != 0, "flip.py hides that FLIP failed")
-    expect(done.stderr.strip().endswith("OSError: its library is gone"), f"the last line is another: {done.stderr}")
-    (module / "__init__.py").write_text("evaluate = lambda *a, **k: (None, 0.25, None)\n", encoding="utf-8")
-    done = run_python("flip.py", "a.exr", "b.exr", environment=modules)
-    expect(json.loads(done.stdout) == {"errors": [0.25]}, f"flip.py: {done}")
+    done, frames = measure_flip()
+    gap = {"name": "FLIP", "is_installed": True, "reason": "OSError: its library is gone"}
+    expect(done.returncode == 0 and frames["gaps"] == [gap], f"flip.py hides that FLIP failed: {done}, {frames}")
+    expect("flip" not in frames["rows"][0], f"an error that was not measured: {frames}")
+    (module / "__init__.py").write_text("import os\nos.abort()\n", encoding="utf-8")
+    done, frames = measure_flip()
+    expect(done.returncode != 0 and frames["gaps"][0]["is_installed"], f"a crash is not a gap: {done}, {frames}")
+    (module / "__init__.py").write_text(
+        "import os\nfound = {'0.exr': 0.25, '1.exr': 0.5}\n"
+        "evaluate = lambda a, b, *c, **d: (None, found[os.path.basename(b)], None)\n",
+        encoding="utf-8",
+    )
+    done, frames = measure_flip()
+    expect([row.get("flip") for row in frames["rows"]] == [0.25, 0.5] and not frames["gaps"], f"{done}, {frames}")
     (module / "__init__.py").unlink()
     module.rmdir()
     (folder / "sitecustomize.py").write_text(
@@ -325,19 +478,34 @@ def tells_gaps(folder):
         "u.find_spec = lambda name, *a: None if name == 'flip_evaluator' else find(name, *a)\n",
         encoding="utf-8",
     )
-    done = run_python("flip.py", "a.exr", "b.exr", environment=modules)
-    expect(done.returncode == 0 and done.stdout == "{}\n", f"without FLIP: {done}")
+    done, frames = measure_flip()
+    gap = {"name": "FLIP", "is_installed": False, "reason": "not installed"}
+    expect(done.returncode == 0 and frames["gaps"] == [gap], f"without FLIP: {done}, {frames}")
     # Renderers: one that fails, one that says nothing of its time.
     for name, script in (("tachyon", "echo working; echo 'Tachyon: no such file' >&2; exit 1"), ("povray", "echo hi")):
         (folder / name).write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
         (folder / name).chmod(0o755)
     fake = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"}
-    done = run_python("peers.py", "--programs", BIN, "--runs", "1", "--side", "16", "--level", "1", environment=fake)
+    write_report({"format": 3, "provenance": PROVENANCE}, file)
+    done = run_python("peers.py", folder, "--programs", BIN, "--side", "16", "--level", "1", environment=fake)
     expect(done.returncode == 0, f"peers.py: {done.stderr}")
-    found = json.loads(done.stdout)
-    expect(not found["peers"] and len(found["trace_ms"]) == 1, f"peers.py: {found}")
-    expect(found["failures"]["Tachyon"] == "Tachyon: no such file", f"Tachyon: {found['failures']}")
-    expect("no time" in found["failures"]["POV-Ray"], f"POV-Ray: {found['failures']}")
+    found = read_report(file)["peers"]
+    expect(not found["rows"] and len(found["first"][0]["trace_ms"]) == 1, f"peers.py: {found}")
+    reasons = {gap["name"]: gap["reason"] for gap in found["gaps"] if gap["is_installed"]}
+    expect(reasons["Tachyon"] == "Tachyon: no such file", f"Tachyon: {reasons}")
+    expect("no time" in reasons["POV-Ray"], f"POV-Ray: {reasons}")
+    # And one that is measured: its picture is black.
+    script = "printf 'P6\\n16 16\\n65535\\n' >tachyon.ppm; head -c 1536 /dev/zero >>tachyon.ppm"
+    script += "; echo 'Version 0.5 Ray Tracing Time: 2.5'"
+    (folder / "tachyon").write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+    (folder / "povray").unlink()
+    done = run_python("peers.py", folder, "--programs", BIN, "--side", "16", "--level", "1", environment=fake)
+    found = read_report(file)["peers"]
+    row = found["rows"][0]
+    expect(
+        row["peer"] == "Tachyon 0.5" and row["peer_ms"] == [2500.0], f"a peer that is measured: {row}, {done.stderr}"
+    )
+    expect(row["mean_difference"] > 0.01 and row["time_ratio"] == [row["promin_ms"][0] / 2500.0], f"{row}")
 
 
 def tells_scenes_apart(folder):
@@ -350,17 +518,66 @@ def tells_scenes_apart(folder):
     expect(done.returncode == 2 and "given twice" in done.stderr, f"a scene given twice: {done.stderr}")
     done = run("--quick", "--runs", 1, "-o", folder / "out", *files)
     expect(done.returncode == 0, f"exit code {done.returncode}: {done.stderr[-2000:]}")
-    report = json.loads((folder / "out" / "report.json").read_text(encoding="utf-8"))
-    for section in ("frames", "robustness", "specialisation"):
+    report = read_report(folder / "out" / "runs.json")
+    for section in ("frames", "robustness", "specialisation", "rates"):
         scenes = {row["scene"]: row["scene_hash"] for row in report[section]["rows"]}
         expect(sorted(scenes) == ["a/x.gltf", "b/x.gltf"], f"{section}: {scenes}")
         expect(len(set(scenes.values())) == 1, f"{section}: the same content has two hashes: {scenes}")
     expect(not list(check_report._find_twins(report)), "ids are not one row's alone")
 
 
+def makes_tables(folder):
+    """Of parts of reports, as tools/bench and tools/accuracy do; and a table for the terminal."""
+    done = run("--quick", "--runs", 1, "--only", "rates,scaling,robustness", "--side", 32, "-o", folder / "system")
+    expect(done.returncode == 0, f"exit code {done.returncode}: {done.stderr[-2000:]}")
+    done = run_python("summarise.py", folder / "system")
+    expect(done.returncode == 0, f"summarise.py: {done.stderr}")
+    file = folder / "system" / "report.json"
+    report = read_report(file)
+    expect(sorted(report) == ["format", "provenance", "rates", "robustness", "scaling"], f"sections: {list(report)}")
+    make_page(folder / "system")
+    done = run_python("bench_tables.py", "-o", folder / "bench.json", "--growth", file, file)
+    expect(done.returncode == 0, f"bench_tables.py: {done.stderr}")
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in done.stdout.splitlines()]
+    for row in report["rates"]["rows"]:
+        cells = next(line for line in lines if line[1:3] == [row["scene"], row["rays"]])
+        expect(cells[3] == f"{row['promin_mrays_per_s']:.2f}", f"another rate than {row}: {cells}")
+        expect(cells[9] == f"{row['node_steps_per_ray']:.2f}", f"other steps than {row}: {cells}")
+    fit = next(fit for fit in report["scaling"]["fits"] if fit["id"] == "triangles/camera/node_steps_per_ray")
+    cells = next(line for line in lines if line[0].startswith("steps a doubling"))
+    expect(cells[1] == f"{fit['per_doubling']:.2f} ({fit['r_squared']:.3f})", f"another growth than {fit}: {cells}")
+    expect(
+        json.loads((folder / "bench.json").read_text())["drivers"]["system"] == report, "bench.json has other figures"
+    )
+    (folder / "system.log").touch()
+    hard = {"driver": report["provenance"]["driver"], "failed": [], "primitives": {}, "rows": []}
+    (folder / "system.json").write_text(json.dumps(hard), encoding="utf-8")
+    done = run_python("accuracy_document.py", folder)
+    expect(done.returncode == 0, f"accuracy_document.py: {done.stderr}")
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in done.stdout.splitlines()]
+    for row in report["robustness"]["rows"]:
+        cells = next(line for line in lines if line[0] == row["scene"] and line[2] == row["rays"])
+        expect(cells[6:] == [str(row["only_promin_hits"]), str(row["only_textbook_hits"])], f"{row}: {cells}")
+    done = run_program(BIN / "promin-bench", "needles:500", "--runs", 0, "--side", 16, "-o", folder / "runs.json")
+    expect(done.returncode == 0 and "needles:500, 500 primitives" in done.stdout, f"promin-bench: {done}")
+    rows = read_report(folder / "runs.json")["rates"]["rows"]
+    expect([row["rays"] for row in rows] == ["camera", "shadow", "random"], f"promin-bench: {rows}")
+    expect(rows[0]["count"] == 256 and "promin_ms" not in rows[0], f"it should only count steps: {rows}")
+    done = run_program(BIN / "promin-bench", "needles:5", "--runs", 0)
+    expect(done.returncode == 1 and "no number of triangles" in done.stderr, f"promin-bench: {done}")
+
+
 TESTS = {
     test.__name__: test
-    for test in (writes_a_report, refuses_what_is_wrong, judges_times, tells_gaps, tells_scenes_apart)
+    for test in (
+        writes_a_report,
+        refuses_what_is_wrong,
+        computes_figures,
+        judges_times,
+        tells_gaps,
+        tells_scenes_apart,
+        makes_tables,
+    )
 }
 
 with tempfile.TemporaryDirectory() as name:

@@ -24,10 +24,6 @@ RaySet make_edge_rays(const Mesh& mesh, size_t count) {
   return set;
 }
 
-double mrays_per_s(size_t count, const std::vector<double>& ms) {
-  return static_cast<double>(count) / (1e3 * quartiles_of(ms).median);
-}
-
 /// Rays that hit in `a` and miss in `b`.
 uint64_t count_only(const std::vector<Hit>& a, const std::vector<Hit>& b) {
   uint64_t count = 0;
@@ -36,14 +32,6 @@ uint64_t count_only(const std::vector<Hit>& a, const std::vector<Hit>& b) {
 }
 
 }  // namespace
-
-double KernelPair::robust_mrays_per_s() const {
-  return mrays_per_s(count, robust_ms);
-}
-
-double KernelPair::plain_mrays_per_s() const {
-  return mrays_per_s(count, plain_ms);
-}
 
 uint64_t KernelPair::count_only_robust() const {
   return count_only(robust_hits, plain_hits);

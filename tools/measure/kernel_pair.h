@@ -22,9 +22,6 @@ struct KernelPair {
   std::vector<Hit> robust_hits;
   std::vector<Hit> plain_hits;
 
-  double robust_mrays_per_s() const;
-  double plain_mrays_per_s() const;
-
   /// Rays with a hit by the one kernel and none by the other, whichever is right.
   uint64_t count_only_robust() const;
   uint64_t count_only_plain() const;

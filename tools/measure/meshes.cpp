@@ -3,8 +3,12 @@
 #include "measure/meshes.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <random>
+
+#include "promin/error.h"
+#include "promin/load_scene.h"
 
 namespace promin::measure {
 namespace {
@@ -87,6 +91,25 @@ Scene make_needles(uint32_t triangle_count) {
     mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
   }
   return scene_of_mesh(std::move(mesh), "needles");
+}
+
+Scene open_scene(const std::string& word) {
+  const size_t colon = word.find(':');
+  const std::string kind = word.substr(0, colon);
+  if (colon == std::string::npos || (kind != "wavy" && kind != "needles")) return load_scene(word);
+  uint32_t count = 0;
+  const char* end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data() + colon + 1, end, count);
+  if (error != std::errc() || rest != end || count < 16 || count > 50'000'000) {
+    throw UsageError({"no number of triangles from 16 to 50000000", word, "write " + kind + ":100000"});
+  }
+  Scene scene = kind == "wavy" ? make_wavy_sphere(count) : make_needles(count);
+  scene.file = word;
+  return scene;
+}
+
+bool is_generated_and_closed(const Scene& scene) {
+  return scene.file.string().rfind("wavy:", 0) == 0;
 }
 
 }  // namespace promin::measure

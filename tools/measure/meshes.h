@@ -27,4 +27,11 @@ Scene make_wavy_sphere(uint32_t triangle_count);
 /// empty.
 Scene make_needles(uint32_t triangle_count);
 
+/// What programs take for a scene: a file, or "wavy:N" and "needles:N" for a generated mesh of about N triangles, which
+/// has the word for its file. Throws InputError; UsageError for a number that is none.
+Scene open_scene(const std::string& word);
+
+/// Whether open_scene has generated this scene and every ray from inside of it hits.
+bool is_generated_and_closed(const Scene& scene);
+
 }  // namespace promin::measure

@@ -13,7 +13,8 @@
 
 namespace promin::measure {
 
-/// Of some measurements; between two of them linearly.
+/// Of some measurements; between two of them linearly. For programs' own tables: all that reports tell of times is
+/// computed by tools/reporting/stats.py.
 struct Quartiles {
   double lower = 0.0;
   double median = 0.0;
@@ -30,36 +31,6 @@ inline Quartiles quartiles_of(std::vector<double> values) {
     return std::lerp(values[below], values[above], place - static_cast<double>(below));
   };
   return {at(0.25), at(0.5), at(0.75)};
-}
-
-/// The median and an interval that holds the median of all that might be measured, whatever their distribution.
-struct MedianInterval {
-  double lower = 0.0;
-  double median = 0.0;
-  double upper = 0.0;
-  /// How often such an interval holds it, 0...1.
-  double confidence = 0.0;
-};
-
-/// Of one value or more: between the k-th least and the k-th largest value, which miss the median as often as fewer
-/// than k of n throws of a coin are heads: 1 - 2 sum_{i<k} C(n, i) / 2^n. The narrowest of at least 95 %; of fewer than
-/// 6 values none has that, and it is from the least to the largest (Conover, Practical Nonparametric Statistics, 3.2).
-inline MedianInterval median_interval_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t count = values.size();
-  // Probabilities of i heads and of at most i.
-  double exactly = std::exp2(-static_cast<double>(count));
-  double tail = exactly;
-  size_t k = 1;
-  double confidence = 1.0 - 2.0 * tail;
-  for (size_t i = 1; 2 * i < count; ++i) {
-    exactly *= static_cast<double>(count - i + 1) / static_cast<double>(i);
-    tail += exactly;
-    if (1.0 - 2.0 * tail < 0.95) break;
-    k = i + 1;
-    confidence = 1.0 - 2.0 * tail;
-  }
-  return {values[k - 1], quartiles_of(values).median, values[count - k], std::max(0.0, confidence)};
 }
 
 /// The protocol of everything that is timed: each contestant once as a warm-up, whose time is thrown away, then all of

@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Holds a report against report.schema.json and rules that any report of a sound promin keeps; needs nothing beyond
-Python's own library, and nothing of what made the report. check_report.py REPORT.json prints what is wrong, a line
-each; exit code 1 if anything is. Where runs.csv and report.html lie beside it, the figures are held against the single
-runs, and what the page says of the default against the figures."""
+"""Holds a report against report.schema.json and rules that any report of a sound promin keeps; computes nothing by what
+made the report. check_report.py REPORT.json prints what is wrong, a line each; exit code 1 if anything is. Where
+runs.json and report.html lie beside it, the figures are held against the single runs, and what the page claims of the
+default against the figures. Schemas are read by Debian's python3-jsonschema."""
 
-import csv
-import html
+import html.parser
 import json
 import math
 import pathlib
-import re
 import statistics
 import sys
+
+import jsonschema
+
+from report_file import read_report, read_runs, tables
 
 # Bounds of docs/accuracy.md and of tests/oracle (compare_picture.h).
 _BOUND_K = 8
@@ -25,45 +27,15 @@ _CONFIDENCE = 0.95
 # A setting is ahead of another where it takes less than this of its time.
 _FASTER = 1 / 1.02
 
-_TYPES = {
-    "object": dict,
-    "array": list,
-    "string": str,
-    "boolean": bool,
-    "integer": int,
-    "number": (int, float),
-}
 
-
-def find_schema_faults(value, schema, root, place="report"):
-    """What a value lacks by the words of JSON Schema that report.schema.json uses."""
-    if "$ref" in schema:
-        schema = root["definitions"][schema["$ref"].rsplit("/", 1)[1]]
-    faults = []
-    wanted = schema.get("type")
-    # A boolean is a number to Python.
-    if wanted and (not isinstance(value, _TYPES[wanted]) or (isinstance(value, bool) and wanted != "boolean")):
-        return [f"{place} is no {wanted}: {value!r}"[:200]]
-    if "enum" in schema and value not in schema["enum"]:
-        faults.append(f"{place} is {value!r}, none of {schema['enum']}")
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        if (
-            not math.isfinite(value)
-            or value < schema.get("minimum", -math.inf)
-            or value > schema.get("maximum", math.inf)
-        ):
-            faults.append(f"{place} is out of range: {value}")
-    if isinstance(value, str) and len(value) < schema.get("minLength", 0):
-        faults.append(f"{place} is too short: {value!r}")
-    if isinstance(value, dict):
-        faults += [f"{place} has no {key}" for key in schema.get("required", ()) if key not in value]
-        for key, part in schema.get("properties", {}).items():
-            if key in value:
-                faults += find_schema_faults(value[key], part, root, f"{place}.{key}")
-    if isinstance(value, list) and "items" in schema:
-        for index, item in enumerate(value):
-            faults += find_schema_faults(item, schema["items"], root, f"{place}[{index}]")
-    return faults
+def _find_schema_faults(report):
+    schema = json.loads((pathlib.Path(__file__).parent / "report.schema.json").read_text(encoding="utf-8"))
+    for error in jsonschema.Draft7Validator(schema).iter_errors(report):
+        yield f"{error.json_path}: {error.message}"[:300]
+    try:
+        json.dumps(report, allow_nan=False)
+    except ValueError:
+        yield "a number is not finite"
 
 
 def _times_in(value, place=""):
@@ -179,6 +151,17 @@ def _find_frame_faults(report):
             yield f"{row['id']}: {row['id_mismatches']} other ids of {row['pixels']}"
 
 
+def _find_rate_faults(report):
+    for row in report["rates"]["rows"]:
+        if not row.get("differing_hits", 0) + row.get("hits", 0) <= 2 * row["count"]:
+            yield f"{row['id']}: more hits than rays"
+        for who in ("promin", "peer", "peer_packets"):
+            times = row.get(f"{who}_ms")
+            rate = row.get(f"{who}_mrays_per_s", math.nan)
+            if times and not math.isclose(rate * 1e3 * times["median"], row["count"], rel_tol=1e-5):
+                yield f"{row['id']}: {rate} Mrays/s are not {row['count']} rays in {times['median']} ms"
+
+
 def _find_other_faults(report):
     for row in report["specialisation"]["rows"]:
         if not row["is_bit_identical"]:
@@ -190,6 +173,8 @@ def _find_other_faults(report):
     for row in rows:
         if row["judged"] > row["count"] or (row["rays"] == "edges") != (row["truth"] == "each hits"):
             yield f"{row['id']}: {row['judged']} of {row['count']} rays judged, by '{row['truth']}'"
+        if "only_promin_hits" in row and row["only_promin_hits"] + row["only_textbook_hits"] != row["differing"]:
+            yield f"{row['id']}: {row['differing']} rays differ, but not by what either alone hits"
         # From inside of a closed mesh each ray hits.
         if row["truth"] == "each hits" and (row["promin_lost"] or row["judged"] != row["count"]):
             yield f"{row['id']}: promin loses {row['promin_lost']} of {row['judged']} rays at edges of a closed mesh"
@@ -201,15 +186,16 @@ def _find_other_faults(report):
         if not fit["lower"] <= fit["exponent"] <= fit["upper"]:
             yield f"{fit['id']}: the exponent is not in its interval"
         yield from _find_fit_faults(report, fit)
-    peers = " ".join(row["peer"] for row in report["peers"]["rows"])
-    gaps = [gap["name"] for gap in report["peers"]["gaps"]]
-    for name in ("Embree", "Tachyon", "POV-Ray"):
-        if (name in peers) == (name in gaps):
-            yield f"peers: {name} is neither measured nor a gap, or both"
+    for section, names in (("rates", ["Embree"]), ("peers", ["Tachyon", "POV-Ray"])):
+        peers = " ".join(row.get("peer", "") for row in report[section]["rows"])
+        gaps = [gap["name"] for gap in report[section]["gaps"]]
+        for name in names:
+            if (name in peers) == (name in gaps):
+                yield f"{section}: {name} is neither measured nor a gap, or both"
     has_flip = all("flip" in row for row in report["frames"]["rows"])
     if len(report["frames"]["gaps"]) != (0 if has_flip else 1):
         yield "frames: FLIP is neither measured nor one gap, or both"
-    for gap in report["peers"]["gaps"] + report["frames"]["gaps"]:
+    for gap in report["rates"]["gaps"] + report["peers"]["gaps"] + report["frames"]["gaps"]:
         if gap["is_installed"] != (gap["reason"] != "not installed"):
             yield f"{gap['name']}: installed or not? {gap}"
 
@@ -239,17 +225,10 @@ def _find_fit_faults(report, fit):
         yield f"{fit['id']}: steps grow as n^{fit['exponent']}"
 
 
-def _tables(report):
-    for section, content in report.items():
-        for key, rows in content.items() if isinstance(content, dict) else []:
-            if isinstance(rows, list):
-                yield section if key == "rows" else f"{section}_{key}", rows
-
-
 def find_run_faults(report, runs):
-    """Medians, intervals and ratios once more, from the single runs: {(table, id, figure): values}."""
+    """Medians, intervals and ratios once more, from the single runs as read_runs gives them."""
     is_near = lambda a, b: math.isclose(a, b, rel_tol=1e-5)  # noqa: E731
-    for table, rows in _tables(report):
+    for table, rows in tables(report):
         for row in rows:
             for figure, times in row.items():
                 if not isinstance(times, dict) or "median" not in times:
@@ -271,49 +250,71 @@ def find_run_faults(report, runs):
             yield f"{row['id']}: {ratio} of the default's time in the same turns, not {row['time_ratio']['median']}"
 
 
-def find_page_faults(report, page):
+class _ClaimReader(html.parser.HTMLParser):
+    """The page's <script id="claims">."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.text, self._is_inside = "", False
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        self._is_inside = tag == "script" and ("id", "claims") in attributes
+
+    def handle_data(self, data):
+        self.text += data if self._is_inside else ""
+
+    def handle_endtag(self, tag):
+        self._is_inside = False
+
+
+def read_claims(page):
+    """What the page says in words, as the data that its sentences are made of."""
+    return json.loads(_ClaimReader(page).text or "{}")
+
+
+def find_claim_faults(report, claims):
     """Whether the page says of each scene's default that it lies on the front, or what is ahead and gives up what."""
-    said = {
-        html.unescape(scene): html.unescape(re.sub("<[^>]*>", "", text))
-        for scene, text in re.findall(r'<span class="front" data-scene="([^"]*)">(.*?)</span>', page, flags=re.DOTALL)
-    }
+    if (claims.get("is_quick"), claims.get("is_cpu")) != (
+        report["provenance"]["is_quick"],
+        report["provenance"]["device_type"] == "CPU",
+    ):
+        yield "the page says other than the report whether it is quick or of a CPU"
     rows = report["frames"]["rows"]
     for scene in {row["scene"] for row in rows}:
-        text = said.get(scene, "")
+        claim = next((claim for claim in claims.get("fronts", []) if claim["scene"] == scene), None)
+        if not claim:
+            yield f"{scene}: the page says nothing of its default"
+            continue
         default = next(row for row in rows if row["is_default"] and row["scene"] == scene)
-        ahead = []
+        ahead = {}
         for row in rows:
             ratio = row["time_ratio"]
             is_sure = ratio["confidence"] >= _CONFIDENCE and ratio["interval_upper"] < 1
             if row["scene"] == scene and row["rmse"] <= default["rmse"] and is_sure and ratio["median"] < _FASTER:
-                ahead.append(row)
-        if ("off the front" in text) != bool(ahead) or ("on the front" in text) == bool(ahead):
-            names = [row["id"] for row in ahead] or "nothing"
-            yield f"{scene}: {names} is ahead of the default beyond noise, and the page says: {text or 'nothing'}"
-        if not ahead and ("within the noise" in text) == default["is_on_front"]:
-            yield f"{scene}: the default's mark and the page are at odds: {text}"
-        for row in ahead:
-            name = f"{row['knob']} {row['setting']} takes {row['time_ratio']['median']:.2f} of its time"
-            reason = text.lower().partition(name.lower())[2]
-            if not re.match(r"[^.]*(\.\d[^.]*)*; it gives up (this: .*\d|nothing)", reason):
-                yield f"{scene}: the page gives no reason why {row['id']} is not the default: {text}"
-
-
-def read_runs(file):
-    runs = {}
-    with open(file, encoding="utf-8", newline="") as lines:
-        for line in csv.DictReader(lines):
-            runs.setdefault((line["table"], line["id"], line["figure"]), []).append(float(line["value"]))
-    return runs
+                ahead[row["id"]] = ratio["median"]
+        if {one["id"]: one["time_ratio"] for one in claim["ahead"]} != ahead:
+            yield f"{scene}: {ahead or 'nothing'} is ahead of the default beyond noise, and the page says: {claim}"
+        if claim["place"] != ("off" if ahead else "on" if default["is_on_front"] else "on within noise"):
+            yield f"{scene}: the default's mark and the page are at odds: {claim}"
+        for one in claim["ahead"]:
+            if not all(loss["kind"] and loss["figure"] > 0 for loss in one["gives_up"]):
+                yield f"{scene}: the page gives no reason why {one['id']} is not the default: {claim}"
 
 
 def find_faults(report):
     """All that is wrong with the figures themselves, a sentence each."""
-    schema = json.loads((pathlib.Path(__file__).parent / "report.schema.json").read_text(encoding="utf-8"))
-    faults = find_schema_faults(report, schema, schema)
+    faults = list(_find_schema_faults(report))
     if faults:
         return faults
-    rules = (_find_time_faults, _find_kernel_faults, _find_frame_faults, _find_other_faults, _find_twins)
+    rules = (
+        _find_time_faults,
+        _find_kernel_faults,
+        _find_frame_faults,
+        _find_rate_faults,
+        _find_other_faults,
+        _find_twins,
+    )
     return [fault for rule in rules for fault in rule(report)]
 
 
@@ -321,12 +322,13 @@ def main():
     if len(sys.argv) != 2:
         sys.exit("check_report.py REPORT.json")
     file = pathlib.Path(sys.argv[1])
-    report = json.loads(file.read_text(encoding="utf-8"))
+    runs, page = file.with_name("runs.json"), file.with_name("report.html")
+    report = read_report(file)
     faults = find_faults(report)
-    if not faults and file.with_name("runs.csv").exists():
-        faults += find_run_faults(report, read_runs(file.with_name("runs.csv")))
-    if not faults and file.with_name("report.html").exists():
-        faults += find_page_faults(report, file.with_name("report.html").read_text(encoding="utf-8"))
+    if not faults and runs.exists():
+        faults += find_run_faults(report, read_runs(runs))
+    if not faults and page.exists():
+        faults += find_claim_faults(report, read_claims(page.read_text(encoding="utf-8")))
     print("\n".join(faults) or "sound")
     sys.exit(1 if faults else 0)
 

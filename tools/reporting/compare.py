@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What changed between two reports beyond noise.
 
-Rows are the same by section, table and id. A time or ratio of times has changed where figures.judge says so; any other
+Rows are the same by section, table and id. A time or ratio of times has changed where stats.judge says so; any other
 number where it differs by more than a hundred-thousandth: errors and counts are the same in every run on one device."""
 
 import html
 
-from figures import judge, number, plain, ratio_of_few, ratio_of_reports, table
+from figures import number, plain, section, table
+from report_file import tables
+from stats import judge, ratio_of_few, ratio_of_reports
 
 _SAME = 1e-5
 
@@ -21,13 +23,8 @@ def _ratio(new, old):
     return ratio_of_few(new, old) if "least" in new and "least" in old else None
 
 
-def _tables(report):
-    for section, content in report.items():
-        if not isinstance(content, dict):
-            continue
-        for name, rows in content.items():
-            if isinstance(rows, list) and rows and isinstance(rows[0], dict) and "id" in rows[0]:
-                yield section if name == "rows" else f"{section} {name}", {row["id"]: row for row in rows}
+def _rows_by_id(report):
+    return {name.replace("_", " "): {row["id"]: row for row in rows} for name, rows in tables(report)}
 
 
 def _changed_number(key, old, new):
@@ -43,8 +40,8 @@ def find_changes(old, new):
     """(table, id, figure, old, new) of what changed; then ids that only one of them has, and how many times both
     have."""
     changes, lonely, compared = [], [], 0
-    old_tables = dict(_tables(old))
-    for name, rows in _tables(new):
+    old_tables = _rows_by_id(old)
+    for name, rows in _rows_by_id(new).items():
         others = old_tables.pop(name, {})
         lonely += [f"{name} {key} (only in the new)" for key in rows.keys() - others.keys()]
         lonely += [f"{name} {key} (only in the old)" for key in others.keys() - rows.keys()]
@@ -80,7 +77,7 @@ def _circumstances(old, new):
     )
 
 
-def section(old, new):
+def compare(old, new):
     """The page's section."""
     changes, lonely, compared = find_changes(old, new)
     times = [c for c in changes if _is_time_name(c[2])]
@@ -99,21 +96,15 @@ def section(old, new):
             f"In one of the two alone: {html.escape('; '.join(lonely[:20]))}"
             + (", and more." if len(lonely) > 20 else ".")
         )
-    body = [
-        (
-            [name, html.escape(key), figure, number(before), number(after), f"{after / before:.2f}" if before else "–"],
-            False,
-        )
-        for name, key, figure, before, after in changes
+    columns = [
+        ("section", lambda change: change[0]),
+        ("row", lambda change: html.escape(change[1])),
+        ("figure", lambda change: change[2]),
+        ("then", lambda change: number(change[3])),
+        ("now", lambda change: number(change[4])),
+        ("ratio", lambda change: f"{change[4] / change[3]:.2f}" if change[3] else "–"),
     ]
-    head = ["section", "row", "figure", "then", "now", "ratio"]
-    return {
-        "title": "What changed",
-        "panels": [],
-        "legend": [],
-        "text": text,
-        "table": table(head, body) if body else "",
-    }
+    return section("What changed", text, table(columns, changes) if changes else "")
 
 
 def _is_time_name(figure):

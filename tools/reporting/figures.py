@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What the sections of the page share: numbers for people, tables, and the judgement of times."""
+"""What pages and tables of figures share: numbers for people, tables, sections and words for several figures."""
 
 import html
-import math
+
+from stats import LEAST_CONFIDENCE, judge
 
 
 def number(value, digits=3):
@@ -33,94 +34,12 @@ def spread(times, digits=3):
     """Median with quartiles of {"median", "lower_quartile", "upper_quartile"}."""
     if not times:
         return "–"
-    low, high = times["lower_quartile"], times["upper_quartile"]
+    low, high = quartiles(times)
     return f'{number(times["median"], digits)} <small>({number(low, digits)}…{number(high, digits)})</small>'
 
 
 def quartiles(times):
     return times["lower_quartile"], times["upper_quartile"]
-
-
-_LONGEST_LINE = 24
-
-
-def _cell(text):
-    """Sentences take lines of their own; numbers do not."""
-    is_long = len(str(text)) > _LONGEST_LINE and "<" not in str(text)
-    return f"<td class='long'>{text}</td>" if is_long else f"<td>{text}</td>"
-
-
-def table(head, rows, caption=""):
-    lines = ["<div class='table'><table>"]
-    if caption:
-        lines.append(f"<caption>{caption}</caption>")
-    lines.append("<thead><tr>" + "".join(f"<th>{cell}</th>" for cell in head) + "</tr></thead><tbody>")
-    for cells, is_shipped in rows:
-        mark = ' class="shipped"' if is_shipped else ""
-        lines.append(f"<tr{mark}>" + "".join(map(_cell, cells)) + "</tr>")
-    lines.append("</tbody></table></div>")
-    return "\n".join(lines)
-
-
-# Of runs in one turn, or of two reports: less than this may come of where in memory something lies.
-_LEAST_DIFFERENCE = 1.02
-_LEAST_CONFIDENCE = 0.95
-
-
-def judge(ratio):
-    """What a ratio of times says beyond noise: "faster", "slower", or nothing, "". All times are judged here alone.
-
-    A ratio is of the runs of the same turn, so that what falls on both is not in it; its median's interval, by order
-    statistics, holds the true median in 95 % of all cases, whatever the distribution, and narrows with more runs. That
-    must be on one side of 1, and the median 2 % from it. Fewer than 6 runs have no such interval and say nothing."""
-    if ratio["confidence"] < _LEAST_CONFIDENCE:
-        return ""
-    if ratio["interval_upper"] < 1 and ratio["median"] * _LEAST_DIFFERENCE < 1:
-        return "faster"
-    if ratio["interval_lower"] > 1 and ratio["median"] > _LEAST_DIFFERENCE:
-        return "slower"
-    return ""
-
-
-def bound_of(report, on_cpu):
-    """Of an error, which a GPU's divisions, good to 2.5 ulp, may make twice as large (check_report.py)."""
-    return on_cpu if report["provenance"]["device_type"] == "CPU" else 2 * on_cpu
-
-
-def beyond_noise_text(ratios, wanted):
-    """How many of them judge finds so, as a sentence."""
-    if all(ratio["confidence"] < _LEAST_CONFIDENCE for ratio in ratios):
-        return f"{ratios[0]['runs']} runs are too few to tell that from noise."
-    count = sum(judge(ratio) == wanted for ratio in ratios)
-    return f"It is {wanted} beyond noise in {count} of {len(ratios)} cases."
-
-
-def from_to(values):
-    """ "0.42 to 0.57" """
-    low, high = f"{min(values):.2f}", f"{max(values):.2f}"
-    return low if low == high else f"{low} to {high}"
-
-
-def ratio_of_reports(new, old):
-    """The ratio of two times that were not measured in turns: an interval as wide as both of theirs together, so it is
-    on one side of 1 where they do not meet."""
-    return {
-        "median": new["median"] / old["median"],
-        "interval_lower": new["interval_lower"] / old["interval_upper"],
-        "interval_upper": new["interval_upper"] / old["interval_lower"],
-        "confidence": min(new["confidence"], old["confidence"]),
-    }
-
-
-def ratio_of_few(new, old):
-    """As ratio_of_reports, of times with their least and most: those of n and m runs part by chance in two of
-    C(n + m, n) cases."""
-    return {
-        "median": new["median"] / old["median"],
-        "interval_lower": new["least"] / old["most"],
-        "interval_upper": new["most"] / old["least"],
-        "confidence": 1 - 2 / math.comb(new["runs"] + old["runs"], new["runs"]),
-    }
 
 
 def interval(ratio, digits=3):
@@ -139,17 +58,84 @@ def few(times, digits=3):
     return f'{number(times["median"], digits)} <small>({least}–{most})</small>'
 
 
+_LONGEST_LINE = 24
+
+
+def _cell(text):
+    """Sentences take lines of their own; numbers do not."""
+    is_long = len(str(text)) > _LONGEST_LINE and "<" not in str(text)
+    return f"<td class='long'>{text}</td>" if is_long else f"<td>{text}</td>"
+
+
+def table(columns, rows, is_shipped=lambda row: False, caption=""):
+    """A column is its head and what makes a cell of a row."""
+    lines = ["<div class='table'><table>"]
+    if caption:
+        lines.append(f"<caption>{caption}</caption>")
+    lines.append("<thead><tr>" + "".join(f"<th>{head}</th>" for head, _ in columns) + "</tr></thead><tbody>")
+    for row in rows:
+        mark = ' class="shipped"' if is_shipped(row) else ""
+        lines.append(f"<tr{mark}>" + "".join(_cell(make(row)) for _, make in columns) + "</tr>")
+    return "\n".join(lines + ["</tbody></table></div>"])
+
+
+def markdown_table(columns, rows):
+    """As table, for documents; cells are text without |."""
+    head = [head for head, _ in columns]
+    body = [[str(make(row)).replace("|", "\\|") for _, make in columns] for row in rows]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [head, *body]).replace(
+        "\n", "\n|" + "---|" * len(head) + "\n", 1
+    ) + ("\n" if body else "\n|" + "---|" * len(head) + "\n")
+
+
+def section(title, text, table="", panels=(), legend=()):
+    """Of a page: paragraphs, plots as SVG with the (index, name) pairs of their legend, and a table."""
+    return {"title": title, "text": text, "table": table, "panels": panels, "legend": legend}
+
+
+def bound_of(report, on_cpu):
+    """Of an error, which a GPU's divisions, good to 2.5 ulp, may make twice as large (check_report.py)."""
+    return on_cpu if report["provenance"]["device_type"] == "CPU" else 2 * on_cpu
+
+
+def beyond_noise_text(ratios, wanted):
+    """How many of them judge finds so, as a sentence."""
+    if all(ratio["confidence"] < LEAST_CONFIDENCE for ratio in ratios):
+        return f"{ratios[0]['runs']} runs are too few to tell that from noise."
+    count = sum(judge(ratio) == wanted for ratio in ratios)
+    return f"It is {wanted} beyond noise in {count} of {len(ratios)} cases."
+
+
+def from_to(values):
+    """ "0.42 to 0.57" """
+    low, high = f"{min(values):.2f}", f"{max(values):.2f}"
+    return low if low == high else f"{low} to {high}"
+
+
+def emphasis(scene):
+    return f"<em>{html.escape(scene)}</em>"
+
+
+def scene_column():
+    return "scene", lambda row: html.escape(row["scene"])
+
+
+def names_of(rows, key):
+    """Each once, in the rows' order."""
+    return list(dict.fromkeys(row[key] for row in rows))
+
+
 def front_of(rows, mark="is_on_front", times="ms"):
     """The rows that the report marks as on the Pareto front, by rising time."""
     return sorted((row for row in rows if row.get(mark)), key=lambda row: row[times]["median"])
 
 
 def gap_text(gaps):
-    """Sentences on what was not measured; of what is installed and failed, its own last line."""
+    """Sentences on what was not measured; of what is installed, why."""
     absent = [gap["name"] for gap in gaps if not gap["is_installed"]]
     parts = [f"Not measured, as not installed: {join(absent)}."] if absent else []
     parts += [
-        f"Not measured: {gap['name']} is installed and failed: <q>{html.escape(gap['reason'])}</q>."
+        f"Not measured: {gap['name']} is installed, but: <q>{html.escape(gap['reason'])}</q>."
         for gap in gaps
         if gap["is_installed"]
     ]

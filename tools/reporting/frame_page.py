@@ -5,16 +5,25 @@
 import html
 
 import plots
-from figures import front_of, gap_text, interval, noise_percent, number, quartiles, spread, table
-from front_text import front_sentence
+from figures import (
+    emphasis,
+    front_of,
+    gap_text,
+    interval,
+    names_of,
+    noise_percent,
+    number,
+    quartiles,
+    scene_column,
+    section,
+    spread,
+    table,
+)
+from front_text import front_claim, front_sentence
 
 
 def knobs_of(rows):
-    return [knob for knob in dict.fromkeys(row["knob"] for row in rows) if knob != "default"]
-
-
-def _scenes(rows):
-    return list(dict.fromkeys(row["scene"] for row in rows))
+    return [knob for knob in names_of(rows, "knob") if knob != "default"]
 
 
 def _draw_knobs(rows, error, knobs):
@@ -41,14 +50,9 @@ def _draw_knobs(rows, error, knobs):
 def _same_error_panel(scene, rows):
     """Times of what lies at one height in the other plots, or nearly."""
     other = [r for r in rows if r["knob"] in ("builder", "boxes", "offset rule", "methods")]
-    return plots.panel(
-        f"frames-{scene}-ratios",
-        f"{scene}, of the default's time",
-        plots.draw_ratios([f"{r['knob']}: {r['setting']}" for r in other], [r["time_ratio"] for r in other]),
-        "ratio of times",
-        x_log=False,
-        y_log=False,
-    )
+    names = [f"{r['knob']}: {r['setting']}" for r in other]
+    title = f"{scene}, of the default's time"
+    return plots.ratio_panel(f"frames-{scene}-ratios", title, names, [r["time_ratio"] for r in other])
 
 
 def frames(report):
@@ -58,7 +62,7 @@ def frames(report):
     if all("flip" in row for row in rows):
         errors.append(("flip", "FLIP"))
     panels = []
-    for scene in _scenes(rows):
+    for scene in names_of(rows, "scene"):
         of_scene = [row for row in rows if row["scene"] == scene]
         size = next(row for row in of_scene if row["is_default"])
         for error, label in errors:
@@ -74,33 +78,26 @@ def frames(report):
         "is the Pareto front, ringed the default."
         + (" FLIP is that of PyPI's flip-evaluator. " if report["frames"]["gaps"] else "")
         + gap_text(report["frames"]["gaps"]),
-        " ".join(front_sentence(report, scene) for scene in _scenes(rows)),
+        " ".join(front_sentence(front_claim(report, scene)) for scene in names_of(rows, "scene")),
         _knob_text(rows),
     ]
-    head = ["scene", "knob", "setting", "ms", "over the default's", "RMSE", "FLIP"]
-    body = [
-        (
-            [
-                html.escape(r["scene"]),
-                r["knob"],
-                r["setting"],
-                spread(r["ms"]),
-                interval(r["time_ratio"]),
-                number(r["rmse"]),
-                number(r.get("flip")),
-            ],
-            r["is_default"],
-        )
-        for r in rows
+    columns = [
+        scene_column(),
+        ("knob", lambda r: r["knob"]),
+        ("setting", lambda r: r["setting"]),
+        ("ms", lambda r: spread(r["ms"])),
+        ("over the default's", lambda r: interval(r["time_ratio"])),
+        ("RMSE", lambda r: number(r["rmse"])),
+        ("FLIP", lambda r: number(r.get("flip"))),
     ]
-    legend = list(enumerate(knobs))
-    return {
-        "title": "Pictures: error against time",
-        "panels": panels,
-        "legend": legend,
-        "text": text,
-        "table": f"<details><summary>All figures</summary>{table(head, body)}</details>",
-    }
+    figures = table(columns, rows, lambda r: r["is_default"])
+    return section(
+        "Pictures: error against time",
+        text,
+        f"<details><summary>All figures</summary>{figures}</details>",
+        panels,
+        list(enumerate(knobs)),
+    )
 
 
 def write_picture(report, file):
@@ -108,7 +105,7 @@ def write_picture(report, file):
     rows, p = report["frames"]["rows"], report["provenance"]
     knobs = knobs_of(rows)
     panels = []
-    for scene in _scenes(rows):
+    for scene in names_of(rows, "scene"):
         of_scene = [row for row in rows if row["scene"] == scene]
         panels.append((scene, _draw_knobs(of_scene, "rmse", knobs), "ms a picture", "RMSE"))
     device = "a CPU" if p["device_type"] == "CPU" else p["device"]
@@ -117,13 +114,13 @@ def write_picture(report, file):
 
 def _knob_text(rows):
     parts = []
-    for scene in _scenes(rows):
+    for scene in names_of(rows, "scene"):
         of_scene = [r for r in rows if r["scene"] == scene]
         default = next(r for r in of_scene if r["is_default"])
         most = max((r for r in of_scene if r["knob"] == "samples"), key=lambda r: r["ms"]["median"], default=None)
         if most and default["rmse"]:
             parts.append(
-                f"In <em>{html.escape(scene)}</em> {most['setting']} samples take "
+                f"In {emphasis(scene)} {most['setting']} samples take "
                 f"{most['time_ratio']['median']:.1f} times as long and leave "
                 f"{100 * most['rmse'] / default['rmse']:.0f} % of the error."
             )
@@ -135,8 +132,8 @@ def _knob_text(rows):
 def errors_apart(report):
     rows = report["frames"]["errors"]
     precision = [r for r in rows if r["error"] == "precision"]
-    methods = list(dict.fromkeys(r["method"] for r in precision))
-    scenes = list(dict.fromkeys(r["scene"] for r in rows))
+    methods = names_of(precision, "method")
+    scenes = names_of(rows, "scene")
     kinds = ["precision", "sampling", "truncation", "all"]
     floor = 1e-9
 
@@ -158,30 +155,23 @@ def errors_apart(report):
         plots.panel("errors-kinds", "promin's errors", draw_kinds, "", "RMSE", x_log=False),
         plots.panel("errors-methods", "precision by method", draw_methods, "", "RMSE", x_log=False),
     ]
-    head = ["scene", "error", "method", "pixels", "RMSE", "mean", "other ids", "not finite"]
-    body = [
-        (
-            [
-                html.escape(r["scene"]),
-                r["error"],
-                r.get("what", "as shipped"),
-                f"{r['width']} × {r['height']}",
-                number(r["rmse"]),
-                number(r.get("mean_absolute")),
-                str(r.get("id_mismatches", "–")),
-                str(r.get("non_finite_pixels", "–")),
-            ],
-            r["method"] == "promin",
-        )
-        for r in rows
+    columns = [
+        scene_column(),
+        ("error", lambda r: r["error"]),
+        ("method", lambda r: r.get("what", "as shipped")),
+        ("pixels", lambda r: f"{r['width']} × {r['height']}"),
+        ("RMSE", lambda r: number(r["rmse"])),
+        ("mean", lambda r: number(r.get("mean_absolute"))),
+        ("other ids", lambda r: r.get("id_mismatches", "–")),
+        ("not finite", lambda r: r.get("non_finite_pixels", "–")),
     ]
-    return {
-        "title": "Precision, sampling and truncation apart",
-        "panels": panels,
-        "legend": list(enumerate(map(html.escape, scenes))),
-        "text": [_errors_text(rows, precision, scenes)],
-        "table": table(head, body),
-    }
+    return section(
+        "Precision, sampling and truncation apart",
+        [_errors_text(rows, precision, scenes)],
+        table(columns, rows, lambda r: r["method"] == "promin"),
+        panels,
+        list(enumerate(map(html.escape, scenes))),
+    )
 
 
 def _errors_text(rows, precision, scenes):
@@ -195,7 +185,7 @@ def _errors_text(rows, precision, scenes):
         worst = max((r for r in precision if r["scene"] == scene and r["method"] != "promin"), key=lambda r: r["rmse"])
         share = own["all"] / own["precision"] if own["precision"] else None
         parts.append(
-            f"In <em>{html.escape(scene)}</em> precision is {number(own['precision'])}, "
+            f"In {emphasis(scene)} precision is {number(own['precision'])}, "
             + (f"1 in {share:,.0f} of all of the error; " if share else "nothing; ")
             + f"the worst of the other methods ({worst['method']}) has {number(worst['rmse'])}."
         )

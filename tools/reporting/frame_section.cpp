@@ -10,10 +10,9 @@
 #include "device_scene/pack_scene.h"
 #include "measure/samples.h"
 #include "oracle/picture.h"
-#include "reporting/front.h"
 #include "reporting/picture.h"
 #include "reporting/scene_hash.h"
-#include "reporting/scripts.h"
+#include "reporting/session.h"
 
 namespace promin::report {
 namespace {
@@ -27,23 +26,6 @@ constexpr uint32_t kDeep = 64;
 uint32_t truth_samples(const Session& session) {
   return session.pick(256U, 64U);
 }
-
-/// A folder for the time of its life.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
-  ~ScratchFolder() {
-    std::error_code error;
-    fs::remove_all(folder_, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-
- private:
-  fs::path folder_;
-};
 
 struct Setting {
   std::string knob;
@@ -118,13 +100,11 @@ class FrameBench {
   FrameBench(const Session& session, const Scene& scene)
       : session_(session), scene_(scene), name_(session.name_of(scene)), hash_(hash_of(scene)) {}
 
-  /// A gap where FLIP is not measured, else null.
-  Json run(Json& rows, Json& errors) {
+  void run(Json& rows, Json& errors) {
     session_.say("frames: " + name_);
     measure_knobs(rows);
     measure_precision(errors);
     measure_other_errors(errors);
-    return flip_gap_;
   }
 
  private:
@@ -145,7 +125,7 @@ class FrameBench {
     }
     const std::vector<std::vector<double>> times = measure::time_in_turns(contestants, session_.few_runs());
     std::map<std::string, Json> build_ms;
-    for (size_t i = 0; i < builders.size(); ++i) build_ms[builders[i]] = json_of_few_times(times[i]);
+    for (size_t i = 0; i < builders.size(); ++i) build_ms[builders[i]] = json_of_few(times[i]);
     return build_ms;
   }
 
@@ -174,7 +154,7 @@ class FrameBench {
       if (image.size.x < view.size.x) image = enlarge(image, view.size);
       if (image.size.x > view.size.x) image = reduce(image, view.size);
     }
-    const std::vector<Json> flips = measure_flip(images);
+    write_pictures(images, rows.size());
     for (size_t i = 0; i < settings.size(); ++i) {
       const Setting& s = settings[i];
       Json row = {{"id", fmt::format("{}/{}/{}", name_, s.knob, s.setting)},
@@ -187,33 +167,22 @@ class FrameBench {
                   {"is_default", s.is_default},
                   {"width", s.view.size.x},
                   {"height", s.view.size.y},
-                  {"ms", json_of_times(times[i])},
-                  {"time_ratio", json_of_times(measure::ratios_of(times[i], times[0]))},
+                  {"ms", times[i]},
+                  {"time_ratio", measure::ratios_of(times[i], times[0])},
                   {"rmse", rmse_of(images[i], truth_)},
                   {"build_ms", build_ms[s.builder]},
                   {"device_bytes", renderer_of(s.method, s.builder).setup_stats().device_bytes}};
-      if (!flips[i].is_null()) row["flip"] = flips[i];
       rows.push_back(std::move(row));
     }
-    mark_front(rows, rows.size() - settings.size(), "ms", "rmse", "is_on_front");
-    mark_front(rows, rows.size() - settings.size(), "ms", "flip", "is_on_flip_front");
   }
 
-  /// By PyPI's flip-evaluator against the truth; null where that brings none, and a gap that says why.
-  std::vector<Json> measure_flip(const std::vector<Image>& images) {
-    std::vector<Json> flips(images.size());
-    const ScratchFolder folder(session_.options().output / ".flip");
-    std::vector<std::string> arguments = {folder.file("truth.exr")};
-    write_image(arguments[0], truth_);
-    for (size_t i = 0; i < images.size(); ++i) {
-      arguments.push_back(folder.file(fmt::format("{}.exr", i)));
-      write_image(arguments.back(), images[i]);
-    }
-    const ScriptResult found = run_script("flip.py", arguments);
-    const Json errors = found.failure ? Json::array() : found.json.value("errors", Json::array());
-    for (size_t i = 0; i < errors.size(); ++i) flips.at(i) = errors[i];
-    if (errors.empty()) flip_gap_ = json_of_gap("FLIP", found.failure);
-    return flips;
+  /// Where they are wanted: each as N.exr by the number of its row, and what is true of them as N.truth.exr by that of
+  /// the first.
+  void write_pictures(const std::vector<Image>& images, size_t first_row) const {
+    const std::optional<fs::path>& folder = session_.options().pictures;
+    if (!folder) return;
+    write_image(*folder / fmt::format("{}.truth.exr", first_row), truth_);
+    for (size_t i = 0; i < images.size(); ++i) write_image(*folder / fmt::format("{}.exr", first_row + i), images[i]);
   }
 
   /// Precision: the same samples, by the host's oracle.
@@ -262,7 +231,6 @@ class FrameBench {
   std::map<std::pair<std::string, std::string>, Renderer> renderers_;
   View default_view_;
   Image truth_;
-  Json flip_gap_;
 };
 
 }  // namespace
@@ -272,16 +240,12 @@ Json measure_frames(const Session& session) {
   Json errors = Json::array();
   const auto scenes = session.load_scenes(session.pick<std::vector<std::string>>(
       {"all_primitives.gltf", "mirrors.gltf", "showcase.gltf"}, {"mirrors.gltf"}));
-  Json gaps = Json::array();
-  for (const Scene& scene : scenes) {
-    const Json gap = FrameBench(session, scene).run(rows, errors);
-    if (!gap.is_null() && gaps.empty()) gaps.push_back(gap);
-  }
+  for (const Scene& scene : scenes) FrameBench(session, scene).run(rows, errors);
   return {{"truth_samples", truth_samples(session)},
           {"truth_depth", kDeep},
           {"rows", rows},
           {"errors", errors},
-          {"gaps", gaps}};
+          {"gaps", Json::array()}};
 }
 
 }  // namespace promin::report

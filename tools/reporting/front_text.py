@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 """Whether the default lies on the Pareto front of a scene's pictures, and if not what the settings ahead of it bring
-and give up, all by the report's figures."""
+and give up, all by the report's figures: first as data, which check_report.py holds against the figures, then in words
+that are made of these data alone."""
 
-import html
-
-from figures import join, judge, number, ratio_of_few
+from figures import emphasis, join, number
+from stats import judge, ratio_of_few
 
 # Of figures that are the same in every run, and of memory.
 _LEAST_WORSE = 1.02
@@ -16,8 +16,8 @@ def _name(row):
     return f"{row['knob']} {row['setting']}"
 
 
-def _em(scene):
-    return f"<em>{html.escape(scene)}</em>"
+def _loss(kind, figure, text):
+    return {"kind": kind, "figure": figure, "text": text}
 
 
 def _default_of(rows, scene):
@@ -45,10 +45,13 @@ def _in_other_scenes(row, rows):
     error = lambda r: _ratio(r["rmse"], _default_of(rows, r["scene"])["rmse"])  # noqa: E731
     worst = max(others, key=error)
     if error(worst) > _LEAST_WORSE:
-        yield f"in {_em(worst['scene'])} it leaves {number(error(worst))} times the error"
+        yield _loss(
+            "error", error(worst), f"in {emphasis(worst['scene'])} it leaves {number(error(worst))} times the error"
+        )
     slow = max(others, key=lambda r: r["time_ratio"]["median"])
     if judge(slow["time_ratio"]) == "slower":
-        yield f"in {_em(slow['scene'])} it takes {slow['time_ratio']['median']:.2f} of the time"
+        ratio = slow["time_ratio"]["median"]
+        yield _loss("time", ratio, f"in {emphasis(slow['scene'])} it takes {ratio:.2f} of the time")
 
 
 def _of_its_tree(row, rows):
@@ -57,11 +60,13 @@ def _of_its_tree(row, rows):
     memory = max(pairs, key=lambda pair: _ratio(pair[0]["device_bytes"], pair[1]["device_bytes"]))
     factor = _ratio(memory[0]["device_bytes"], memory[1]["device_bytes"])
     if factor > _LEAST_WORSE:
-        yield f"it takes {number(factor)} times the memory ({_em(memory[0]['scene'])})"
+        text = f"it takes {number(factor)} times the memory ({emphasis(memory[0]['scene'])})"
+        yield _loss("memory", factor, text)
     builds = [(ratio_of_few(r["build_ms"], default["build_ms"]), r["scene"]) for r, default in pairs]
     build = max(builds, key=lambda pair: pair[0]["median"])
     if judge(build[0]) == "slower":
-        yield f"its tree takes {number(build[0]['median'])} times as long to build ({_em(build[1])})"
+        text = f"its tree takes {number(build[0]['median'])} times as long to build ({emphasis(build[1])})"
+        yield _loss("build", build[0]["median"], text)
 
 
 def _of_its_rounding(row, report):
@@ -74,48 +79,76 @@ def _of_its_rounding(row, report):
         factor = _ratio(worst["rmse"], own[worst["scene"]]["rmse"])
         ids = sum(r["id_mismatches"] for r in others)
         if factor > _LEAST_WORSE:
-            reason = f"rounding alone takes {number(worst['rmse'])} from {_em(worst['scene'])}, where promin's takes "
+            reason = (
+                f"rounding alone takes {number(worst['rmse'])} from {emphasis(worst['scene'])}, where promin's takes "
+            )
             reason += number(own[worst["scene"]]["rmse"])
-            yield reason + (f", and {ids:,} pixels show another primitive" if ids else "")
-    leaks = [r for r in report["kernels"]["rows"] if r["method"] == row["method"] != "promin" and r.get("leaks")]
+            reason += f", and {ids:,} pixels show another primitive" if ids else ""
+            yield _loss("rounding", worst["rmse"], reason)
+    kernels = report.get("kernels", {}).get("rows", [])
+    leaks = [r for r in kernels if r["method"] == row["method"] != "promin" and r.get("leaks")]
     if leaks:
         worst = max(leaks, key=lambda r: r["leaks"])
-        yield f"{worst['leaks']:,} of {worst['leak_rays']:,} rays leak between its {worst['primitive']}s"
+        text = f"{worst['leaks']:,} of {worst['leak_rays']:,} rays leak between its {worst['primitive']}s"
+        yield _loss("leaks", worst["leaks"], text)
 
 
 def find_losses(row, report):
-    """What a setting that is ahead of the default here gives up, in words."""
+    """What a setting that is ahead of the default here gives up: kinds, figures and words."""
     rows = report["frames"]["rows"]
     losses = []
     # By another measure of error, in the same pictures.
     default = _default_of(rows, row["scene"])
     if "flip" in row and "flip" in default and row["flip"] > _LEAST_WORSE * default["flip"]:
-        losses.append(f"by FLIP it leaves {number(row['flip'] / default['flip'])} times the error")
+        factor = row["flip"] / default["flip"]
+        losses.append(_loss("FLIP", factor, f"by FLIP it leaves {number(factor)} times the error"))
     losses += _of_its_rounding(row, report)
     losses += _in_other_scenes(row, rows)
     losses += _of_its_tree(row, rows)
     return losses[:_MOST_REASONS]
 
 
-def front_sentence(report, scene):
-    """For one scene. check_report.py reads it: it says "on the front" or "off the front" and names all ahead."""
+def front_claim(report, scene):
+    """What the page says of one scene's default: its place, and what is ahead of it, the fastest first."""
     rows = [row for row in report["frames"]["rows"] if row["scene"] == scene]
     default = _default_of(rows, scene)
-    text = f"In {_em(scene)} the default takes {number(default['ms']['median'])} ms with an RMSE of "
-    text += f"{number(default['rmse'])} and "
-    ahead = find_dominators(rows)
-    if ahead:
-        reasons = []
-        for row in ahead:
-            exact = "the same error" if row["rmse"] == default["rmse"] else f"an RMSE of {number(row['rmse'])}"
-            losses = find_losses(row, report)
-            gives_up = f"it gives up this: {join(losses)}" if losses else "it gives up nothing that is measured here"
-            reasons.append(f"{_name(row)} takes {row['time_ratio']['median']:.2f} of its time with {exact}; {gives_up}")
-        text += "lies off the front. " + ". ".join(reason[0].upper() + reason[1:] for reason in reasons) + "."
-    elif default["is_on_front"]:
-        text += "lies on the front."
-    else:
-        by_median = [r for r in rows if r["rmse"] <= default["rmse"] and r["ms"]["median"] < default["ms"]["median"]]
-        text += f"lies on the front within the noise: by the medians alone {join(map(_name, by_median))} "
-        text += "would be ahead, and not beyond it." if len(by_median) == 1 else "would be ahead, none beyond it."
-    return f'<span class="front" data-scene="{html.escape(scene)}">{text}</span>'
+    dominators = find_dominators(rows)
+    by_median = [r for r in rows if r["rmse"] <= default["rmse"] and r["ms"]["median"] < default["ms"]["median"]]
+    return {
+        "scene": scene,
+        "ms": default["ms"]["median"],
+        "rmse": default["rmse"],
+        "place": "off" if dominators else "on" if default["is_on_front"] else "on within noise",
+        "ahead": [
+            {
+                "id": row["id"],
+                "name": _name(row),
+                "time_ratio": row["time_ratio"]["median"],
+                "rmse": row["rmse"],
+                "gives_up": find_losses(row, report),
+            }
+            for row in dominators
+        ],
+        "ahead_by_median": [_name(row) for row in by_median],
+    }
+
+
+def _reason(one, claim):
+    exact = "the same error" if one["rmse"] == claim["rmse"] else f"an RMSE of {number(one['rmse'])}"
+    losses = [loss["text"] for loss in one["gives_up"]]
+    gives_up = f"it gives up this: {join(losses)}" if losses else "it gives up nothing that is measured here"
+    text = f"{one['name']} takes {one['time_ratio']:.2f} of its time with {exact}; {gives_up}"
+    return text[0].upper() + text[1:]
+
+
+def front_sentence(claim):
+    """The claim in words."""
+    text = f"In {emphasis(claim['scene'])} the default takes {number(claim['ms'])} ms with an RMSE of "
+    text += f"{number(claim['rmse'])} and "
+    if claim["place"] == "off":
+        return text + "lies off the front. " + ". ".join(_reason(one, claim) for one in claim["ahead"]) + "."
+    if claim["place"] == "on":
+        return text + "lies on the front."
+    by_median = claim["ahead_by_median"]
+    text += f"lies on the front within the noise: by the medians alone {join(by_median)} "
+    return text + ("would be ahead, and not beyond it." if len(by_median) == 1 else "would be ahead, none beyond it.")

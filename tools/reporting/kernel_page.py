@@ -5,18 +5,11 @@
 import math
 
 import plots
-from figures import bound_of, front_of, interval, join, judge, number, quartiles, spread, table
+from figures import bound_of, front_of, interval, join, names_of, number, quartiles, section, spread, table
+from stats import judge
 
 # So that what has no error at all has a place on a logarithmic axis.
 _LEAST_K = 0.1
-
-
-def _methods(rows):
-    return list(dict.fromkeys(row["method"] for row in rows))
-
-
-def _names(rows, key):
-    return list(dict.fromkeys(row[key] for row in rows))
 
 
 def _of(rows, primitive, method):
@@ -37,41 +30,43 @@ def _draw_scatter(rows, methods):
     return draw
 
 
-def _table(rows):
-    body = []
-    for row in rows:
-        leaks = f'{row["leaks"]:,} of {row["leak_rays"]:,}' if "leaks" in row else "–"
-        body.append(
-            (
-                [
-                    row["primitive"],
-                    row["what"] + (" (shipped)" if row["is_shipped"] else ""),
-                    spread(row["ns_per_test"]),
-                    interval(row["time_ratio"]),
-                    number(row.get("max_k")),
-                    number(row.get("rms_k")),
-                    number(row["misclassified_per_million"]),
-                    leaks,
-                ],
-                row["is_shipped"],
-            )
-        )
-    head = [
-        "primitive",
-        "method",
-        "ns a test",
-        "of promin's time",
-        "K, max",
-        "K, rms",
-        "misclassified / 10<sup>6</sup>",
-        "leaks",
-    ]
-    return table(head, body)
+def _what(row):
+    return row["what"] + (" (shipped)" if row["is_shipped"] else "")
+
+
+def _leaks(row):
+    return f'{row["leaks"]:,} of {row["leak_rays"]:,}' if "leaks" in row else "–"
+
+
+def _time_columns(name):
+    return [(name, lambda r: spread(r["ns_per_test"])), ("of promin's time", lambda r: interval(r["time_ratio"]))]
+
+
+_KERNEL_COLUMNS = [
+    ("primitive", lambda r: r["primitive"]),
+    ("method", _what),
+    *_time_columns("ns a test"),
+    ("K, max", lambda r: number(r.get("max_k"))),
+    ("K, rms", lambda r: number(r.get("rms_k"))),
+    ("misclassified / 10<sup>6</sup>", lambda r: number(r["misclassified_per_million"])),
+    ("leaks", _leaks),
+]
+_BOX_COLUMNS = [
+    ("method", _what),
+    *_time_columns("ns a box"),
+    ("bytes a node", lambda r: r["bytes_per_node"]),
+    ("boxes hidden", _leaks),
+    ("opened needlessly / 10<sup>6</sup>", lambda r: number(r["opened_needlessly_per_million"])),
+]
+
+
+def _is_shipped(row):
+    return row["is_shipped"]
 
 
 def _kernel_text(rows):
     sentences = []
-    for primitive in _names(rows, "primitive"):
+    for primitive in names_of(rows, "primitive"):
         own, plain_row = _of(rows, primitive, "promin"), _of(rows, primitive, "textbook")
         front = [r["method"] for r in front_of([r for r in rows if r["primitive"] == primitive], times="ns_per_test")]
         where = f"by K alone {join(front)} {'are' if len(front) > 1 else 'is'} the front"
@@ -94,7 +89,7 @@ def _bargain(row):
 def _front_gaps(rows):
     """Why a shipped method that others are better than by K alone is shipped."""
     gaps, ahead = [], []
-    for primitive in _names(rows, "primitive"):
+    for primitive in names_of(rows, "primitive"):
         of_primitive = [r for r in rows if r["primitive"] == primitive]
         own = _of(rows, primitive, "promin")
         better = [
@@ -120,7 +115,7 @@ def _front_gaps(rows):
 
 def kernels(report):
     rows = report["kernels"]["rows"]
-    methods = _methods(rows)
+    methods = names_of(rows, "method")
     panels = [
         plots.panel(
             f"kernel-{primitive}",
@@ -130,7 +125,7 @@ def kernels(report):
             "K, max (u S)",
             x_log=False,
         )
-        for primitive in _names(rows, "primitive")
+        for primitive in names_of(rows, "primitive")
     ]
     text = [
         "Each ray is tested against each primitive, without tree or boxes, so that nothing else takes time. K is the "
@@ -141,13 +136,8 @@ def kernels(report):
         _kernel_text(rows),
         _front_gaps(rows),
     ]
-    return {
-        "title": "Intersections: error against time",
-        "panels": panels,
-        "legend": list(enumerate(methods)),
-        "text": text,
-        "table": _table(rows),
-    }
+    figures = table(_KERNEL_COLUMNS, rows, _is_shipped)
+    return section("Intersections: error against time", text, figures, panels, list(enumerate(methods)))
 
 
 def boxes(report):
@@ -155,20 +145,6 @@ def boxes(report):
     own = next(r for r in rows if r["is_shipped"])
     full = next(r for r in rows if r["method"] == "full")
     bare = next(r for r in rows if r["method"] == "full unpadded")
-    body = [
-        (
-            [
-                row["what"] + (" (shipped)" if row["is_shipped"] else ""),
-                spread(row["ns_per_test"]),
-                interval(row["time_ratio"]),
-                str(row["bytes_per_node"]),
-                f'{row["leaks"]:,} of {row["leak_rays"]:,}',
-                number(row["opened_needlessly_per_million"]),
-            ],
-            row["is_shipped"],
-        )
-        for row in rows
-    ]
     text = (
         "Rays aimed at faces, edges and corners of boxes, half of them flat, up to 10<sup>5</sup> from the origin: a "
         "box that an exact ray meets must be met. "
@@ -177,20 +153,12 @@ def boxes(report):
         f"{full['time_ratio']['median']:.2f} of its time and {full['bytes_per_node'] / own['bytes_per_node']:g} times "
         f"its memory, and without padding hide {bare['leaks']:,}. What is opened needlessly costs time and no error."
     )
-    head = [
-        "method",
-        "ns a box",
-        "of promin's time",
-        "bytes a node",
-        "boxes hidden",
-        "opened needlessly / 10<sup>6</sup>",
-    ]
-    return {"title": "Boxes", "panels": [], "legend": [], "text": [text], "table": table(head, body)}
+    return section("Boxes", [text], table(_BOX_COLUMNS, rows, _is_shipped))
 
 
 def _range_panels(rows, methods, bound, variable, label):
     panels = []
-    for primitive in _names(rows, "primitive"):
+    for primitive in names_of(rows, "primitive"):
 
         def draw(axes, primitive=primitive):
             for index, method in enumerate(methods):
@@ -232,7 +200,7 @@ def _missed_text(rows, shipped, distance_of_offsets):
 
 def error_range(report):
     rows = report["kernels"]["range"]
-    methods = _methods(rows)
+    methods = names_of(rows, "method")
     worst = {m: max(r.get("max_k", 0) for r in rows if r["method"] == m) for m in methods}
     shipped = next(r["method"] for r in rows if r["is_shipped"])
     others = [f"{m} {number(worst[m], 2)}" for m in methods if m != shipped]
@@ -250,4 +218,4 @@ def error_range(report):
     )
     panels = _range_panels(rows, methods, bound, "distance", "distance / size")
     panels += _range_panels(rows, methods, bound, "offset", "offset from the origin / size")
-    return {"title": "Error over range", "panels": panels, "legend": list(enumerate(methods)), "text": [text]}
+    return section("Error over range", [text], panels=panels, legend=list(enumerate(methods)))

@@ -6,6 +6,6 @@
 int main(int argc, char** argv) {
   using namespace promin;
   return app::run_program("promin-report",
-                          "Measures speed against error on a device, and writes report.json, CSV files and a page.",
+                          "Measures speed against error on a device, for tools/report to make figures and a page of.",
                           {report::add_report_command}, argc, argv);
 }

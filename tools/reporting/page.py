@@ -15,9 +15,7 @@ import sys
 try:
     import matplotlib  # noqa: F401 - whether it is there
 except ImportError:
-    print(
-        "report.html is not made: this python3 has no matplotlib (Debian's python3-matplotlib); JSON and CSV are there"
-    )
+    print("report.html is not made: this python3 has no matplotlib (Debian's python3-matplotlib); report.json is there")
     sys.exit(0)
 
 import compare
@@ -27,12 +25,13 @@ import plots
 import price_page
 import scaling_page
 import summary_page
+from figures import names_of
+from front_text import front_claim
+from report_file import read_report, replace
 
-# Of report.json, as tools/reporting/provenance.h has it.
-_FORMAT = 2
-
+# What each section takes of the report.
 _SECTIONS = (
-    ("frames", summary_page.summary),
+    ("provenance", summary_page.summary),
     ("frames", frame_page.frames),
     ("frames", frame_page.errors_apart),
     ("kernels", kernel_page.kernels),
@@ -41,7 +40,7 @@ _SECTIONS = (
     ("robustness", price_page.robustness),
     ("specialisation", price_page.specialisation),
     ("scaling", scaling_page.scaling),
-    ("peers", price_page.peers),
+    ("rates", price_page.peers),
 )
 
 
@@ -87,9 +86,17 @@ def _section(content):
     return "\n".join(parts + ["</section>"])
 
 
+def _claims_text(report):
+    """What check_report.py reads of the page instead of its sentences."""
+    p, rows = report["provenance"], report.get("frames", {}).get("rows", [])
+    fronts = [front_claim(report, scene) for scene in names_of(rows, "scene")]
+    claims = {"is_quick": p["is_quick"], "is_cpu": p["device_type"] == "CPU", "fronts": fronts}
+    return json.dumps(claims, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
 def make_page(report, old=None):
     """The page as text."""
-    sections = [compare.section(old, report)] if old else []
+    sections = [compare.compare(old, report)] if old else []
     sections += [make(report) for name, make in _SECTIONS if report.get(name)]
     style = (pathlib.Path(__file__).parent / "page.css").read_text(encoding="utf-8")
     p = report["provenance"]
@@ -102,6 +109,7 @@ def make_page(report, old=None):
             f"<style>{style}</style></head><body><main>",
             f"<h1>Speed against error</h1><p class='device'>{_device_sentence(p)}</p>",
             *[_section(section) for section in sections],
+            f'<script type="application/json" id="claims">{_claims_text(report)}</script>',
             "</main></body></html>\n",
         ]
     )
@@ -112,18 +120,13 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--compare", type=pathlib.Path, metavar="OLD.json")
     arguments = parser.parse_args()
-    report = json.loads((arguments.folder / "report.json").read_text(encoding="utf-8"))
-    old = json.loads(arguments.compare.read_text(encoding="utf-8")) if arguments.compare else None
-    for file, content in ((arguments.folder / "report.json", report), (arguments.compare, old)):
-        if content and content.get("format") != _FORMAT:
-            sys.exit(f"page.py: error: {file} is no report of format {_FORMAT}; measure it anew")
-    # Whole or not at all.
-    temporary = arguments.folder / f".report.{os.getpid()}.html"
-    temporary.write_text(make_page(report, old), encoding="utf-8")
-    picture = temporary.with_suffix(".png")
-    frame_page.write_picture(report, picture)
-    temporary.replace(arguments.folder / "report.html")
-    picture.replace(arguments.folder / "frames.png")
+    report = read_report(arguments.folder / "report.json")
+    old = read_report(arguments.compare) if arguments.compare else None
+    replace(arguments.folder / "report.html", make_page(report, old))
+    if "frames" in report:
+        picture = arguments.folder / f".frames.{os.getpid()}.png"
+        frame_page.write_picture(report, picture)
+        picture.replace(arguments.folder / "frames.png")
     if old:
         print(compare.summary(old, report))
 

@@ -54,17 +54,42 @@ def _style(name):
 
 
 def _to_page(svg, title):
-    """Without prologue and fixed size, with the page's colours, and a name for who cannot see it."""
+    """Short, without prologue and fixed size; with the page's colours, and a name for who cannot see it."""
     svg = svg[svg.index("<svg") :]
     for i, code in enumerate(_SERIES):
         svg = svg.replace(code, f"var(--c{i})")
     svg = svg.replace(_TEXT, "currentColor").replace(_GRID, "var(--grid)")
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     svg = re.sub(r"font: ([^;\"]*?)'?(sans-serif|DejaVu Sans)[^;\"]*", r"font: \1sans-serif", svg)
+    # Comments repeat texts; only what is used again needs a name.
+    svg = re.sub(r' id="(?![mp][0-9a-f]{10}")[^"]*"|<!--.*?-->', "", svg, flags=re.DOTALL)
+    svg = re.sub(r">\s+<", "><", re.sub(r"<[^>]*>", lambda tag: _shorten(tag.group(0)), svg)).strip()
+    svg = _without_bare_groups(svg)
+    # Ticks' lines have their colour where they are defined.
+    svg = re.sub(r'(<use [^>]*) style="fill:currentColor;stroke:currentColor[^"]*"', r"\1", svg)
     label = title.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
-    return re.sub(r'<svg ([^>]*?)width="[^"]*"', rf'<svg role="img" aria-label="{label}" \1', svg, count=1).replace(
-        re.search(r' height="[^"]*pt"', svg).group(0), "", 1
-    )
+    svg = re.sub(r'<svg ([^>]*?)width="[^"]*"', rf'<svg role="img" aria-label="{label}" \1', svg, count=1)
+    return svg.replace(re.search(r' height="[^"]*pt"', svg).group(0), "", 1)
+
+
+def _without_bare_groups(svg):
+    """Groups that say nothing, which are most, are not needed."""
+    kept, is_bare = [], []
+    for part in re.split("(</?g[^>]*>)", svg):
+        if part.startswith("<g"):
+            is_bare.append(part == "<g>")
+        if not (is_bare and is_bare[-1] and part in ("<g>", "</g>")):
+            kept.append(part)
+        if part == "</g>":
+            is_bare.pop()
+    return "".join(kept)
+
+
+def _shorten(tag):
+    """A tag of an SVG: a tenth of a point is finer than any screen shows."""
+    tag = re.sub(r"-?\d+\.\d+", lambda match: f"{float(match.group(0)):.1f}".removesuffix(".0"), tag)
+    tag = re.sub(r"\s+", " ", tag).replace("; ", ";").replace(": ", ":").replace(" />", "/>").replace(' "', '"')
+    return re.sub(r" ?([MLCz]) ?(?=[-\d\"])", r"\1", tag)
 
 
 def _label(value):
@@ -184,6 +209,10 @@ def draw_ratios(names, ratios):
         axes.axvline(1, color=color(7), linewidth=0.8, linestyle="--")
 
     return draw
+
+
+def ratio_panel(name, title, names, ratios, x_log=False):
+    return panel(name, title, draw_ratios(names, ratios), "ratio of times", x_log=x_log, y_log=False)
 
 
 def ring(axes, x, y):

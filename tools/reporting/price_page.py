@@ -1,19 +1,33 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The page's sections on what robustness and specialisation cost and bring."""
+"""The page's sections on what robustness and specialisation cost and bring, and on other renderers."""
 
 import html
 import math
 
 import plots
-from figures import bound_of, from_to, few, gap_text, interval, join, beyond_noise_text, number, spread, table
+from figures import (
+    beyond_noise_text,
+    bound_of,
+    emphasis,
+    few,
+    from_to,
+    gap_text,
+    interval,
+    join,
+    number,
+    scene_column,
+    section,
+    spread,
+    table,
+)
 
 
 def _pictures_text(report):
     """What it comes to in whole pictures, shading and all."""
     parts = [
-        f"{row['time_ratio']['median']:.2f} (<em>{html.escape(row['scene'])}</em>)"
-        for row in report["frames"]["rows"]
+        f"{row['time_ratio']['median']:.2f} ({emphasis(row['scene'])})"
+        for row in report.get("frames", {}).get("rows", [])
         if row["knob"] == "methods"
     ]
     return f"Whole pictures take by all of the textbook's methods {join(parts)} of promin's time." if parts else ""
@@ -65,8 +79,7 @@ def robustness(report):
     rows = report["robustness"]["rows"]
     names = [f"{r['scene']}, {r['rays']}" for r in rows]
     by_row = [r["time_ratio"] for r in rows]
-    draw = plots.draw_ratios(names, by_row)
-    panel = plots.panel("robustness", "time over the textbook's", draw, "ratio of times", "", x_log=False, y_log=False)
+    panel = plots.ratio_panel("robustness", "time over the textbook's", names, by_row)
     ratios = sorted(ratio["median"] for ratio in by_row)
     text = (
         "The same rays through the same tree: promin's intersections, boxes and rays against the textbook's "
@@ -74,42 +87,21 @@ def robustness(report):
         f"Robustness takes {from_to(ratios)} times the textbook's time, "
         f"{ratios[len(ratios) // 2]:.2f} in the middle. " + beyond_noise_text(by_row, "slower")
     )
-    head = [
-        "scene",
-        "rays",
-        "number",
-        "promin, ms",
-        "textbook, ms",
-        "ratio",
-        "Mrays/s",
-        "judged",
-        "lost, invented by promin",
-        "by the textbook",
+    wrong = lambda r, kernel: f"{r[f'{kernel}_lost']:,}, {r[f'{kernel}_invented']:,}"  # noqa: E731
+    columns = [
+        scene_column(),
+        ("rays", lambda r: r["rays"]),
+        ("number", lambda r: f"{r['count']:,}"),
+        ("promin, ms", lambda r: spread(r["robust_ms"])),
+        ("textbook, ms", lambda r: spread(r["plain_ms"])),
+        ("ratio", lambda r: interval(r["time_ratio"])),
+        ("Mrays/s", lambda r: number(r["robust_mrays_per_s"])),
+        ("judged", lambda r: f"{r['judged']:,}" + (", each hits" if r["truth"] == "each hits" else "")),
+        ("lost, invented by promin", lambda r: wrong(r, "promin")),
+        ("by the textbook", lambda r: wrong(r, "textbook")),
     ]
-    body = [
-        (
-            [
-                html.escape(r["scene"]),
-                r["rays"],
-                f"{r['count']:,}",
-                spread(r["robust_ms"]),
-                spread(r["plain_ms"]),
-                interval(ratio),
-                number(r["robust_mrays_per_s"]),
-                f"{r['judged']:,}" + (", each hits" if r["truth"] == "each hits" else ""),
-                *(f"{r[f'{kernel}_lost']:,}, {r[f'{kernel}_invented']:,}" for kernel in ("promin", "textbook")),
-            ],
-            False,
-        )
-        for r, ratio in zip(rows, by_row)
-    ]
-    return {
-        "title": "The price of robustness",
-        "panels": [panel],
-        "legend": [],
-        "text": [text, _truth_text(rows, bound_of(report, 2)), _pictures_text(report)],
-        "table": table(head, body),
-    }
+    texts = [text, _truth_text(rows, bound_of(report, 2)), _pictures_text(report)]
+    return section("The price of robustness", texts, table(columns, rows), [panel])
 
 
 def _times(runs):
@@ -122,22 +114,8 @@ def specialisation(report):
     tracing = [r["time_ratio"] for r in rows]
     compiling = [r["compile_time_ratio"] for r in rows]
     panels = [
-        plots.panel(
-            "specialisation-ms",
-            "tracing, of all features' time",
-            plots.draw_ratios(names, tracing),
-            "ratio of times",
-            x_log=False,
-            y_log=False,
-        ),
-        plots.panel(
-            "specialisation-compile",
-            "compiling, likewise",
-            plots.draw_ratios(names, compiling),
-            "ratio of times",
-            x_log=False,
-            y_log=False,
-        ),
+        plots.ratio_panel("specialisation-ms", "tracing, of all features' time", names, tracing),
+        plots.ratio_panel("specialisation-compile", "compiling, likewise", names, compiling),
     ]
     gains = [ratio["median"] for ratio in tracing]
     compiles = [ratio["median"] for ratio in compiling]
@@ -149,87 +127,120 @@ def specialisation(report):
         + f" {same} of {len(rows)} pictures have the same bits either way. Compiling is timed on a device that has "
         f"compiled nothing, {_times(rows[0]['compile_ms']['runs'])}, without the driver's cache on disk."
     )
-    head = ["scene", "features", "ms", "with all, ms", "ratio", "compiling, ms", "with all, ms", "ratio", "bits"]
-    body = [
-        (
-            [
-                html.escape(r["scene"]),
-                f"{r['features']} of {r['all_features']}",
-                spread(r["ms"]),
-                spread(r["ms_with_all"]),
-                interval(r["time_ratio"]),
-                few(r["compile_ms"]),
-                few(r["compile_ms_with_all"]),
-                few(r["compile_time_ratio"]),
-                "the same" if r["is_bit_identical"] else "<strong>differ</strong>",
-            ],
-            False,
-        )
-        for r in rows
+    columns = [
+        scene_column(),
+        ("features", lambda r: f"{r['features']} of {r['all_features']}"),
+        ("ms", lambda r: spread(r["ms"])),
+        ("with all, ms", lambda r: spread(r["ms_with_all"])),
+        ("ratio", lambda r: interval(r["time_ratio"])),
+        ("compiling, ms", lambda r: few(r["compile_ms"])),
+        ("with all, ms", lambda r: few(r["compile_ms_with_all"])),
+        ("ratio", lambda r: few(r["compile_time_ratio"])),
+        ("bits", lambda r: "the same" if r["is_bit_identical"] else "<strong>differ</strong>"),
     ]
-    return {
-        "title": "Only what a scene needs",
-        "panels": panels,
-        "legend": [],
-        "text": [text],
-        "table": table(head, body),
-    }
+    return section("Only what a scene needs", [text], table(columns, rows), panels)
+
+
+def _name_of_peer(row):
+    return row["peer"].split(",")[0]
+
+
+def _ray_sentence(row):
+    return (
+        f"{row['rays'][0].upper() + row['rays'][1:]} rays ({html.escape(row['scene'])}) take promin "
+        f"{row['time_ratio']['median']:.2f} times as long as {_name_of_peer(row)}; {row['differing_hits']:,} of "
+        f"{row['count']:,} hit in one and miss in the other."
+    )
+
+
+def _build_sentence(row):
+    return (
+        f"To have {html.escape(row['scene'])} on the device takes promin {row['time_ratio']['median']:.2f} times as "
+        f"long as {_name_of_peer(row)}'s build, the tree alone {row['bvh_time_ratio']['median']:.2f}."
+    )
+
+
+def _picture_sentence(row):
+    return (
+        f"{row['what'][0].upper() + row['what'][1:]} ({html.escape(row['scene'])}) takes promin "
+        f"{row['time_ratio']['median']:.2f} times as long as {_name_of_peer(row)}, whose picture is "
+        f"{number(row['mean_difference'], 2)} away on average, {number(row['different_pixels_percent'], 2)} % of its "
+        "pixels by more than 0.02."
+    )
+
+
+def _first_sentence(row):
+    return (
+        f"The first picture of {html.escape(row['scene'])}, as a whole process, takes "
+        f"{number(row['process_ms']['median'])} ms: {row['time_ratio']['median']:.2f} of its tracing "
+        f"({number(row['trace_ms']['median'])} ms) and twice the process of one sphere "
+        f"({number(row['one_sphere_process_ms']['median'])} ms)."
+    )
+
+
+_TIMES_BESIDE = [
+    ("promin, ms", lambda r: spread(r.get("promin_ms"))),
+    ("peer", lambda r: r.get("peer", "–")),
+    ("peer, ms", lambda r: spread(r.get("peer_ms"))),
+    ("ratio", lambda r: interval(r.get("time_ratio"))),
+]
+_RAY_COLUMNS = [
+    scene_column(),
+    ("rays", lambda r: r["rays"]),
+    ("number", lambda r: f"{r['count']:,}"),
+    *_TIMES_BESIDE,
+    ("in packets of 8, ms", lambda r: spread(r.get("peer_packets_ms"))),
+    ("ratio", lambda r: interval(r.get("packets_time_ratio"))),
+    ("other hits", lambda r: number(r.get("differing_hits"))),
+    ("Mrays/s", lambda r: number(r.get("promin_mrays_per_s"))),
+    ("steps", lambda r: number(r.get("node_steps_per_ray"))),
+    ("tests", lambda r: number(r.get("primitive_tests_per_ray"))),
+]
+_BUILD_COLUMNS = [
+    scene_column(),
+    ("primitives", lambda r: f"{r['primitives']:,}"),
+    ("builder", lambda r: r["builder"]),
+    *_TIMES_BESIDE,
+    ("tree alone, ms", lambda r: spread(r["bvh_ms"])),
+    ("ratio", lambda r: interval(r.get("bvh_time_ratio"))),
+    ("nodes", lambda r: f"{r['nodes']:,}"),
+    ("depth", lambda r: r["depth"]),
+    ("SAH cost", lambda r: number(r["sah_cost"])),
+    ("bytes a primitive", lambda r: number(r["device_bytes_per_primitive"])),
+]
+_PICTURE_COLUMNS = [
+    scene_column(),
+    ("what", lambda r: r["what"]),
+    *_TIMES_BESIDE,
+    (
+        "difference",
+        lambda r: f"mean {number(r['mean_difference'], 2)}, {number(r['different_pixels_percent'], 2)} % of pixels",
+    ),
+]
 
 
 def peers(report):
-    content = report["peers"]
-    rows = content["rows"]
-    gap = " " + gap_text(content["gaps"]) if content["gaps"] else ""
-    if not rows:
-        return {"title": "Beside other renderers", "panels": [], "legend": [], "text": [gap.strip()]}
-    names = [f"{r['peer'].split(',')[0]}, {r['what'].split(' by ')[0]}" for r in rows]
-    names = [
-        name.replace("a picture of ", "") + (" px²" if "picture" in r["what"] else "") for name, r in zip(names, rows)
+    rates = report.get("rates", {"rows": [], "builds": [], "gaps": []})
+    pictures = report.get("peers", {"rows": [], "first": [], "gaps": []})
+    beside = lambda rows: [row for row in rows if "peer" in row]  # noqa: E731
+    rays, builds = beside(rates["rows"]), beside(rates["builds"])
+    compared = [(f"{_name_of_peer(r)}, {r['rays']} rays", r) for r in rays]
+    compared += [(f"{_name_of_peer(r)}, build", r) for r in builds]
+    compared += [
+        (f"{_name_of_peer(r)}, {r['what'].split(' by ')[0].removeprefix('a picture of ')} px²", r)
+        for r in pictures["rows"]
     ]
-    ratios = [r["time_ratio"] for r in rows]
-    draw = plots.draw_ratios(names, ratios)
-    panel = plots.panel("peers", "promin's time over the peer's", draw, "ratio of times", "", y_log=False)
-    sentences = [
-        f"{r['what'][0].upper() + r['what'][1:]} ({html.escape(r['scene'])}) "
-        f"take{'s' if 'picture' in r['what'] else ''} promin "
-        f"{ratio['median']:.2f} times as long as {r['peer'].split(',')[0]}"
-        + (
-            f", whose picture is {number(r['mean_difference'], 2)} away on average, "
-            f"{number(r['different_pixels_percent'], 2)} % of its pixels by more than 0.02."
-            if "mean_difference" in r
-            else f"; {r['differing_hits']:,} of {r['count']:,} hit in one and miss in the other."
-        )
-        for r, ratio in zip(rows, ratios)
-    ]
-    head = ["scene", "what", "peer", "promin, ms", "peer, ms", "ratio", "in packets of 8, ms", "difference"]
-    body = [
-        (
-            [
-                html.escape(r["scene"]),
-                r["what"],
-                r["peer"],
-                spread(r["promin_ms"]),
-                spread(r["peer_ms"]),
-                interval(ratio),
-                spread(r.get("peer_packets_ms")),
-                (
-                    f"mean {number(r['mean_difference'], 2)}, {number(r['different_pixels_percent'], 2)} % of pixels"
-                    if "mean_difference" in r
-                    else f"{r['differing_hits']:,} hits"
-                ),
-            ],
-            False,
-        )
-        for r, ratio in zip(rows, ratios)
-    ]
-    text = [
-        f"The same scene in the same run, in {rows[0]['promin_ms']['runs']} turns, on the same cores." + gap,
-        "<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>",
-    ]
-    return {
-        "title": "Beside other renderers",
-        "panels": [panel],
-        "legend": [],
-        "text": text,
-        "table": table(head, body),
-    }
+    sentences = [_ray_sentence(r) for r in rays] + [_build_sentence(r) for r in builds]
+    sentences += [_picture_sentence(r) for r in pictures["rows"]] + [_first_sentence(r) for r in pictures["first"]]
+    panels = []
+    if compared:
+        names, rows = zip(*compared)
+        ratios = [row["time_ratio"] for row in rows]
+        panels = [plots.ratio_panel("peers", "promin's time over the peer's", names, ratios, x_log=True)]
+    gaps, runs = gap_text(rates["gaps"] + pictures["gaps"]), report["provenance"]["runs"]
+    text = [f"The same scene in the same run, in {runs} turns, on the same cores. {gaps}" if sentences else gaps]
+    if sentences:
+        text.append("<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>")
+    kinds = ((_RAY_COLUMNS, rates["rows"]), (_BUILD_COLUMNS, rates["builds"]), (_PICTURE_COLUMNS, pictures["rows"]))
+    tables = "\n".join(table(columns, rows) for columns, rows in kinds if rows)
+    return section("Beside other renderers", text, tables, panels)

@@ -49,30 +49,33 @@ void judge_pair(const Session& session, const Scene& scene, const measure::RaySe
   put_misjudged(row, "textbook", judge_by_oracle(scene, set.rays, pair.plain_hits, chosen, is_there));
 }
 
-void compare_casters(const Session& session, const Scene& scene, bool is_closed, Json& rows) {
+void compare_casters(const Session& session, const Scene& scene, Json& rows) {
   const std::string name = session.name_of(scene);
+  const bool is_closed = measure::is_generated_and_closed(scene);
   session.say("robustness: " + name);
   Caster robust(session.device(), scene);
   CasterOptions options;
   options.spirv = k_textbook_cast_spirv;
   Caster plain(session.device(), scene, options);
-  const uint32_t side = session.pick(512U, 96U);
+  const uint32_t side = session.side();
   const Camera camera = view_of(scene, uvec2(side)).camera;
   const std::string hash = hash_of(scene);
   for (const measure::RaySet& set : measure::make_ray_sets(robust, scene, camera, side, is_closed)) {
     if (set.rays.empty()) continue;
     const measure::KernelPair pair = measure::measure_pair(robust, plain, set, session.runs());
-    Json row = {{"id", name + "/" + pair.rays},
-                {"scene", name},
-                {"scene_hash", hash},
-                {"rays", pair.rays},
-                {"count", pair.count},
-                {"differing", pair.count_only_robust() + pair.count_only_plain()},
-                {"robust_ms", json_of_times(pair.robust_ms)},
-                {"plain_ms", json_of_times(pair.plain_ms)},
-                {"time_ratio", json_of_times(measure::ratios_of(pair.robust_ms, pair.plain_ms))},
-                {"robust_mrays_per_s", pair.robust_mrays_per_s()},
-                {"plain_mrays_per_s", pair.plain_mrays_per_s()}};
+    Json row = {
+        {"id", name + "/" + pair.rays},
+        {"scene", name},
+        {"scene_hash", hash},
+        {"rays", pair.rays},
+        {"count", pair.count},
+        {"differing", pair.count_only_robust() + pair.count_only_plain()},
+        {"only_promin_hits", pair.count_only_robust()},
+        {"only_textbook_hits", pair.count_only_plain()},
+        {"robust_ms", pair.robust_ms},
+        {"plain_ms", pair.plain_ms},
+        {"time_ratio", measure::ratios_of(pair.robust_ms, pair.plain_ms)},
+    };
     judge_pair(session, scene, set, pair, is_closed && set.name == "edges", row);
     rows.push_back(std::move(row));
   }
@@ -116,12 +119,12 @@ Json compare_specialisation(const Session& session, const Scene& scene) {
           {"scene_hash", hash_of(scene)},
           {"features", feature_names(features_of(scene)).size()},
           {"all_features", feature_names(all_features()).size()},
-          {"ms", json_of_times(ms[0])},
-          {"ms_with_all", json_of_times(ms[1])},
-          {"time_ratio", json_of_times(measure::ratios_of(ms[0], ms[1]))},
-          {"compile_ms", json_of_few_times(compile_ms[0])},
-          {"compile_ms_with_all", json_of_few_times(compile_ms[1])},
-          {"compile_time_ratio", json_of_few_times(measure::ratios_of(compile_ms[0], compile_ms[1]))},
+          {"ms", ms[0]},
+          {"ms_with_all", ms[1]},
+          {"time_ratio", measure::ratios_of(ms[0], ms[1])},
+          {"compile_ms", json_of_few(compile_ms[0])},
+          {"compile_ms_with_all", json_of_few(compile_ms[1])},
+          {"compile_time_ratio", json_of_few(measure::ratios_of(compile_ms[0], compile_ms[1]))},
           {"is_bit_identical", has_same_bits(of_scene, of_all)}};
 }
 
@@ -129,15 +132,10 @@ Json compare_specialisation(const Session& session, const Scene& scene) {
 
 Json measure_robustness(const Session& session) {
   Json rows = Json::array();
-  if (session.options().scenes.empty()) {
-    const uint32_t triangles = session.pick(131000U, 10000U);
-    Scene mesh = measure::make_wavy_sphere(triangles);
-    mesh.file = fmt::format("wavy:{}", triangles);
-    compare_casters(session, mesh, true, rows);
-  }
-  for (const Scene& scene : session.load_scenes(session.pick<std::vector<std::string>>(
-           {"all_primitives.gltf", "showcase.gltf", "sphereflake.gltf"}, {"all_primitives.gltf"}))) {
-    compare_casters(session, scene, false, rows);
+  for (const Scene& scene : session.open_scenes(session.pick<std::vector<std::string>>(
+           {"wavy:131000", "all_primitives.gltf", "showcase.gltf", "sphereflake.gltf"},
+           {"wavy:10000", "all_primitives.gltf"}))) {
+    compare_casters(session, scene, rows);
   }
   return {{"rows", rows}};
 }

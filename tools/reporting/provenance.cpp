@@ -4,18 +4,19 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <map>
 #include <string>
 #include <thread>
 
 #include "core/stopwatch.h"
 #include "device/device.h"
-#include "reporting/scripts.h"
 
 namespace promin::report {
 namespace {
@@ -25,12 +26,20 @@ const Stopwatch& since_start() {
   return kStart;
 }
 
-std::string cpu_name() {
+/// Its name, and by what numbers its maker tells models apart, as virtual machines often give several one name.
+std::string cpu_model() {
   std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  std::map<std::string, std::string> fields;
+  // One block of lines a core, of which the first does.
+  for (std::string line; std::getline(file, line) && !line.empty();) {
+    const size_t colon = line.find(':');
+    if (colon == std::string::npos || colon + 2 > line.size()) continue;
+    fields[line.substr(0, line.find_last_not_of(" \t", colon - 1) + 1)] = line.substr(colon + 2);
   }
-  return "unknown";
+  if (!fields.contains("model name")) return "unknown";
+  if (!fields.contains("cpu family") || !fields.contains("model")) return fields["model name"];
+  return fmt::format("{} (family {}, model {}, stepping {})", fields["model name"], fields["cpu family"],
+                     fields["model"], fields["stepping"]);
 }
 
 /// Of all cores since the system started, in ticks; nothing where the system does not tell.
@@ -75,6 +84,9 @@ std::string command_of(const ReportOptions& options) {
   std::string command = "promin-report";
   if (options.is_quick) command += " --quick";
   if (options.runs) command += fmt::format(" --runs {}", *options.runs);
+  if (options.side) command += fmt::format(" --side {}", *options.side);
+  if (options.builder != "sah") command += fmt::format(" --builder {}", options.builder);
+  if (!options.only.empty()) command += fmt::format(" --only {}", fmt::join(options.only, ","));
   if (options.device) command += fmt::format(" --device '{}'", *options.device);
   for (const std::filesystem::path& scene : options.scenes) command += fmt::format(" {}", scene.filename().string());
   const std::filesystem::path output = options.output.has_filename() ? options.output : options.output.parent_path();
@@ -93,8 +105,9 @@ Json describe_run(const Session& session) {
   since_start();
   const gpu::DeviceInfo& info = gpu::info_of(session.device());
   const std::time_t now = std::time(nullptr);
+  const std::optional<std::string>& wanted = session.options().device;
   return {{"date", fmt::format("{:%Y-%m-%dT%H:%MZ}", fmt::gmtime(now))},
-          {"commit", describe_commit()},
+          {"commit", session.options().commit},
           {"compiler", compiler_name()},
           {"device", info.name},
           {"device_type", info.type},
@@ -102,12 +115,13 @@ Json describe_run(const Session& session) {
           {"api_version", info.api_version},
           {"has_fp64", session.device().has_fp64()},
           {"times_are", session.device().timestamp_period_ns() > 0.0 ? "device timestamps" : "the host's waiting"},
-          {"cpu", cpu_name()},
+          {"cpu", cpu_model()},
           {"threads", std::thread::hardware_concurrency()},
           {"command", command_of(session.options())},
           {"runs", session.runs()},
           {"is_quick", session.is_quick()},
           {"is_validated", is_validated()},
+          {"device_wanted", wanted ? Json(*wanted) : Json()},
           {"busy_cores_before", busy_cores()}};
 }
 

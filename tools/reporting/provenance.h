@@ -6,8 +6,8 @@
 
 namespace promin::report {
 
-/// Of report.json; another where a reader of the last one would be misled.
-inline constexpr int kReportFormat = 2;
+/// Of runs.json and report.json; another where a reader of the last one would be misled.
+inline constexpr int kReportFormat = 3;
 
 /// What every figure stands under: device, driver, compiler, commit, date, runs, and how busy the machine was before.
 Json describe_run(const Session& session);

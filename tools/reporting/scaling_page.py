@@ -3,7 +3,7 @@
 """The page's section on how time, steps and memory grow."""
 
 import plots
-from figures import join, number, quartiles, table
+from figures import join, number, quartiles, section, table
 
 _RAYS = ("camera", "shadow", "random")
 
@@ -87,23 +87,15 @@ def scaling(report):
         f"{depth[-1]['time_ratio']['median']:.1f} times what it does without mirror rays, and "
         f"{depth[-1]['rays'] / depth[0]['rays']:.1f} times the rays."
     )
-    head = ["grows", "exponent", "95 % interval", "points"]
-    body = [
-        (
-            [
-                f["id"].replace("/", ": ").replace("_", " "),
-                f"{f['exponent']:.3f}",
-                f"{f['lower']:.3f}…{f['upper']:.3f}".replace("-", "−"),
-                f["points"],
-            ],
-            False,
-        )
-        for f in fits
+    columns = [
+        ("grows", lambda f: f["id"].replace("/", ": ").replace("_", " ")),
+        ("exponent", lambda f: f"{f['exponent']:.3f}"),
+        ("95 % interval", lambda f: f"{f['lower']:.3f}…{f['upper']:.3f}".replace("-", "−")),
+        ("points", lambda f: f["points"]),
+        ("a doubling adds (r²)", _doubling),
     ]
-    return {
-        "title": "Growth",
-        "panels": panels,
-        "legend": list(enumerate(_RAYS)),
-        "text": [text],
-        "table": table(head, body),
-    }
+    return section("Growth", [text], table(columns, fits), panels, list(enumerate(_RAYS)))
+
+
+def _doubling(fit):
+    return f"{fit['per_doubling']:.2f} ({fit['r_squared']:.3f})" if "per_doubling" in fit else "–"

@@ -13,24 +13,11 @@
 #include "measure/samples.h"
 #include "measure/step_counts.h"
 #include "promin/renderer.h"
-#include "reporting/fit.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
 
 namespace promin::report {
 namespace {
-
-/// Points of one curve, for its exponent.
-struct Curve {
-  std::vector<double> xs;
-  std::vector<double> ys;
-
-  void add(double x, double y) {
-    if (x <= 0.0 || y <= 0.0) return;
-    xs.push_back(x);
-    ys.push_back(y);
-  }
-};
 
 class ScalingBench {
  public:
@@ -41,20 +28,10 @@ class ScalingBench {
     measure_pixels();
     measure_sources();
     measure_depth();
-    return {{"rows", rows_}, {"fits", fits_}};
+    return {{"rows", rows_}};
   }
 
  private:
-  void fit(const std::string& id, const Curve& curve) {
-    if (curve.xs.size() < 3) return;
-    const PowerFit fit = fit_power(curve.xs, curve.ys);
-    fits_.push_back({{"id", id},
-                     {"exponent", fit.exponent},
-                     {"lower", fit.lower},
-                     {"upper", fit.upper},
-                     {"points", curve.xs.size()}});
-  }
-
   /// A mesh of the wavy sphere with what is measured of it.
   struct Size {
     uint32_t wanted;
@@ -65,9 +42,10 @@ class ScalingBench {
     std::vector<measure::StepCounts> steps;
 
     Size(const Session& session, uint32_t wanted_triangles)
-        : wanted(wanted_triangles), scene(measure::make_wavy_sphere(wanted)), caster(session.device(), scene) {
-      scene.file = fmt::format("wavy:{}", wanted);
-      const uint32_t side = session.pick(512U, 96U);
+        : wanted(wanted_triangles),
+          scene(measure::open_scene(fmt::format("wavy:{}", wanted))),
+          caster(session.device(), scene) {
+      const uint32_t side = session.side();
       sets = measure::make_ray_sets(caster, scene, view_of(scene, uvec2(side)).camera, side, false);
       const measure::StepCounter counter(session.device(), scene, "sah");
       for (const measure::RaySet& set : sets) {
@@ -115,24 +93,18 @@ class ScalingBench {
     std::vector<std::vector<double>> ns = measure::time_in_turns(contestants, session_.runs());
     for (size_t i = 0; i < set_count; ++i) {
       const std::string& name = sizes.front().sets[i].name;
-      Curve times;
-      Curve steps;
       for (size_t s = 0; s < sizes.size(); ++s) {
         const Size& size = sizes[s];
         const auto rays = static_cast<double>(size.sets[i].rays.size());
         std::vector<double>& of_size = ns[s * set_count + i];
         for (double& time : of_size) time *= 1e6 / rays;
         Json row = row_of(size, name);
-        row["ns_per_ray"] = json_of_times(of_size);
-        row["time_ratio"] = json_of_times(measure::ratios_of(of_size, ns[i]));
+        row["ns_per_ray"] = of_size;
+        row["time_ratio"] = measure::ratios_of(of_size, ns[i]);
         row["node_steps_per_ray"] = static_cast<double>(size.steps[i].node_steps) / rays;
         row["primitive_tests_per_ray"] = static_cast<double>(size.steps[i].primitive_tests) / rays;
-        times.add(size.triangle_count(), row["ns_per_ray"]["median"].get<double>());
-        steps.add(size.triangle_count(), row["node_steps_per_ray"].get<double>());
         rows_.push_back(std::move(row));
       }
-      fit("triangles/" + name + "/ns_per_ray", times);
-      fit("triangles/" + name + "/node_steps_per_ray", steps);
     }
   }
 
@@ -140,18 +112,12 @@ class ScalingBench {
     std::vector<std::function<double()>> contestants;
     for (const Size& size : sizes) contestants.emplace_back([&] { return pack_scene(size.scene, "sah").bvh_ms; });
     const std::vector<std::vector<double>> ms = measure::time_in_turns(contestants, session_.few_runs());
-    Curve builds;
-    Curve bytes;
     for (size_t s = 0; s < sizes.size(); ++s) {
       Json row = row_of(sizes[s], "build");
-      row["build_ms"] = json_of_few_times(ms[s]);
+      row["build_ms"] = json_of_few(ms[s]);
       row["device_bytes"] = sizes[s].caster.setup_stats().device_bytes;
-      builds.add(sizes[s].triangle_count(), row["build_ms"]["median"].get<double>());
-      bytes.add(sizes[s].triangle_count(), row["device_bytes"].get<double>());
       rows_.push_back(std::move(row));
     }
-    fit("triangles/build/build_ms", builds);
-    fit("triangles/build/device_bytes", bytes);
   }
 
   struct Frame {
@@ -178,21 +144,17 @@ class ScalingBench {
       });
     }
     const std::vector<std::vector<double>> ms = measure::time_in_turns(contestants, session_.runs());
-    Curve curve;
     for (size_t i = 0; i < frames.size(); ++i) {
-      const Json times = json_of_times(ms[i]);
       rows_.push_back({{"id", fmt::format("{}/{:g}", variable, frames[i].value)},
                        {"variable", variable},
                        {"scene", session_.name_of(*frames[i].scene)},
                        {"scene_hash", hashes[frames[i].scene]},
                        {"curve", "picture"},
                        {"value", frames[i].value},
-                       {"ms", times},
-                       {"time_ratio", json_of_times(measure::ratios_of(ms[i], ms[0]))},
+                       {"ms", ms[i]},
+                       {"time_ratio", measure::ratios_of(ms[i], ms[0])},
                        {"rays", counts[i].total()}});
-      curve.add(frames[i].value, times["median"].get<double>());
     }
-    fit(variable + "/ms", curve);
   }
 
   Scene load(const char* own) const { return session_.load_scenes({own}).front(); }
@@ -243,7 +205,6 @@ class ScalingBench {
 
   const Session& session_;
   Json rows_ = Json::array();
-  Json fits_ = Json::array();
 };
 
 }  // namespace

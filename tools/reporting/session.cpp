@@ -6,8 +6,7 @@
 
 #include <cstdio>
 
-#include "measure/samples.h"
-#include "promin/load_scene.h"
+#include "measure/meshes.h"
 #include "reporting/scene_names.h"
 #include "view_setup.h"
 
@@ -20,16 +19,20 @@ void Session::say(const std::string& text) const {
   std::fputs(fmt::format("promin-report: {}\n", text).c_str(), stderr);
 }
 
-std::vector<Scene> Session::load_scenes(const std::vector<std::string>& own) const {
-  std::vector<std::filesystem::path> files = options_.scenes;
-  if (files.empty()) {
-    for (const std::string& name : own) files.push_back(std::filesystem::path(PROMIN_SCENES_DIR) / name);
-  }
+std::vector<Scene> Session::open_scenes(const std::vector<std::string>& own) const {
   std::vector<Scene> scenes;
-  for (const std::filesystem::path& file : files) {
-    scenes.push_back(load_scene(file));
-    app::light_up(scenes.back(), app::Console(app::Verbosity::kQuiet));
+  for (const std::filesystem::path& file : options_.scenes) scenes.push_back(measure::open_scene(file.string()));
+  if (!scenes.empty()) return scenes;
+  for (const std::string& word : own) {
+    const bool is_generated = word.find(':') != std::string::npos;
+    scenes.push_back(measure::open_scene(is_generated ? word : fmt::format("{}/{}", PROMIN_SCENES_DIR, word)));
   }
+  return scenes;
+}
+
+std::vector<Scene> Session::load_scenes(const std::vector<std::string>& own) const {
+  std::vector<Scene> scenes = open_scenes(own);
+  for (Scene& scene : scenes) app::light_up(scene, app::Console(app::Verbosity::kQuiet));
   return scenes;
 }
 
@@ -45,26 +48,8 @@ View view_of(const Scene& scene, const uvec2& size) {
   return app::make_view(scene, options, app::Console(app::Verbosity::kQuiet));
 }
 
-Json json_of_times(const std::vector<double>& values) {
-  const measure::Quartiles quartiles = measure::quartiles_of(values);
-  const measure::MedianInterval interval = measure::median_interval_of(values);
-  return {{"median", quartiles.median},
-          {"lower_quartile", quartiles.lower},
-          {"upper_quartile", quartiles.upper},
-          {"interval_lower", interval.lower},
-          {"interval_upper", interval.upper},
-          {"confidence", interval.confidence},
-          {"runs", values.size()},
-          {"values", values}};
-}
-
-Json json_of_few_times(const std::vector<double>& times) {
-  const auto [least, most] = std::minmax_element(times.begin(), times.end());
-  return {{"median", measure::quartiles_of(times).median},
-          {"least", *least},
-          {"most", *most},
-          {"runs", times.size()},
-          {"values", times}};
+Json json_of_few(const std::vector<double>& times) {
+  return {{"few", times}};
 }
 
 Json json_of_gap(const std::string& name, const std::optional<std::string>& failure) {

@@ -27,6 +27,15 @@ struct ReportOptions {
   /// Few runs and small sizes: to see that all works, not to learn how fast it is.
   bool is_quick = false;
   std::optional<uint32_t> runs;
+  /// Pixels of the camera rays' picture each way, where rays alone are cast.
+  std::optional<uint32_t> side;
+  std::string builder = "sah";
+  /// Names of sections; without any all.
+  std::vector<std::string> only;
+  /// A folder for the pictures of frames, row by row, to be judged by other programs.
+  std::optional<std::filesystem::path> pictures;
+  /// Of the sources, as the caller knows it.
+  std::string commit = "unknown";
 };
 
 /// What all sections measure with.
@@ -42,6 +51,8 @@ class Session {
   uint32_t runs() const { return options_.runs.value_or(is_quick() ? 3 : 20); }
   /// Of what takes seconds and is timed less often; each figure tells of how many.
   uint32_t few_runs() const { return pick(std::min(5U, runs()), 1U); }
+  /// Of the camera rays' picture, each way.
+  uint32_t side() const { return options_.side.value_or(pick(512U, 96U)); }
   /// What a section takes in full, or in a quick report.
   template <typename Value>
   Value pick(Value in_full, Value when_quick) const {
@@ -51,7 +62,9 @@ class Session {
   /// A line on the standard error stream.
   void say(const std::string& text) const;
 
-  /// The user's scenes, or these of the project; lit where they have no light. Throws InputError.
+  /// The user's scenes, or these: files of the project or words of measure::open_scene. Throws InputError.
+  std::vector<Scene> open_scenes(const std::vector<std::string>& own) const;
+  /// As open_scenes, lit where they have no light.
   std::vector<Scene> load_scenes(const std::vector<std::string>& own) const;
 
   /// A scene's name in the report, which no other has: see name_scenes.
@@ -67,14 +80,13 @@ class Session {
 /// The view of the scene's first camera, or of one that frames it.
 View view_of(const Scene& scene, const uvec2& size);
 
-/// Of times in any unit, or of ratios of times of the same turn: {"median", "lower_quartile", "upper_quartile",
-/// "interval_lower", "interval_upper", "confidence" (measure::MedianInterval), "runs", "values"}.
-/// The values go to runs.csv instead of report.json.
-Json json_of_times(const std::vector<double>& times);
-/// Of Session::few_runs: {"median", "least", "most", "runs", "values"}.
-Json json_of_few_times(const std::vector<double>& times);
-/// What takes the place of a figure that was not measured: {"name", "is_installed", "reason"}. The reason is the
-/// program's own last line where it is installed and failed; without one it is not installed.
+// Times in a row, in any unit, and ratios of times of the same turn, are arrays with one number a run. What they come
+// to (medians, intervals, fronts, exponents) is computed in one place, tools/reporting/stats.py.
+
+/// Times of Session::few_runs: {"few": [...]}.
+Json json_of_few(const std::vector<double>& times);
+/// What takes the place of a figure that was not measured: {"name", "is_installed", "reason"}. The reason is why, where
+/// it is installed; without one it is not installed.
 Json json_of_gap(const std::string& name, const std::optional<std::string>& failure);
 
 // The sections, each an object with "rows"; a row has an "id" that is unique in its section. What is not measured is
@@ -90,7 +102,9 @@ Json measure_robustness(const Session& session);
 Json measure_specialisation(const Session& session);
 /// Time and steps over triangles, pixels, sources and depth.
 Json measure_scaling(const Session& session);
-/// Beside other renderers.
-Json measure_peers(const Session& session);
+/// Rays and builds beside Embree's.
+Json measure_rates(const Session& session);
+/// The same of one scene: appends to the arrays "rows" and "builds". Without runs it only counts steps.
+void add_rates(const Session& session, const Scene& scene, Json& rates);
 
 }  // namespace promin::report

@@ -4,7 +4,7 @@
 
 import html
 
-from figures import bound_of, from_to, number
+from figures import bound_of, emphasis, from_to, names_of, number, section
 from front_text import find_dominators
 
 
@@ -14,13 +14,13 @@ def _ratios(rows, key="time_ratio"):
 
 def _front_line(report):
     rows = report["frames"]["rows"]
-    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    scenes = names_of(rows, "scene")
     off = [s for s in scenes if find_dominators([row for row in rows if row["scene"] == s])]
     if not off:
         return (
             f"The default lies on the Pareto front of pictures in {len(scenes)} of {len(scenes)} scenes, up to noise."
         )
-    names = ", ".join(f"<em>{html.escape(scene)}</em>" for scene in off)
+    names = ", ".join(map(emphasis, off))
     return (
         f"The default lies off the Pareto front of pictures in {len(off)} of {len(scenes)} scenes ({names}): see below."
     )
@@ -58,32 +58,36 @@ def _specialisation_line(report):
 
 
 def _peers_line(report):
-    rows = report["peers"]["rows"]
+    rows = [row for row in report["rates"]["rows"] if "peer" in row] + report["peers"]["rows"]
     parts = []
     for name in dict.fromkeys(row["peer"].split(",")[0] for row in rows):
         of_peer = [row for row in rows if row["peer"].startswith(name)]
         part = f"{_ratios(of_peer)} times as long as {html.escape(name)}"
-        packets = [r["promin_ms"]["median"] / r["peer_packets_ms"]["median"] for r in of_peer if "peer_packets_ms" in r]
-        if packets:
-            part += f"'s single rays and {from_to(packets)} times as long as its packets"
+        if "packets_time_ratio" in of_peer[0]:
+            packets = _ratios(of_peer, "packets_time_ratio")
+            part += f"'s single rays and {packets} times as long as its packets"
         parts.append(part)
     return f"The same work takes promin {'; '.join(parts)}." if parts else ""
 
 
+# What each takes.
+_LINES = (
+    (("frames",), _front_line),
+    (("kernels",), _kernel_line),
+    (("robustness",), _robustness_line),
+    (("specialisation",), _specialisation_line),
+    (("rates", "peers"), _peers_line),
+)
+
+
 def summary(report):
-    lines = [_front_line, _kernel_line, _robustness_line, _specialisation_line, _peers_line]
-    items = [f"<li>{line}</li>" for line in (make(report) for make in lines) if line]
-    scenes = {row["scene"]: row["scene_hash"] for row in report["frames"]["rows"]}
-    names = ", ".join(f"<em>{html.escape(name)}</em> ({code})" for name, code in scenes.items())
+    lines = [make(report) for names, make in _LINES if all(name in report for name in names)]
+    text = ["<ul>" + "\n".join(f"<li>{line}</li>" for line in lines if line) + "</ul>"] if any(lines) else []
     p = report["provenance"]
-    return {
-        "title": "In short",
-        "panels": [],
-        "legend": [],
-        "text": [
-            "<ul>" + "\n".join(items) + "</ul>",
-            f"To make it again: <code>{html.escape(p['command'])}</code> of commit {html.escape(p['commit'])}. The "
-            f"pictures' scenes, with hashes of what they hold: {names}. All figures are in report.json and CSV files "
-            "beside this page, each timed run in runs.csv.",
-        ],
-    }
+    again = f"To make it again: <code>{html.escape(p['command'])}</code> of commit {html.escape(p['commit'])}. "
+    if "frames" in report:
+        scenes = {row["scene"]: row["scene_hash"] for row in report["frames"]["rows"]}
+        names = ", ".join(f"{emphasis(name)} ({code})" for name, code in scenes.items())
+        again += f"The pictures' scenes, with hashes of what they hold: {names}. "
+    text.append(again + "All figures are in report.json beside this page.")
+    return section("In short", text)

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/accuracy.md to the standard output from figures that the hard cases and promin-robustness left.
+"""Writes docs/accuracy.md to the standard output from figures that the hard cases and reports on robustness left.
 
-accuracy_report.py FOLDER: FOLDER holds <driver>.log for each driver tried, and <driver>.json and
-<driver>.*.robustness.json for each driver measured."""
+accuracy_document.py FOLDER: FOLDER holds <driver>.log for each driver tried, and <driver>.json and
+<driver>/report.json for each driver measured."""
 
 import json
 import math
 import pathlib
 import sys
+
+from figures import join, markdown_table
+from report_file import read_report
 
 # What the kernels do, and where it comes from; shaders/primitives/*.glsl have the reasons.
 METHODS = {
@@ -72,9 +75,8 @@ def cell(figure, bound):
 
 
 def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
-    return "\n".join(lines)
+    """Rows of cells."""
+    return markdown_table([(head, lambda row, i=i: row[i]) for i, head in enumerate(header)], rows).rstrip("\n")
 
 
 def primitives_section(runs):
@@ -157,29 +159,25 @@ def rows_section(runs):
 
 
 def robustness_section(folder):
-    body = []
-    for file in sorted(folder.glob("*.robustness.json")):
-        run = json.loads(file.read_text())
-        for c in run["comparisons"]:
-            ratio = c["robust_mrays_per_s"] / c["plain_mrays_per_s"]
-            body.append(
-                [
-                    run["scene"],
-                    run["driver"],
-                    c["rays"],
-                    number(c["robust_mrays_per_s"]),
-                    number(c["plain_mrays_per_s"]),
-                    f"{ratio:.2f}",
-                    str(c["lost"]),
-                    str(c["invented"]),
-                ]
-            )
-    header = ["scene", "driver", "rays", "robust, Mrays/s", "plain, Mrays/s", "ratio", "lost by plain", "invented by plain"]
+    reports = [read_report(file) for file in sorted(folder.glob("*/report.json"))]
+    rows = [(report["provenance"], row) for report in reports for row in report["robustness"]["rows"]]
+    cpus = dict.fromkeys(report["provenance"]["cpu"] for report in reports)
+    columns = [
+        ("scene", lambda of: of[1]["scene"]),
+        ("driver", lambda of: of[0]["driver"]),
+        ("rays", lambda of: of[1]["rays"]),
+        ("robust, Mrays/s", lambda of: number(of[1]["robust_mrays_per_s"])),
+        ("plain, Mrays/s", lambda of: number(of[1]["plain_mrays_per_s"])),
+        ("ratio", lambda of: f"{of[1]['robust_mrays_per_s'] / of[1]['plain_mrays_per_s']:.2f}"),
+        ("lost by plain", lambda of: of[1]["only_promin_hits"]),
+        ("invented by plain", lambda of: of[1]["only_textbook_hits"]),
+    ]
     return (
-        "## What it costs\n\n`promin-robustness` runs the same rays through the same tree in turns, medians; the plain"
-        + " kernel (`tools/plain`) has Möller and Trumbore's triangle, the textbook's quadratics and boxes without"
-        + " padding. About 10^6 rays of each kind. Lost are rays that hit by the robust kernel and miss by the plain one.\n\n"
-        + table(header, body)
+        "## What it costs\n\n`promin-report --only robustness` runs the same rays through the same tree in turns,"
+        + " medians; the plain kernel (`tools/plain`) has Möller and Trumbore's triangle, the textbook's quadratics and"
+        + f" boxes without padding. About 10^6 rays of each kind, on {join(cpus)}. Lost are rays that hit by the"
+        + " robust kernel and miss by the plain one.\n\n"
+        + markdown_table(columns, rows).rstrip("\n")
     )
 
 
