@@ -126,7 +126,7 @@ class BvhFileTest : public TempFolder {
   }
 
   fs::path file_ = folder_ / "tree.pbvh";
-  Scene scene_ = test::make_scene_of_everything(30);
+  world::Scene scene_ = test::make_scene_of_everything(30);
   PackedScene packed_ = pack_scene(scene_, "median");
 };
 
@@ -155,7 +155,7 @@ TEST_F(BvhFileTest, HoldsWhatWasBuilt) {
   const std::vector<fs::path> files = scene_files(PROMIN_SCENES_DIR);
   EXPECT_GT(files.size(), 10U);
   for (const fs::path& scene_file : files) {
-    const Scene scene = load_scene(scene_file);
+    const world::Scene scene = world::flatten(load_scene(scene_file));
     for (const std::string_view builder : builder_names()) {
       SCOPED_TRACE(scene_file.string() + " " + std::string(builder));
       const PackedScene built = pack_scene(scene, builder);
@@ -166,9 +166,9 @@ TEST_F(BvhFileTest, HoldsWhatWasBuilt) {
 }
 
 TEST_F(BvhFileTest, ATreeOfNothingIsATree) {
-  Scene planes;
+  world::Scene planes;
   planes.materials.resize(1);
-  planes.objects = {{"", Plane{}, 0}};
+  planes.objects = {{"", world::Plane{}, 0}};
   const PackedScene built = pack_scene(planes, "sah");
   write_bvh_file(file_, built.tree());
   expect_same(pack_scene_with(file_, planes), built);
@@ -354,34 +354,34 @@ TEST_F(BvhFileTest, RandomFaultsAreRefusedOrHarmless) {
 }
 
 TEST_F(BvhFileTest, OtherGeometryMakesItStale) {
-  const auto refusal_for = [&](const Scene& scene) { return message_of([&] { pack_scene_with(file_, scene); }); };
+  const auto refusal_for = [&](const world::Scene& scene) { return message_of([&] { pack_scene_with(file_, scene); }); };
   EXPECT_EQ(refusal_for(scene_), "");
 
   const std::string stale = "the BVH file is stale: it was built over other geometry than the scene's, " +
                             file_.string() + "; build it again with promin-bvh build";
   for (size_t vertex = 0; vertex < 6; ++vertex) {
     for (int axis = 0; axis < 3; ++axis) {
-      Scene moved = scene_;
+      world::Scene moved = scene_;
       std::get<Mesh>(moved.objects[5].shape).positions[vertex][axis] += 1e-6F;
       EXPECT_EQ(refusal_for(moved), stale) << "vertex " << vertex << ", axis " << axis;
     }
   }
-  Scene turned = scene_;
-  std::get<Cylinder>(turned.objects[2].shape).axis.x += 1e-6F;
+  world::Scene turned = scene_;
+  std::get<world::Cylinder>(turned.objects[2].shape).axis.x += 1e-6F;
   EXPECT_EQ(refusal_for(turned), stale);
-  Scene smaller = scene_;
-  std::get<Cone>(smaller.objects[4].shape).radius_top *= 0.99F;
+  world::Scene smaller = scene_;
+  std::get<world::Cone>(smaller.objects[4].shape).radius_top *= 0.99F;
   EXPECT_EQ(refusal_for(smaller), stale);
-  Scene swapped = scene_;
+  world::Scene swapped = scene_;
   std::swap(swapped.objects[10], swapped.objects[11]);
   EXPECT_EQ(refusal_for(swapped), stale);
-  Scene fewer = scene_;
+  world::Scene fewer = scene_;
   fewer.objects.pop_back();
   EXPECT_EQ(refusal_for(fewer), stale);
 }
 
 TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
-  Scene other = scene_;
+  world::Scene other = scene_;
   other.file = "renamed.gltf";
   other.materials[1].diffuse = vec3(0.5F);
   other.lights.clear();
@@ -389,7 +389,7 @@ TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
   other.objects[1].name = "renamed";
   other.objects[1].material = 2;
   // A plane is in no tree, and a degenerate triangle only takes a number.
-  other.objects.insert(other.objects.begin(), {"", Plane{vec3(0, -1, 0), vec3(0, 1, 0)}, 0});
+  other.objects.insert(other.objects.begin(), {"", world::Plane{vec3(0, -1, 0), vec3(0, 1, 0)}, 0});
   std::get<Mesh>(other.objects[6].shape)
       .triangles.insert(std::get<Mesh>(other.objects[6].shape).triangles.begin(), uvec3(0, 0, 1));
   expect_same(pack_scene_with(file_, other), pack_scene(other, "median"));

@@ -18,15 +18,15 @@ namespace {
 using layout::Node;
 using testing::HasSubstr;
 
-Scene scene_of(std::vector<Object> objects) {
-  Scene scene;
+world::Scene scene_of(std::vector<Object> objects) {
+  world::Scene scene;
   scene.materials.resize(1);
   scene.objects = std::move(objects);
   return scene;
 }
 
 /// A packed scene with another tree in the place of its own: what a builder that splits primitives would make.
-PackedScene with_tree(const Scene& scene, const Bvh& bvh) {
+PackedScene with_tree(const world::Scene& scene, const Bvh& bvh) {
   PackedScene packed = pack_scene(scene, "median");
   std::vector<layout::Primitive> solids(packed.solid_count);
   for (size_t slot = 0; slot < packed.references.size(); ++slot) {
@@ -56,7 +56,7 @@ Bvh chain_of(std::span<const Bounds> boxes, std::span<const uint32_t> references
 
 TEST(FindTreeFaults, TreesOfAllBuildersHaveNone) {
   for (const std::filesystem::path& file : scene_files(PROMIN_SCENES_DIR)) {
-    const Scene scene = load_scene(file);
+    const world::Scene scene = world::flatten(load_scene(file));
     for (const std::string_view builder : builder_names()) {
       const TreeFaults faults = find_tree_faults(pack_scene(scene, builder));
       EXPECT_EQ(faults.count, 0U) << file << " " << builder << ": " << faults.first;
@@ -96,7 +96,7 @@ TEST(FindTreeFaults, ShrunkenBoxesAreFound) {
 }
 
 TEST(FindTreeFaults, WhatIsNoBoxHoldsNothing) {
-  PackedScene packed = pack_scene(scene_of({{"", Sphere{}, 0}}), "sah");
+  PackedScene packed = pack_scene(scene_of({{"", world::Sphere{}, 0}}), "sah");
   ASSERT_EQ(find_tree_faults(packed).count, 0U);
   for (const float origin : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     PackedScene spoilt = packed;
@@ -139,16 +139,16 @@ TEST(FindTreeFaults, LeavesAreSortedByKind) {
 /// A triangle and a sphere beside it, both in several leaves.
 class SplitTree : public testing::Test {
  protected:
-  static Scene make_scene() {
+  static world::Scene make_scene() {
     Mesh mesh;
     mesh.positions = {vec3(0, 0, 0), vec3(4, 0, 0.5F), vec3(0, 3, 1)};
     mesh.triangles = {{0, 1, 2}};
-    return scene_of({{"", mesh, 0}, {"", Sphere{vec3(10, 0, 0), 1.0F}, 0}});
+    return scene_of({{"", mesh, 0}, {"", world::Sphere{vec3(10, 0, 0), 1.0F}, 0}});
   }
 
   TreeFaults faults() const { return find_tree_faults(with_tree(scene_, chain_of(boxes_, references_))); }
 
-  Scene scene_ = make_scene();
+  world::Scene scene_ = make_scene();
   // The triangle at x = 1 and at x = 2.5, each part's own bounds; the sphere at y = 0.25.
   std::vector<Bounds> boxes_ = {{vec3(0, 0, 0), vec3(1, 3, 1)},
                                 {vec3(1, 0, 0.125F), vec3(2.5F, 2.25F, 0.875F)},

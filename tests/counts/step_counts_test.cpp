@@ -96,15 +96,15 @@ std::string compare_counts(const Counts& now, const Counts& stored, double toler
   return text;
 }
 
-Scene make_scene(const std::string& name) {
+world::Scene make_scene(const std::string& name) {
   if (name == "wavy") return measure::make_wavy_sphere(20000);
   if (name == "needles") return measure::make_needles(5000);
-  return load_scene(fs::path(PROMIN_SCENES_DIR) / (name + ".gltf"));
+  return world::flatten(load_scene(fs::path(PROMIN_SCENES_DIR) / (name + ".gltf")));
 }
 
 class StepCountsTest : public test::DeviceTest, public testing::WithParamInterface<const char*> {
  protected:
-  static Counts count_all(const Scene& scene) {
+  static Counts count_all(const world::Scene& scene) {
     const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
     std::vector<RaySet> sets = {measure::make_camera_rays(camera, kSide)};
     std::vector<Hit> hits(sets[0].rays.size());

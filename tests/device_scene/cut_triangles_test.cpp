@@ -18,14 +18,14 @@ Mesh make_mesh() {
   return mesh;
 }
 
-Scene scene_of(std::initializer_list<Shape> shapes) {
-  Scene scene;
+world::Scene scene_of(std::initializer_list<world::Shape> shapes) {
+  world::Scene scene;
   scene.materials.resize(1);
-  for (const Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
+  for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
   return scene;
 }
 
-std::vector<TrianglePart> parts_of(const Scene& scene, const Mesh& mesh, uint32_t triangle) {
+std::vector<TrianglePart> parts_of(const world::Scene& scene, const Mesh& mesh, uint32_t triangle) {
   std::vector<TrianglePart> parts;
   CutTriangles(scene).cut(mesh, triangle, parts);
   return parts;
@@ -33,7 +33,7 @@ std::vector<TrianglePart> parts_of(const Scene& scene, const Mesh& mesh, uint32_
 
 TEST(CutTriangles, CutsTheNeighbourAtTheCornerOnItsEdge) {
   const Mesh mesh = make_mesh();
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   for (const uint32_t whole : {1U, 2U, 4U}) EXPECT_EQ(parts_of(scene, mesh, whole).size(), 1U);
   const std::vector<TrianglePart> parts = parts_of(scene, mesh, 3);
   ASSERT_EQ(parts.size(), 2U);
@@ -53,7 +53,7 @@ TEST(CutTriangles, CutsAcrossTrianglesInOneLine) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0}, {1, 2, 0}, {1, -2, 0}};
   mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 4, 1}, {1, 4, 3}, {0, 2, 5}, {2, 3, 5}};
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   EXPECT_EQ(parts_of(scene, mesh, 2).size(), 1U);
   EXPECT_EQ(parts_of(scene, mesh, 3).size(), 2U) << "from 1 to 4 past 2";
   EXPECT_EQ(parts_of(scene, mesh, 4).size(), 2U) << "from 0 to 2 past 1";
@@ -63,7 +63,7 @@ TEST(CutTriangles, CutsAcrossTrianglesInOneLine) {
 TEST(CutTriangles, NumbersStayThoseOfTheScene) {
   Mesh mesh = make_mesh();
   mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
-  const PackedScene packed = pack_scene(scene_of({Sphere(), mesh, NotDrawn(), mesh, Plane()}), "sah");
+  const PackedScene packed = pack_scene(scene_of({world::Sphere(), mesh, world::NotDrawn(), mesh, world::Plane()}), "sah");
   // One sphere, twice five triangles with one cut in two, of which one is not packed, and a plane.
   ASSERT_EQ(packed.primitives.size(), 12U);
   const std::vector<PrimitiveId> expected = {{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 3}, {1, 3}, {1, 4},

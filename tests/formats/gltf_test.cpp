@@ -19,8 +19,8 @@ using testing::SizeIs;
 
 class GltfTest : public SceneFolder {
  protected:
-  Scene load(GltfBuilder& gltf) const { return SceneFolder::load("scene.gltf", gltf.text()); }
-  Scene load(GltfBuilder&& gltf) const { return load(gltf); }
+  LoadedScene load(GltfBuilder& gltf) const { return SceneFolder::load("scene.gltf", gltf.text()); }
+  LoadedScene load(GltfBuilder&& gltf) const { return load(gltf); }
 };
 
 void expect_near(const vec3& got, const vec3& wanted, float tolerance = 1e-6F) {
@@ -37,7 +37,7 @@ TEST_F(GltfTest, TrianglesComeOutInTheWorld) {
   gltf.json["nodes"][0].update({{"translation", {10, 0, 0}},
                                 {"rotation", {0, 0, 0.70710678118654752, 0.70710678118654752}},
                                 {"scale", {2, 3, 4}}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   const std::vector<vec3> corners = corners_of(mesh_of(scene));
   ASSERT_THAT(corners, SizeIs(3));
   expect_near(corners[0], {10, 0, 0});
@@ -64,7 +64,7 @@ TYPED_TEST(GltfIndexTest, EveryIndexTypeIsRead) {
   const size_t positions = gltf.add<float>(kSquare, "VEC3");
   const size_t indices = gltf.add<TypeParam>({2, 1, 3}, "SCALAR");
   gltf.show({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
-  const Scene scene = this->load("scene.gltf", gltf.text());
+  const LoadedScene scene = this->load("scene.gltf", gltf.text());
   EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0, 1, 0), vec3(1, 0, 0), vec3(1, 1, 0)));
   EXPECT_THAT(mesh_of(scene).positions, SizeIs(3)) << "vertices that no triangle uses are left out";
 }
@@ -87,7 +87,7 @@ TEST_F(GltfTest, StripsAlternateAndFansTurn) {
            {4, {{0, 1, 2}}}, {5, {{0, 1, 2}, {1, 3, 2}}}, {6, {{1, 2, 0}, {2, 3, 0}}}}) {
     GltfBuilder gltf;
     gltf.show({{"attributes", {{"POSITION", gltf.add<float>(kSquare, "VEC3")}}}, {"mode", mode}});
-    const Scene scene = load(gltf);
+    const LoadedScene scene = load(gltf);
     EXPECT_EQ(mesh_of(scene).triangles, wanted) << "mode " << mode;
     EXPECT_EQ(scene.warnings.size(), mode == 4 ? 1U : 0U) << "the fourth corner is no triangle";
   }
@@ -97,9 +97,9 @@ TEST_F(GltfTest, PointsAndLinesTakeANumberButAreNotDrawn) {
   GltfBuilder gltf;
   const size_t positions = gltf.add<float>(kSquare, "VEC3");
   for (const int mode : {0, 1, 2, 3, 5}) gltf.show({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   ASSERT_THAT(scene.objects, SizeIs(5));
-  for (size_t i = 0; i < 4; ++i) EXPECT_TRUE(std::holds_alternative<NotDrawn>(scene.objects[i].shape));
+  for (size_t i = 0; i < 4; ++i) EXPECT_TRUE(std::holds_alternative<world::NotDrawn>(scene.objects[i].shape));
   EXPECT_TRUE(std::holds_alternative<Mesh>(scene.objects[4].shape));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("meshes[0].primitives[0] holds points or lines")));
 }
@@ -125,7 +125,7 @@ TEST_F(GltfTest, InterleavedAttributesAreTakenApart) {
         {{"bufferView", view}, {"byteOffset", offset}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
   }
   gltf.show({{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)));
   EXPECT_THAT(mesh_of(scene).normals, ElementsAre(vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)));
 }
@@ -135,7 +135,7 @@ TEST_F(GltfTest, MirroringKeepsCounterClockwiseOutside) {
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
       gltf.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
   gltf.json["nodes"][0]["scale"] = {-1, 1, 1};
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0), vec3(0, 1, 0), vec3(-1, 0, 0)));
   EXPECT_EQ(mesh_of(scene).normals[0], vec3(0, 0, 1));
 }
@@ -153,7 +153,7 @@ TEST_F(GltfTest, NormalsWithoutLengthMakeTheMeshSharp) {
     GltfBuilder gltf = triangle_gltf();
     gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
         gltf.add<float>({0, 0, 1, bad, bad, bad, 0, 0, 1}, "VEC3");
-    const Scene scene = load(gltf);
+    const LoadedScene scene = load(gltf);
     EXPECT_THAT(mesh_of(scene).normals, IsEmpty());
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("sharp")));
   }
@@ -178,9 +178,9 @@ TEST_F(GltfTest, ObjectsAreNumberedDepthFirst) {
   for (const char* name : {"a", "b", "c", "d"}) gltf.add_node({{"mesh", 0}, {"name", name}});
   gltf.json["nodes"][3]["children"] = {1, 2};
   gltf.json["scenes"] = {{{"nodes", {4, 3}}}};
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   std::vector<std::string> names;
-  for (const Object& object : scene.objects) names.push_back(object.name);
+  for (const world::Object& object : scene.objects) names.push_back(object.name);
   EXPECT_THAT(names, ElementsAre("d", "c", "a", "b"));
 }
 
@@ -196,9 +196,9 @@ TEST_F(GltfTest, TheDefaultSceneIsShown) {
 TEST_F(GltfTest, InvisibleNodesKeepTheirNumbers) {
   GltfBuilder gltf = triangle_gltf();
   gltf.add_node({{"mesh", 0}, {"children", {0}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   ASSERT_THAT(scene.objects, SizeIs(2));
-  for (const Object& object : scene.objects) EXPECT_TRUE(std::holds_alternative<NotDrawn>(object.shape));
+  for (const world::Object& object : scene.objects) EXPECT_TRUE(std::holds_alternative<world::NotDrawn>(object.shape));
 }
 
 TEST_F(GltfTest, DeepHierarchiesDoNotOverflowTheStack) {
@@ -220,17 +220,17 @@ GltfBuilder shape_gltf(const json& shape, const json& node = json::object()) {
 }
 
 TEST_F(GltfTest, SpheresScaleAndMove) {
-  const Scene scene = load(shape_gltf({{"type", "sphere"}, {"sphere", {{"radius", 2}}}},
+  const LoadedScene scene = load(shape_gltf({{"type", "sphere"}, {"sphere", {{"radius", 2}}}},
                                       {{"translation", {1, 2, 3}}, {"scale", {-3, 3, 3}}}));
-  const auto& sphere = std::get<Sphere>(scene.objects.at(0).shape);
+  const auto& sphere = std::get<world::Sphere>(scene.objects.at(0).shape);
   EXPECT_EQ(sphere.center, vec3(1, 2, 3));
   EXPECT_EQ(sphere.radius, 6.0F);
 }
 
 TEST_F(GltfTest, ShapesHaveTheReleaseCandidatesDefaults) {
-  EXPECT_EQ(std::get<Sphere>(load(shape_gltf({{"type", "sphere"}})).objects[0].shape).radius, 0.5F);
-  const Scene scene = load(shape_gltf({{"type", "cylinder"}}));
-  const auto& cylinder = std::get<Cylinder>(scene.objects[0].shape);
+  EXPECT_EQ(std::get<world::Sphere>(load(shape_gltf({{"type", "sphere"}})).objects[0].shape).radius, 0.5F);
+  const LoadedScene scene = load(shape_gltf({{"type", "cylinder"}}));
+  const auto& cylinder = std::get<world::Cylinder>(scene.objects[0].shape);
   EXPECT_EQ(cylinder.half_height, 0.25F);
   EXPECT_EQ(cylinder.radius, 0.25F);
   EXPECT_EQ(cylinder.axis, vec3(0, 1, 0));
@@ -238,9 +238,9 @@ TEST_F(GltfTest, ShapesHaveTheReleaseCandidatesDefaults) {
 
 TEST_F(GltfTest, CylindersStretchAlongTheirAxis) {
   const json shape = {{"type", "cylinder"}, {"cylinder", {{"height", 4}, {"radiusTop", 1}, {"radiusBottom", 1}}}};
-  const Scene scene =
+  const LoadedScene scene =
       load(shape_gltf(shape, {{"rotation", {0, 0, -0.70710678118654752, 0.70710678118654752}}, {"scale", {2, 5, 2}}}));
-  const auto& cylinder = std::get<Cylinder>(scene.objects[0].shape);
+  const auto& cylinder = std::get<world::Cylinder>(scene.objects[0].shape);
   expect_near(cylinder.axis, {1, 0, 0});
   EXPECT_FLOAT_EQ(cylinder.half_height, 10);
   EXPECT_FLOAT_EQ(cylinder.radius, 2);
@@ -249,8 +249,8 @@ TEST_F(GltfTest, CylindersStretchAlongTheirAxis) {
 TEST_F(GltfTest, TwoRadiiMakeAConeOrAFrustum) {
   for (const double top : {0.0, 0.5}) {
     const json shape = {{"type", "cylinder"}, {"cylinder", {{"height", 2}, {"radiusTop", top}, {"radiusBottom", 1}}}};
-    const Scene scene = load(shape_gltf(shape, {{"scale", {2, -1, 2}}}));
-    const auto& cone = std::get<Cone>(scene.objects[0].shape);
+    const LoadedScene scene = load(shape_gltf(shape, {{"scale", {2, -1, 2}}}));
+    const auto& cone = std::get<world::Cone>(scene.objects[0].shape);
     EXPECT_EQ(cone.axis, vec3(0, -1, 0)) << "the top stays at the axis' end";
     EXPECT_EQ(cone.radius_top, static_cast<float>(2 * top));
     EXPECT_EQ(cone.radius_bottom, 2.0F);
@@ -259,12 +259,12 @@ TEST_F(GltfTest, TwoRadiiMakeAConeOrAFrustum) {
 }
 
 TEST_F(GltfTest, PlanesTurnTheirNormal) {
-  const Scene scene = load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
-  const auto& plane = std::get<Plane>(scene.objects[0].shape);
+  const LoadedScene scene = load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
+  const auto& plane = std::get<world::Plane>(scene.objects[0].shape);
   EXPECT_EQ(plane.point, vec3(0, 3, 0));
   expect_near(plane.normal, {0, -1, 0});
-  const Scene mirrored = load(shape_gltf({{"type", "plane"}}, {{"scale", {1, -1, 1}}}));
-  EXPECT_EQ(std::get<Plane>(mirrored.objects[0].shape).normal, vec3(0, -1, 0));
+  const LoadedScene mirrored = load(shape_gltf({{"type", "plane"}}, {{"scale", {1, -1, 1}}}));
+  EXPECT_EQ(std::get<world::Plane>(mirrored.objects[0].shape).normal, vec3(0, -1, 0));
 }
 
 TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
@@ -278,15 +278,15 @@ TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
   };
   for (const auto& [shape, node] : cases) {
     const json changes = node.is_null() ? json::object() : node;
-    const Scene scene = load(shape_gltf(shape, changes));
+    const LoadedScene scene = load(shape_gltf(shape, changes));
     EXPECT_TRUE(std::holds_alternative<Mesh>(scene.objects.at(0).shape)) << shape << node;
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("shapes[0]")));
 
     GltfBuilder bare = shape_gltf(shape, changes);
     bare.json["meshes"][0]["primitives"][0]["attributes"] = json::object();
     bare.json["meshes"][0]["primitives"][0].erase("indices");
-    const Scene nothing = load(bare);
-    EXPECT_TRUE(std::holds_alternative<NotDrawn>(nothing.objects.at(0).shape));
+    const LoadedScene nothing = load(bare);
+    EXPECT_TRUE(std::holds_alternative<world::NotDrawn>(nothing.objects.at(0).shape));
     EXPECT_THAT(nothing.warnings, Contains(HasSubstr("no POSITION")));
   }
 }
@@ -295,7 +295,7 @@ TEST_F(GltfTest, CollidersAreNotDrawn) {
   GltfBuilder gltf = shape_gltf({{"type", "sphere"}});
   gltf.json["extensionsUsed"] = {"KHR_physics_rigid_bodies"};
   gltf.add_node({{"extensions", {{"KHR_physics_rigid_bodies", {{"collider", {{"geometry", {{"shape", 0}}}}}}}}}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   EXPECT_THAT(scene.objects, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre("the extension KHR_physics_rigid_bodies is ignored"));
 }
@@ -311,7 +311,7 @@ GltfBuilder material_gltf(const json& material) {
 }
 
 TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
-  const Scene scene = load(material_gltf({{"name", "m"},
+  const LoadedScene scene = load(material_gltf({{"name", "m"},
                                           {"emissiveFactor", {1, 0, 0}},
                                           {"extensions",
                                            {{"PROMIN_materials_phong",
@@ -322,7 +322,7 @@ TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
                                               {"reflectionFactor", {0.7, 0.8, 0.9}}}},
                                             {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}));
   const Material& material = scene.materials.at(0);
-  EXPECT_EQ(material.ambient, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.environment.ambient, vec3(0.1F, 0.2F, 0.3F));
   EXPECT_EQ(material.diffuse, vec3(0.4F, 0.5F, 0.6F));
   EXPECT_EQ(material.specular, vec3(2));
   EXPECT_EQ(material.shininess, 64);
@@ -332,23 +332,23 @@ TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
 }
 
 TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
-  const Scene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
+  const LoadedScene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
                                           {"extensions", {{"PROMIN_materials_phong", json::object()}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.diffuse, vec3(0.5F, 0.25F, 0));
-  EXPECT_EQ(material.ambient, material.diffuse);
+  EXPECT_EQ(material.environment.ambient, material.diffuse);
   EXPECT_EQ(material.specular, vec3(0));
   EXPECT_EQ(material.shininess, 0);
   EXPECT_EQ(material.reflection, vec3(0));
 }
 
 TEST_F(GltfTest, MetallicRoughnessBecomesPhong) {
-  const Scene scene = load(
+  const LoadedScene scene = load(
       material_gltf({{"pbrMetallicRoughness",
                       {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.15}}}}));
   const Material& material = scene.materials.at(0);
   const vec3 ks = 0.5F * (vec3(0.04F) + vec3(0.8F, 0.4F, 0.2F));
-  expect_near(material.ambient, {0.4F, 0.2F, 0.1F});
+  expect_near(material.environment.ambient, {0.4F, 0.2F, 0.1F});
   expect_near(material.diffuse, vec3(0.4F, 0.2F, 0.1F) * std::numbers::inv_pi_v<float>);
   expect_near(material.specular, ks);
   EXPECT_NEAR(material.shininess, (2.0 / 0.00050625 - 2.0) / 4.0, 1e-3);
@@ -361,12 +361,12 @@ TEST_F(GltfTest, ExponentsAreKeptInRange) {
 }
 
 TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
-  const Scene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
+  const LoadedScene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
                                           {"extensions", {{"KHR_materials_unlit", json::object()}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.emissive, vec3(0.5F, 0.25F, 0));
   EXPECT_EQ(material.diffuse, vec3(0));
-  EXPECT_EQ(material.ambient, vec3(0));
+  EXPECT_EQ(material.environment.ambient, vec3(0));
   EXPECT_EQ(material.specular, vec3(0));
 }
 
@@ -374,7 +374,7 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
   GltfBuilder gltf = material_gltf({{"name", "other"}});
   gltf.show(gltf.json["meshes"][0]["primitives"][0]);
   gltf.json["meshes"][1]["primitives"][0].erase("material");
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   EXPECT_EQ(scene.objects[0].material, 0U);
   EXPECT_EQ(scene.objects[1].material, 1U);
   EXPECT_EQ(scene.materials.at(1).specular, vec3(1)) << "the default is a white metal";
@@ -404,7 +404,7 @@ GltfBuilder light_gltf(const json& light, const json& node = json::object()) {
 }
 
 TEST_F(GltfTest, PointLightsFallOff) {
-  const Scene scene =
+  const LoadedScene scene =
       load(light_gltf({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 60}, {"range", 9}, {"name", "key"}},
                       {{"translation", {1, 2, 3}}, {"scale", {7, 7, 7}}}));
   const Light& light = scene.lights.at(0);
@@ -418,7 +418,7 @@ TEST_F(GltfTest, PointLightsFallOff) {
 }
 
 TEST_F(GltfTest, DirectionalLightsTravelAlongMinusZ) {
-  const Scene scene =
+  const LoadedScene scene =
       load(light_gltf({{"type", "directional"}, {"intensity", 2}},
                       {{"rotation", {-0.70710678118654752, 0, 0, 0.70710678118654752}}, {"scale", {5, 6, 7}}}));
   const Light& light = scene.lights.at(0);
@@ -430,10 +430,10 @@ TEST_F(GltfTest, DirectionalLightsTravelAlongMinusZ) {
 
 TEST_F(GltfTest, SpotsHaveCones) {
   const json cone = {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.4}};
-  const Scene scene = load(light_gltf({{"type", "spot"}, {"spot", cone}}));
+  const LoadedScene scene = load(light_gltf({{"type", "spot"}, {"spot", cone}}));
   EXPECT_EQ(scene.lights.at(0).inner_cone_angle, 0.2F);
   EXPECT_EQ(scene.lights.at(0).outer_cone_angle, 0.4F);
-  const Scene plain = load(light_gltf({{"type", "spot"}, {"spot", json::object()}}));
+  const LoadedScene plain = load(light_gltf({{"type", "spot"}, {"spot", json::object()}}));
   EXPECT_EQ(plain.lights.at(0).inner_cone_angle, 0.0F);
   EXPECT_FLOAT_EQ(plain.lights.at(0).outer_cone_angle, std::numbers::pi_v<float> / 4);
 }
@@ -463,14 +463,14 @@ TEST_F(GltfTest, ThePlainSkyIsBackgroundAndAmbientLight) {
       {{"type", "plain"}, {"plain", plain}},
       {{"type", "plain"}, {"plain", plain}, {"ambientLightColor", {0, 1, 0}}, {"ambientSkyContribution", 0.5}},
       {{"type", "physical"}, {"ambientLightColor", {0.25, 0.25, 0.25}}, {"ambientSkyContribution", 0}}};
-  EXPECT_EQ(load(gltf).background, vec3(0.5F, 0.5F, 1)) << "sky 0 where the scene names none";
-  EXPECT_EQ(load(gltf).ambient, vec3(0.5F, 0.5F, 1));
+  EXPECT_EQ(load(gltf).environment.background, vec3(0.5F, 0.5F, 1)) << "sky 0 where the scene names none";
+  EXPECT_EQ(load(gltf).environment.ambient, vec3(0.5F, 0.5F, 1));
   gltf.json["scenes"] = {{{"nodes", {0}}, {"extensions", {{"OMI_environment_sky", {{"sky", 1}}}}}}};
-  EXPECT_EQ(load(gltf).ambient, vec3(0.25F, 0.75F, 0.5F));
+  EXPECT_EQ(load(gltf).environment.ambient, vec3(0.25F, 0.75F, 0.5F));
   gltf.json["scenes"][0]["extensions"]["OMI_environment_sky"]["sky"] = 2;
-  const Scene scene = load(gltf);
-  EXPECT_EQ(scene.background, vec3(0));
-  EXPECT_EQ(scene.ambient, vec3(0.25F));
+  const LoadedScene scene = load(gltf);
+  EXPECT_EQ(scene.environment.background, vec3(0));
+  EXPECT_EQ(scene.environment.ambient, vec3(0.25F));
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"physical\"")));
 }
 
@@ -485,7 +485,7 @@ TEST_F(GltfTest, CamerasComeInNodeOrderWithoutScale) {
   gltf.add_node({{"camera", 1}, {"name", "side"}, {"rotation", {0, 0.70710678118654752, 0, 0.70710678118654752}}});
   gltf.add_node({{"camera", 0}, {"children", {1}}, {"translation", {1, 2, 3}}, {"scale", {2, 3, 4}}});
   gltf.add_node({{"camera", 2}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   ASSERT_THAT(scene.cameras, SizeIs(3));
   const Camera& first = scene.cameras[0];
   EXPECT_EQ(first.projection, Projection::kPerspective);
@@ -543,7 +543,7 @@ TEST_F(GltfTest, BuffersThatNoMeshNeedsMayLackBytes) {
   write("short.bin", "1234");
   write("empty.bin", "");
   const auto warnings_of = [&](const json& second_buffer) {
-    const Scene scene = SceneFolder::load("a.gltf", two_buffer_gltf(second_buffer).json.dump());
+    const LoadedScene scene = SceneFolder::load("a.gltf", two_buffer_gltf(second_buffer).json.dump());
     EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     return scene.warnings;
   };
@@ -561,7 +561,7 @@ TEST_F(GltfTest, BuffersThatNoMeshNeedsMayLackBytes) {
 
 TEST_F(GltfTest, BytesAfterTheEndOfAGlbAreIgnored) {
   GltfBuilder gltf = triangle_gltf();
-  const Scene scene = SceneFolder::load("a.glb", gltf.glb() + "more");
+  const LoadedScene scene = SceneFolder::load("a.glb", gltf.glb() + "more");
   EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_THAT(scene.warnings, ElementsAre("the 4 bytes after the end of the GLB are ignored"));
 }

@@ -21,13 +21,13 @@ const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 class ObjTest : public SceneFolder {
  protected:
-  Scene load(std::string_view text) const { return SceneFolder::load("scene.obj", text); }
+  LoadedScene load(std::string_view text) const { return SceneFolder::load("scene.obj", text); }
   std::string refusal(std::string_view text) const { return SceneFolder::refusal("scene.obj", text); }
 
   /// The material "m" of an MTL with these lines.
   Material material(const std::string& lines, std::vector<std::string>* warnings = nullptr) const {
     write("m.mtl", "newmtl m\n" + lines);
-    const Scene scene = load(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n");
+    const LoadedScene scene = load(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n");
     if (warnings != nullptr) *warnings = scene.warnings;
     return scene.materials.at(scene.objects.at(0).material);
   }
@@ -75,11 +75,11 @@ TEST_F(ObjTest, PolygonsAreCutIntoTriangles) {
 }
 
 TEST_F(ObjTest, ObjectsAndGroupsWithFacesAreNumbered) {
-  const Scene scene =
+  const LoadedScene scene =
       load(kSquare + "f 1 2 3\no empty\no first\ng second\nf 1 2 3\nf 1 3 4\ng\no  third one \nf 2 3 4\n");
   std::vector<std::string> names;
   std::vector<uint32_t> counts;
-  for (const Object& object : scene.objects) {
+  for (const world::Object& object : scene.objects) {
     names.push_back(object.name);
     counts.push_back(primitive_count(object.shape));
   }
@@ -89,14 +89,14 @@ TEST_F(ObjTest, ObjectsAndGroupsWithFacesAreNumbered) {
 }
 
 TEST_F(ObjTest, DegenerateTrianglesKeepTheirNumber) {
-  const Scene scene = load(kSquare + "f 1 1 2\nf 1 2 3\n");
+  const LoadedScene scene = load(kSquare + "f 1 1 2\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(2));
   EXPECT_TRUE(is_degenerate(mesh_of(scene), 0));
   EXPECT_FALSE(is_degenerate(mesh_of(scene), 1));
 }
 
 TEST_F(ObjTest, NormalsHaveIndicesOfTheirOwn) {
-  const Scene scene = load(kSquare + "vn 0 0 2\nvn 0 3 0\nf 1//1 2//1 3//1\nf 1/9/1 3//2 4//-2\n");
+  const LoadedScene scene = load(kSquare + "vn 0 0 2\nvn 0 3 0\nf 1//1 2//1 3//1\nf 1/9/1 3//2 4//-2\n");
   const Mesh& mesh = mesh_of(scene);
   EXPECT_THAT(mesh.positions, SizeIs(5)) << "vertex 3 has two normals, vertex 1 one";
   EXPECT_EQ(mesh.normals.at(mesh.triangles[0].z), vec3(0, 0, 1));
@@ -106,7 +106,7 @@ TEST_F(ObjTest, NormalsHaveIndicesOfTheirOwn) {
 
 TEST_F(ObjTest, FacesWithoutNormalsAreSharp) {
   EXPECT_THAT(mesh_of(load(kSquare + "s 1\nf 1 2 3\n")).normals, IsEmpty());
-  const Scene mixed = load(kSquare + "vn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 3 4\nf 1//1 3//2 4//1\n");
+  const LoadedScene mixed = load(kSquare + "vn 1 0 0\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 3 4\nf 1//1 3//2 4//1\n");
   const Mesh& mesh = mesh_of(mixed);
   EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
   EXPECT_EQ(mesh.normals.at(mesh.triangles[0].x), vec3(1, 0, 0));
@@ -117,7 +117,7 @@ TEST_F(ObjTest, FacesWithoutNormalsAreSharp) {
 }
 
 TEST_F(ObjTest, VertexColorsFollowThePosition) {
-  const Scene scene = load("v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 0 1 0 1.0\nf 1 2 3\n");
+  const LoadedScene scene = load("v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 0 1 0 1.0\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(scene).colors, ElementsAre(vec4(1), vec4(0.5F, 0.25F, 1, 1), vec4(1)));
   EXPECT_THAT(mesh_of(load(kSquare + "f 1 2 3\n")).colors, IsEmpty());
 }
@@ -130,7 +130,7 @@ TEST_F(ObjTest, WhatIsNotDrawnIsSaidOnce) {
 
 TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
   EXPECT_THAT(refusal(kSquare), HasSubstr("4 vertices but no faces"));
-  const Scene scene = load("# nothing\n");
+  const LoadedScene scene = load("# nothing\n");
   EXPECT_THAT(scene.objects, IsEmpty());
   EXPECT_THAT(scene.warnings, Contains("the scene holds nothing to draw"));
   EXPECT_THAT(scene.materials, SizeIs(1));
@@ -184,14 +184,14 @@ TEST_F(ObjTest, TransparencyAndMapsAreSaid) {
 }
 
 TEST_F(ObjTest, AMissingMtlIsGrey) {
-  const Scene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
+  const LoadedScene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
   EXPECT_EQ(scene.materials.at(scene.objects[0].material).diffuse, vec3(0.8F));
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"none.mtl\" does not exist"), HasSubstr("\"red\" is in no MTL")));
 }
 
 TEST_F(ObjTest, FacesKeepTheirMaterials) {
   write("two.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
-  const Scene scene = load(kSquare +
+  const LoadedScene scene = load(kSquare +
                            "mtllib two.mtl\nf 1 2 3\nusemtl blue\nf 1 2 3 4\nusemtl red\nf 1 2 3\n"
                            "o one\nusemtl blue\nf 1 2 3\n");
   const Mesh& mesh = mesh_of(scene);
@@ -212,7 +212,7 @@ TEST_F(ObjTest, AColourOfOneNumberIsGrey) {
 
 TEST_F(ObjTest, StatementsBeforeTheFirstMaterialAreOfNone) {
   write("two.mtl", "Kd 1 0 0\nd 0.5\nnewmtl a\nKs 1\nKs 0 1 0\nKd 0 0 1\nnewmtl b\n");
-  const Scene scene = load(kSquare + "mtllib two.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  const LoadedScene scene = load(kSquare + "mtllib two.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
   ASSERT_THAT(scene.materials, SizeIs(2));
   EXPECT_EQ(scene.materials[0].specular, vec3(0, 1, 0)) << "the last of equal statements holds";
   EXPECT_EQ(scene.materials[1].diffuse, vec3(0.8F));
@@ -234,7 +234,7 @@ TEST_F(ObjTest, OpacityWinsOverTransparency) {
 
 TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
   write("my colors.mtl", "newmtl deep red\r\nKd 1 0 0\r\n");
-  const Scene scene = load(kSquare + "mtllib my colors.mtl\nusemtl deep red\nf 1 2 3\n");
+  const LoadedScene scene = load(kSquare + "mtllib my colors.mtl\nusemtl deep red\nf 1 2 3\n");
   EXPECT_EQ(scene.materials.at(0).diffuse, vec3(1, 0, 0));
   write("a.mtl", "newmtl a\nKd 1 0 0\n");
   write("b.mtl", "newmtl b\nKd 0 1 0\n");

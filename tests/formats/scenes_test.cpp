@@ -62,7 +62,7 @@ TEST_F(ScenesTest, EverySceneLoadsWithoutWarning) {
   EXPECT_GE(files.size(), 22U);
   for (const fs::path& file : files) {
     SCOPED_TRACE(file);
-    const Scene scene = load_scene(file);
+    const world::Scene scene = world::flatten(load_scene(file));
     EXPECT_THAT(scene.warnings, testing::IsEmpty());
     if (file.extension() == ".gltf") {
       EXPECT_THAT(scene.cameras, testing::Not(testing::IsEmpty()));
@@ -75,15 +75,15 @@ TEST_F(ScenesTest, SphereflakeHasNineSpheresOnEachSphere) {
   fs::create_directories(folder_);
   const fs::path file = folder_ / "flake.gltf";
   ASSERT_NO_FATAL_FAILURE(run_make_scenes({"--sphereflake", "3", "-o", file}));
-  std::vector<Sphere> spheres;
-  for (const Object& object : load_scene(file).objects) {
-    if (const auto* sphere = std::get_if<Sphere>(&object.shape)) spheres.push_back(*sphere);
+  std::vector<world::Sphere> spheres;
+  for (const world::Object& object : world::flatten(load_scene(file)).objects) {
+    if (const auto* sphere = std::get_if<world::Sphere>(&object.shape)) spheres.push_back(*sphere);
   }
   ASSERT_EQ(spheres.size(), 1U + 9U + 81U + 729U);
-  for (const Sphere& child : spheres) {
+  for (const world::Sphere& child : spheres) {
     if (child.radius == spheres.front().radius) continue;
     int parent_count = 0;
-    for (const Sphere& parent : spheres) {
+    for (const world::Sphere& parent : spheres) {
       const bool is_thrice = std::abs(parent.radius - 3.0F * child.radius) < 1e-5F;
       const float gap = glm::length(parent.center - child.center) - parent.radius - child.radius;
       if (is_thrice && std::abs(gap) < 1e-5F) ++parent_count;

@@ -45,13 +45,13 @@ std::vector<std::string> scene_names() {
 }
 
 struct Subject {
-  Scene scene;
+  world::Scene scene;
   View view;
 };
 
 Subject load_subject(const std::string& name) {
   Subject subject;
-  subject.scene = load_scene(kScenes / name);
+  subject.scene = world::flatten(load_scene(kScenes / name));
   subject.view.size = uvec2(160, 90);
   subject.view.camera =
       subject.scene.cameras.empty() ? frame_scene(subject.scene, 16.0F / 9.0F) : subject.scene.cameras[0];
@@ -112,7 +112,7 @@ TEST_F(GoldenTest, AHalfPixelShiftIsSeen) {
 
 TEST_F(GoldenTest, MissingShadowsAreSeen) {
   const Subject subject = load_subject(kControl);
-  RendererOptions options;
+  TunedRendererOptions options;
   options.left_out_features = layout::FEATURE_SHADOWS;
   EXPECT_NE(compare_changed(Renderer(device(), subject.scene, options).render(subject.view).image), "");
 }

@@ -36,7 +36,7 @@ class BvhFileOnDevice : public test::DeviceTest {
 };
 
 TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
-  const Scene scene = test::make_scene_of_everything(500);
+  const world::Scene scene = test::make_scene_of_everything(500);
   const View view = test::make_view(uvec2(120, 80));
   const std::vector<Ray> rays = test::make_rays(20000);
   for (const std::string_view name : builder_names()) {
@@ -61,7 +61,7 @@ TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
 
 TEST_F(BvhFileOnDevice, AFileOfAnotherSceneIsRefused) {
   write_bvh_file(file_, pack_scene(test::make_scene_of_everything(3), "sah").tree());
-  const Scene scene = test::make_scene_of_everything(4);
+  const world::Scene scene = test::make_scene_of_everything(4);
   EXPECT_THROW(Renderer(device(), scene, {.bvh = file_}), InputError);
   EXPECT_THROW(Caster(device(), scene, {.bvh = file_}), InputError);
   EXPECT_THROW(Caster(device(), scene, {.bvh = folder_ / "none.pbvh"}), InputError);

@@ -31,7 +31,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class CasterTest : public test::DeviceTest {
  protected:
-  static std::vector<Hit> cast(const Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) {
+  static std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) {
     std::vector<Hit> hits(rays.size());
     Caster(device(), scene).cast(rays, hits, query);
     return hits;
@@ -43,7 +43,7 @@ bool has_same_bits(std::span<const Hit> a, std::span<const Hit> b) {
 }
 
 TEST_F(CasterTest, AnswersAsTheOracle) {
-  const Scene scene = test::make_scene_of_everything();
+  const world::Scene scene = test::make_scene_of_everything();
   const std::vector<Ray> rays = test::make_rays(20000);
   const std::vector<Hit> hits = cast(scene, rays);
   const std::vector<Hit> any = cast(scene, rays, HitQuery::kAny);
@@ -77,7 +77,7 @@ std::vector<Ray> make_rows(uint32_t rows) {
 
 // On lavapipe rays in rows are traced in packets and tile by tile; the same ones shuffled are sorted and traced alone.
 TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
-  const Scene scene = test::make_scene_of_everything();
+  const world::Scene scene = test::make_scene_of_everything();
   // No multiple of a packet's size; some without direction, some empty.
   std::vector<Ray> rays = make_rows(63);
   rays.pop_back();
@@ -103,7 +103,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
 
 // Rays of a packet are of several octants, and some of them are done before others.
 TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
-  const Scene scene = test::make_scene_of_everything();
+  const world::Scene scene = test::make_scene_of_everything();
   const PackedScene packed = pack_scene(scene, "sah");
   const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), packed);
   std::vector<layout::RayRecord> rays;
@@ -168,7 +168,7 @@ Mesh make_grid() {
 class AnyHitTest : public CasterTest {
  protected:
   /// Expects any hit where there is a nearest one; returns the part of the rays that have one.
-  static double part_of_hits(const Scene& scene, std::span<const Ray> rays) {
+  static double part_of_hits(const world::Scene& scene, std::span<const Ray> rays) {
     const std::vector<Hit> nearest = cast(scene, rays);
     const std::vector<Hit> any = cast(scene, rays, HitQuery::kAny);
     size_t hit_count = 0;
@@ -240,8 +240,8 @@ TEST_F(AnyHitTest, IsFoundBesideSolids) {
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
   // All in one leaf.
-  const Scene scene = scene_of(
-      {mesh, Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F}, Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}});
+  const world::Scene scene = scene_of(
+      {mesh, world::Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F}, world::Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}});
   std::vector<Ray> rays;
   for (const float z : {4.0F, 4.0e3F, 4.0e6F}) {
     for (int i = 0; i <= 64; ++i) {
@@ -272,7 +272,7 @@ TEST_F(CasterTest, HitsWithoutATAreNone) {
   Mesh mesh;
   mesh.positions = {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   const std::vector<Ray> rays = {{vec3(0, 0, 1e10F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
                                  {vec3(0, 0, 1e7F), 0.0F, vec3(0, 0, -1e-30F), kInfinity},
                                  {vec3(0, 0, 100), 0.0F, vec3(0, 0, -1e-37F), kInfinity},
@@ -301,7 +301,7 @@ TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
   const float back = kSlivers + 1;
   mesh.positions.insert(mesh.positions.end(), {vec3(-9, -9, back), vec3(9, -9, back), vec3(0, 9, back)});
   mesh.triangles.push_back({last, last + 1, last + 2});
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   const std::vector<Ray> rays = {{vec3(-0.5F, 0.5F, 0), 0.0F, vec3(0, 0, 1), kInfinity}};
   try {
     EXPECT_EQ(cast(scene, rays)[0].primitive, kSlivers);
@@ -312,7 +312,7 @@ TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
 }
 
 TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
-  const Scene scene = test::make_scene_of_everything();
+  const world::Scene scene = test::make_scene_of_everything();
   const std::vector<Ray> rays = test::make_rays(3000);
   Caster caster(device(), scene);
   std::vector<Hit> together(rays.size());
@@ -327,7 +327,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
 
 // Directions that fp32 arithmetic alone would lose: denormal, and near the largest number.
 TEST_F(CasterTest, DirectionsHaveAnyLength) {
-  const Scene scene = scene_of({Sphere{vec3(0.0F), 1e-3F}});
+  const world::Scene scene = scene_of({world::Sphere{vec3(0.0F), 1e-3F}});
   const vec3 origin(0, 0, 2e-3F);
   for (const float length : {1e-40F, 1e-37F, 1.2e-38F, 1.0F, 1e37F, 1.7e38F, 3e38F}) {
     const std::vector<Ray> rays = {{origin, 0.0F, vec3(0, 0, -length), kInfinity},
@@ -340,19 +340,19 @@ TEST_F(CasterTest, DirectionsHaveAnyLength) {
     EXPECT_EQ(hits[1].object, -1) << length;
   }
   // t would be 1e42, which no float holds: a miss, for tmax is at most infinite.
-  Scene far = scene;
-  far.objects[0].shape = Sphere{vec3(0, 0, -1e4F), 1.0F};
+  world::Scene far = scene;
+  far.objects[0].shape = world::Sphere{vec3(0, 0, -1e4F), 1.0F};
   EXPECT_EQ(cast(far, std::vector<Ray>{{origin, 0.0F, vec3(0, 0, -1e-38F), kInfinity}})[0].object, -1);
 }
 
 TEST_F(CasterTest, ObjectsWithoutPrimitivesTakeANumber) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 1}, {0, 1, 2}};  // the first is degenerate
-  scene.objects = {{"", NotDrawn{}, 0}, {"", Mesh{}, 0}, {"", mesh, 0}, {"", NotDrawn{}, 0}, {"", Sphere{}, 0}};
-  scene.objects[4].shape = Sphere{vec3(0, 0, 9), 1.0F};
+  scene.objects = {{"", world::NotDrawn{}, 0}, {"", Mesh{}, 0}, {"", mesh, 0}, {"", world::NotDrawn{}, 0}, {"", world::Sphere{}, 0}};
+  scene.objects[4].shape = world::Sphere{vec3(0, 0, 9), 1.0F};
   const std::vector<Ray> rays = {{vec3(0.2F, 0.2F, 4), 0, vec3(0, 0, -1), kInfinity},
                                  {vec3(0.2F, 0.2F, 4), 0, vec3(0, 0, 1), kInfinity}};
   const std::vector<Hit> hits = cast(scene, rays);
@@ -380,14 +380,14 @@ TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
 }
 
 TEST_F(CasterTest, UnknownBuildersAreRefused) {
-  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), CasterOptions{.builder = "shah"}), UsageError);
+  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), TunedCasterOptions{.builder = "shah"}), UsageError);
 }
 
 // AOVs are what a cast of the pixel's ray tells, and leave the picture's bits alone.
 TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
-  const Scene scene = test::make_scene_of_everything();
+  const world::Scene scene = test::make_scene_of_everything();
   View view = test::make_view(uvec2(150, 100));
-  RendererOptions options;
+  TunedRendererOptions options;
   options.with_aovs = true;
   options.blocks_per_dispatch = 7;
   Renderer renderer(device(), scene, options);

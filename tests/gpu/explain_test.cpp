@@ -41,7 +41,7 @@ void expect_same_hit(const Hit& a, const Hit& b) {
 class ExplainTest : public test::DeviceTest {
  protected:
   /// Holds explanations of pixels all over the picture against it, against cast rays and against themselves.
-  static void check(const Scene& scene, const View& view) {
+  static void check(const world::Scene& scene, const View& view) {
     Renderer renderer(device(), scene);
     Caster caster(device(), scene);
     const Image picture = renderer.render(view).image;
@@ -58,7 +58,7 @@ class ExplainTest : public test::DeviceTest {
   }
 
   /// The colour is what its parts add up to, in fp32 and to the bit.
-  static void expect_sums(const Explanation& explanation, const Scene& scene) {
+  static void expect_sums(const Explanation& explanation, const world::Scene& scene) {
     vec3 sum(0.0F);
     for (const ExplainedSample& sample : explanation.samples) {
       vec3 weight(1.0F);
@@ -71,7 +71,7 @@ class ExplainTest : public test::DeviceTest {
         EXPECT_EQ(bits_of(ray.radiance), bits_of(radiance));
         if (ray.hit.object >= 0) weight *= scene.materials[ray.material].reflection;
         if (ray.hit.object < 0) {
-          EXPECT_EQ(ray.own, scene.background);
+          EXPECT_EQ(ray.own, scene.environment.background);
           EXPECT_TRUE(ray.sources.empty());
         } else {
           EXPECT_EQ(ray.sources.size(), scene.lights.size());
@@ -123,7 +123,7 @@ TEST_F(ExplainTest, EverythingAddsUpToThePicture) {
 TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {
   for (const char* name : {"mirrors.gltf", "metallic_roughness.gltf", "triangles_smooth.gltf"}) {
     SCOPED_TRACE(name);
-    Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name);
+    world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name));
     View view;
     view.size = uvec2(96, 72);
     view.camera = scene.cameras.empty() ? frame_scene(scene, 4.0F / 3.0F) : scene.cameras.front();
@@ -134,7 +134,7 @@ TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {
 }
 
 TEST_F(ExplainTest, TooLongALogIsRefused) {
-  Scene scene = test::make_scene_of_everything();
+  world::Scene scene = test::make_scene_of_everything();
   scene.lights.resize(1000);
   View view = test::make_view(uvec2(16, 16));
   Renderer renderer(device(), scene);

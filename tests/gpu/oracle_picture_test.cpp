@@ -19,49 +19,49 @@ namespace {
 
 namespace fs = std::filesystem;
 
-uint64_t count_primitives(const Scene& scene) {
+uint64_t count_primitives(const world::Scene& scene) {
   uint64_t count = 0;
-  for (const Object& object : scene.objects) count += primitive_count(object.shape);
+  for (const world::Object& object : scene.objects) count += primitive_count(object.shape);
   return count;
 }
 
 /// Brute force takes primitives times rays: smaller pictures of larger scenes.
-uvec2 size_for(const Scene& scene) {
+uvec2 size_for(const world::Scene& scene) {
   const uint64_t count = count_primitives(scene);
   if (count <= 2000) return {96, 72};
   return count <= 10000 ? uvec2(48, 36) : uvec2(20, 15);
 }
 
 /// The view that `promin render` has of a scene, with the lights that stand in.
-View view_of(Scene& scene) {
+View view_of(world::Scene& scene) {
   View view;
   view.size = size_for(scene);
   view.camera = scene.cameras.empty() ? frame_scene(scene, 4.0F / 3.0F) : scene.cameras.front();
   if (scene.lights.empty()) {
     scene.lights.push_back(make_headlight());
-    scene.ambient = vec3(0.1F);
+    scene.environment.ambient = vec3(0.1F);
   }
   return view;
 }
 
-void move(Shape& shape, const vec3& offset) {
+void move(world::Shape& shape, const vec3& offset) {
   if (auto* mesh = std::get_if<Mesh>(&shape)) {
     for (vec3& position : mesh->positions) position += offset;
-  } else if (auto* sphere = std::get_if<Sphere>(&shape)) {
+  } else if (auto* sphere = std::get_if<world::Sphere>(&shape)) {
     sphere->center += offset;
-  } else if (auto* plane = std::get_if<Plane>(&shape)) {
+  } else if (auto* plane = std::get_if<world::Plane>(&shape)) {
     plane->point += offset;
-  } else if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
+  } else if (auto* cylinder = std::get_if<world::Cylinder>(&shape)) {
     cylinder->center += offset;
-  } else if (auto* cone = std::get_if<Cone>(&shape)) {
+  } else if (auto* cone = std::get_if<world::Cone>(&shape)) {
     cone->center += offset;
   }
 }
 
 class OraclePictureTest : public test::DeviceTest, public testing::WithParamInterface<std::string> {
  protected:
-  static oracle::PictureReport compare(const Scene& scene, const View& view) {
-    RendererOptions options;
+  static oracle::PictureReport compare(const world::Scene& scene, const View& view) {
+    TunedRendererOptions options;
     options.with_aovs = true;
     const RenderResult result = Renderer(device(), scene, options).render(view);
     const oracle::DeviceAovs aovs{result.aovs.depth, result.aovs.normal, result.aovs.object, result.aovs.primitive};
@@ -82,7 +82,7 @@ std::vector<std::string> scene_names() {
 }
 
 TEST_P(OraclePictureTest, AgreesWithTheOracle) {
-  Scene scene = load_scene(fs::path(PROMIN_SCENES_DIR) / GetParam());
+  world::Scene scene = world::flatten(load_scene(fs::path(PROMIN_SCENES_DIR) / GetParam()));
   const View view = view_of(scene);
   EXPECT_TRUE(compare(scene, view).passes());
 }
@@ -101,10 +101,10 @@ TEST_F(OraclePictureTest, EverythingAgreesWithTheOracle) {
 // Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is
 // rounded, for device and oracle alike; colour is not asked, as secondary rays start farther off the surface there.
 TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {
-  Scene scene = test::make_scene_of_everything();
+  world::Scene scene = test::make_scene_of_everything();
   View view = test::make_view(uvec2(96, 72));
   const vec3 offset(1e5F, -1e5F, 1e5F);
-  for (Object& object : scene.objects) move(object.shape, offset);
+  for (world::Object& object : scene.objects) move(object.shape, offset);
   for (Light& light : scene.lights) light.position += offset;
   view.camera.eye += offset;
   const oracle::PictureReport report = compare(scene, view);

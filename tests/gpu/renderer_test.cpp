@@ -26,25 +26,25 @@ const uvec2 kSize(150, 100);  // neither is a multiple of the block
 
 class RendererTest : public test::DeviceTest {
  protected:
-  static RenderResult render(const Scene& scene, const View& view, const RendererOptions& options = {}) {
+  static RenderResult render(const world::Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
     return Renderer(device(), scene, options).render(view);
   }
 };
 
 TEST_F(RendererTest, TwoRunsGiveTheSameBits) {
-  const Scene scene = make_scene_of_everything();
+  const world::Scene scene = make_scene_of_everything();
   Renderer renderer(device(), scene);
   const View view = test::make_view(kSize);
   EXPECT_TRUE(has_same_bits(renderer.render(view).image, renderer.render(view).image));
 }
 
 TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
-  const Scene scene = make_scene_of_everything();
+  const world::Scene scene = make_scene_of_everything();
   View view = test::make_view(kSize);
   view.samples_per_pixel = 3;
-  RendererOptions single_blocks;
+  TunedRendererOptions single_blocks;
   single_blocks.blocks_per_dispatch = 1;
-  RendererOptions odd_blocks;
+  TunedRendererOptions odd_blocks;
   odd_blocks.blocks_per_dispatch = 37;
   const RenderResult expected = render(scene, view);
   const RenderResult by_one = render(scene, view, single_blocks);
@@ -57,10 +57,10 @@ TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
 
 TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
   if (device().is_cpu() && !device().is_lavapipe()) GTEST_SKIP() << "takes minutes to compile packets";
-  const Scene scene = make_scene_of_everything();
+  const world::Scene scene = make_scene_of_everything();
   View view = test::make_view(kSize);
   view.samples_per_pixel = 3;
-  RendererOptions options;
+  TunedRendererOptions options;
   options.with_aovs = true;
   options.packet_size = 1;
   const RenderResult expected = render(scene, view, options);
@@ -77,7 +77,7 @@ TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
 }
 
 TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {
-  const Scene scene = make_scene_of_everything();
+  const world::Scene scene = make_scene_of_everything();
   View view = test::make_view(kSize);
   Renderer renderer(device(), scene);
   const Image whole = renderer.render(view).image;
@@ -92,11 +92,11 @@ TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {
 }
 
 TEST_F(RendererTest, BitsDoNotDependOnTheBuilder) {
-  const Scene scene = make_scene_of_everything(2000);
+  const world::Scene scene = make_scene_of_everything(2000);
   const View view = test::make_view(kSize);
   const Image expected = render(scene, view).image;
   for (const std::string_view builder : builder_names()) {
-    RendererOptions options;
+    TunedRendererOptions options;
     options.builder = builder;
     EXPECT_TRUE(has_same_bits(render(scene, view, options).image, expected)) << builder;
   }
@@ -104,11 +104,11 @@ TEST_F(RendererTest, BitsDoNotDependOnTheBuilder) {
 
 // The mask costs nothing but time: what a scene does not use changes no bit.
 TEST_F(RendererTest, SpecialisationChangesNoBit) {
-  Scene spheres = make_scene_of_everything();
-  std::erase_if(spheres.objects, [](const Object& o) { return !std::holds_alternative<Sphere>(o.shape); });
+  world::Scene spheres = make_scene_of_everything();
+  std::erase_if(spheres.objects, [](const world::Object& o) { return !std::holds_alternative<world::Sphere>(o.shape); });
   for (Light& light : spheres.lights) light.kind = LightKind::kPoint;
-  const Scene everything = make_scene_of_everything();
-  RendererOptions forced;
+  const world::Scene everything = make_scene_of_everything();
+  TunedRendererOptions forced;
   forced.force_all_features = true;
   for (const Scene* scene : std::array<const Scene*, 2>{&spheres, &everything}) {
     const View view = test::make_view(uvec2(300, 200));
@@ -130,9 +130,9 @@ TEST_F(RendererTest, SpecialisationChangesNoBit) {
 
 // A solid's own wall lies between its inside and a light outside.
 TEST_F(RendererTest, TheInsideOfASphereIsDark) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
-  scene.objects = {{"", Sphere{vec3(0.0F), 1.0F}, 0}};
+  scene.objects = {{"", world::Sphere{vec3(0.0F), 1.0F}, 0}};
   scene.lights = {make_headlight()};
   View view;
   view.size = uvec2(16, 16);
@@ -140,7 +140,7 @@ TEST_F(RendererTest, TheInsideOfASphereIsDark) {
 }
 
 TEST_F(RendererTest, TheHeadlightFollowsTheCameraOfEachView) {
-  Scene scene = make_scene_of_everything();
+  world::Scene scene = make_scene_of_everything();
   scene.lights = {make_headlight()};
   Renderer renderer(device(), scene);
   View view = test::make_view(kSize);
@@ -154,9 +154,9 @@ TEST_F(RendererTest, TheHeadlightFollowsTheCameraOfEachView) {
 }
 
 TEST_F(RendererTest, CountsRays) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
-  scene.objects = {{"", Sphere{vec3(0, 0, -3), 1.0F}, 0}, {"", Sphere{vec3(0, 0, 100), 1.0F}, 0}};
+  scene.objects = {{"", world::Sphere{vec3(0, 0, -3), 1.0F}, 0}, {"", world::Sphere{vec3(0, 0, 100), 1.0F}, 0}};
   scene.lights = {make_headlight()};
   View view;
   view.size = uvec2(64, 64);
@@ -176,25 +176,25 @@ TEST_F(RendererTest, CountsRays) {
 }
 
 TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
-  scene.background = vec3(0.25F, 0.5F, 0.75F);
+  scene.environment.background = vec3(0.25F, 0.5F, 0.75F);
   View view;
   view.size = uvec2(9, 5);
-  for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, scene.background);
-  RendererOptions forced;
+  for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, scene.environment.background);
+  TunedRendererOptions forced;
   forced.force_all_features = true;
-  for (const vec3& pixel : render(scene, view, forced).image.pixels) EXPECT_EQ(pixel, scene.background);
+  for (const vec3& pixel : render(scene, view, forced).image.pixels) EXPECT_EQ(pixel, scene.environment.background);
 }
 
 /// Mirrors that lose nothing and send 1/1024 each; sources that light neither of them.
-Scene make_facing_mirrors(uint32_t light_count) {
-  Scene scene;
+world::Scene make_facing_mirrors(uint32_t light_count) {
+  world::Scene scene;
   scene.materials.resize(1);
   scene.materials[0].diffuse = vec3(0.0F);
   scene.materials[0].emissive = vec3(1.0F / 1024.0F);
   scene.materials[0].reflection = vec3(1.0F);
-  scene.objects = {{"", Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
+  scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
   scene.lights.resize(light_count);
   for (Light& light : scene.lights) light.position = vec3(0, 0, 1);
   return scene;
@@ -202,13 +202,13 @@ Scene make_facing_mirrors(uint32_t light_count) {
 
 // Facing mirrors: each bounce multiplies by kr and the last brings nothing.
 TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
   scene.materials[0].ambient = vec3(1.0F);
   scene.materials[0].diffuse = vec3(0.0F);
   scene.materials[0].reflection = vec3(0.5F);
-  scene.ambient = vec3(1.0F);
-  scene.objects = {{"", Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
+  scene.environment.ambient = vec3(1.0F);
+  scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
   View view;
   view.size = uvec2(1, 1);
   for (const uint32_t depth : {0U, 1U, 2U, 10U}) {
@@ -223,7 +223,7 @@ TEST_F(RendererTest, ManyBouncesAreTracedToTheEnd) {
   View view;
   view.size = uvec2(128, 144);
   view.max_depth = 100;
-  RendererOptions options;
+  TunedRendererOptions options;
   options.target_dispatch_ms = 1e5;  // the second dispatch takes all that the first has left
   const float expected = 101.0F / 1024.0F;
   const RenderResult result = render(make_facing_mirrors(60), view, options);
@@ -245,10 +245,10 @@ TEST_F(RendererTest, TooManyTurnsAreRefusedOrTraced) {
 }
 
 TEST_F(RendererTest, NothingNearerThanTheNearPlaneIsDrawn) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
   scene.materials[0].emissive = vec3(1.0F);
-  scene.objects = {{"", Plane{vec3(0, 0, -2), vec3(0, 0, 1)}, 0}};
+  scene.objects = {{"", world::Plane{vec3(0, 0, -2), vec3(0, 0, 1)}, 0}};
   View view;
   view.size = uvec2(3, 3);
   view.camera.yfov = 2.0F;
@@ -259,10 +259,10 @@ TEST_F(RendererTest, NothingNearerThanTheNearPlaneIsDrawn) {
 }
 
 TEST_F(RendererTest, PicturesLargerThanAFilmComeInBands) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
   scene.materials[0].emissive = vec3(1.0F, 0.5F, 0.25F);
-  scene.objects = {{"", Sphere{vec3(0, 0, -3), 1.0F}, 0}};
+  scene.objects = {{"", world::Sphere{vec3(0, 0, -3), 1.0F}, 0}};
   View view;
   view.size = uvec2(2048, 2304);  // 4.7 million pixels; a film holds 4.2 million
   view.max_depth = 0;
@@ -275,7 +275,7 @@ TEST_F(RendererTest, PicturesLargerThanAFilmComeInBands) {
 }
 
 TEST_F(RendererTest, UnknownBuildersAreRefused) {
-  RendererOptions options;
+  TunedRendererOptions options;
   options.builder = "shah";
   EXPECT_THROW(Renderer(device(), make_scene_of_everything(), options), UsageError);
 }

@@ -30,37 +30,37 @@ Key key_of(const vec3& color) {
 class ShadingTest : public test::DeviceTest {
  protected:
   ShadingTest() {
-    RendererOptions options;
+    TunedRendererOptions options;
     options.with_aovs = true;
     renderer_.emplace(device(), scene_, options);
     aovs_ = renderer_->render(view_).aovs;
   }
 
-  Image show(Shading shading) {
+  Image show(DebugView shading) {
     view_.shading = shading;
     return renderer_->render(view_).image;
   }
 
   bool is_miss(size_t pixel) const { return aovs_.object[pixel] == Aovs::kNoId; }
 
-  Scene scene_ = test::make_scene_of_everything();
+  world::Scene scene_ = test::make_scene_of_everything();
   View view_ = test::make_view(uvec2(150, 100));
   std::optional<Renderer> renderer_;
   Aovs aovs_;
 };
 
 TEST_F(ShadingTest, LightHasTheSameBitsAfterEveryOther) {
-  const Image before = show(Shading::kFull);
-  for (size_t i = 1; i < shading_names().size(); ++i) {
-    EXPECT_FALSE(has_same_bits(show(static_cast<Shading>(i)), before)) << shading_names()[i];
+  const Image before = show(DebugView::kNone);
+  for (size_t i = 1; i < debug_view_names().size(); ++i) {
+    EXPECT_FALSE(has_same_bits(show(static_cast<DebugView>(i)), before)) << debug_view_names()[i];
   }
-  EXPECT_TRUE(has_same_bits(show(Shading::kFull), before));
+  EXPECT_TRUE(has_same_bits(show(DebugView::kNone), before));
 }
 
 TEST_F(ShadingTest, NormalsAndDepthAreThoseOfTheAovs) {
-  const float size = pack_scene(scene_, "sah").frame.tree_bounds.w;
-  const Image normals = show(Shading::kNormals);
-  const Image depth = show(Shading::kDepth);
+  const float size = pack_scene(scene_, "sah").tree_bounds.w;
+  const Image normals = show(DebugView::kNormals);
+  const Image depth = show(DebugView::kDepth);
   for (size_t i = 0; i < normals.pixels.size(); ++i) {
     ASSERT_EQ(normals.pixels[i], is_miss(i) ? vec3(0.0F) : 0.5F + 0.5F * aovs_.normal[i]) << i;
     // Division may round its own way on a device.
@@ -71,8 +71,8 @@ TEST_F(ShadingTest, NormalsAndDepthAreThoseOfTheAovs) {
 }
 
 TEST_F(ShadingTest, ColorsTellObjectsAndPrimitivesApart) {
-  const Image objects = show(Shading::kObject);
-  const Image primitives = show(Shading::kPrimitive);
+  const Image objects = show(DebugView::kObject);
+  const Image primitives = show(DebugView::kPrimitive);
   std::map<uint32_t, std::set<Key>> of_object;
   std::map<std::pair<uint32_t, uint32_t>, std::set<Key>> of_primitive;
   std::set<Key> object_colors;
@@ -96,17 +96,17 @@ TEST_F(ShadingTest, ColorsTellObjectsAndPrimitivesApart) {
 }
 
 TEST_F(ShadingTest, ColorsDoNotDependOnTheTree) {
-  RendererOptions options;
+  TunedRendererOptions options;
   options.builder = "spatial";
   Renderer other(device(), scene_, options);
-  const Image objects = show(Shading::kObject);
+  const Image objects = show(DebugView::kObject);
   EXPECT_TRUE(has_same_bits(other.render(view_).image, objects));
-  const Image primitives = show(Shading::kPrimitive);
+  const Image primitives = show(DebugView::kPrimitive);
   EXPECT_TRUE(has_same_bits(other.render(view_).image, primitives));
 }
 
 TEST_F(ShadingTest, UvAreTheHits) {
-  const Image picture = show(Shading::kUv);
+  const Image picture = show(DebugView::kUv);
   size_t triangles = 0;
   for (uint32_t y = 0; y < view_.size.y; y += 7) {
     for (uint32_t x = 0; x < view_.size.x; x += 5) {
@@ -124,7 +124,7 @@ TEST_F(ShadingTest, StepsAreAHeatMapOfTheCounts) {
   // With so many spheres steps reach beyond the scale's first half, where colours out of order would show.
   scene_ = test::make_scene_of_everything(5000);
   renderer_.emplace(device(), scene_);
-  const Image picture = show(Shading::kSteps);
+  const Image picture = show(DebugView::kSteps);
   std::vector<layout::RayRecord> rays;
   std::vector<vec3> colors;
   for (uint32_t y = 0; y < view_.size.y; y += 7) {

@@ -33,20 +33,20 @@ Mesh make_smooth_mesh(const vec3& center, float radius) {
 
 }  // namespace
 
-Scene make_scene_of_everything(uint32_t sphere_count) {
-  Scene scene;
+world::Scene make_scene_of_everything(uint32_t sphere_count) {
+  world::Scene scene;
   scene.file = "everything";
-  scene.ambient = vec3(0.1F);
-  scene.background = vec3(0.3F, 0.5F, 0.8F);
+  scene.environment.ambient = vec3(0.1F);
+  scene.environment.background = vec3(0.3F, 0.5F, 0.8F);
   scene.materials = {make_material(vec3(0.7F), 0.0F, 0.0F, 0.1F), make_material(vec3(0.2F, 0.4F, 0.6F), 0.5F, 60, 0.6F),
                      make_material(vec3(0.8F, 0.3F, 0.2F), 0.3F, 20, 0.0F),
                      make_material(vec3(0.3F, 0.7F, 0.2F), 0.8F, 200, 0.2F)};
   scene.materials[3].emissive = vec3(0.05F, 0.0F, 0.0F);
-  scene.objects = {{"floor", Plane{}, 0},
-                   {"ball", Sphere{vec3(0, 1, 0), 1}, 1},
-                   {"can", Cylinder{vec3(2.2F, 0.8F, 0), glm::normalize(vec3(0.3F, 1, 0.2F)), 0.7F, 0.5F}, 2},
-                   {"cone", Cone{vec3(-2.2F, 0.8F, 0), vec3(0, 1, 0), 0.8F, 0.7F, 0.0F}, 3},
-                   {"frustum", Cone{vec3(-0.8F, 0.4F, 2), vec3(0, 1, 0), 0.4F, 0.6F, 0.3F}, 2},
+  scene.objects = {{"floor", world::Plane{}, 0},
+                   {"ball", world::Sphere{vec3(0, 1, 0), 1}, 1},
+                   {"can", world::Cylinder{vec3(2.2F, 0.8F, 0), glm::normalize(vec3(0.3F, 1, 0.2F)), 0.7F, 0.5F}, 2},
+                   {"cone", world::Cone{vec3(-2.2F, 0.8F, 0), vec3(0, 1, 0), 0.8F, 0.7F, 0.0F}, 3},
+                   {"frustum", world::Cone{vec3(-0.8F, 0.4F, 2), vec3(0, 1, 0), 0.4F, 0.6F, 0.3F}, 2},
                    {"gem", make_smooth_mesh(vec3(1.2F, 0.6F, 1.8F), 0.6F), 3}};
   std::mt19937 generator(1);
   // std::uniform_real_distribution may differ between libraries; the generator's own numbers do not.
@@ -54,7 +54,7 @@ Scene make_scene_of_everything(uint32_t sphere_count) {
   for (uint32_t i = 0; i < sphere_count; ++i) {
     const float x = 5.0F * uniform();
     const float y = 3.0F + 0.8F * uniform();
-    scene.objects.push_back({"", Sphere{vec3(x, y, 3.0F * uniform()), 0.08F}, i % 4});
+    scene.objects.push_back({"", world::Sphere{vec3(x, y, 3.0F * uniform()), 0.08F}, i % 4});
   }
   Light point;
   point.position = vec3(3, 6, 5);

@@ -6,13 +6,13 @@
 
 #include "promin/ray.h"
 #include "promin/renderer.h"
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 namespace promin::test {
 
 /// Every kind of primitive, of light and of material, mirrors and a smooth coloured mesh, with a scatter of
 /// `sphere_count` small spheres so that the tree has some depth. The same scene for the same count.
-Scene make_scene_of_everything(uint32_t sphere_count = 200);
+world::Scene make_scene_of_everything(uint32_t sphere_count = 200);
 
 /// A view of that scene.
 View make_view(uvec2 size);

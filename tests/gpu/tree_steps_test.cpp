@@ -44,7 +44,7 @@ struct Answers {
 
 class TreeSteps : public test::DeviceTest {
  protected:
-  static Answers cast(const Scene& scene, std::string_view builder) {
+  static Answers cast(const world::Scene& scene, std::string_view builder) {
     RayKernelOptions options;
     options.features |= layout::FEATURE_STEP_COUNTS;
     Answers answers;
@@ -62,7 +62,7 @@ class TreeSteps : public test::DeviceTest {
 
 // The tree that the offline builder is for, against the default.
 TEST_F(TreeSteps, SpatialSplitsTakeFewerStepsThroughPipesToTheSameHits) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
   scene.objects = {{"pipes", test::make_pipes(300), 0}};
   const Answers sah = cast(scene, "sah");

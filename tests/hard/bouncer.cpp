@@ -19,7 +19,7 @@ RayKernelOptions options_for(FeatureMask features) {
 
 }  // namespace
 
-Bouncer::Bouncer(const gpu::Device& device, const Scene& scene)
+Bouncer::Bouncer(const gpu::Device& device, const world::Scene& scene)
     : Bouncer(device, pack_scene(scene, builder_names().front()), features_of(scene)) {}
 
 Bouncer::Bouncer(const gpu::Device& device, PackedScene packed, FeatureMask features)

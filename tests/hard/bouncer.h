@@ -8,7 +8,7 @@
 #include "device_scene/pack_scene.h"
 #include "promin/device.h"
 #include "promin/ray.h"
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 #include "trace/ray_kernel.h"
 
 namespace promin::hard {
@@ -26,7 +26,7 @@ struct Bounce {
 /// The renderer's secondary rays in a scene: its own lift and mirror direction, by tests/hard/bounce.comp.
 class Bouncer {
  public:
-  Bouncer(const gpu::Device& device, const Scene& scene);
+  Bouncer(const gpu::Device& device, const world::Scene& scene);
 
   /// One for each ray.
   std::vector<Bounce> bounce(std::span<const Ray> rays);

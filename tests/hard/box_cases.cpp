@@ -34,13 +34,13 @@ struct Block {
 /// Blocks on a lattice beside `offset`, so that sides lie in common planes: hollow cubes of quads, single quads in flat
 /// boxes, and spheres that touch the sides.
 struct BlockScene {
-  Scene scene;
+  world::Scene scene;
   std::vector<Block> blocks;
 };
 
 BlockScene make_blocks(double offset, Random& random) {
   BlockScene result;
-  std::vector<Shape> shapes;
+  std::vector<world::Shape> shapes;
   for (int i = 0; i < 48; ++i) {
     const dvec3 cell(i % 4, (i / 4) % 4, i / 16);
     // Odd fractions, which rounding moves.
@@ -49,7 +49,7 @@ BlockScene make_blocks(double offset, Random& random) {
     if (i % 3 == 2) {
       // Sphere and block in fp32, so that they touch where they are said to.
       const float radius = 0.5F * static_cast<float>(block.size);
-      shapes.emplace_back(Sphere{vec3(block.low + 0.5 * block.size), radius});
+      shapes.emplace_back(world::Sphere{vec3(block.low + 0.5 * block.size), radius});
     } else {
       Mesh mesh;
       for (int axis = 0; axis < 3; ++axis) {

@@ -38,7 +38,7 @@ bool is_well_formed(const Hit& hit) {
          std::abs(glm::length(dvec3(hit.normal)) - 1.0) <= 4.0 * static_cast<double>(kUnitRoundoff);
 }
 
-void judge_one(const Scene& scene, const Ray& ray, const Hit& hit, Tally& tally) {
+void judge_one(const world::Scene& scene, const Ray& ray, const Hit& hit, Tally& tally) {
   const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
   const oracle::Verdict verdict = oracle::judge(scene, exact, {hit.t, hit.object, hit.primitive});
   ++tally.rays;
@@ -91,15 +91,15 @@ double Lab::rounding_factor() const {
   return gpu::info_of(device_).type == "CPU" ? 1.0 : 2.0;
 }
 
-std::vector<Hit> Lab::cast(const Scene& scene, std::span<const Ray> rays, HitQuery query) const {
-  CasterOptions options;
+std::vector<Hit> Lab::cast(const world::Scene& scene, std::span<const Ray> rays, HitQuery query) const {
+  TunedCasterOptions options;
   options.spirv = cast_kernel();
   std::vector<Hit> hits(rays.size());
   Caster(device_, scene, options).cast(rays, hits, query);
   return hits;
 }
 
-Tally Lab::judge(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits) {
+Tally Lab::judge(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits) {
   constexpr size_t kChunk = 4096;
   std::vector<Tally> tallies((rays.size() + kChunk - 1) / kChunk);
   for_each_index(tallies.size(), 0, [&](size_t chunk) {
@@ -111,7 +111,7 @@ Tally Lab::judge(const Scene& scene, std::span<const Ray> rays, std::span<const 
   return total;
 }
 
-Tally Lab::cast_and_judge(const Scene& scene, std::span<const Ray> rays) const {
+Tally Lab::cast_and_judge(const world::Scene& scene, std::span<const Ray> rays) const {
   return judge(scene, rays, cast(scene, rays));
 }
 

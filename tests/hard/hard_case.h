@@ -16,7 +16,7 @@
 #include "oracle/verdict.h"
 #include "promin/device.h"
 #include "promin/ray.h"
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 #include "trace/ray_kernel.h"
 
 namespace promin::hard {
@@ -86,11 +86,11 @@ class Lab {
   double rounding_factor() const;
 
   /// Casts through the public Caster, or the kernel that PROMIN_TEST_KERNELS names.
-  std::vector<Hit> cast(const Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) const;
+  std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) const;
 
   /// Each answer against the oracle's; shared out over all cores.
-  static Tally judge(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
-  Tally cast_and_judge(const Scene& scene, std::span<const Ray> rays) const;
+  static Tally judge(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
+  Tally cast_and_judge(const world::Scene& scene, std::span<const Ray> rays) const;
 
   /// Prints the figure beside its bound, keeps it for docs/accuracy.md and fails the test where it passes the bound.
   /// `what` names the figure and its unit: "K of t, distance 1e4".

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kRayCount = 100000;
 
 /// Of |dt n.d| / (u (|q - o| + |t d|)); infinite where a hit is missing.
-Tally judge_plane(const Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
+Tally judge_plane(const world::Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
   using oracle::Real;
   using oracle::Vector;
   const Vector n(plane.normal);
@@ -37,7 +37,7 @@ void run_slopes(Lab& lab) {
   Random random(10);
   for (const double cosine : {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     const dvec3 normal = random.direction();
-    const Plane plane{vec3(1e5F, -1e5F, 1e5F), vec3(normal)};
+    const world::Plane plane{vec3(1e5F, -1e5F, 1e5F), vec3(normal)};
     const dvec3 n = glm::normalize(dvec3(plane.normal));
     std::vector<Ray> rays;
     while (rays.size() < kRayCount) {
@@ -58,7 +58,7 @@ void run_slopes(Lab& lab) {
 }
 
 void run_parallel(Lab& lab) {
-  const Plane plane{vec3(1.0F, 2.0F, 3.0F), vec3(0.0F, 1.0F, 0.0F)};
+  const world::Plane plane{vec3(1.0F, 2.0F, 3.0F), vec3(0.0F, 1.0F, 0.0F)};
   const float infinity = std::numeric_limits<float>::infinity();
   std::vector<Ray> rays;
   for (const float height : {2.0F, 2.5F, 1.5F}) {

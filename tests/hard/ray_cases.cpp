@@ -79,7 +79,7 @@ double mean_node_steps(std::span<const layout::HitRecord> records) {
 
 void run_invalid_rays(Lab& lab) {
   Random random(30);
-  Scene scene = scene_of({make_sheet()});
+  world::Scene scene = scene_of({make_sheet()});
   std::vector<Ray> finite;
   for (int i = 0; i < 50000; ++i) {
     finite.push_back(ordinary_ray(random));
@@ -101,10 +101,10 @@ void run_invalid_rays(Lab& lab) {
   lab.note("ns for a finite ray", 1e6 * finite_ms / static_cast<double>(finite.size()));
 
   // A plane and a solid too, which have no box or another formula.
-  scene.objects.push_back({"", Plane{vec3(0, -2, 0), vec3(0, 1, 0)}, 0});
-  scene.objects.push_back({"", Sphere{vec3(0, 1, 0), 0.5F}, 0});
-  scene.objects.push_back({"", Cylinder{vec3(1, 1, 0), vec3(0, 1, 0), 0.5F, 0.25F}, 0});
-  scene.objects.push_back({"", Cone{vec3(-1, 1, 0), vec3(0, 1, 0), 0.5F, 0.25F, 0.0F}, 0});
+  scene.objects.push_back({"", world::Plane{vec3(0, -2, 0), vec3(0, 1, 0)}, 0});
+  scene.objects.push_back({"", world::Sphere{vec3(0, 1, 0), 0.5F}, 0});
+  scene.objects.push_back({"", world::Cylinder{vec3(1, 1, 0), vec3(0, 1, 0), 0.5F, 0.25F}, 0});
+  scene.objects.push_back({"", world::Cone{vec3(-1, 1, 0), vec3(0, 1, 0), 0.5F, 0.25F, 0.0F}, 0});
   for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
     for (const Hit& hit : lab.cast(scene, invalid, query)) {
       hit_count += hit.object >= 0 || !std::isinf(hit.t) ? 1 : 0;
@@ -128,7 +128,7 @@ void run_invalid_rays(Lab& lab) {
 void expect_directions(Lab& lab, double scale, double length, bool has_denormals, const std::string& where) {
   Random random(301);
   const auto size = static_cast<float>(scale);
-  const Scene scene = scene_of({Sphere{vec3(0.0F), size}, Plane{vec3(0.0F, -2.0F * size, 0.0F), vec3(0, 1, 0)}});
+  const world::Scene scene = scene_of({world::Sphere{vec3(0.0F), size}, world::Plane{vec3(0.0F, -2.0F * size, 0.0F), vec3(0, 1, 0)}});
   std::vector<Ray> rays;
   for (int i = 0; i < 20000; ++i) {
     const double reach = 0.9 * scale * random.uniform();
@@ -165,16 +165,16 @@ bool has_same_bits(const Hit& a, const Hit& b) {
 /// The open interval (max(tmin, 0), tmax), bit for bit, of whatever a ray hits first.
 void run_intervals(Lab& lab) {
   Random random(31);
-  std::vector<std::pair<const char*, Scene>> scenes;
+  std::vector<std::pair<const char*, world::Scene>> scenes;
   const vec3 axis(random.direction());
   Mesh mesh;
   mesh.positions = {{-1, -1, 0.1F}, {1.5F, -0.8F, -0.2F}, {0, 1.3F, 0.3F}};
   mesh.triangles = {{0, 1, 2}};
   scenes.emplace_back("triangle", scene_of({mesh}));
-  scenes.emplace_back("plane", scene_of({Plane{vec3(0.1F, 0.2F, 0.3F), axis}}));
-  scenes.emplace_back("sphere", scene_of({Sphere{vec3(0.1F, 0.2F, 0.3F), 1.1F}}));
-  scenes.emplace_back("cylinder", scene_of({Cylinder{vec3(0.1F, 0.2F, 0.3F), axis, 0.7F, 0.6F}}));
-  scenes.emplace_back("cone", scene_of({Cone{vec3(0.1F, 0.2F, 0.3F), axis, 0.7F, 0.9F, 0.1F}}));
+  scenes.emplace_back("plane", scene_of({world::Plane{vec3(0.1F, 0.2F, 0.3F), axis}}));
+  scenes.emplace_back("sphere", scene_of({world::Sphere{vec3(0.1F, 0.2F, 0.3F), 1.1F}}));
+  scenes.emplace_back("cylinder", scene_of({world::Cylinder{vec3(0.1F, 0.2F, 0.3F), axis, 0.7F, 0.6F}}));
+  scenes.emplace_back("cone", scene_of({world::Cone{vec3(0.1F, 0.2F, 0.3F), axis, 0.7F, 0.9F, 0.1F}}));
   scenes.emplace_back("everything", test::make_scene_of_everything(50));
   for (const auto& [name, scene] : scenes) {
     std::vector<Ray> rays;

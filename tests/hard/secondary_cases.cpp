@@ -41,8 +41,8 @@ Mesh make_octahedron(const vec3& center, float size) {
 }
 
 /// Rays from around a convex shape, then from where they hit it outwards: the second must not meet it.
-uint64_t count_self_hits(Lab& lab, const Shape& shape, double scale, const dvec3& center, Random& random) {
-  const Scene scene = scene_of({shape});
+uint64_t count_self_hits(Lab& lab, const world::Shape& shape, double scale, const dvec3& center, Random& random) {
+  const world::Scene scene = scene_of({shape});
   std::vector<Ray> rays;
   for (int i = 0; i < 2000; ++i) {
     const dvec3 origin = center + 4.0 * scale * random.direction();
@@ -75,15 +75,15 @@ void run_self_hits(Lab& lab) {
     const double scale = std::pow(10.0, exponent);
     const auto size = static_cast<float>(scale);
     const auto shapes_at = [&](const vec3& center) {
-      return std::vector<Shape>{Sphere{center, size}, Cylinder{center, axis, size, 0.5F * size},
-                                Cone{center, axis, size, 0.7F * size, 0.0F},
-                                Cone{center, axis, size, 0.3F * size, 0.8F * size}, make_octahedron(center, size)};
+      return std::vector<world::Shape>{world::Sphere{center, size}, world::Cylinder{center, axis, size, 0.5F * size},
+                                world::Cone{center, axis, size, 0.7F * size, 0.0F},
+                                world::Cone{center, axis, size, 0.3F * size, 0.8F * size}, make_octahedron(center, size)};
     };
-    for (const Shape& shape : shapes_at(vec3(0.0F))) {
+    for (const world::Shape& shape : shapes_at(vec3(0.0F))) {
       near_origin += count_self_hits(lab, shape, scale, dvec3(0.0), random);
     }
     const vec3 center(100.0F * size, -70.0F * size, 30.0F * size);
-    for (const Shape& shape : shapes_at(center)) {
+    for (const world::Shape& shape : shapes_at(center)) {
       far_away += count_self_hits(lab, shape, scale, dvec3(center), random);
     }
   }
@@ -94,8 +94,8 @@ void run_self_hits(Lab& lab) {
 void run_plane_lift(Lab& lab) {
   Random random(33);
   for (const double offset : {0.0, 1.0, 1e2, 1e4, 1e6}) {
-    const Plane plane{vec3(offset * random.direction()), vec3(random.direction())};
-    const Scene scene = scene_of({plane});
+    const world::Plane plane{vec3(offset * random.direction()), vec3(random.direction())};
+    const world::Scene scene = scene_of({plane});
     const dvec3 n = glm::normalize(dvec3(plane.normal));
     std::vector<Ray> rays;
     for (int i = 0; i < 100000; ++i) {
@@ -146,7 +146,7 @@ void run_plane_lift(Lab& lab) {
 /// Points on the plane and on the sphere about where they touch, and a light that is low.
 void run_contact(Lab& lab) {
   Random random(34);
-  const Scene scene = scene_of({Plane{}, Sphere{vec3(0.0F, 1.0F, 0.0F), 1.0F}});
+  const world::Scene scene = scene_of({world::Plane{}, world::Sphere{vec3(0.0F, 1.0F, 0.0F), 1.0F}});
   Bouncer bouncer(lab.device(), scene);
   for (const double elevation_deg : {10.0, 1.0, 0.1}) {
     const double elevation = glm::radians(elevation_deg);
@@ -187,7 +187,7 @@ void run_contact(Lab& lab) {
 
 void run_reflections(Lab& lab) {
   Random random(35);
-  Bouncer bouncer(lab.device(), scene_of({Sphere{vec3(0.0F), 1.0F}}));
+  Bouncer bouncer(lab.device(), scene_of({world::Sphere{vec3(0.0F), 1.0F}}));
   std::vector<Ray> rays;
   for (int i = 0; i < 1000; ++i) {
     const dvec3 origin = 0.5 * random.direction();
@@ -211,8 +211,8 @@ void run_reflections(Lab& lab) {
 void run_facing_mirrors(Lab& lab) {
   Random random(36);
   for (const float gap : {0.5F, 1.0F, 2.0F}) {
-    const Scene scene =
-        scene_of({Plane{vec3(0.0F), vec3(0.0F, 0.0F, 1.0F)}, Plane{vec3(0.0F, 0.0F, gap), vec3(0.0F, 0.0F, -1.0F)}});
+    const world::Scene scene =
+        scene_of({world::Plane{vec3(0.0F), vec3(0.0F, 0.0F, 1.0F)}, world::Plane{vec3(0.0F, 0.0F, gap), vec3(0.0F, 0.0F, -1.0F)}});
     Bouncer bouncer(lab.device(), scene);
     std::vector<Ray> rays;
     for (int i = 0; i < 10000; ++i) {

@@ -23,7 +23,7 @@ constexpr double kRadian = 57.29577951308232;
 /// A cylinder, cone or frustum, by the very numbers that the device sees.
 struct Solid {
   const char* kind;
-  Shape shape;
+  world::Shape shape;
   dvec3 center;
   dvec3 axis;
   double half_height;
@@ -40,14 +40,14 @@ struct Solid {
 };
 
 Solid make_cylinder(const vec3& center, const dvec3& axis, double half_height, double radius) {
-  const Cylinder c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height), static_cast<float>(radius)};
+  const world::Cylinder c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height), static_cast<float>(radius)};
   return {"cylinder", c, dvec3(center), glm::normalize(dvec3(c.axis)), c.half_height, c.radius, c.radius};
 }
 
 /// A cone, with its apex at the axis' end, where `radius_top` is 0.
 Solid make_cone(const vec3& center, const dvec3& axis, double half_height, double radius_bottom,
                 double radius_top = 0.0) {
-  const Cone c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height), static_cast<float>(radius_bottom),
+  const world::Cone c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height), static_cast<float>(radius_bottom),
                static_cast<float>(radius_top)};
   return {radius_top == 0.0 ? "cone" : "frustum",
           c,
@@ -134,7 +134,7 @@ double worst_surface_error(const Solid& solid, std::span<const Ray> rays, std::s
 
 /// For rays that touch an edge: see kEdgeRaysPerMargin.
 Tally cast_at_edge(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
-  const Scene scene = scene_of({solid.shape});
+  const world::Scene scene = scene_of({solid.shape});
   const std::vector<Hit> hits = lab.cast(scene, rays);
   std::vector<Ray> judged_rays;
   std::vector<Hit> judged_hits;
@@ -266,7 +266,7 @@ void run_parallel(Lab& lab) {
         const Solid solid = form.make(kOrigin, axis);
         // 4 u S, twice what B2 excuses.
         const double gap = 4.0 * static_cast<double>(kUnitRoundoff) * (2.0 * distance + solid.size());
-        const Scene scene = scene_of({solid.shape});
+        const world::Scene scene = scene_of({solid.shape});
         for (const Hit& hit : lab.cast(scene, parallel_rays(solid, distance, 0.0, 1.0 - gap, random))) {
           const double cosine = std::abs(glm::dot(dvec3(hit.normal), solid.axis));
           not_caps += hit.object < 0 || !(cosine > 1.0 - 1e-6);
@@ -329,7 +329,7 @@ void run_rims(Lab& lab) {
       // Rays from all around often end at the silhouette: see kEdgeRaysPerMargin.
       constexpr size_t kAround = kRimRayCount / kEdgeRaysPerMargin;
       const std::vector<Ray> rays = rays_at_rims(solid, kAround, random);
-      const Scene scene = scene_of({solid.shape});
+      const world::Scene scene = scene_of({solid.shape});
       const std::vector<Hit> hits = lab.cast(scene, rays);
       const size_t facing = rays.size() - kAround;
       Tally judged = Lab::judge(scene, std::span(rays).first(facing), std::span(hits).first(facing));
@@ -364,7 +364,7 @@ void run_inside(Lab& lab) {
         const oracle::Real least = 4 * oracle::kRoundoff * oracle::scale_of(solid.shape, 0, exact);
         if (oracle::signed_distance(solid.shape, 0, exact.origin) < -least) rays.push_back(ray);
       }
-      const Scene scene = scene_of({solid.shape});
+      const world::Scene scene = scene_of({solid.shape});
       const std::vector<Hit> hits = lab.cast(scene, rays);
       for (const Hit& hit : hits) {
         if (hit.object < 0) continue;
@@ -472,13 +472,13 @@ void run_generators_and_apex(Lab& lab) {
 std::vector<Ray> rays_at_mirror_nappe(const Solid& solid, Random& random) {
   // The same grown by a hundredth all round, to tell rays past the solid from those that graze it.
   const double more = 0.01 * solid.size();
-  Cone grown = std::get<Cone>(solid.shape);
+  world::Cone grown = std::get<world::Cone>(solid.shape);
   const auto widen = [&](float radius) { return static_cast<float>(radius + more * (1.0 + std::abs(solid.slope()))); };
   grown.half_height += static_cast<float>(more);
   grown.radius_bottom = widen(grown.radius_bottom);
   grown.radius_top = widen(grown.radius_top);
-  const Scene guard = scene_of({grown});
-  const Bounds box = bounds_of(std::get<Cone>(solid.shape));
+  const world::Scene guard = scene_of({grown});
+  const Bounds box = bounds_of(std::get<world::Cone>(solid.shape));
 
   const double slope = -solid.slope();
   const dvec3 apex = solid.at(solid.radius_at(0.0) / slope, dvec3(0.0));

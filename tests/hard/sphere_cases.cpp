@@ -11,7 +11,7 @@ namespace {
 constexpr size_t kRayCount = 100000;
 
 /// From random places at a distance from the centre, at targets spread over a disk of `spread` radii across the view.
-std::vector<Ray> rays_at(const Sphere& sphere, double distance, double spread, Random& random) {
+std::vector<Ray> rays_at(const world::Sphere& sphere, double distance, double spread, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
     const dvec3 view = random.direction();
@@ -22,7 +22,7 @@ std::vector<Ray> rays_at(const Sphere& sphere, double distance, double spread, R
   return rays;
 }
 
-void expect_b1_b2(Lab& lab, const Sphere& sphere, std::span<const Ray> rays, const std::string& where) {
+void expect_b1_b2(Lab& lab, const world::Sphere& sphere, std::span<const Ray> rays, const std::string& where) {
   const Tally tally = lab.cast_and_judge(scene_of({sphere}), rays);
   lab.expect_at_most("K of t (B1), " + where, 8.0 * lab.rounding_factor(), tally.max_t_error);
   lab.expect_at_most("margin of other answers / uS (B2), " + where, 2.0, tally.max_margin);
@@ -32,7 +32,7 @@ void expect_b1_b2(Lab& lab, const Sphere& sphere, std::span<const Ray> rays, con
 
 void run_distances(Lab& lab) {
   Random random(1);
-  const Sphere sphere{vec3(0.0F), 1.0F};
+  const world::Sphere sphere{vec3(0.0F), 1.0F};
   for (const double distance : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6}) {
     expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), label("distance", distance));
   }
@@ -40,14 +40,14 @@ void run_distances(Lab& lab) {
 
 void run_small(Lab& lab) {
   Random random(2);
-  const Sphere sphere{vec3(0.0F), 1e-3F};
+  const world::Sphere sphere{vec3(0.0F), 1e-3F};
   for (const double distance : {1.0, 100.0}) {
     expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), label("distance", distance));
   }
 }
 
 /// P = o + t d lies on the surface.
-void expect_bk(Lab& lab, const Sphere& sphere, std::span<const Ray> rays, const std::string& where) {
+void expect_bk(Lab& lab, const world::Sphere& sphere, std::span<const Ray> rays, const std::string& where) {
   const Tally tally = lab.cast_and_judge(scene_of({sphere}), rays);
   lab.expect_at_most("|P - surface| / uS (BK), " + where, 8.0 * lab.rounding_factor(), tally.max_surface_error);
   lab.expect_at_most("missed, " + where, 0.0, static_cast<double>(tally.misses));
@@ -56,7 +56,7 @@ void expect_bk(Lab& lab, const Sphere& sphere, std::span<const Ray> rays, const 
 
 void run_large(Lab& lab) {
   Random random(3);
-  const Sphere sphere{vec3(0.0F), 1e6F};
+  const world::Sphere sphere{vec3(0.0F), 1e6F};
   std::vector<Ray> rays;
   while (rays.size() < kRayCount) {
     const dvec3 up = random.direction();
@@ -71,7 +71,7 @@ void run_large(Lab& lab) {
 void run_extreme_sizes(Lab& lab) {
   Random random(4);
   for (const auto& [radius, distance] : {std::array{1e6, 1e9}, std::array{1e-20, 1e-18}}) {
-    const Sphere sphere{vec3(0.0F), static_cast<float>(radius)};
+    const world::Sphere sphere{vec3(0.0F), static_cast<float>(radius)};
     const std::string where = label("r =", radius) + label(" at", distance);
     expect_b1_b2(lab, sphere, rays_at(sphere, distance, 1.05, random), where);
   }
@@ -79,7 +79,7 @@ void run_extreme_sizes(Lab& lab) {
 
 void run_grazing(Lab& lab) {
   Random random(6);
-  const Sphere sphere{vec3(0.0F), 1.0F};
+  const world::Sphere sphere{vec3(0.0F), 1.0F};
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
     const dvec3 view = random.direction();
@@ -92,7 +92,7 @@ void run_grazing(Lab& lab) {
 
 void run_inside(Lab& lab) {
   Random random(7);
-  const Sphere sphere{vec3(1.0F, 2.0F, 3.0F), 2.0F};
+  const world::Sphere sphere{vec3(1.0F, 2.0F, 3.0F), 2.0F};
   for (const double depth : {0.0, 0.5, 0.999}) {
     std::vector<Ray> rays;
     for (size_t i = 0; i < kRayCount; ++i) {
@@ -117,7 +117,7 @@ void run_inside(Lab& lab) {
 
 void run_direction_lengths(Lab& lab) {
   Random random(8);
-  const Sphere sphere{vec3(0.0F), 1.0F};
+  const world::Sphere sphere{vec3(0.0F), 1.0F};
   for (const double length : {1e-3, 1e3, 1e-30, 1e30}) {
     std::vector<Ray> rays = rays_at(sphere, 10.0, 1.05, random);
     for (Ray& ray : rays) ray.direction = vec3(length * dvec3(ray.direction));
@@ -128,7 +128,7 @@ void run_direction_lengths(Lab& lab) {
 void run_offsets(Lab& lab) {
   Random random(9);
   for (const float offset : {1e5F, 1e7F}) {
-    const Sphere sphere{vec3(offset, -offset, offset), 1.0F};
+    const world::Sphere sphere{vec3(offset, -offset, offset), 1.0F};
     expect_b1_b2(lab, sphere, rays_at(sphere, 10.0, 1.05, random), label("centre at", offset));
   }
 }

@@ -16,7 +16,7 @@ constexpr size_t kJudged = 4000;
 
 struct TreeScene {
   const char* name;
-  Scene scene;
+  world::Scene scene;
   /// Where the rays go, around this.
   dvec3 center;
   double radius;
@@ -33,20 +33,20 @@ dvec3 random_point(const dvec3& center, double radius, Random& random) {
 }
 
 /// Shapes of every kind strewn over a ball, some much larger than others.
-Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
-  std::vector<Shape> shapes;
+world::Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
+  std::vector<world::Shape> shapes;
   for (int i = 0; i < count; ++i) {
     const vec3 place(random_point(center, radius, random));
     const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
     switch (i % 5) {
       case 0:
-        shapes.emplace_back(Sphere{place, size});
+        shapes.emplace_back(world::Sphere{place, size});
         break;
       case 1:
-        shapes.emplace_back(Cylinder{place, turned_axis(random), size, 0.5F * size});
+        shapes.emplace_back(world::Cylinder{place, turned_axis(random), size, 0.5F * size});
         break;
       case 2:
-        shapes.emplace_back(Cone{place, turned_axis(random), size, size, i % 2 == 0 ? 0.0F : 0.4F * size});
+        shapes.emplace_back(world::Cone{place, turned_axis(random), size, size, i % 2 == 0 ? 0.0F : 0.4F * size});
         break;
       default: {
         Mesh mesh;
@@ -56,12 +56,12 @@ Scene make_strewn(const dvec3& center, double radius, int count, Random& random)
       }
     }
   }
-  shapes.emplace_back(Plane{vec3(center - dvec3(0.0, radius, 0.0)), turned_axis(random)});
+  shapes.emplace_back(world::Plane{vec3(center - dvec3(0.0, radius, 0.0)), turned_axis(random)});
   return scene_of(std::move(shapes));
 }
 
 /// A field of squares with shared edges, every second one twice: equal t wherever one looks.
-Scene make_ties() {
+world::Scene make_ties() {
   Mesh mesh;
   for (int i = 0; i < 8 * 8; ++i) mesh.positions.emplace_back(i % 8, 0.1F * static_cast<float>((i * i) % 7), i / 8);
   for (uint32_t i = 0; i < 49; ++i) {
@@ -72,7 +72,7 @@ Scene make_ties() {
     }
   }
   return scene_of(
-      {mesh, Plane{vec3(0.0F), vec3(0, 1, 0)}, Sphere{vec3(3.5F, 0, 3.5F), 1.5F}, Sphere{vec3(3.5F, 0, 3.5F), 1.5F}});
+      {mesh, world::Plane{vec3(0.0F), vec3(0, 1, 0)}, world::Sphere{vec3(3.5F, 0, 3.5F), 1.5F}, world::Sphere{vec3(3.5F, 0, 3.5F), 1.5F}});
 }
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {
@@ -90,7 +90,7 @@ Ray ray_through(const TreeScene& in, Random& random, size_t index) {
 }
 
 /// Every builder's boxes against none.
-void expect_as_brute_force(Lab& lab, const std::string& name, const Scene& scene, std::span<const Ray> rays) {
+void expect_as_brute_force(Lab& lab, const std::string& name, const world::Scene& scene, std::span<const Ray> rays) {
   const FeatureMask features = features_of(scene);
   std::vector<layout::HitRecord> expected;
   for (const std::string_view builder : builder_names()) {

@@ -88,7 +88,7 @@ uint64_t count_hits(std::span<const Hit> hits) {
 }
 
 /// Every one of these rays, at a mesh alone, has something before it.
-void expect_no_leaks(Lab& lab, const Scene& scene, std::span<const Ray> rays, const std::string& what) {
+void expect_no_leaks(Lab& lab, const world::Scene& scene, std::span<const Ray> rays, const std::string& what) {
   const std::vector<Hit> hits = lab.cast(scene, rays);
   const uint64_t leaks = count_misses(hits);
   lab.expect_at_most("leaks, " + what, 0.0, static_cast<double>(leaks));
@@ -102,7 +102,7 @@ void expect_no_leaks(Lab& lab, const Scene& scene, std::span<const Ray> rays, co
 void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t random_count, const std::string& where) {
   Random random(steps);
   const Mesh mesh = make_uv_sphere(center, steps, [](uint32_t, uint32_t) { return 2.0; });
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   const auto origin = [&] {
     const double reach = random.uniform();
     return center + reach * random.direction();
@@ -167,7 +167,7 @@ void cast_at_collinear_corners(Lab& lab) {
     const dvec3 normal = glm::normalize(glm::cross(dvec3(corners[2] - corners[0]), dvec3(corners[3] - corners[0])));
     if (std::abs(glm::dot(normal, dvec3(ray.direction))) > 0.1) rays.push_back(ray);
   }
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   expect_no_leaks(lab, scene, rays, "at edges with a collinear corner");
   const Tally tally = lab.cast_and_judge(scene, std::span(rays).first(300));
   lab.expect_at_most("margin of other answers / uS (B2), collinear corner", 2.0, tally.max_margin);
@@ -189,7 +189,7 @@ void run_spikes(Lab& lab) {
   Random random(22);
   const Mesh mesh = make_uv_sphere(dvec3(0.0), 16,
                                    [](uint32_t row, uint32_t column) { return (row + column) % 2 == 0 ? 10.0 : 0.5; });
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   const dvec3 center(0.0);
   expect_no_leaks(lab, scene, make_rays(100000, [&] { return ray_towards(center, random.direction()); }),
                   "random rays from the centre");
@@ -479,7 +479,7 @@ Mesh make_slivers(const Placement& place, double aspect, bool is_cap) {
 }
 
 /// |P(u,v) - plane| / uS of the worst hit, with P as the renderer rebuilds it.
-double worst_plane_distance(Lab& lab, const Scene& scene, const Mesh& mesh, std::span<const Ray> rays) {
+double worst_plane_distance(Lab& lab, const world::Scene& scene, const Mesh& mesh, std::span<const Ray> rays) {
   const std::vector<Bounce> bounces = Bouncer(lab.device(), scene).bounce(rays);
   Real worst = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -531,7 +531,7 @@ void run_slivers(Lab& lab) {
           const dvec3 away = random.direction();
           if (std::abs(glm::dot(away, place.normal())) > 0.1) rays.push_back(ray_towards(p + 2.0 * away, p));
         }
-        const Scene scene = scene_of({mesh});
+        const world::Scene scene = scene_of({mesh});
         const std::vector<Hit> hits = lab.cast(scene, rays);
         leaks += count_misses(hits);
         constexpr size_t kJudged = 100;  // by brute force
@@ -557,7 +557,7 @@ void run_coincident(Lab& lab) {
   const vec3 c(0.4F, 1.5F, 0.2F);
   Mesh mesh = make_triangle(a, b, c);
   mesh.triangles.assign(10000, mesh.triangles[0]);
-  const Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_of({mesh});
   const std::vector<Ray> rays = make_rays(1000, [&] {
     const dvec3 away = 3.0 * random.direction();
     const dvec3 target = pick_inside(mesh, random);

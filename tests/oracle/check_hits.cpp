@@ -19,7 +19,7 @@ namespace {
 using namespace promin;
 
 /// Half from the camera over its square view, half chords between points of the sphere around the scene.
-std::vector<Ray> make_rays(const Scene& scene, size_t count) {
+std::vector<Ray> make_rays(const world::Scene& scene, size_t count) {
   std::mt19937 generator(1);
   const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
   const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
@@ -54,11 +54,11 @@ std::vector<Ray> make_rays(const Scene& scene, size_t count) {
 
 /// Whether every answer is the oracle's within the bounds of docs/accuracy.md; says so, with those that are not.
 bool check(const std::string& file, const std::string& builder, size_t count) {
-  const Scene scene = load_scene(file);
+  const world::Scene scene = world::flatten(load_scene(file));
   const std::vector<Ray> rays = make_rays(scene, count);
   std::vector<Hit> hits(count);
   const gpu::DeviceHandle device = gpu::open_device();
-  CasterOptions options;
+  TunedCasterOptions options;
   options.builder = builder;
   Caster(*device, scene, options).cast(rays, hits);
 
@@ -105,7 +105,7 @@ bool check(const std::string& file, const std::string& builder, size_t count) {
 int main(int argc, char** argv) {
   CLI::App program("Checks a device's hits in a scene against brute force in long double.", "promin-check-hits");
   std::string scene;
-  std::string builder = CasterOptions{}.builder;
+  std::string builder = TunedCasterOptions{}.builder;
   size_t count = 10000;
   program.add_option("SCENE", scene, "Scene file: .gltf, .glb or .obj")->required();
   program.add_option("--rays", count, "Number of rays [10000]")->check(CLI::Range(1, 100000000));

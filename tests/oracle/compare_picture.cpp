@@ -24,9 +24,9 @@ struct Curvature {
   Real operator()(const Flat&) const {
     return kInfinity;
   }
-  Real operator()(const Sphere& s) const { return s.radius; }
-  Real operator()(const Cylinder& c) const { return around(Vector(c.center), Vector(c.axis)); }
-  Real operator()(const Cone& c) const { return around(Vector(c.center), Vector(c.axis)); }
+  Real operator()(const world::Sphere& s) const { return s.radius; }
+  Real operator()(const world::Cylinder& c) const { return around(Vector(c.center), Vector(c.axis)); }
+  Real operator()(const world::Cone& c) const { return around(Vector(c.center), Vector(c.axis)); }
 
   Real around(const Vector& center, const Vector& axis) const {
     const Vector v = glm::normalize(axis);
@@ -35,7 +35,7 @@ struct Curvature {
   }
 };
 
-Real allowed_normal_error(const Shape& shape, const Ray& ray, const Hit& hit) {
+Real allowed_normal_error(const world::Shape& shape, const Ray& ray, const Hit& hit) {
   if (std::holds_alternative<Mesh>(shape)) return 1e-4L;
   const Vector point = ray.origin + hit.t * ray.direction;
   const Real cosine = std::abs(glm::dot(hit.normal, glm::normalize(ray.direction)));
@@ -45,7 +45,7 @@ Real allowed_normal_error(const Shape& shape, const Ray& ray, const Hit& hit) {
 
 /// Distance from the ray to the nearest crease around its hit. There the distance falls and rises once, so that thirds
 /// find the least; were it not so, what they find would be too much rather than too little.
-Real distance_from_crease(const Shape& shape, const Ray& ray, const Hit& hit) {
+Real distance_from_crease(const world::Shape& shape, const Ray& ray, const Hit& hit) {
   const Real reach = 0.01L * bounding_sphere(shape, hit.primitive).radius / glm::length(ray.direction);
   Real lo = hit.t - reach;
   Real hi = hit.t + reach;
@@ -63,7 +63,7 @@ Real distance_from_crease(const Shape& shape, const Ray& ray, const Hit& hit) {
 
 class Comparison {
  public:
-  Comparison(const Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
+  Comparison(const world::Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
              const PictureBounds& bounds)
       : scene_(scene), expected_(expected), image_(image), aovs_(aovs) {
     report_.bounds = bounds;
@@ -121,7 +121,7 @@ class Comparison {
   }
 
   void compare_normal(const Pixel& pixel) {
-    const Shape& shape = scene_.objects[static_cast<size_t>(pixel.hit.object)].shape;
+    const world::Shape& shape = scene_.objects[static_cast<size_t>(pixel.hit.object)].shape;
     const Real error = glm::distance(Vector(aovs_.normal[index_]), pixel.hit.normal) /
                        allowed_normal_error(shape, pixel.ray, pixel.hit);
     if (error > 1) {
@@ -136,7 +136,7 @@ class Comparison {
     report_.largest_normal_error = std::max(report_.largest_normal_error, error);
   }
 
-  const Scene& scene_;
+  const world::Scene& scene_;
   const Picture& expected_;
   const Image& image_;
   const DeviceAovs& aovs_;
@@ -154,7 +154,7 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-std::string name_hit(const Scene& scene, int32_t object, int32_t primitive) {
+std::string name_hit(const world::Scene& scene, int32_t object, int32_t primitive) {
   if (object < 0) return "a miss";
   const bool exists = static_cast<size_t>(object) < scene.objects.size();
   const std::string name = exists ? scene.objects[static_cast<size_t>(object)].name : "none such";
@@ -188,7 +188,7 @@ bool PictureReport::passes() const {
          static_cast<double>(color_errors.size()) <= color_share * count && color_mean <= bounds.color_mean;
 }
 
-std::string PictureReport::summary(const Scene& scene, size_t most_lines) const {
+std::string PictureReport::summary(const world::Scene& scene, size_t most_lines) const {
   std::string text = passes() ? "passes" : "fails";
   text += format(
       ": %llu pixels, largest error of depth %.3Lg u S, of normals %.3Lg of what is allowed; mean of colour "
@@ -207,7 +207,7 @@ std::string PictureReport::summary(const Scene& scene, size_t most_lines) const 
   return text;
 }
 
-PictureReport compare_picture(const Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
+PictureReport compare_picture(const world::Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
                               const PictureBounds& bounds) {
   const size_t count = expected.pixels.size();
   const bool has_aovs = !aovs.object.empty();

@@ -81,11 +81,11 @@ struct PictureReport {
 
   bool passes() const;
   /// Verdict and numbers on a line, and each listed pixel on a line of its own, at most `most_lines` a list.
-  std::string summary(const Scene& scene, size_t most_lines = 20) const;
+  std::string summary(const world::Scene& scene, size_t most_lines = 20) const;
 };
 
 /// Throws std::invalid_argument if the sizes differ. Without AOVs (empty spans) colours alone are compared.
-PictureReport compare_picture(const Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
+PictureReport compare_picture(const world::Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
                               const PictureBounds& bounds = {});
 
 }  // namespace promin::oracle

@@ -37,18 +37,18 @@ struct DevicePicture {
 };
 
 /// A ball, a can and a sheet stand on a mirroring floor.
-Scene make_scene() {
-  Scene scene;
-  scene.ambient = vec3(0.1F);
-  scene.background = vec3(0.2F, 0.4F, 0.6F);
+world::Scene make_scene() {
+  world::Scene scene;
+  scene.environment.ambient = vec3(0.1F);
+  scene.environment.background = vec3(0.2F, 0.4F, 0.6F);
   scene.materials.resize(2);
   scene.materials[1].reflection = vec3(0.5F);
   Mesh sheet;
   sheet.positions = {{-3, 0, -1}, {-1, 0, -1}, {-1, 2, -1}, {-3, 2, -1}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
-  scene.objects = {{"floor", Plane{}, 1},
-                   {"ball", Sphere{{0, 1, 0}, 1}, 0},
-                   {"can", Cylinder{{2, 0.5F, 1}, {0, 1, 0}, 0.5F, 0.5F}, 0},
+  scene.objects = {{"floor", world::Plane{}, 1},
+                   {"ball", world::Sphere{{0, 1, 0}, 1}, 0},
+                   {"can", world::Cylinder{{2, 0.5F, 1}, {0, 1, 0}, 0.5F, 0.5F}, 0},
                    {"sheet", sheet, 0}};
   scene.lights.resize(2);
   scene.lights[0].position = vec3(3, 6, 5);
@@ -85,7 +85,7 @@ class ComparePictureTest : public testing::Test {
     return i;
   }
 
-  const Scene scene = make_scene();
+  const world::Scene scene = make_scene();
   const View view = make_view();
   const Picture picture = render(scene, view);
   const DevicePicture rounded{picture};
@@ -124,8 +124,8 @@ TEST_F(ComparePictureTest, AHalfPixelShiftFails) {
 }
 
 TEST_F(ComparePictureTest, AMissingShadowFails) {
-  Scene without_ball = scene;
-  without_ball.objects[1].shape = NotDrawn{};
+  world::Scene without_ball = scene;
+  without_ball.objects[1].shape = world::NotDrawn{};
   const Picture bare = render(without_ball, view);
   DevicePicture device = rounded;
   for (size_t i = 0; i < bare.pixels.size(); ++i) {
@@ -146,7 +146,7 @@ TEST_F(ComparePictureTest, ABounceLessFails) {
 
 TEST_F(ComparePictureTest, ALightThatIsOffFails) {
   for (size_t i = 0; i < 2; ++i) {
-    Scene dim = scene;
+    world::Scene dim = scene;
     dim.lights.erase(dim.lights.begin() + static_cast<std::ptrdiff_t>(i));
     expect_failure(DevicePicture(render(dim, view)));
   }
@@ -236,15 +236,15 @@ TEST_F(ComparePictureTest, ErrorsOfNormalsFail) {
 }
 
 /// A can before a wall.
-Scene make_can() {
-  Scene scene;
+world::Scene make_can() {
+  world::Scene scene;
   scene.materials.resize(1);
-  scene.objects = {{"can", Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 1}, 0}, {"wall", Plane{{0, 0, 4}, {0, 0, 1}}, 0}};
+  scene.objects = {{"can", world::Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 1}, 0}, {"wall", world::Plane{{0, 0, 4}, {0, 0, 1}}, 0}};
   return scene;
 }
 
 /// 2000 pixels of which the first `count` look along this ray and the others see nothing.
-Picture make_picture_of(const Scene& scene, const Ray& ray, size_t count) {
+Picture make_picture_of(const world::Scene& scene, const Ray& ray, size_t count) {
   Picture picture;
   picture.size = uvec2(2000, 1);
   picture.pixels.resize(2000);
@@ -253,7 +253,7 @@ Picture make_picture_of(const Scene& scene, const Ray& ray, size_t count) {
 }
 
 TEST(ComparePicture, AtARimEitherNormalIsRightInAFewPixels) {
-  const Scene scene = make_can();
+  const world::Scene scene = make_can();
   const auto compare_below_rim = [&](Real units, size_t count) {
     const Real offset = units * kRoundoff * (std::sqrt(Real(8)) + std::sqrt(Real(2)));
     // Meets the side just below the rim, the device says the disk.
@@ -271,7 +271,7 @@ TEST(ComparePicture, AtARimEitherNormalIsRightInAFewPixels) {
 }
 
 TEST(ComparePicture, AtASilhouetteEitherObjectIsRightInAFewPixels) {
-  const Scene scene = make_can();
+  const world::Scene scene = make_can();
   const auto compare_past_rim = [&](Real units, size_t count) {
     const Real offset = units * kRoundoff * (std::sqrt(Real(10)) + std::sqrt(Real(2)));
     // Passes the rim from behind and meets the wall, the device says the can.

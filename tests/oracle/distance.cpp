@@ -24,13 +24,13 @@ Vector normal_of(const Corners& c) {
 struct Bound {
   int32_t primitive;
 
-  BoundingSphere operator()(const NotDrawn&) const { return {}; }
-  BoundingSphere operator()(const Sphere& s) const { return {Vector(s.center), s.radius}; }
-  BoundingSphere operator()(const Plane& p) const { return {Vector(p.point), 0}; }
-  BoundingSphere operator()(const Cylinder& c) const {
+  BoundingSphere operator()(const world::NotDrawn&) const { return {}; }
+  BoundingSphere operator()(const world::Sphere& s) const { return {Vector(s.center), s.radius}; }
+  BoundingSphere operator()(const world::Plane& p) const { return {Vector(p.point), 0}; }
+  BoundingSphere operator()(const world::Cylinder& c) const {
     return {Vector(c.center), std::hypot(Real(c.half_height), Real(c.radius))};
   }
-  BoundingSphere operator()(const Cone& c) const {
+  BoundingSphere operator()(const world::Cone& c) const {
     return {Vector(c.center), std::hypot(Real(c.half_height), Real(std::max(c.radius_bottom, c.radius_top)))};
   }
   BoundingSphere operator()(const Mesh& mesh) const {
@@ -49,10 +49,10 @@ struct CreaseDistance {
   Real operator()(const Other&) const {
     return kInfinity;
   }
-  Real operator()(const Cylinder& c) const {
+  Real operator()(const world::Cylinder& c) const {
     return to_rims(Vector(c.center), Vector(c.axis), c.half_height, c.radius, c.radius);
   }
-  Real operator()(const Cone& c) const {
+  Real operator()(const world::Cone& c) const {
     return to_rims(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
   }
 
@@ -68,15 +68,15 @@ struct SignedDistance {
   int32_t primitive;
   const Vector& point;
 
-  Real operator()(const NotDrawn&) const { return kInfinity; }
-  Real operator()(const Sphere& s) const { return glm::distance(point, Vector(s.center)) - s.radius; }
-  Real operator()(const Plane& p) const {
+  Real operator()(const world::NotDrawn&) const { return kInfinity; }
+  Real operator()(const world::Sphere& s) const { return glm::distance(point, Vector(s.center)) - s.radius; }
+  Real operator()(const world::Plane& p) const {
     return std::abs(glm::dot(point - Vector(p.point), glm::normalize(Vector(p.normal))));
   }
-  Real operator()(const Cylinder& c) const {
+  Real operator()(const world::Cylinder& c) const {
     return frustum(Vector(c.center), Vector(c.axis), c.half_height, c.radius, c.radius);
   }
-  Real operator()(const Cone& c) const {
+  Real operator()(const world::Cone& c) const {
     return frustum(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
   }
 
@@ -111,26 +111,26 @@ struct SignedDistance {
 
 }  // namespace
 
-bool is_hittable(const Shape& shape, int32_t primitive) {
+bool is_hittable(const world::Shape& shape, int32_t primitive) {
   if (primitive < 0 || static_cast<uint32_t>(primitive) >= primitive_count(shape)) return false;
   const Mesh* mesh = std::get_if<Mesh>(&shape);
   return mesh == nullptr || normal_of(corners_of(*mesh, primitive)) != Vector(0);
 }
 
-BoundingSphere bounding_sphere(const Shape& shape, int32_t primitive) {
+BoundingSphere bounding_sphere(const world::Shape& shape, int32_t primitive) {
   return std::visit(Bound{primitive}, shape);
 }
 
-Real scale_of(const Shape& shape, int32_t primitive, const Ray& ray) {
+Real scale_of(const world::Shape& shape, int32_t primitive, const Ray& ray) {
   const BoundingSphere bound = bounding_sphere(shape, primitive);
   return glm::distance(ray.origin, bound.center) + bound.radius;
 }
 
-Real signed_distance(const Shape& shape, int32_t primitive, const Vector& point) {
+Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector& point) {
   return std::visit(SignedDistance{primitive, point}, shape);
 }
 
-Real distance_to_crease(const Shape& shape, const Vector& point) {
+Real distance_to_crease(const world::Shape& shape, const Vector& point) {
   return std::visit(CreaseDistance{point}, shape);
 }
 

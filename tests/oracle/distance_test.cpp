@@ -19,10 +19,10 @@ Mesh make_triangle() {
 }
 
 TEST(Distance, FromTheInsideItIsNegative) {
-  EXPECT_NEAR(signed_distance(Sphere{{1, 0, 0}, 2}, 0, {1, 5, 0}), 3, kTolerance);
-  EXPECT_NEAR(signed_distance(Sphere{{1, 0, 0}, 2}, 0, {1, 0.5L, 0}), -1.5L, kTolerance);
-  EXPECT_NEAR(signed_distance(Plane{{0, 1, 0}, {0, 2, 0}}, 0, {7, -2, 0}), 3, kTolerance);
-  const Cylinder can{{0, 0, 0}, {0, 1, 0}, 2, 1};
+  EXPECT_NEAR(signed_distance(world::Sphere{{1, 0, 0}, 2}, 0, {1, 5, 0}), 3, kTolerance);
+  EXPECT_NEAR(signed_distance(world::Sphere{{1, 0, 0}, 2}, 0, {1, 0.5L, 0}), -1.5L, kTolerance);
+  EXPECT_NEAR(signed_distance(world::Plane{{0, 1, 0}, {0, 2, 0}}, 0, {7, -2, 0}), 3, kTolerance);
+  const world::Cylinder can{{0, 0, 0}, {0, 1, 0}, 2, 1};
   EXPECT_NEAR(signed_distance(can, 0, {0.25L, 0, 0}), -0.75L, kTolerance);
   EXPECT_NEAR(signed_distance(can, 0, {0.25L, 1.5L, 0}), -0.5L, kTolerance);
   EXPECT_NEAR(signed_distance(can, 0, {0, 0, 3}), 2, kTolerance);
@@ -32,7 +32,7 @@ TEST(Distance, FromTheInsideItIsNegative) {
 
 TEST(Distance, ConesHaveASlope) {
   // Apex at (0, 1, 0); the side falls one in height on two across.
-  const Cone cone{{0, 0, 0}, {0, 1, 0}, 1, 4, 0};
+  const world::Cone cone{{0, 0, 0}, {0, 1, 0}, 1, 4, 0};
   const Real root = std::sqrt(Real(5));
   EXPECT_NEAR(signed_distance(cone, 0, {0, 0, 0}), -2 / root, kTolerance);
   EXPECT_NEAR(signed_distance(cone, 0, {2, 0, 0}), 0, kTolerance);
@@ -50,27 +50,27 @@ TEST(Distance, TrianglesHaveFacesEdgesAndCorners) {
 }
 
 TEST(Distance, CreasesAreRimsAndApices) {
-  const Cone cone{{0, 0, 0}, {0, 2, 0}, 1, 4, 0};
+  const world::Cone cone{{0, 0, 0}, {0, 2, 0}, 1, 4, 0};
   EXPECT_NEAR(distance_to_crease(cone, {0, 3, 0}), 2, kTolerance);
   EXPECT_NEAR(distance_to_crease(cone, {0, -5, 7}), 5, kTolerance);
-  EXPECT_NEAR(distance_to_crease(Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}, {0.5L, 2, 0}), 0.5L, kTolerance);
-  EXPECT_EQ(distance_to_crease(Sphere{}, {0, 0, 0}), kInfinity);
+  EXPECT_NEAR(distance_to_crease(world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}, {0.5L, 2, 0}), 0.5L, kTolerance);
+  EXPECT_EQ(distance_to_crease(world::Sphere{}, {0, 0, 0}), kInfinity);
 }
 
 TEST(Distance, TheScaleIsDistanceAndSize) {
   const Ray ray{{0, 3, 4}, {0, 0, 1}};
-  EXPECT_NEAR(scale_of(Sphere{{0, 0, 0}, 2}, 0, ray), 7, kTolerance);
-  EXPECT_NEAR(scale_of(Plane{{0, 0, 0}, {0, 1, 0}}, 0, ray), 5, kTolerance);
-  EXPECT_NEAR(scale_of(Cylinder{{0, 0, 0}, {0, 1, 0}, 4, 3}, 0, ray), 10, kTolerance);
-  EXPECT_NEAR(scale_of(Cone{{0, 0, 0}, {0, 1, 0}, 4, 1, 3}, 0, ray), 10, kTolerance);
+  EXPECT_NEAR(scale_of(world::Sphere{{0, 0, 0}, 2}, 0, ray), 7, kTolerance);
+  EXPECT_NEAR(scale_of(world::Plane{{0, 0, 0}, {0, 1, 0}}, 0, ray), 5, kTolerance);
+  EXPECT_NEAR(scale_of(world::Cylinder{{0, 0, 0}, {0, 1, 0}, 4, 3}, 0, ray), 10, kTolerance);
+  EXPECT_NEAR(scale_of(world::Cone{{0, 0, 0}, {0, 1, 0}, 4, 1, 3}, 0, ray), 10, kTolerance);
   EXPECT_NEAR(scale_of(make_triangle(), 0, {{1, 1, 5}, {0, 0, 1}}), 5 + std::sqrt(Real(5)), kTolerance);
 }
 
 TEST(Distance, OnlyWhatCanBeHitIsHittable) {
-  EXPECT_TRUE(is_hittable(Sphere{}, 0));
-  EXPECT_FALSE(is_hittable(Sphere{}, 1));
-  EXPECT_FALSE(is_hittable(Sphere{}, -1));
-  EXPECT_FALSE(is_hittable(NotDrawn{}, 0));
+  EXPECT_TRUE(is_hittable(world::Sphere{}, 0));
+  EXPECT_FALSE(is_hittable(world::Sphere{}, 1));
+  EXPECT_FALSE(is_hittable(world::Sphere{}, -1));
+  EXPECT_FALSE(is_hittable(world::NotDrawn{}, 0));
   EXPECT_TRUE(is_hittable(make_triangle(), 0));
   EXPECT_FALSE(is_hittable(make_triangle(), 1)) << "degenerate";
   EXPECT_FALSE(is_hittable(make_triangle(), 2));

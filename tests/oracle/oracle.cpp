@@ -26,7 +26,7 @@ class Search {
  public:
   explicit Search(const Ray& ray) : ray_(ray) { ray_.tmin = std::max(Real(0), ray.tmin); }
 
-  void visit(int32_t object, const Shape& shape) {
+  void visit(int32_t object, const world::Shape& shape) {
     object_ = object;
     std::visit([this](const auto& solid) { intersect(solid); }, shape);
   }
@@ -39,7 +39,7 @@ class Search {
   }
   void offer(Real t, const Vector& normal) { offer(t, 0, 0, 0, normal); }
 
-  void intersect(const NotDrawn&) {}
+  void intersect(const world::NotDrawn&) {}
 
   /// t of the ray's closest approach to `center`. Quadratics are solved from there: from far away a small solid drowns
   /// in the square of the distance, in long double too.
@@ -48,7 +48,7 @@ class Search {
   }
 
   /// |P - C|^2 = r^2
-  void intersect(const Sphere& sphere) {
+  void intersect(const world::Sphere& sphere) {
     const Vector& d = ray_.direction;
     const Real near = approach(sphere.center);
     const Vector oc = ray_.origin - Vector(sphere.center) + near * d;
@@ -59,16 +59,16 @@ class Search {
   }
 
   /// (P - C) . N = 0
-  void intersect(const Plane& plane) {
+  void intersect(const world::Plane& plane) {
     const Vector n(plane.normal);
     offer(glm::dot(Vector(plane.point) - ray_.origin, n) / glm::dot(ray_.direction, n), n);
   }
 
-  void intersect(const Cylinder& cylinder) {
+  void intersect(const world::Cylinder& cylinder) {
     intersect_frustum(cylinder.center, cylinder.axis, cylinder.half_height, cylinder.radius, cylinder.radius);
   }
 
-  void intersect(const Cone& cone) {
+  void intersect(const world::Cone& cone) {
     intersect_frustum(cone.center, cone.axis, cone.half_height, cone.radius_bottom, cone.radius_top);
   }
 
@@ -141,14 +141,14 @@ bool can_hit(const Ray& ray) {
   return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Vector(0) && ray.tmin < ray.tmax;
 }
 
-Hit find_nearest_hit(const Scene& scene, const Ray& ray) {
+Hit find_nearest_hit(const world::Scene& scene, const Ray& ray) {
   if (!can_hit(ray)) return {};
   Search search(ray);
   for (size_t i = 0; i < scene.objects.size(); ++i) search.visit(static_cast<int32_t>(i), scene.objects[i].shape);
   return search.nearest();
 }
 
-bool is_occluded(const Scene& scene, const Ray& ray) {
+bool is_occluded(const world::Scene& scene, const Ray& ray) {
   return find_nearest_hit(scene, ray).exists();
 }
 

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 /// What the renderer is checked against: the formulas of the thesis in long double (64 bits of mantissa on x86), by
 /// brute force over every primitive. It shares no formula with the shaders, and normalises axes itself.
@@ -46,9 +46,9 @@ struct Hit {
 bool can_hit(const Ray& ray);
 
 /// The nearest hit; of hits at the same t the one with the lower (object, primitive).
-Hit find_nearest_hit(const Scene& scene, const Ray& ray);
+Hit find_nearest_hit(const world::Scene& scene, const Ray& ray);
 
 /// Whether anything is met at all.
-bool is_occluded(const Scene& scene, const Ray& ray);
+bool is_occluded(const world::Scene& scene, const Ray& ray);
 
 }  // namespace promin::oracle

@@ -12,13 +12,13 @@ namespace {
 
 constexpr Real kTolerance = 1e-15L;
 
-Scene scene_of(std::initializer_list<Shape> shapes) {
-  Scene scene;
-  for (const Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
+world::Scene scene_of(std::initializer_list<world::Shape> shapes) {
+  world::Scene scene;
+  for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
   return scene;
 }
 
-Hit cast(const Shape& shape, const Vector& origin, const Vector& direction) {
+Hit cast(const world::Shape& shape, const Vector& origin, const Vector& direction) {
   return find_nearest_hit(scene_of({shape}), {origin, direction});
 }
 
@@ -47,7 +47,7 @@ const Cone kCone{{0, 1, 0}, {0, 1, 0}, 1, 1, 0};
 const Cone kFrustum{{0, 1, 0}, {0, 1, 0}, 1, 2, 1};
 
 TEST(Oracle, Sphere) {
-  const Sphere sphere{{0, 0, 0}, 2};
+  const world::Sphere sphere{{0, 0, 0}, 2};
   expect_hit(cast(sphere, {0, 0, 5}, {0, 0, -1}), 3, {0, 0, 1});
   expect_hit(cast(sphere, {0, 0, 5}, {0, 0, -2}), 1.5L, {0, 0, 1});
   expect_hit(cast(sphere, {0, 0, 0}, {1, 0, 0}), 2, {1, 0, 0});
@@ -57,7 +57,7 @@ TEST(Oracle, Sphere) {
 }
 
 TEST(Oracle, PlaneKeepsItsOwnNormal) {
-  const Plane plane{{0, 1, 0}, {0, 1, 0}};
+  const world::Plane plane{{0, 1, 0}, {0, 1, 0}};
   expect_hit(cast(plane, {0, 3, 0}, {1, -1, 0}), 2, {0, 1, 0});
   expect_hit(cast(plane, {0, 0, 0}, {0, 2, 0}), 0.5L, {0, 1, 0});
   EXPECT_FALSE(cast(plane, {0, 3, 0}, {1, 0, 0}).exists());
@@ -68,9 +68,9 @@ TEST(Oracle, PlaneKeepsItsOwnNormal) {
 TEST(Oracle, SmallSolidsFarAwayKeepTheirShape) {
   // A chord of 8 around the middle, at a distance of 1e10 sizes: a plain quadratic is off by 50.
   constexpr Real kFar = 1e10L;
-  expect_near_relative(cast(Sphere{{0, 0, 0}, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
-  expect_near_relative(cast(Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
-  expect_near_relative(cast(Cone{{0, 0, 0}, {0, 1, 0}, 1, 10, 0}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
+  expect_near_relative(cast(world::Sphere{{0, 0, 0}, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
+  expect_near_relative(cast(world::Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
+  expect_near_relative(cast(world::Cone{{0, 0, 0}, {0, 1, 0}, 1, 10, 0}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
 }
 
 TEST(Oracle, CylinderSideAndDisks) {
@@ -87,7 +87,7 @@ TEST(Oracle, CylinderSideAndDisks) {
 TEST(Oracle, CylinderInAnyDirectionByItsOwnNormalisation) {
   // Along (1, 1, 0) / sqrt 2, given as the fp32 rounding, which is not of unit length.
   const float axis = std::sqrt(0.5F);
-  const Cylinder leaning{{0, 0, 0}, {axis, axis, 0}, 10, 0.5F};
+  const world::Cylinder leaning{{0, 0, 0}, {axis, axis, 0}, 10, 0.5F};
   const Real root = std::sqrt(Real(2));
   expect_hit(cast(leaning, {2, -2, 0}, {-1, 1, 0}), 2 - 0.5L / root, {1 / root, -1 / root, 0});
   expect_hit(cast(leaning, {0, 3, 0}, {0, -1, 0}), 3 - 0.5L * root, {-1 / root, 1 / root, 0});
@@ -120,7 +120,7 @@ TEST(Oracle, FrustumSideAndDisks) {
   expect_hit(cast(kFrustum, {0.9L, 5, 0}, {0, -1, 0}), 3, {0, 1, 0});
   expect_hit(cast(kFrustum, {1.5L, 5, 0}, {0, -1, 0}), 4, {2 / root, 1 / root, 0});
   expect_hit(cast(kFrustum, {1.5L, -5, 0}, {0, 1, 0}), 5, {0, -1, 0});
-  const Cone upside_down{{0, 1, 0}, {0, -1, 0}, 1, 1, 2};
+  const world::Cone upside_down{{0, 1, 0}, {0, -1, 0}, 1, 1, 2};
   expect_hit(cast(upside_down, {1.5L, 5, 0}, {0, -1, 0}), 4, {2 / root, 1 / root, 0});
 }
 
@@ -146,7 +146,7 @@ TEST(Oracle, DegenerateTrianglesKeepTheirNumberAndAreNotHit) {
 }
 
 TEST(Oracle, TheIntervalIsOpen) {
-  const Scene scene = scene_of({Plane{{0, 0, 0}, {0, 1, 0}}});
+  const world::Scene scene = scene_of({world::Plane{{0, 0, 0}, {0, 1, 0}}});
   const auto exists = [&](Real tmin, Real tmax) { return is_occluded(scene, {{0, 2, 0}, {0, -1, 0}, tmin, tmax}); };
   EXPECT_TRUE(exists(0, kInfinity));
   EXPECT_TRUE(exists(-5, 2.5L));
@@ -159,8 +159,8 @@ TEST(Oracle, TheIntervalIsOpen) {
 }
 
 TEST(Oracle, TheNearestAndOfEqualOnesTheFirstIsFound) {
-  const Sphere sphere{{0, 0, 0}, 1};
-  const Scene scene = scene_of({NotDrawn{}, Sphere{{0, 0, -5}, 1}, sphere, sphere});
+  const world::Sphere sphere{{0, 0, 0}, 1};
+  const world::Scene scene = scene_of({world::NotDrawn{}, world::Sphere{{0, 0, -5}, 1}, sphere, sphere});
   EXPECT_EQ(find_nearest_hit(scene, {{0, 0, 5}, {0, 0, -1}}).object, 2);
   EXPECT_EQ(find_nearest_hit(scene, {{0, 0, -9}, {0, 0, 1}}).object, 1);
   Mesh twice = make_triangle();
@@ -169,7 +169,7 @@ TEST(Oracle, TheNearestAndOfEqualOnesTheFirstIsFound) {
 }
 
 TEST(Oracle, RaysWithoutMeaningMiss) {
-  const Scene scene = scene_of({Sphere{{0, 0, 0}, 1}});
+  const world::Scene scene = scene_of({world::Sphere{{0, 0, 0}, 1}});
   const Real nan = std::numeric_limits<Real>::quiet_NaN();
   const Vector origin(0, 0, 5);
   const Vector direction(0, 0, -1);
@@ -201,7 +201,7 @@ TEST(Oracle, HitsLieOnTheSurfaceAndRaysTowardsTheInsideHit) {
   std::mt19937 random(1);
   const auto number = [&] { return static_cast<Real>(random()) * 0x1p-31L - 1; };
   const struct {
-    Shape shape;
+    world::Shape shape;
     Real bottom;
     Real top;
   } solids[] = {{kCylinder, 0.5L, 0.5L}, {kCone, 1, 0}, {kFrustum, 2, 1}};

@@ -30,7 +30,7 @@ struct SurfacePoint {
 /// Rounding puts the point of a hit off its primitive, and a ray from behind the surface would meet it again: by a few
 /// 2^-64 of the lengths that the hit was computed from. A thousandfold of that is still 1e-16 of them, less than
 /// anything that a picture shows.
-Real lift_of(const Shape& shape, const Ray& ray, const Hit& hit, const Vector& position) {
+Real lift_of(const world::Shape& shape, const Ray& ray, const Hit& hit, const Vector& position) {
   const BoundingSphere bound = bounding_sphere(shape, hit.primitive);
   return 0x1p-54L * (glm::length(ray.origin) + glm::length(position) + glm::distance(position, ray.origin) +
                      glm::distance(position, bound.center) + bound.radius);
@@ -65,8 +65,8 @@ void apply_vertex_normals(const Mesh& mesh, const Corners& corners, Real side, S
   }
 }
 
-SurfacePoint make_surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
-  const Object& object = scene.objects[static_cast<size_t>(hit.object)];
+SurfacePoint make_surface_point(const world::Scene& scene, const Ray& ray, const Hit& hit) {
+  const world::Object& object = scene.objects[static_cast<size_t>(hit.object)];
   const Real side = glm::dot(hit.normal, ray.direction) > 0 ? -1 : 1;
   SurfacePoint point;
   point.position = ray.origin + hit.t * ray.direction;
@@ -111,16 +111,16 @@ Illumination illuminate(const Light& light, const Vector& position) {
   return result;
 }
 
-bool is_in_shadow(const Scene& scene, const SurfacePoint& point, const Light& light, const Vector& to_light) {
+bool is_in_shadow(const world::Scene& scene, const SurfacePoint& point, const Light& light, const Vector& to_light) {
   const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
   if (light.kind == LightKind::kDirectional) return is_occluded(scene, {origin, to_light});
   return is_occluded(scene, {origin, Vector(light.position) - origin, 0, 1});
 }
 
 /// I = Ka i_a + sum over visible sources of Kd (N.L) i_d + Ks (R.V)^s i_s, and what the material emits.
-Vector shade(const Scene& scene, const SurfacePoint& point, const Vector& to_eye) {
+Vector shade(const world::Scene& scene, const SurfacePoint& point, const Vector& to_eye) {
   const Material& material = *point.material;
-  Vector sum = Vector(material.ambient) * point.vertex_color * Vector(scene.ambient) + Vector(material.emissive);
+  Vector sum = Vector(material.ambient) * point.vertex_color * Vector(scene.environment.ambient) + Vector(material.emissive);
   for (const Light& light : scene.lights) {
     const Illumination illumination = illuminate(light, point.position);
     const Real cosine = glm::dot(point.normal, illumination.to_light);
@@ -144,8 +144,8 @@ Vector mirror(const SurfacePoint& point, const Vector& direction) {
 }
 
 /// Whitted's recursion: I = Phong + kr I(mirror ray). `bounces` are left.
-Vector radiance(const Scene& scene, const Ray& ray, const Hit& hit, uint32_t bounces) {
-  if (!hit.exists()) return Vector(scene.background);
+Vector radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, uint32_t bounces) {
+  if (!hit.exists()) return Vector(scene.environment.background);
   const SurfacePoint point = make_surface_point(scene, ray, hit);
   const Vector direction = glm::normalize(ray.direction);
   const Vector own = shade(scene, point, -direction);
@@ -172,8 +172,8 @@ Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) 
   return is_orthographic ? Ray{eye + on_film, look, tmin} : Ray{eye, look + on_film, tmin};
 }
 
-Picture render(const Scene& scene, const View& view) {
-  Scene lit = scene;
+Picture render(const world::Scene& scene, const View& view) {
+  world::Scene lit = scene;
   for (Light& light : lit.lights) {
     if (light.kind != LightKind::kHeadlight) continue;
     light.kind = LightKind::kDirectional;

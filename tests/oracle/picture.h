@@ -34,6 +34,6 @@ struct Picture {
 Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y);
 
 /// The whole picture, one sample a pixel whatever the view's crop and samples, on all cores.
-Picture render(const Scene& scene, const View& view);
+Picture render(const world::Scene& scene, const View& view);
 
 }  // namespace promin::oracle

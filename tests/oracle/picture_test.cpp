@@ -31,7 +31,7 @@ View look_at(const vec3& eye, const vec3& target, const vec3& up) {
   return view;
 }
 
-Vector color_of(const Scene& scene, const View& view) {
+Vector color_of(const world::Scene& scene, const View& view) {
   return render(scene, view).at(0, 0).color;
 }
 
@@ -55,8 +55,8 @@ Material make_mirror(const vec3& reflection, const vec3& emissive = vec3(0.0F)) 
 }
 
 /// A floor of diffuse white under a classic point light of power 1 at (0, 2, 0).
-Scene make_lit_floor() {
-  Scene scene;
+world::Scene make_lit_floor() {
+  world::Scene scene;
   scene.materials = {make_black()};
   scene.materials[0].diffuse = vec3(1.0F);
   scene.objects = {{"floor", kFloor, 0}};
@@ -95,7 +95,7 @@ TEST(OraclePicture, RaysGoThroughThePixelsCentres) {
 }
 
 TEST(OraclePicture, NothingBeforeTheViewportIsDrawn) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   View view = look_at(vec3(0, 1, 0), vec3(0, 0, 0), vec3(0, 0, -1));
   for (const float near : {0.0F, 0.5F, 1.0F}) {
     view.camera.near = near;
@@ -106,7 +106,7 @@ TEST(OraclePicture, NothingBeforeTheViewportIsDrawn) {
 }
 
 TEST(OraclePicture, DepthCountsFromTheEyeAndNormalsAreNotFlipped) {
-  const Scene scene = make_lit_floor();
+  const world::Scene scene = make_lit_floor();
   View view = look_at(vec3(0, -3, 0), vec3(0, 0, -4), vec3(0, 0.8F, 0.6F));
   const Pixel seen = render(scene, view).at(0, 0);
   EXPECT_NEAR(seen.depth(), 5, kTolerance);
@@ -117,22 +117,22 @@ TEST(OraclePicture, DepthCountsFromTheEyeAndNormalsAreNotFlipped) {
 }
 
 TEST(OraclePicture, WhatMissesShowsTheBackground) {
-  Scene scene;
-  scene.background = vec3(0.25F, 0.5F, 1.0F);
+  world::Scene scene;
+  scene.environment.background = vec3(0.25F, 0.5F, 1.0F);
   expect_color(color_of(scene, look_down_at(0)), {0.25L, 0.5L, 1});
 }
 
 TEST(OraclePicture, AmbientAndEmissiveAdd) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.lights.clear();
-  scene.ambient = vec3(0.5F, 1.0F, 2.0F);
+  scene.environment.ambient = vec3(0.5F, 1.0F, 2.0F);
   scene.materials[0].ambient = vec3(0.25F);
   scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
   expect_color(color_of(scene, look_down_at(0)), {0.125L, 0.25L, 1.5L});
 }
 
 TEST(OraclePicture, DiffuseLightFollowsTheCosine) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   expect_color(color_of(scene, look_down_at(0)), Vector(1));
   expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L));
   // The floor's underside faces away from the light.
@@ -143,7 +143,7 @@ TEST(OraclePicture, DiffuseLightFollowsTheCosine) {
 }
 
 TEST(OraclePicture, HighlightsFollowThePower) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.materials[0].diffuse = vec3(0.0F);
   scene.materials[0].specular = vec3(0.5F);
   scene.materials[0].shininess = 10;
@@ -155,13 +155,13 @@ TEST(OraclePicture, HighlightsFollowThePower) {
 }
 
 TEST(OraclePicture, ShadowsAreCastByWhatLiesBetween) {
-  Scene scene = make_lit_floor();
-  scene.objects.push_back({"ball", Sphere{{1, 1.5F, 0}, 0.25F}, 0});
+  world::Scene scene = make_lit_floor();
+  scene.objects.push_back({"ball", world::Sphere{{1, 1.5F, 0}, 0.25F}, 0});
   // The shadow of the ball's centre falls on x = 4.
   expect_color(color_of(scene, look_down_at(4)), Vector(0));
   expect_color(color_of(scene, look_down_at(-4)), Vector(1 / std::sqrt(Real(5))));
   // What lies behind a point light casts none, and a directional light has no behind.
-  scene.objects[1].shape = Sphere{{0, 3, 0}, 0.25F};
+  scene.objects[1].shape = world::Sphere{{0, 3, 0}, 0.25F};
   expect_color(color_of(scene, look_down_at(0)), Vector(1));
   scene.lights[0].kind = LightKind::kDirectional;
   scene.lights[0].direction = vec3(0, -1, 0);
@@ -169,7 +169,7 @@ TEST(OraclePicture, ShadowsAreCastByWhatLiesBetween) {
 }
 
 TEST(OraclePicture, PhysicalLightsFallOffToTheirRange) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.lights[0].attenuation = Attenuation::kInverseSquare;
   expect_color(color_of(scene, look_down_at(0)), Vector(0.25L));
   expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L / 6.25L));
@@ -180,7 +180,7 @@ TEST(OraclePicture, PhysicalLightsFallOffToTheirRange) {
 }
 
 TEST(OraclePicture, SpotsFadeBetweenTheirAngles) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.lights[0].kind = LightKind::kSpot;
   scene.lights[0].direction = vec3(0, -1, 0);
   scene.lights[0].inner_cone_angle = 0.2F;
@@ -195,10 +195,10 @@ TEST(OraclePicture, SpotsFadeBetweenTheirAngles) {
 }
 
 TEST(OraclePicture, AMirrorAddsWhatItSees) {
-  Scene scene;
-  scene.background = vec3(2.0F);
+  world::Scene scene;
+  scene.environment.background = vec3(2.0F);
   scene.materials = {make_mirror(vec3(0.5F, 0.25F, 0.0F), vec3(0.125F)), make_emitter(vec3(1.0F, 1.0F, 8.0F))};
-  scene.objects = {{"floor", kFloor, 0}, {"lamp", Sphere{{4, 3, 0}, 1}, 1}};
+  scene.objects = {{"floor", kFloor, 0}, {"lamp", world::Sphere{{4, 3, 0}, 1}, 1}};
   View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
   expect_color(color_of(scene, view), {0.625L, 0.375L, 0.125L});
   view.max_depth = 0;
@@ -209,10 +209,10 @@ TEST(OraclePicture, AMirrorAddsWhatItSees) {
 }
 
 TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
-  Scene scene;
-  scene.background = vec3(100.0F);
+  world::Scene scene;
+  scene.environment.background = vec3(100.0F);
   scene.materials = {make_mirror(vec3(0.5F), vec3(1.0F))};
-  scene.objects = {{"", kFloor, 0}, {"", Plane{{0, 2, 0}, {0, 1, 0}}, 0}};
+  scene.objects = {{"", kFloor, 0}, {"", world::Plane{{0, 2, 0}, {0, 1, 0}}, 0}};
   View view = look_down_at(0);
   for (const uint32_t depth : {0U, 1U, 5U, 20U}) {
     view.max_depth = depth;
@@ -221,8 +221,8 @@ TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
 }
 
 TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {
-  Scene scene;
-  scene.ambient = vec3(1.0F);
+  world::Scene scene;
+  scene.environment.ambient = vec3(1.0F);
   scene.materials = {make_black(), Material()};
   scene.materials[1].ambient = vec3(0.5F);
   Mesh mesh = make_bent_triangle();
@@ -234,7 +234,7 @@ TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {
 }
 
 TEST(OraclePicture, InterpolatedNormalsShadeFromEitherSide) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.objects = {{"", make_bent_triangle(), 0}};
   scene.lights[0].kind = LightKind::kDirectional;
   for (const float side : {1.0F, -1.0F}) {
@@ -248,12 +248,12 @@ TEST(OraclePicture, InterpolatedNormalsShadeFromEitherSide) {
 
 TEST(OraclePicture, ShadowRaysStartFromTheCurveThatVertexNormalsSuggest) {
   // At (0.1, 0, 0) that is 0.4 (1 - 0.1^2) above the triangle. The light comes along the triangle's plane.
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.lights[0].kind = LightKind::kDirectional;
   scene.lights[0].direction = vec3(-1, 0, 0);
   const View view = look_at(vec3(0.1F, 0, 3), vec3(0.1F, 0, 0), vec3(0, 1, 0));
   const auto is_lit_past = [&](float height) {
-    scene.objects = {{"", make_bent_triangle(), 0}, {"", Sphere{{5, 0, height}, 0.01F}, 0}};
+    scene.objects = {{"", make_bent_triangle(), 0}, {"", world::Sphere{{5, 0, height}, 0.01F}, 0}};
     return color_of(scene, view).x > 0;
   };
   EXPECT_TRUE(is_lit_past(0));
@@ -262,12 +262,12 @@ TEST(OraclePicture, ShadowRaysStartFromTheCurveThatVertexNormalsSuggest) {
 }
 
 TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
-  Scene scene;
+  world::Scene scene;
   scene.materials = {make_mirror(vec3(1.0F)), make_emitter(vec3(0, 1, 0)), make_emitter(vec3(1, 0, 0))};
   Mesh mesh = make_bent_triangle();
   mesh.normals.assign(3, vec3(0.6F, 0, 0.8F));
   scene.objects = {
-      {"", mesh, 0}, {"above", Plane{{0, 0, 1}, {0, 0, 1}}, 1}, {"below", Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
+      {"", mesh, 0}, {"above", world::Plane{{0, 0, 1}, {0, 0, 1}}, 1}, {"below", world::Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
   // The ray along (0.96, 0, -0.28) would go on along (0.5376, 0, -0.8432), below the triangle.
   const View view = look_at(vec3(-1.92F, 0, 0.56F), vec3(0), vec3(0.28F, 0, 0.96F));
   expect_color(color_of(scene, view), {0, 1, 0});
@@ -275,12 +275,12 @@ TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
 
 /// A ball and a can on a mirroring floor under two lights, in units of `size` around `center`.
 Picture render_still_life(float size, const vec3& center) {
-  Scene scene = make_lit_floor();
+  world::Scene scene = make_lit_floor();
   scene.materials[0].reflection = vec3(0.25F);
-  scene.objects = {{"", Plane{center, vec3(0, 1, 0)}, 0},
-                   {"", Sphere{center + size * vec3(0, 1, 0), size}, 0},
-                   {"", Cylinder{center + size * vec3(2, 1, 0), vec3(0, 1, 0), size, 0.5F * size}, 0},
-                   {"", Cone{center + size * vec3(-2, 1, 0), vec3(0, 1, 0), size, 0.5F * size, 0}, 0}};
+  scene.objects = {{"", world::Plane{center, vec3(0, 1, 0)}, 0},
+                   {"", world::Sphere{center + size * vec3(0, 1, 0), size}, 0},
+                   {"", world::Cylinder{center + size * vec3(2, 1, 0), vec3(0, 1, 0), size, 0.5F * size}, 0},
+                   {"", world::Cone{center + size * vec3(-2, 1, 0), vec3(0, 1, 0), size, 0.5F * size, 0}, 0}};
   scene.lights[0].position = center + size * vec3(3, 6, 5);
   View view = look_at(center + size * vec3(0, 1, 8), center + size * vec3(0, 1, 0), vec3(0, 1, 0));
   view.size = uvec2(48, 32);

@@ -35,13 +35,13 @@ struct Reach {
 /// `deepest_` and rises again, and what is grown by x begins and ends where it is x.
 class Body {
  public:
-  Body(const Shape& shape, int32_t primitive, const Ray& ray)
+  Body(const world::Shape& shape, int32_t primitive, const Ray& ray)
       : shape_(shape),
         primitive_(primitive),
         ray_(ray),
         speed_(glm::length(ray.direction)),
         scale_(scale_of(shape, primitive, ray)),
-        plane_(std::get_if<Plane>(&shape)) {
+        plane_(std::get_if<world::Plane>(&shape)) {
     if (plane_ != nullptr) return;
     const BoundingSphere bound = bounding_sphere(shape, primitive);
     size_ = bound.radius;
@@ -151,12 +151,12 @@ class Body {
     return result;
   }
 
-  const Shape& shape_;
+  const world::Shape& shape_;
   int32_t primitive_;
   const Ray& ray_;
   Real speed_;
   Real scale_;
-  const Plane* plane_;
+  const world::Plane* plane_;
   Real size_ = 0;
   Real t_closest_ = 0;
   Vector closest_{0};
@@ -182,10 +182,10 @@ Real earliest_report(const Reach& reach, bool is_entry, const Ray& ray) {
 }
 
 /// Least allowance for which `answer` may be true; `is_hit` says that it names a primitive which can be hit.
-Real find_margin(const Scene& scene, const Ray& ray, const Answer& answer, bool is_hit) {
+Real find_margin(const world::Scene& scene, const Ray& ray, const Answer& answer, bool is_hit) {
   std::vector<Body> others;
   for (size_t i = 0; i < scene.objects.size(); ++i) {
-    const Shape& shape = scene.objects[i].shape;
+    const world::Shape& shape = scene.objects[i].shape;
     for (uint32_t j = 0; j < primitive_count(shape); ++j) {
       const Answer other{0, static_cast<int32_t>(i), static_cast<int32_t>(j)};
       if (is_hit && other.object == answer.object && other.primitive == answer.primitive) continue;
@@ -193,7 +193,7 @@ Real find_margin(const Scene& scene, const Ray& ray, const Answer& answer, bool 
       const BoundingSphere bound = bounding_sphere(shape, other.primitive);
       const Real distance =
           glm::length(glm::cross(bound.center - ray.origin, ray.direction)) / glm::length(ray.direction);
-      if (distance > bound.radius && !std::holds_alternative<Plane>(shape)) continue;
+      if (distance > bound.radius && !std::holds_alternative<world::Plane>(shape)) continue;
       if (const Body body(shape, other.primitive, ray); body.is_met()) others.push_back(body);
     }
   }
@@ -238,18 +238,18 @@ Real distance_beyond_corners(const Mesh& mesh, int32_t triangle, const Ray& ray,
   return std::max({Real(0), lo - t * speed, t * speed - hi});
 }
 
-bool names_hittable(const Scene& scene, const Answer& answer) {
+bool names_hittable(const world::Scene& scene, const Answer& answer) {
   return answer.object >= 0 && static_cast<size_t>(answer.object) < scene.objects.size() &&
          is_hittable(scene.objects[static_cast<size_t>(answer.object)].shape, answer.primitive);
 }
 
 }  // namespace
 
-Verdict judge(const Scene& scene, const Ray& ray, const Answer& answer) {
+Verdict judge(const world::Scene& scene, const Ray& ray, const Answer& answer) {
   return judge(scene, ray, find_nearest_hit(scene, ray), answer);
 }
 
-Verdict judge(const Scene& scene, const Ray& given_ray, const Hit& exact, const Answer& answer) {
+Verdict judge(const world::Scene& scene, const Ray& given_ray, const Hit& exact, const Answer& answer) {
   Ray ray = given_ray;
   ray.tmin = std::max(Real(0), given_ray.tmin);
   Verdict verdict;
@@ -264,10 +264,10 @@ Verdict judge(const Scene& scene, const Ray& given_ray, const Hit& exact, const 
     return verdict;
   }
 
-  const Shape& shape = scene.objects[static_cast<size_t>(answer.object)].shape;
+  const world::Shape& shape = scene.objects[static_cast<size_t>(answer.object)].shape;
   const Real speed = glm::length(ray.direction);
   const Real scale = scale_of(shape, answer.primitive, ray);
-  const bool is_plane = std::holds_alternative<Plane>(shape);
+  const bool is_plane = std::holds_alternative<world::Plane>(shape);
   const Mesh* mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr) {
     const Real off = std::abs(signed_distance(shape, answer.primitive, ray.origin + answer.t * ray.direction));

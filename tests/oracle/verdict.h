@@ -42,9 +42,9 @@ struct Verdict {
 /// All is infinite that an answer has no right to: a primitive that does not exist or cannot be hit, t that is not
 /// finite, a hit of a ray that meets nothing by definition. That t lies strictly between tmin and tmax is for the
 /// caller to check: rounding on the way here may have moved it.
-Verdict judge(const Scene& scene, const Ray& ray, const Answer& answer);
+Verdict judge(const world::Scene& scene, const Ray& ray, const Answer& answer);
 
 /// The same where find_nearest_hit(scene, ray) is known already.
-Verdict judge(const Scene& scene, const Ray& ray, const Hit& exact, const Answer& answer);
+Verdict judge(const world::Scene& scene, const Ray& ray, const Hit& exact, const Answer& answer);
 
 }  // namespace promin::oracle

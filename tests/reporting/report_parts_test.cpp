@@ -26,14 +26,14 @@ namespace {
 using testing::ElementsAre;
 
 TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
-  const Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / "all_primitives.gltf");
+  const world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / "all_primitives.gltf"));
   const std::string hash = hash_of(scene);
   EXPECT_EQ(hash.size(), 16);
   for (const char* builder : {"median", "sah", "spatial"}) {
     pack_scene(scene, builder);
     EXPECT_EQ(hash_of(scene), hash) << builder;
   }
-  std::vector<Scene> others(10, scene);
+  std::vector<world::Scene> others(10, scene);
   others[0].materials[0].diffuse.y += 0.01F;
   others[1].materials[0].shininess += 1.0F;
   others[2].lights.emplace_back();
@@ -42,14 +42,14 @@ TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
   others[5].ambient.z += 0.1F;
   std::swap(others[6].objects[0], others[6].objects[1]);
   others[7].objects.pop_back();
-  others[8].objects[0].shape = Sphere{vec3(0.0F), 0.25F};
+  others[8].objects[0].shape = world::Sphere{vec3(0.0F), 0.25F};
   others[9].objects[0].material += 1;
   std::vector<std::string> hashes = {hash};
-  for (const Scene& other : others) {
+  for (const world::Scene& other : others) {
     EXPECT_THAT(hashes, testing::Not(testing::Contains(hash_of(other)))) << &other - others.data();
     hashes.push_back(hash_of(other));
   }
-  Scene renamed = scene;
+  world::Scene renamed = scene;
   renamed.objects[0].name = "another";
   renamed.file = "another.gltf";
   EXPECT_EQ(hash_of(renamed), hash);
@@ -75,7 +75,7 @@ class ReportMisjudged : public testing::Test {
     return judge_by_oracle(scene_, rays_, hits, chosen, ask_oracle(scene_, rays_, chosen));
   }
 
-  Scene scene_ = measure::scene_of({Sphere{vec3(0.0F), 1.0F}});
+  world::Scene scene_ = measure::scene_of({world::Sphere{vec3(0.0F), 1.0F}});
   std::vector<Ray> rays_ = {{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F)},
                             {vec3(0.0F, 2.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F)}};
   Hit hit_{2.0F, 0, 0};

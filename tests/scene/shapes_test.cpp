@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/shapes.h"
+#include "promin/shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 namespace promin {
 namespace {
@@ -51,7 +51,7 @@ class RandomShapes : public testing::TestWithParam<double> {
 
 TEST_P(RandomShapes, BoundsOfConesAndCylindersAreConservativeAndTight) {
   for (int i = 0; i < 1000; ++i) {
-    const Cone cone{center(), axis(), number(0.1, 2), number(0, 2), number(0, 2)};
+    const world::Cone cone{center(), axis(), number(0.1, 2), number(0, 2), number(0, 2)};
     const dvec3 a = glm::normalize(dvec3(cone.axis));
     dvec3 lo(std::numeric_limits<double>::infinity());
     dvec3 hi = -lo;
@@ -59,8 +59,8 @@ TEST_P(RandomShapes, BoundsOfConesAndCylindersAreConservativeAndTight) {
     extend_by_disk(dvec3(cone.center) + double{cone.half_height} * a, a, cone.radius_top, lo, hi);
     expect_tight(bounds_of(cone), lo, hi, 4.0);
 
-    const Cylinder cylinder{cone.center, cone.axis, cone.half_height, cone.radius_top};
-    const Cone same{cone.center, cone.axis, cone.half_height, cone.radius_top, cone.radius_top};
+    const world::Cylinder cylinder{cone.center, cone.axis, cone.half_height, cone.radius_top};
+    const world::Cone same{cone.center, cone.axis, cone.half_height, cone.radius_top, cone.radius_top};
     EXPECT_EQ(bounds_of(cylinder).lo, bounds_of(same).lo);
     EXPECT_EQ(bounds_of(cylinder).hi, bounds_of(same).hi);
   }
@@ -68,7 +68,7 @@ TEST_P(RandomShapes, BoundsOfConesAndCylindersAreConservativeAndTight) {
 
 TEST_P(RandomShapes, BoundsOfSpheresAreConservativeAndTight) {
   for (int i = 0; i < 1000; ++i) {
-    const Sphere sphere{center(), number(0.001, 2)};
+    const world::Sphere sphere{center(), number(0.001, 2)};
     expect_tight(bounds_of(sphere), dvec3(sphere.center) - double{sphere.radius},
                  dvec3(sphere.center) + double{sphere.radius}, sphere.radius);
   }
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Offsets, RandomShapes, testing::Values(0.0, 1.0, 1e3, 1
                          [](const auto& offset) { return "Offset" + std::to_string(offset.index); });
 
 TEST(ShapesTest, AxisAlignedDisksDoNotBulge) {
-  const Bounds bounds = bounds_of(Cylinder{vec3(0), vec3(0, 1, 0), 2.0F, 1.0F});
+  const Bounds bounds = bounds_of(world::Cylinder{vec3(0), vec3(0, 1, 0), 2.0F, 1.0F});
   EXPECT_NEAR(bounds.hi.y, 2.0F, 1e-5F);
   EXPECT_NEAR(bounds.hi.x, 1.0F, 1e-5F);
 }
@@ -111,16 +111,16 @@ TEST(ShapesTest, TriangleBoundsHoldTheirCornersExactly) {
   EXPECT_EQ(bounds_of_triangle(mesh, 0).hi, vec3(1, 2, 4));
 }
 
-Scene scene_of(const std::vector<Shape>& shapes) {
-  Scene scene;
-  for (const Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
+world::Scene scene_of(const std::vector<world::Shape>& shapes) {
+  world::Scene scene;
+  for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
   return scene;
 }
 
 TEST(SceneTest, BoundsLeaveOutWhatIsInfiniteOrNotDrawn) {
   EXPECT_TRUE(bounds_of(scene_of({})).is_empty());
-  EXPECT_TRUE(bounds_of(scene_of({Plane{}, NotDrawn{}})).is_empty());
-  const Bounds bounds = bounds_of(scene_of({Plane{}, Sphere{vec3(1, 2, 3), 1.0F}}));
+  EXPECT_TRUE(bounds_of(scene_of({world::Plane{}, world::NotDrawn{}})).is_empty());
+  const Bounds bounds = bounds_of(scene_of({world::Plane{}, world::Sphere{vec3(1, 2, 3), 1.0F}}));
   EXPECT_LE(max_abs_component(bounds.center() - vec3(1, 2, 3)), 1e-6F);
 }
 
@@ -128,9 +128,9 @@ TEST(SceneTest, PrimitivesAreCounted) {
   Mesh mesh;
   mesh.triangles.resize(3);
   EXPECT_EQ(primitive_count(mesh), 3U);
-  EXPECT_EQ(primitive_count(Sphere{}), 1U);
-  EXPECT_EQ(primitive_count(Plane{}), 1U);
-  EXPECT_EQ(primitive_count(NotDrawn{}), 0U);
+  EXPECT_EQ(primitive_count(world::Sphere{}), 1U);
+  EXPECT_EQ(primitive_count(world::Plane{}), 1U);
+  EXPECT_EQ(primitive_count(world::NotDrawn{}), 0U);
 }
 
 /// The largest |x| / half width and |y| / half height of the corners of a box on the picture; infinite if one lies
@@ -160,7 +160,7 @@ TEST(SceneTest, TheFramingCameraSeesEverything) {
         Mesh mesh;
         mesh.positions = {scale * vec3(1, 2, 3), scale * (vec3(1, 2, 3) + shape), scale * vec3(1, 2, 3)};
         mesh.triangles = {{0, 1, 2}};
-        const Scene scene = scene_of({mesh, Plane{}});
+        const world::Scene scene = scene_of({mesh, world::Plane{}});
         const Camera camera = frame_scene(scene, aspect_ratio);
         const dvec2 extent = extent_on_picture(camera, bounds_of(scene));
         EXPECT_LE(std::max(extent.x, extent.y), 1.0) << aspect_ratio << " " << scale;
@@ -172,8 +172,8 @@ TEST(SceneTest, TheFramingCameraSeesEverything) {
 }
 
 TEST(SceneTest, TheFramingCameraIsUpright) {
-  for (const Scene& scene : {scene_of({}), scene_of({Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
-                             scene_of({Sphere{vec3(1e7F), 1e-3F}}), scene_of({Sphere{vec3(0), 1e15F}})}) {
+  for (const world::Scene& scene : {scene_of({}), scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
+                             scene_of({world::Sphere{vec3(1e7F), 1e-3F}}), scene_of({world::Sphere{vec3(0), 1e15F}})}) {
     const Camera camera = frame_scene(scene, 1.5F);
     EXPECT_TRUE(is_finite(camera.eye));
     EXPECT_NEAR(glm::length(camera.look), 1.0, 1e-6);
@@ -184,7 +184,7 @@ TEST(SceneTest, TheFramingCameraIsUpright) {
     EXPECT_EQ(camera.near, 0.0F);
     EXPECT_EQ(camera.aspect_ratio, 1.5F);
   }
-  EXPECT_GT(frame_scene(scene_of({Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F) << "above the ground";
+  EXPECT_GT(frame_scene(scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F) << "above the ground";
 }
 
 TEST(SceneTest, TheHeadlightHasTheThesisPowers) {

@@ -9,9 +9,15 @@
 #include <vector>
 
 #include "promin/load_scene.h"
+#include "scene/world_scene.h"
 #include "support/temp_folder.h"
 
 namespace promin {
+
+/// What a loaded scene is in the world, with its warnings.
+struct LoadedScene : world::Scene {
+  std::vector<std::string> warnings;
+};
 
 /// A test with a folder of its own, in which it writes small scenes and loads them.
 class SceneFolder : public TempFolder {
@@ -23,7 +29,10 @@ class SceneFolder : public TempFolder {
     return folder_ / name;
   }
 
-  Scene load(const std::string& name, std::string_view bytes) const { return load_scene(write(name, bytes)); }
+  LoadedScene load(const std::string& name, std::string_view bytes) const {
+    const world::Scene scene = load_scene(write(name, bytes));
+    return {world::flatten(scene), scene.warnings};
+  }
 
   /// What load_scene says when it refuses a file; empty if it does not.
   static std::string refusal(const std::filesystem::path& file) {
@@ -32,7 +41,7 @@ class SceneFolder : public TempFolder {
   std::string refusal(const std::string& name, std::string_view bytes) const { return refusal(write(name, bytes)); }
 };
 
-inline const Mesh& mesh_of(const Scene& scene, size_t object = 0) {
+inline const Mesh& mesh_of(const world::Scene& scene, size_t object = 0) {
   return std::get<Mesh>(scene.objects.at(object).shape);
 }
 

@@ -74,7 +74,7 @@ class OverlayTest : public test::DeviceTest {
     return width;
   }
 
-  const Scene scene_ = test::make_scene_of_everything();
+  const world::Scene scene_ = test::make_scene_of_everything();
   FrameStatistics statistics_;
   std::optional<ProgressivePicture> picture_;
   Switches switches_;

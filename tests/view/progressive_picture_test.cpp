@@ -41,7 +41,7 @@ class ProgressivePictureTest : public test::DeviceTest {
     return image;
   }
 
-  const Scene scene_ = test::make_scene_of_everything();
+  const world::Scene scene_ = test::make_scene_of_everything();
 };
 
 TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {

@@ -32,7 +32,7 @@ TEST(DescribeCommand, NamesTheViewForAShell) {
 
 TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
   View view;
-  view.shading = Shading::kSteps;
+  view.shading = DebugView::kSteps;
   view.camera.projection = Projection::kOrthographic;
   const std::string command =
       describe_command({.file = "s", .has_shadows = false, .lights_off = {0, 2}, .camera_index = 1}, view);
@@ -43,13 +43,13 @@ TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
   View view;
   EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::Not(testing::HasSubstr("median")));
-  view.shading = Shading::kSteps;
+  view.shading = DebugView::kSteps;
   EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::EndsWith(" --builder median"));
   EXPECT_THAT(describe_command({.file = "s", .bvh = "a tree"}, view), testing::EndsWith(" --bvh 'a tree'"));
 }
 
 TEST(DescribeCommand, HasNoneForAnOrthographicViewOfNoCamera) {
-  Scene scene;
+  world::Scene scene;
   View view;
   EXPECT_TRUE(can_describe({.file = "s"}, view));
   view.camera.projection = Projection::kOrthographic;
@@ -170,7 +170,7 @@ TEST(SceneWatch, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
 
 // The window gives up a tree by what its progress throws: no builder may go on then.
 TEST(PackChoice, EndsByWhatItsProgressThrows) {
-  Scene scene;
+  world::Scene scene;
   scene.materials.resize(1);
   Mesh mesh;
   for (uint32_t i = 0; i < 30000; ++i) {

@@ -156,7 +156,7 @@ void cast_packets(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits
 
 class Caster final : public EmbreeCaster {
  public:
-  explicit Caster(const Scene& scene) : source_(scene), device_(open_embree()), scene_(fill_scene()) {
+  explicit Caster(const world::Scene& scene) : source_(scene), device_(open_embree()), scene_(fill_scene()) {
     rtcCommitScene(scene_.get());
     check();
   }
@@ -220,7 +220,7 @@ class Caster final : public EmbreeCaster {
     throw RunError({"Embree reports error " + std::to_string(error), source_.file.string(), "try a smaller scene"});
   }
 
-  const Scene& source_;
+  const world::Scene& source_;
   Device device_;
   BuiltScene scene_;
 };
@@ -234,9 +234,9 @@ std::string embree_version() {
          std::to_string(number % 100) + ", build quality medium, no scene flags";
 }
 
-std::unique_ptr<EmbreeCaster> make_embree_caster(const Scene& scene) {
-  const bool has_meshes_alone = std::all_of(scene.objects.begin(), scene.objects.end(), [](const Object& object) {
-    return std::holds_alternative<Mesh>(object.shape) || std::holds_alternative<NotDrawn>(object.shape);
+std::unique_ptr<EmbreeCaster> make_embree_caster(const world::Scene& scene) {
+  const bool has_meshes_alone = std::all_of(scene.objects.begin(), scene.objects.end(), [](const world::Object& object) {
+    return std::holds_alternative<Mesh>(object.shape) || std::holds_alternative<world::NotDrawn>(object.shape);
   });
   return has_meshes_alone ? std::make_unique<Caster>(scene) : nullptr;
 }

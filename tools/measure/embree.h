@@ -7,7 +7,7 @@
 #include <string>
 
 #include "promin/ray.h"
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 namespace promin::measure {
 
@@ -34,6 +34,6 @@ class EmbreeCaster {
 std::string embree_version();
 
 /// Null where promin was built without Embree and for a scene of anything but meshes.
-std::unique_ptr<EmbreeCaster> make_embree_caster(const Scene& scene);
+std::unique_ptr<EmbreeCaster> make_embree_caster(const world::Scene& scene);
 
 }  // namespace promin::measure

@@ -9,7 +9,7 @@ std::string embree_version() {
   return {};
 }
 
-std::unique_ptr<EmbreeCaster> make_embree_caster(const Scene&) {
+std::unique_ptr<EmbreeCaster> make_embree_caster(const world::Scene&) {
   return nullptr;
 }
 

@@ -56,7 +56,7 @@ KernelPair measure_pair(Caster& robust, Caster& plain, const RaySet& set, uint32
   return pair;
 }
 
-std::vector<RaySet> make_ray_sets(Caster& caster, const Scene& scene, const Camera& camera, uint32_t side,
+std::vector<RaySet> make_ray_sets(Caster& caster, const world::Scene& scene, const Camera& camera, uint32_t side,
                                   bool is_closed) {
   std::vector<RaySet> sets = {make_camera_rays(camera, side)};
   std::vector<Hit> hits(sets[0].rays.size());

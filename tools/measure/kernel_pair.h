@@ -31,7 +31,7 @@ KernelPair measure_pair(Caster& robust, Caster& plain, const RaySet& set, uint32
 
 /// Camera, shadow and random rays of a scene, `side` squared of each (shadow rays: as many as camera rays hit); and for
 /// `closed`, a scene of one closed mesh around the origin, as many from inside at its edges, each of which must hit.
-std::vector<RaySet> make_ray_sets(Caster& caster, const Scene& scene, const Camera& camera, uint32_t side,
+std::vector<RaySet> make_ray_sets(Caster& caster, const world::Scene& scene, const Camera& camera, uint32_t side,
                                   bool is_closed);
 
 }  // namespace promin::measure

@@ -14,19 +14,19 @@ namespace promin::measure {
 namespace {
 
 /// As scene_of, without a copy of the mesh.
-Scene scene_of_mesh(Mesh mesh, const std::string& name) {
-  std::vector<Shape> shapes;
+world::Scene scene_of_mesh(Mesh mesh, const std::string& name) {
+  std::vector<world::Shape> shapes;
   shapes.emplace_back(std::move(mesh));
   return scene_of(std::move(shapes), name);
 }
 
 }  // namespace
 
-Scene scene_of(std::vector<Shape> shapes, const std::string& name) {
-  Scene scene;
+world::Scene scene_of(std::vector<world::Shape> shapes, const std::string& name) {
+  world::Scene scene;
   scene.file = name;
   scene.materials.resize(1);
-  for (Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
+  for (world::Shape& shape : shapes) scene.objects.push_back({"", std::move(shape), 0});
   return scene;
 }
 
@@ -41,7 +41,7 @@ Mesh make_triangle(const dvec3& center, Random& random, double size) {
   return mesh;
 }
 
-Scene make_wavy_sphere(uint32_t triangle_count) {
+world::Scene make_wavy_sphere(uint32_t triangle_count) {
   const auto rings = std::max(2U, static_cast<uint32_t>(std::lround(0.5 * std::sqrt(triangle_count))));
   const uint32_t columns = 2 * rings;
   Mesh mesh;
@@ -70,7 +70,7 @@ Scene make_wavy_sphere(uint32_t triangle_count) {
   return scene_of_mesh(std::move(mesh), "wavy sphere");
 }
 
-Scene make_needles(uint32_t triangle_count) {
+world::Scene make_needles(uint32_t triangle_count) {
   std::mt19937 generator(3);
   const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
   const auto in_ball = [&] {
@@ -93,22 +93,22 @@ Scene make_needles(uint32_t triangle_count) {
   return scene_of_mesh(std::move(mesh), "needles");
 }
 
-Scene open_scene(const std::string& word) {
+world::Scene open_scene(const std::string& word) {
   const size_t colon = word.find(':');
   const std::string kind = word.substr(0, colon);
-  if (colon == std::string::npos || (kind != "wavy" && kind != "needles")) return load_scene(word);
+  if (colon == std::string::npos || (kind != "wavy" && kind != "needles")) return world::flatten(load_scene(word));
   uint32_t count = 0;
   const char* end = word.data() + word.size();
   const auto [rest, error] = std::from_chars(word.data() + colon + 1, end, count);
   if (error != std::errc() || rest != end || count < 16 || count > 50'000'000) {
     throw UsageError({"no number of triangles from 16 to 50000000", word, "write " + kind + ":100000"});
   }
-  Scene scene = kind == "wavy" ? make_wavy_sphere(count) : make_needles(count);
+  world::Scene scene = kind == "wavy" ? make_wavy_sphere(count) : make_needles(count);
   scene.file = word;
   return scene;
 }
 
-bool is_generated_and_closed(const Scene& scene) {
+bool is_generated_and_closed(const world::Scene& scene) {
   return scene.file.string().rfind("wavy:", 0) == 0;
 }
 

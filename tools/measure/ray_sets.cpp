@@ -12,7 +12,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Of the scene's size: how far off its surface a shadow ray starts.
 constexpr float kShadowOffset = 1e-4F;
 
-float size_of(const Scene& scene) {
+float size_of(const world::Scene& scene) {
   const Bounds bounds = bounds_of(scene);
   return bounds.is_empty() ? 1.0F : glm::length(bounds.extent());
 }
@@ -47,7 +47,7 @@ RaySet make_camera_rays(const Camera& camera, uint32_t side) {
   return set;
 }
 
-RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, const Scene& scene,
+RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, const world::Scene& scene,
                         const Camera& camera) {
   const float size = size_of(scene);
   Light light;
@@ -68,7 +68,7 @@ RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, co
   return set;
 }
 
-RaySet make_random_rays(const Scene& scene, size_t count) {
+RaySet make_random_rays(const world::Scene& scene, size_t count) {
   std::mt19937 generator(1);
   const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
   const Bounds bounds = bounds_of(scene);

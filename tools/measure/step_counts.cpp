@@ -8,7 +8,7 @@
 
 namespace promin::measure {
 
-StepCounter::StepCounter(const gpu::Device& device, const Scene& scene, std::string_view builder)
+StepCounter::StepCounter(const gpu::Device& device, const world::Scene& scene, std::string_view builder)
     : device_(device),
       features_(features_of(scene) | layout::FEATURE_STEP_COUNTS),
       scene_(upload_scene(device, pack_scene(scene, builder))) {}

@@ -31,7 +31,7 @@ struct StepCounts {
 class StepCounter {
  public:
   /// Throws UsageError for an unknown builder, RunError.
-  StepCounter(const gpu::Device& device, const Scene& scene, std::string_view builder);
+  StepCounter(const gpu::Device& device, const world::Scene& scene, std::string_view builder);
 
   StepCounts count(const RaySet& set) const;
 

@@ -12,7 +12,7 @@
 namespace promin::report {
 namespace {
 
-void judge_one(const Scene& scene, const Ray& ray, const layout::HitRecord& record, Accuracy& accuracy) {
+void judge_one(const world::Scene& scene, const Ray& ray, const layout::HitRecord& record, Accuracy& accuracy) {
   const oracle::Ray exact_ray{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
   const oracle::Hit exact = oracle::find_nearest_hit(scene, exact_ray);
   const float t = std::bit_cast<float>(record.a.x);
@@ -23,10 +23,10 @@ void judge_one(const Scene& scene, const Ray& ray, const layout::HitRecord& reco
     return;
   }
   if (!is_hit) return;
-  const Shape& shape = scene.objects[0].shape;
-  const bool has_rims = std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Cone>(shape);
+  const world::Shape& shape = scene.objects[0].shape;
+  const bool has_rims = std::holds_alternative<world::Cylinder>(shape) || std::holds_alternative<world::Cone>(shape);
   oracle::Real scale = oracle::scale_of(shape, exact.primitive, exact_ray);
-  if (std::holds_alternative<Plane>(shape)) scale += exact.t * glm::length(exact_ray.direction);
+  if (std::holds_alternative<world::Plane>(shape)) scale += exact.t * glm::length(exact_ray.direction);
   const oracle::Real error =
       has_rims ? std::abs(oracle::signed_distance(shape, 0, exact_ray.origin + oracle::Real(t) * exact_ray.direction))
                : std::abs((oracle::Real(t) - exact.t) * glm::dot(exact_ray.direction, exact.normal));
@@ -50,7 +50,7 @@ void Accuracy::add(const Accuracy& other) {
   misclassified += other.misclassified;
 }
 
-Accuracy judge_records(const Scene& scene, std::span<const Ray> rays, std::span<const layout::HitRecord> records) {
+Accuracy judge_records(const world::Scene& scene, std::span<const Ray> rays, std::span<const layout::HitRecord> records) {
   constexpr size_t kChunk = 1024;
   std::vector<Accuracy> parts((rays.size() + kChunk - 1) / kChunk);
   for_each_chunk(rays.size(), kChunk, 0, [&](size_t begin, size_t end) {

@@ -16,23 +16,23 @@ namespace {
 /// Of the enclosing mesh.
 constexpr uint32_t kMeshTriangles = 1024;
 
-Shape make_shape(const std::string& name, const dvec3& center, double size, Random& random) {
+world::Shape make_shape(const std::string& name, const dvec3& center, double size, Random& random) {
   const vec3 axis(random.direction());
   const auto radius = static_cast<float>(size);
-  if (name == "sphere") return Sphere{vec3(center), radius};
-  if (name == "plane") return Plane{vec3(center), axis};
-  if (name == "cylinder") return Cylinder{vec3(center), axis, radius, 0.5F * radius};
-  if (name == "cone") return Cone{vec3(center), axis, radius, 0.8F * radius, 0.0F};
+  if (name == "sphere") return world::Sphere{vec3(center), radius};
+  if (name == "plane") return world::Plane{vec3(center), axis};
+  if (name == "cylinder") return world::Cylinder{vec3(center), axis, radius, 0.5F * radius};
+  if (name == "cone") return world::Cone{vec3(center), axis, radius, 0.8F * radius, 0.0F};
   return measure::make_triangle(center, random, size);
 }
 
 /// A point of a cylinder's or cone's rim, or of a sphere.
-dvec3 point_at_rim(const Shape& shape, Random& random) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+dvec3 point_at_rim(const world::Shape& shape, Random& random) {
+  if (const auto* sphere = std::get_if<world::Sphere>(&shape)) {
     return dvec3(sphere->center) + static_cast<double>(sphere->radius) * random.direction();
   }
-  const auto* cylinder = std::get_if<Cylinder>(&shape);
-  const auto* cone = std::get_if<Cone>(&shape);
+  const auto* cylinder = std::get_if<world::Cylinder>(&shape);
+  const auto* cone = std::get_if<world::Cone>(&shape);
   const dvec3 axis(cylinder != nullptr ? cylinder->axis : cone->axis);
   const double half_height = cylinder != nullptr ? cylinder->half_height : cone->half_height;
   const double radius = cylinder != nullptr ? cylinder->radius : cone->radius_bottom;
@@ -47,20 +47,20 @@ const std::vector<std::string>& primitive_names() {
   return kNames;
 }
 
-Scene make_primitive(const std::string& name, const dvec3& center, Random& random) {
+world::Scene make_primitive(const std::string& name, const dvec3& center, Random& random) {
   return measure::scene_of({make_shape(name, center, 1.0, random)}, name);
 }
 
-Scene make_primitives(const std::string& name, size_t count, Random& random) {
-  std::vector<Shape> shapes;
+world::Scene make_primitives(const std::string& name, size_t count, Random& random) {
+  std::vector<world::Shape> shapes;
   for (size_t i = 0; i < count; ++i) {
     shapes.push_back(make_shape(name, 4.0 * std::cbrt(random.uniform()) * random.direction(), 0.25, random));
   }
   return measure::scene_of(std::move(shapes), name);
 }
 
-std::vector<Ray> aim_rays(const Scene& scene, const dvec3& center, double distance, size_t count, Random& random) {
-  const auto* plane = std::get_if<Plane>(&scene.objects[0].shape);
+std::vector<Ray> aim_rays(const world::Scene& scene, const dvec3& center, double distance, size_t count, Random& random) {
+  const auto* plane = std::get_if<world::Plane>(&scene.objects[0].shape);
   std::vector<Ray> rays;
   while (rays.size() < count) {
     const dvec3 view = random.direction();
@@ -83,7 +83,7 @@ Enclosure make_enclosure(const std::string& name, size_t ray_count, Random& rand
   if (name == "plane") return {make_primitive(name, dvec3(0.0), random), {}};
   if (name != "triangle") {
     Enclosure result{make_primitive(name, dvec3(0.0), random), {}};
-    const Shape& shape = result.scene.objects[0].shape;
+    const world::Shape& shape = result.scene.objects[0].shape;
     while (result.rays.size() < ray_count) {
       const dvec3 origin = 0.05 * random.uniform() * random.direction();
       const bool is_at_rim = result.rays.size() % 4 != 0;

@@ -7,7 +7,7 @@
 
 #include "measure/random.h"
 #include "promin/ray.h"
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 namespace promin::report {
 
@@ -17,18 +17,18 @@ using measure::Random;
 const std::vector<std::string>& primitive_names();
 
 /// Such a primitive of about unit size at a centre, turned as it comes, as a scene of its own.
-Scene make_primitive(const std::string& name, const dvec3& center, Random& random);
+world::Scene make_primitive(const std::string& name, const dvec3& center, Random& random);
 /// As many of a quarter of that size in a ball of radius 4.
-Scene make_primitives(const std::string& name, size_t count, Random& random);
+world::Scene make_primitives(const std::string& name, size_t count, Random& random);
 
 /// From `distance` at the primitive of make_primitive, up to 1.05 of its size beside its centre.
-std::vector<Ray> aim_rays(const Scene& scene, const dvec3& center, double distance, size_t count, Random& random);
+std::vector<Ray> aim_rays(const world::Scene& scene, const dvec3& center, double distance, size_t count, Random& random);
 /// Chords of the ball of make_primitives.
 std::vector<Ray> make_chords(size_t count, Random& random);
 
 /// A closed surface of this primitive and rays from inside it, most of them at edges, vertices and rims: each must hit.
 struct Enclosure {
-  Scene scene;
+  world::Scene scene;
   std::vector<Ray> rays;
 };
 /// Empty rays for a plane, which encloses nothing.

@@ -87,7 +87,7 @@ PackedScene pack_boxes(std::span<const Boxes> nodes, bool is_full) {
   packed.primitives[0] = {vec4(0.0F, 0.0F, 0.0F, 1.0F), vec4(0.0F), uvec4(0, 0, layout::KIND_SPHERE, 0)};
   packed.shading.resize(sizeof(uvec4));
   const dvec3 reach = glm::max(dvec3(all.hi) - dvec3(all.center()), dvec3(all.center()) - dvec3(all.lo));
-  packed.frame.tree_bounds =
+  packed.tree_bounds =
       vec4(all.center(), std::nextafter(static_cast<float>(glm::max(reach.x, glm::max(reach.y, reach.z))), HUGE_VALF));
   packed.dispatch.counts = uvec4(nodes.size(), 0, 0, layout::LOOP_CHECK_TURNS);
   return packed;

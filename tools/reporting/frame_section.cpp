@@ -87,9 +87,9 @@ Json compare_with_oracle(const oracle::Picture& expected, const RenderResult& re
 }
 
 /// Brute force takes primitives times rays: smaller pictures of larger scenes.
-uvec2 oracle_size(const Session& session, const Scene& scene) {
+uvec2 oracle_size(const Session& session, const world::Scene& scene) {
   uint64_t count = 0;
-  for (const Object& object : scene.objects) count += primitive_count(object.shape);
+  for (const world::Object& object : scene.objects) count += primitive_count(object.shape);
   if (count > 10000) return session.pick(uvec2(32, 18), uvec2(16, 9));
   if (count > 1000) return session.pick(uvec2(64, 36), uvec2(32, 18));
   return session.pick(uvec2(320, 180), uvec2(96, 54));
@@ -97,7 +97,7 @@ uvec2 oracle_size(const Session& session, const Scene& scene) {
 
 class FrameBench {
  public:
-  FrameBench(const Session& session, const Scene& scene)
+  FrameBench(const Session& session, const world::Scene& scene)
       : session_(session), scene_(scene), name_(session.name_of(scene)), hash_(hash_of(scene)) {}
 
   void run(Json& rows, Json& errors) {
@@ -190,7 +190,7 @@ class FrameBench {
     View view = view_of(scene_, oracle_size(session_, scene_));
     const oracle::Picture expected = oracle::render(scene_, view);
     for (const PictureMethod& method : picture_methods()) {
-      RendererOptions options = options_for(method);
+      TunedRendererOptions options = options_for(method);
       options.with_aovs = true;
       Json row = compare_with_oracle(expected, Renderer(session_.device(), scene_, options).render(view));
       add_error(errors, "precision", method.name, view.size, row);
@@ -225,7 +225,7 @@ class FrameBench {
   }
 
   const Session& session_;
-  const Scene& scene_;
+  const world::Scene& scene_;
   std::string name_;
   std::string hash_;
   std::map<std::pair<std::string, std::string>, Renderer> renderers_;
@@ -240,7 +240,7 @@ Json measure_frames(const Session& session) {
   Json errors = Json::array();
   const auto scenes = session.load_scenes(session.pick<std::vector<std::string>>(
       {"all_primitives.gltf", "mirrors.gltf", "showcase.gltf"}, {"mirrors.gltf"}));
-  for (const Scene& scene : scenes) FrameBench(session, scene).run(rows, errors);
+  for (const world::Scene& scene : scenes) FrameBench(session, scene).run(rows, errors);
   return {{"truth_samples", truth_samples(session)},
           {"truth_depth", kDeep},
           {"rows", rows},

@@ -43,7 +43,7 @@ std::vector<Method> methods_for(const gpu::Device& device) {
 }
 
 /// A method's kernel over one scene.
-RayKernel make_kernel(const gpu::Device& device, const Scene& scene, const Method& method) {
+RayKernel make_kernel(const gpu::Device& device, const world::Scene& scene, const Method& method) {
   RayKernelOptions options;
   options.spirv = method.spirv;
   options.features = features_of(scene) & ~(layout::FEATURE_SMOOTH_NORMALS | layout::FEATURE_VERTEX_COLORS);
@@ -124,7 +124,7 @@ class KernelBench {
       std::vector<Accuracy> here(methods_.size());
       for (int i = 0; i < kScenes; ++i) {
         const dvec3 center = place.offset * dvec3(0.6, -0.64, 0.48);
-        const Scene scene = make_primitive(name, center, random);
+        const world::Scene scene = make_primitive(name, center, random);
         const std::vector<Ray> rays = aim_rays(scene, dvec3(vec3(center)), place.distance, ray_count, random);
         const std::vector<layout::RayRecord> requests = make_requests(rays);
         std::vector<layout::HitRecord> records(rays.size());
@@ -154,7 +154,7 @@ class KernelBench {
     /// Long beside the start of a dispatch.
     constexpr double kLeastMs = 20.0;
     Random random(2);
-    const Scene scene = make_primitives(name, kPrimitives, random);
+    const world::Scene scene = make_primitives(name, kPrimitives, random);
     std::vector<RayKernel> kernels;
     for (const Method& method : methods_) kernels.push_back(make_kernel(device_, scene, method));
     size_t count = size_t{1} << 14;

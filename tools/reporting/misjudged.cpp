@@ -43,7 +43,7 @@ std::vector<size_t> choose_rays(std::span<const Hit> a, std::span<const Hit> b, 
   return chosen;
 }
 
-std::vector<uint8_t> ask_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const size_t> chosen) {
+std::vector<uint8_t> ask_oracle(const world::Scene& scene, std::span<const Ray> rays, std::span<const size_t> chosen) {
   std::vector<uint8_t> is_there(chosen.size());
   for_each_chunk(chosen.size(), 64, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) is_there[i] = oracle::is_occluded(scene, exact_ray(rays[chosen[i]])) ? 1 : 0;
@@ -51,7 +51,7 @@ std::vector<uint8_t> ask_oracle(const Scene& scene, std::span<const Ray> rays, s
   return is_there;
 }
 
-Misjudged judge_by_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+Misjudged judge_by_oracle(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
                           std::span<const size_t> chosen, std::span<const uint8_t> is_there) {
   Misjudged result;
   for (size_t i = 0; i < chosen.size(); ++i) {

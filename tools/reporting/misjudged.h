@@ -28,10 +28,10 @@ std::vector<size_t> choose_rays(std::span<const Hit> a, std::span<const Hit> b, 
 
 /// Whether there is a hit, of each chosen ray: by the oracle of the tests (tests/oracle, long double, brute force),
 /// which shares no formula with the kernels; on all cores.
-std::vector<uint8_t> ask_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const size_t> chosen);
+std::vector<uint8_t> ask_oracle(const world::Scene& scene, std::span<const Ray> rays, std::span<const size_t> chosen);
 
 /// A kernel's hits by what the oracle said of the chosen rays.
-Misjudged judge_by_oracle(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+Misjudged judge_by_oracle(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
                           std::span<const size_t> chosen, std::span<const uint8_t> is_there);
 
 /// Of rays from inside of a closed mesh: each hits. No oracle is asked, as at an edge two triangles are near enough for

@@ -44,8 +44,8 @@ const PictureMethod& picture_method(const std::string& name) {
   return *found;
 }
 
-RendererOptions options_for(const PictureMethod& method, const std::string& builder) {
-  RendererOptions options;
+TunedRendererOptions options_for(const PictureMethod& method, const std::string& builder) {
+  TunedRendererOptions options;
   options.builder = builder;
   options.shaders = method.shaders;
   if (method.has_full_boxes) options.repack = with_full_boxes;

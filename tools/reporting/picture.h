@@ -23,7 +23,7 @@ const std::vector<PictureMethod>& picture_methods();
 const PictureMethod& picture_method(const std::string& name);
 
 /// What makes a Renderer one of this method.
-RendererOptions options_for(const PictureMethod& method, const std::string& builder = "sah");
+TunedRendererOptions options_for(const PictureMethod& method, const std::string& builder = "sah");
 
 /// Square root of the mean of all channels' squared differences; of pictures of one size.
 double rmse_of(const Image& a, const Image& b);

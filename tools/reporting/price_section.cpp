@@ -29,7 +29,7 @@ void put_misjudged(Json& row, const std::string& kernel, const Misjudged& misjud
 }
 
 /// Whom the truth is asked of, and what both kernels come to by it.
-void judge_pair(const Session& session, const Scene& scene, const measure::RaySet& set, const measure::KernelPair& pair,
+void judge_pair(const Session& session, const world::Scene& scene, const measure::RaySet& set, const measure::KernelPair& pair,
                 bool is_inside, Json& row) {
   if (is_inside) {
     row["truth"] = "each hits";
@@ -39,7 +39,7 @@ void judge_pair(const Session& session, const Scene& scene, const measure::RaySe
     return;
   }
   uint64_t primitives = 0;
-  for (const Object& object : scene.objects) primitives += primitive_count(object.shape);
+  for (const world::Object& object : scene.objects) primitives += primitive_count(object.shape);
   const std::vector<size_t> chosen =
       choose_rays(pair.robust_hits, pair.plain_hits, primitives, session.pick(50'000'000U, 2'000'000U));
   row["truth"] = "oracle";
@@ -49,12 +49,12 @@ void judge_pair(const Session& session, const Scene& scene, const measure::RaySe
   put_misjudged(row, "textbook", judge_by_oracle(scene, set.rays, pair.plain_hits, chosen, is_there));
 }
 
-void compare_casters(const Session& session, const Scene& scene, Json& rows) {
+void compare_casters(const Session& session, const world::Scene& scene, Json& rows) {
   const std::string name = session.name_of(scene);
   const bool is_closed = measure::is_generated_and_closed(scene);
   session.say("robustness: " + name);
   Caster robust(session.device(), scene);
-  CasterOptions options;
+  TunedCasterOptions options;
   options.spirv = k_textbook_cast_spirv;
   Caster plain(session.device(), scene, options);
   const uint32_t side = session.side();
@@ -86,17 +86,17 @@ bool has_same_bits(const Image& a, const Image& b) {
 }
 
 /// Milliseconds of compiling, on a device that has compiled nothing: Mesa's cache on disk is told to stand aside.
-double time_compiling(const Session& session, const Scene& scene, const RendererOptions& options) {
+double time_compiling(const Session& session, const world::Scene& scene, const TunedRendererOptions& options) {
   setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   const gpu::DeviceHandle device = gpu::open_device(session.options().device);
   unsetenv("MESA_SHADER_CACHE_DISABLE");
   return Renderer(*device, scene, options).setup_stats().pipeline_ms;
 }
 
-Json compare_specialisation(const Session& session, const Scene& scene) {
+Json compare_specialisation(const Session& session, const world::Scene& scene) {
   const std::string name = session.name_of(scene);
   session.say("specialisation: " + name);
-  RendererOptions forced;
+  TunedRendererOptions forced;
   forced.force_all_features = true;
   Renderer specialised(session.device(), scene);
   Renderer general(session.device(), scene, forced);
@@ -132,7 +132,7 @@ Json compare_specialisation(const Session& session, const Scene& scene) {
 
 Json measure_robustness(const Session& session) {
   Json rows = Json::array();
-  for (const Scene& scene : session.open_scenes(session.pick<std::vector<std::string>>(
+  for (const world::Scene& scene : session.open_scenes(session.pick<std::vector<std::string>>(
            {"wavy:131000", "all_primitives.gltf", "showcase.gltf", "sphereflake.gltf"},
            {"wavy:10000", "all_primitives.gltf"}))) {
     compare_casters(session, scene, rows);
@@ -142,7 +142,7 @@ Json measure_robustness(const Session& session) {
 
 Json measure_specialisation(const Session& session) {
   Json rows = Json::array();
-  for (const Scene& scene : session.load_scenes(session.pick<std::vector<std::string>>(
+  for (const world::Scene& scene : session.load_scenes(session.pick<std::vector<std::string>>(
            {"sphere.gltf", "triangles_sharp.gltf", "mirrors.gltf", "all_primitives.gltf", "showcase.gltf"},
            {"sphere.gltf"}))) {
     rows.push_back(compare_specialisation(session, scene));

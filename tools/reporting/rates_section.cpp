@@ -49,7 +49,7 @@ void time_rays(Caster& caster, EmbreeCaster* embree, const measure::RaySet& set,
 }
 
 /// From triangles in memory to all that is copied to the device, and the builder's part of it.
-void time_builds(const Scene& scene, const std::string& builder, EmbreeCaster* embree, uint32_t runs, Json& row) {
+void time_builds(const world::Scene& scene, const std::string& builder, EmbreeCaster* embree, uint32_t runs, Json& row) {
   std::vector<double> bvh_ms;
   std::vector<std::function<double()>> contestants = {[&] {
     const Stopwatch packing;
@@ -70,19 +70,19 @@ void time_builds(const Scene& scene, const std::string& builder, EmbreeCaster* e
 
 }  // namespace
 
-void add_rates(const Session& session, const Scene& scene, Json& rates) {
+void add_rates(const Session& session, const world::Scene& scene, Json& rates) {
   const std::string name = session.name_of(scene);
   const std::string hash = hash_of(scene);
   const std::string& builder = session.options().builder;
   const uint32_t runs = session.runs();
   const std::unique_ptr<EmbreeCaster> embree = runs > 0 ? measure::make_embree_caster(scene) : nullptr;
-  CasterOptions options;
+  TunedCasterOptions options;
   options.builder = builder;
   Caster caster(session.device(), scene, options);
 
   const SetupStats& setup = caster.setup_stats();
   uint64_t primitives = 0;
-  for (const Object& object : scene.objects) primitives += primitive_count(object.shape);
+  for (const world::Object& object : scene.objects) primitives += primitive_count(object.shape);
   Json build = {
       {"id", name},
       {"scene", name},
@@ -116,7 +116,7 @@ void add_rates(const Session& session, const Scene& scene, Json& rates) {
 
 Json measure_rates(const Session& session) {
   Json rates = {{"rows", Json::array()}, {"builds", Json::array()}, {"gaps", Json::array()}};
-  for (const Scene& scene : session.open_scenes({session.pick("wavy:70000", "wavy:5000")})) {
+  for (const world::Scene& scene : session.open_scenes({session.pick("wavy:70000", "wavy:5000")})) {
     session.say("rates: " + session.name_of(scene));
     add_rates(session, scene, rates);
   }

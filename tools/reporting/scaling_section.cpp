@@ -35,7 +35,7 @@ class ScalingBench {
   /// A mesh of the wavy sphere with what is measured of it.
   struct Size {
     uint32_t wanted;
-    Scene scene;
+    world::Scene scene;
     Caster caster;
     std::vector<measure::RaySet> sets;
     std::vector<std::vector<Hit>> hits;
@@ -157,10 +157,10 @@ class ScalingBench {
     }
   }
 
-  Scene load(const char* own) const { return session_.load_scenes({own}).front(); }
+  world::Scene load(const char* own) const { return session_.load_scenes({own}).front(); }
 
   void measure_pixels() {
-    const Scene scene = load("all_primitives.gltf");
+    const world::Scene scene = load("all_primitives.gltf");
     std::vector<Frame> frames;
     for (const uint32_t side : session_.pick<std::vector<uint32_t>>({64, 128, 256, 512, 1024}, {32, 64, 128})) {
       frames.push_back({static_cast<double>(side) * side, &scene, view_of(scene, uvec2(side))});
@@ -170,13 +170,13 @@ class ScalingBench {
 
   /// The scene's first source, as many times side by side: each casts its own shadows.
   void measure_sources() {
-    const Scene scene = load("all_primitives.gltf");
+    const world::Scene scene = load("all_primitives.gltf");
     const float size = glm::length(bounds_of(scene).extent());
     const std::vector<uint32_t> numbers = session_.pick<std::vector<uint32_t>>({1, 2, 4, 8, 16}, {1, 2, 4});
-    std::vector<Scene> scenes;
+    std::vector<world::Scene> scenes;
     std::vector<Frame> frames;
     for (const uint32_t count : numbers) {
-      Scene& lit = scenes.emplace_back(scene);
+      world::Scene& lit = scenes.emplace_back(scene);
       lit.lights.clear();
       for (uint32_t i = 0; i < count; ++i) {
         const double angle = 6.283185307179586 * i / count;
@@ -193,7 +193,7 @@ class ScalingBench {
   }
 
   void measure_depth() {
-    const Scene scene = load("mirrors.gltf");
+    const world::Scene scene = load("mirrors.gltf");
     std::vector<Frame> frames;
     for (const uint32_t depth : session_.pick<std::vector<uint32_t>>({0, 1, 2, 4, 8, 16, 32}, {0, 1, 2, 4})) {
       View view = view_of(scene, session_.pick(uvec2(256), uvec2(96)));

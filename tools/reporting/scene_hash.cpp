@@ -26,7 +26,7 @@ class ContentHash {
     hash_.add(std::as_bytes(std::span(values)));
   }
 
-  void add(const NotDrawn& /*shape*/) {}
+  void add(const world::NotDrawn& /*shape*/) {}
   void add(const Mesh& mesh) {
     add(mesh.positions);
     add(mesh.normals);
@@ -34,21 +34,21 @@ class ContentHash {
     add(mesh.triangles);
     add(mesh.triangle_materials);
   }
-  void add(const Sphere& sphere) {
+  void add(const world::Sphere& sphere) {
     add(sphere.center);
     add(sphere.radius);
   }
-  void add(const Plane& plane) {
+  void add(const world::Plane& plane) {
     add(plane.point);
     add(plane.normal);
   }
-  void add(const Cylinder& cylinder) {
+  void add(const world::Cylinder& cylinder) {
     add(cylinder.center);
     add(cylinder.axis);
     add(cylinder.half_height);
     add(cylinder.radius);
   }
-  void add(const Cone& cone) {
+  void add(const world::Cone& cone) {
     add(cone.center);
     add(cone.axis);
     add(cone.half_height);
@@ -82,10 +82,10 @@ class ContentHash {
 
 }  // namespace
 
-std::string hash_of(const Scene& scene) {
+std::string hash_of(const world::Scene& scene) {
   ContentHash hash;
   hash.add(scene.objects.size());
-  for (const Object& object : scene.objects) {
+  for (const world::Object& object : scene.objects) {
     hash.add(object.shape.index());
     std::visit([&](const auto& shape) { hash.add(shape); }, object.shape);
     hash.add(uint64_t{object.material});
@@ -96,8 +96,8 @@ std::string hash_of(const Scene& scene) {
   for (const Light& light : scene.lights) hash.add(light);
   hash.add(scene.cameras.size());
   for (const Camera& camera : scene.cameras) hash.add(camera);
-  hash.add(scene.ambient);
-  hash.add(scene.background);
+  hash.add(scene.environment.ambient);
+  hash.add(scene.environment.background);
   return fmt::format("{:016x}", hash.value());
 }
 

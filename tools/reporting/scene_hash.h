@@ -4,12 +4,12 @@
 
 #include <string>
 
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 
 namespace promin::report {
 
 /// 16 hexadecimal digits over what a scene holds as it was loaded: shapes, materials, lights, cameras, ambient light
 /// and background, in the file's order. Names, and how a tree sorts the shapes, are not in it.
-std::string hash_of(const Scene& scene);
+std::string hash_of(const world::Scene& scene);
 
 }  // namespace promin::report

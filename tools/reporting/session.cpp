@@ -19,8 +19,8 @@ void Session::say(const std::string& text) const {
   std::fputs(fmt::format("promin-report: {}\n", text).c_str(), stderr);
 }
 
-std::vector<Scene> Session::open_scenes(const std::vector<std::string>& own) const {
-  std::vector<Scene> scenes;
+std::vector<world::Scene> Session::open_scenes(const std::vector<std::string>& own) const {
+  std::vector<world::Scene> scenes;
   for (const std::filesystem::path& file : options_.scenes) scenes.push_back(measure::open_scene(file.string()));
   if (!scenes.empty()) return scenes;
   for (const std::string& word : own) {
@@ -30,19 +30,19 @@ std::vector<Scene> Session::open_scenes(const std::vector<std::string>& own) con
   return scenes;
 }
 
-std::vector<Scene> Session::load_scenes(const std::vector<std::string>& own) const {
-  std::vector<Scene> scenes = open_scenes(own);
-  for (Scene& scene : scenes) app::light_up(scene, app::Console(app::Verbosity::kQuiet));
+std::vector<world::Scene> Session::load_scenes(const std::vector<std::string>& own) const {
+  std::vector<world::Scene> scenes = open_scenes(own);
+  for (world::Scene& scene : scenes) app::light_up(scene, app::Console(app::Verbosity::kQuiet));
   return scenes;
 }
 
-std::string Session::name_of(const Scene& scene) const {
+std::string Session::name_of(const world::Scene& scene) const {
   const auto found = std::find(options_.scenes.begin(), options_.scenes.end(), scene.file);
   if (found == options_.scenes.end()) return scene.file.stem().string();
   return names_[static_cast<size_t>(found - options_.scenes.begin())];
 }
 
-View view_of(const Scene& scene, const uvec2& size) {
+View view_of(const world::Scene& scene, const uvec2& size) {
   app::ViewOptions options;
   options.size = size;
   return app::make_view(scene, options, app::Console(app::Verbosity::kQuiet));

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "promin/device.h"
-#include "promin/scene.h"
+#include "scene/world_scene.h"
 #include "promin/view.h"
 
 namespace promin::report {
@@ -63,12 +63,12 @@ class Session {
   void say(const std::string& text) const;
 
   /// The user's scenes, or these: files of the project or words of measure::open_scene. Throws InputError.
-  std::vector<Scene> open_scenes(const std::vector<std::string>& own) const;
+  std::vector<world::Scene> open_scenes(const std::vector<std::string>& own) const;
   /// As open_scenes, lit where they have no light.
-  std::vector<Scene> load_scenes(const std::vector<std::string>& own) const;
+  std::vector<world::Scene> load_scenes(const std::vector<std::string>& own) const;
 
   /// A scene's name in the report, which no other has: see name_scenes.
-  std::string name_of(const Scene& scene) const;
+  std::string name_of(const world::Scene& scene) const;
 
  private:
   const ReportOptions& options_;
@@ -78,7 +78,7 @@ class Session {
 };
 
 /// The view of the scene's first camera, or of one that frames it.
-View view_of(const Scene& scene, const uvec2& size);
+View view_of(const world::Scene& scene, const uvec2& size);
 
 // Times in a row, in any unit, and ratios of times of the same turn, are arrays with one number a run. What they come
 // to (medians, intervals, fronts, exponents) is computed in one place, tools/reporting/stats.py.
@@ -105,6 +105,6 @@ Json measure_scaling(const Session& session);
 /// Rays and builds beside Embree's.
 Json measure_rates(const Session& session);
 /// The same of one scene: appends to the arrays "rows" and "builds". Without runs it only counts steps.
-void add_rates(const Session& session, const Scene& scene, Json& rates);
+void add_rates(const Session& session, const world::Scene& scene, Json& rates);
 
 }  // namespace promin::report
