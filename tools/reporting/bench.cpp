@@ -25,10 +25,9 @@ measure::Quartiles quartiles_of(const Json& row, const char* key) {
   return measure::quartiles_of(row.at(key).get<std::vector<double>>());
 }
 
-void print_build(const Json& build) {
-  fmt::print("{}, {} primitives, {:.1f} bytes a primitive, builder {}\n", build["scene"].get<std::string>(),
-             build["primitives"].get<uint64_t>(), build["device_bytes_per_primitive"].get<double>(),
-             build["builder"].get<std::string>());
+void print_build(const std::string& scene, const Json& build) {
+  fmt::print("{}, {} primitives, {:.1f} bytes a primitive, builder {}\n", scene, build["primitives"].get<uint64_t>(),
+             build["device_bytes_per_primitive"].get<double>(), build["builder"].get<std::string>());
   if (!build.contains("promin_ms")) return;
   fmt::print("  build: promin {:.1f} ms ({:.1f} of it the BVH)", quartiles_of(build, "promin_ms").median,
              quartiles_of(build, "bvh_ms").median);
@@ -70,7 +69,7 @@ void measure_all(const ReportOptions& options) {
   for (const std::filesystem::path& file : options.scenes) {
     Json rates = Json::object();
     add_rates(session, measure::open_scene(file.string()), rates);
-    print_build(rates["builds"][0]);
+    print_build(file.filename().string(), rates["builds"][0]);
     fmt::print("  {:<7}{:>9}{:>8}{:>9}{:>9}{:>9}{:>15}{:>9}{:>8}{:>8}\n", "rays", "count", "promin", "Embree",
                "packets", "ratio", "quartiles", "differ", "steps", "tests");
     for (const Json& row : rates["rows"]) print_rays(row);

@@ -3,6 +3,7 @@
 """What pages and tables of figures share: numbers for people, tables, sections and words for several figures."""
 
 import html
+import re
 
 from stats import LEAST_CONFIDENCE, judge
 
@@ -79,13 +80,15 @@ def table(columns, rows, is_shipped=lambda row: False, caption=""):
     return "\n".join(lines + ["</tbody></table></div>"])
 
 
+def _without_markup(cell):
+    return re.sub("<[^>]*>", "", str(cell).replace("<sup>", "^")).replace("|", "\\|")
+
+
 def markdown_table(columns, rows):
-    """As table, for documents; cells are text without |."""
-    head = [head for head, _ in columns]
-    body = [[str(make(row)).replace("|", "\\|") for _, make in columns] for row in rows]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in [head, *body]).replace(
-        "\n", "\n|" + "---|" * len(head) + "\n", 1
-    ) + ("\n" if body else "\n|" + "---|" * len(head) + "\n")
+    """As table, for documents."""
+    lines = [[head for head, _ in columns], *([make(row) for _, make in columns] for row in rows)]
+    lines = ["| " + " | ".join(map(_without_markup, cells)) + " |" for cells in lines]
+    return "\n".join([lines[0], "|" + "---|" * len(columns), *lines[1:]]) + "\n"
 
 
 def section(title, text, table="", panels=(), legend=()):

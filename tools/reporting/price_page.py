@@ -5,6 +5,7 @@
 import html
 import math
 
+import peer_tables
 import plots
 from figures import (
     beyond_noise_text,
@@ -169,56 +170,6 @@ def _picture_sentence(row):
     )
 
 
-def _first_sentence(row):
-    return (
-        f"The first picture of {html.escape(row['scene'])}, as a whole process, takes "
-        f"{number(row['process_ms']['median'])} ms: {row['time_ratio']['median']:.2f} of its tracing "
-        f"({number(row['trace_ms']['median'])} ms) and twice the process of one sphere "
-        f"({number(row['one_sphere_process_ms']['median'])} ms)."
-    )
-
-
-_TIMES_BESIDE = [
-    ("promin, ms", lambda r: spread(r.get("promin_ms"))),
-    ("peer", lambda r: r.get("peer", "–")),
-    ("peer, ms", lambda r: spread(r.get("peer_ms"))),
-    ("ratio", lambda r: interval(r.get("time_ratio"))),
-]
-_RAY_COLUMNS = [
-    scene_column(),
-    ("rays", lambda r: r["rays"]),
-    ("number", lambda r: f"{r['count']:,}"),
-    *_TIMES_BESIDE,
-    ("in packets of 8, ms", lambda r: spread(r.get("peer_packets_ms"))),
-    ("ratio", lambda r: interval(r.get("packets_time_ratio"))),
-    ("other hits", lambda r: number(r.get("differing_hits"))),
-    ("Mrays/s", lambda r: number(r.get("promin_mrays_per_s"))),
-    ("steps", lambda r: number(r.get("node_steps_per_ray"))),
-    ("tests", lambda r: number(r.get("primitive_tests_per_ray"))),
-]
-_BUILD_COLUMNS = [
-    scene_column(),
-    ("primitives", lambda r: f"{r['primitives']:,}"),
-    ("builder", lambda r: r["builder"]),
-    *_TIMES_BESIDE,
-    ("tree alone, ms", lambda r: spread(r["bvh_ms"])),
-    ("ratio", lambda r: interval(r.get("bvh_time_ratio"))),
-    ("nodes", lambda r: f"{r['nodes']:,}"),
-    ("depth", lambda r: r["depth"]),
-    ("SAH cost", lambda r: number(r["sah_cost"])),
-    ("bytes a primitive", lambda r: number(r["device_bytes_per_primitive"])),
-]
-_PICTURE_COLUMNS = [
-    scene_column(),
-    ("what", lambda r: r["what"]),
-    *_TIMES_BESIDE,
-    (
-        "difference",
-        lambda r: f"mean {number(r['mean_difference'], 2)}, {number(r['different_pixels_percent'], 2)} % of pixels",
-    ),
-]
-
-
 def peers(report):
     rates = report.get("rates", {"rows": [], "builds": [], "gaps": []})
     pictures = report.get("peers", {"rows": [], "first": [], "gaps": []})
@@ -231,7 +182,7 @@ def peers(report):
         for r in pictures["rows"]
     ]
     sentences = [_ray_sentence(r) for r in rays] + [_build_sentence(r) for r in builds]
-    sentences += [_picture_sentence(r) for r in pictures["rows"]] + [_first_sentence(r) for r in pictures["first"]]
+    sentences += [_picture_sentence(r) for r in pictures["rows"]]
     panels = []
     if compared:
         names, rows = zip(*compared)
@@ -241,6 +192,11 @@ def peers(report):
     text = [f"The same scene in the same run, in {runs} turns, on the same cores. {gaps}" if sentences else gaps]
     if sentences:
         text.append("<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>")
-    kinds = ((_RAY_COLUMNS, rates["rows"]), (_BUILD_COLUMNS, rates["builds"]), (_PICTURE_COLUMNS, pictures["rows"]))
-    tables = "\n".join(table(columns, rows) for columns, rows in kinds if rows)
+    kinds = (
+        ("Rays", peer_tables.RAYS, rates["rows"]),
+        ("From triangles in memory to all that is copied to the device", peer_tables.BUILDS, rates["builds"]),
+        ("Pictures", peer_tables.PICTURES, pictures["rows"]),
+        ("The first picture", peer_tables.FIRST, pictures["first"]),
+    )
+    tables = "\n".join(table(columns, rows, caption=caption) for caption, columns, rows in kinds if rows)
     return section("Beside other renderers", text, tables, panels)
