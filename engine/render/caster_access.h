@@ -18,12 +18,11 @@ struct CasterAccess {
   static Caster make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options);
 };
 
-inline Caster make_caster(const gpu::Device& device, const world::Scene& scene,
-                          const TunedCasterOptions& options = {}) {
+inline Caster make_caster(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options) {
   return CasterAccess::make(device, scene, options);
 }
-inline Caster make_caster(const gpu::Device& device, const Scene& scene, const TunedCasterOptions& options = {}) {
-  return CasterAccess::make(device, world::flatten(scene), options);
+inline Caster make_caster(const gpu::Device& device, const world::Scene& scene, const CasterOptions& options = {}) {
+  return CasterAccess::make(device, scene, TunedCasterOptions{options, {}});
 }
 
 }  // namespace promin

@@ -75,10 +75,14 @@ struct RendererAccess {
 };
 
 inline Renderer make_renderer(const gpu::Device& device, const world::Scene& scene,
-                              const TunedRendererOptions& options = {}) {
+                              const TunedRendererOptions& options) {
   return RendererAccess::make(device, scene, options);
 }
-inline Renderer make_renderer(const gpu::Device& device, const Scene& scene, const TunedRendererOptions& options = {}) {
+inline Renderer make_renderer(const gpu::Device& device, const world::Scene& scene,
+                              const RendererOptions& options = {}) {
+  return RendererAccess::make(device, scene, TunedRendererOptions{options});
+}
+inline Renderer make_renderer(const gpu::Device& device, const Scene& scene, const TunedRendererOptions& options) {
   return RendererAccess::make(device, world::flatten(scene), options);
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "promin/view.h"
+#include "scene/framing.h"
 #include "shapes/shapes.h"
 
 namespace promin {
@@ -71,12 +72,17 @@ Bounds frame_of(const Scene& scene) {
     center = *found;
     break;
   }
+  return bounds_around(center);
+}
+
+}  // namespace
+
+Bounds bounds_around(const vec3& center) {
+  Bounds bounds;
   bounds.extend(center - 1.0F);
   bounds.extend(center + 1.0F);
   return bounds;
 }
-
-}  // namespace
 
 Object& Scene::add(std::string name, Geometry geometry, uint32_t material, const dmat4& world_from_object) {
   geometries.push_back(std::move(geometry));
@@ -103,7 +109,10 @@ uint32_t primitive_count(const Scene& scene, const Object& object) {
 }
 
 Camera frame_scene(const Scene& scene, float aspect_ratio) {
-  const Bounds frame = frame_of(scene);
+  return frame_bounds(frame_of(scene), aspect_ratio);
+}
+
+Camera frame_bounds(const Bounds& frame, float aspect_ratio) {
   const dvec3 center = 0.5 * (dvec3(frame.lo) + dvec3(frame.hi));
   const dvec3 half = 0.5 * (dvec3(frame.hi) - dvec3(frame.lo));
 
@@ -146,12 +155,16 @@ bool shows_same(const View& a, const View& b) {
   return a.size == b.size && a.mode == b.mode && a.max_depth == b.max_depth && shows_same(a.camera, b.camera);
 }
 
-AddedLights add_default_lights(Scene& scene) {
-  if (!scene.lights.empty()) return {};
-  scene.lights.push_back(make_headlight());
-  AddedLights added{.has_headlight = true, .has_ambient = scene.environment.ambient == vec3(0.0F)};
-  if (added.has_ambient) scene.environment.ambient = vec3(kDefaultAmbient);
+AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment) {
+  if (!lights.empty()) return {};
+  lights.push_back(make_headlight());
+  AddedLights added{.has_headlight = true, .has_ambient = environment.ambient == vec3(0.0F)};
+  if (added.has_ambient) environment.ambient = vec3(kDefaultAmbient);
   return added;
+}
+
+AddedLights add_default_lights(Scene& scene) {
+  return add_default_lights(scene.lights, scene.environment);
 }
 
 Light make_headlight() {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "scene/framing.h"
 #include "shapes/shapes.h"
 
 namespace promin::world {
@@ -93,6 +94,21 @@ Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Object& object : scene.objects) bounds.extend(std::visit(BoundsOfShape{}, object.shape));
   return bounds;
+}
+
+Camera frame_scene(const Scene& scene, float aspect_ratio) {
+  const Bounds bounds = bounds_of(scene);
+  if (!bounds.is_empty()) return frame_bounds(bounds, aspect_ratio);
+  for (const Object& object : scene.objects) {
+    if (const auto* plane = std::get_if<Plane>(&object.shape)) {
+      return frame_bounds(bounds_around(plane->point), aspect_ratio);
+    }
+  }
+  return frame_bounds(bounds_around(vec3(0.0F)), aspect_ratio);
+}
+
+AddedLights add_default_lights(Scene& scene) {
+  return promin::add_default_lights(scene.lights, scene.environment);
 }
 
 Bounds bounds_of_triangle(const Mesh& mesh, uint32_t triangle) {

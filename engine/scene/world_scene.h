@@ -54,6 +54,10 @@ uint32_t primitive_count(const Shape& shape);
 
 /// Bounds of everything finite; empty if there is nothing finite.
 Bounds bounds_of(const Scene& scene);
+/// As frame_scene and add_default_lights of a Scene.
+Camera frame_scene(const Scene& scene, float aspect_ratio);
+AddedLights add_default_lights(Scene& scene);
+
 Bounds bounds_of_triangle(const Mesh& mesh, uint32_t triangle);
 
 /// Whether a triangle can be hit at all: its corners are distinct and not exactly collinear.

@@ -3,20 +3,15 @@
 // |P - center| = radius. Solved around the ray's closest approach to the centre, with the discriminant as
 // (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) measured (hard cases 1-9).
 
-struct Sphere {
-  vec3 center;
-  float radius;
-};
-
-Sphere sphere_of(Primitive p) { return Sphere(p.a.xyz, p.a.w); }
+vec3 sphere_center(Primitive p) { return p.a.xyz; }
+float sphere_radius(Primitive p) { return p.a.w; }
 
 Crossing intersect_sphere(Ray ray, Primitive p) {
-  Sphere s = sphere_of(p);
-  Approach near = approach(ray, s.center);
+  Approach near = approach(ray, sphere_center(p));
   // In units of a power of two near the radius nothing overflows or underflows that matters.
-  float scale = power_of_two_inverse(s.radius);
+  float scale = power_of_two_inverse(sphere_radius(p));
   precise vec3 offset = near.offset * scale;
-  precise float radius = s.radius * scale;
+  precise float radius = sphere_radius(p) * scale;
   precise float distance = length3(offset);
   precise float chord2 = (radius - distance) * (radius + distance) * ray.inverse_length2;
   if (!(chord2 >= 0.0)) return NO_CROSSING;
@@ -27,10 +22,9 @@ Crossing intersect_sphere(Ray ray, Primitive p) {
 }
 
 SurfacePoint sphere_surface(Ray ray, Primitive p, Hit hit) {
-  Sphere s = sphere_of(p);
-  precise vec3 from_center = (ray.origin - s.center) + hit.t * ray.direction;
+  precise vec3 from_center = (ray.origin - sphere_center(p)) + hit.t * ray.direction;
   vec3 normal = normalize3(from_center);
-  precise vec3 position = s.center + s.radius * normal;
-  precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * s.radius);
+  precise vec3 position = sphere_center(p) + sphere_radius(p) * normal;
+  precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * sphere_radius(p));
   return SurfacePoint(position, normal, lift);
 }

@@ -86,7 +86,7 @@ TEST(ExplanationTest, TextNamesWhatIsHitAndWhatIsInTheWay) {
   Scene scene;
   scene.materials.resize(1);
   scene.materials[0].name = "matt";
-  scene.objects = {{"ball", Sphere{}, 0}};
+  scene.add("ball", Sphere{});
   scene.lights = {Light{"key"}, Light{}, make_headlight()};
   Explanation explanation;
   explanation.pixel = uvec2(3, 4);

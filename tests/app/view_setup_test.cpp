@@ -139,16 +139,16 @@ TEST(LightUpTest, OnlyASceneWithoutLightsIsLitUp) {
   light_up(scene, kSilent);
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_EQ(scene.lights[0].kind, LightKind::kHeadlight);
-  EXPECT_EQ(scene.ambient, vec3(0.1F));
+  EXPECT_EQ(scene.environment.ambient, vec3(0.1F));
 
   light_up(scene, kSilent);
   EXPECT_EQ(scene.lights.size(), 1U);
 
   Scene ambient = make_scene();
-  ambient.ambient = vec3(0.5F);
+  ambient.environment.ambient = vec3(0.5F);
   light_up(ambient, kSilent);
   EXPECT_EQ(ambient.lights.size(), 1U);
-  EXPECT_EQ(ambient.ambient, vec3(0.5F)) << "the file's ambient light stays";
+  EXPECT_EQ(ambient.environment.ambient, vec3(0.5F)) << "the file's ambient light stays";
 }
 
 }  // namespace

@@ -139,7 +139,9 @@ void expect_same(const PackedScene& a, const PackedScene& b) {
   EXPECT_TRUE(has_same_bytes(a.tree().nodes, b.tree().nodes));
   EXPECT_TRUE(has_same_bytes<layout::Primitive>(a.primitives, b.primitives));
   EXPECT_EQ(a.references, b.references);
-  EXPECT_EQ(a.shading, b.shading);
+  EXPECT_TRUE(has_same_bytes<layout::SurfaceRecord>(a.surfaces.surfaces, b.surfaces.surfaces));
+  EXPECT_EQ(a.surfaces.normals, b.surfaces.normals);
+  EXPECT_EQ(a.surfaces.colors, b.surfaces.colors);
   EXPECT_EQ(a.stack_size, b.stack_size);
   EXPECT_EQ(a.size_bytes(), b.size_bytes());
   EXPECT_EQ(a.bvh.builder, b.bvh.builder);
@@ -385,7 +387,7 @@ TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
   other.file = "renamed.gltf";
   other.materials[1].diffuse = vec3(0.5F);
   other.lights.clear();
-  other.ambient = vec3(1.0F);
+  other.environment.ambient = vec3(1.0F);
   other.objects[1].name = "renamed";
   other.objects[1].material = 2;
   // A plane is in no tree, and a degenerate triangle only takes a number.

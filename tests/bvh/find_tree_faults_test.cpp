@@ -8,6 +8,8 @@
 #include <bit>
 
 #include "bvh/read_node.h"
+#include "bvh/pack_tree.h"
+#include "device_scene/pack_scene.h"
 #include "gpu/test_scenes.h"
 #include "promin/load_scene.h"
 #include "support/scene_files.h"
@@ -18,7 +20,7 @@ namespace {
 using layout::Node;
 using testing::HasSubstr;
 
-world::Scene scene_of(std::vector<Object> objects) {
+world::Scene scene_of(std::vector<world::Object> objects) {
   world::Scene scene;
   scene.materials.resize(1);
   scene.objects = std::move(objects);
@@ -112,7 +114,10 @@ TEST(FindTreeFaults, TheFirstIsNamedWhateverTheThreads) {
   const TreeFaults by_one = find_tree_faults(packed, {.thread_count = 1});
   double told = 0.0;
   const TreeFaults by_many =
-      find_tree_faults(packed, {.thread_count = 5, .progress = [&](double fraction) { told = fraction; }});
+      find_tree_faults(packed, {.thread_count = 5, .progress = [&](double fraction) {
+                                  told = fraction;
+                                  return true;
+                                }});
   EXPECT_EQ(by_one.count, packed.solid_count);
   EXPECT_EQ(by_many.count, by_one.count);
   EXPECT_EQ(by_many.first, by_one.first);

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "bvh/read_node.h"
+#include "bvh/pack_tree.h"
 #include "device_scene/pack_scene.h"
 
 namespace promin {

@@ -19,6 +19,7 @@
 #include "measure/step_counts.h"
 #include "promin/caster.h"
 #include "promin/load_scene.h"
+#include "render/caster_access.h"
 
 namespace promin {
 namespace {
@@ -108,7 +109,7 @@ class StepCountsTest : public test::DeviceTest, public testing::WithParamInterfa
     const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
     std::vector<RaySet> sets = {measure::make_camera_rays(camera, kSide)};
     std::vector<Hit> hits(sets[0].rays.size());
-    Caster(device(), scene).cast(sets[0].rays, hits);
+    make_caster(device(), scene).cast(sets[0].rays, hits);
     sets.push_back(measure::make_shadow_rays(sets[0], hits, scene, camera));
     sets.push_back(measure::make_random_rays(scene, hits.size()));
     Counts counts;

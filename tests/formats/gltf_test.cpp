@@ -322,7 +322,7 @@ TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
                                               {"reflectionFactor", {0.7, 0.8, 0.9}}}},
                                             {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}));
   const Material& material = scene.materials.at(0);
-  EXPECT_EQ(material.environment.ambient, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.ambient, vec3(0.1F, 0.2F, 0.3F));
   EXPECT_EQ(material.diffuse, vec3(0.4F, 0.5F, 0.6F));
   EXPECT_EQ(material.specular, vec3(2));
   EXPECT_EQ(material.shininess, 64);
@@ -336,7 +336,7 @@ TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
                                           {"extensions", {{"PROMIN_materials_phong", json::object()}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.diffuse, vec3(0.5F, 0.25F, 0));
-  EXPECT_EQ(material.environment.ambient, material.diffuse);
+  EXPECT_EQ(material.ambient, material.diffuse);
   EXPECT_EQ(material.specular, vec3(0));
   EXPECT_EQ(material.shininess, 0);
   EXPECT_EQ(material.reflection, vec3(0));
@@ -348,7 +348,7 @@ TEST_F(GltfTest, MetallicRoughnessBecomesPhong) {
                       {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.15}}}}));
   const Material& material = scene.materials.at(0);
   const vec3 ks = 0.5F * (vec3(0.04F) + vec3(0.8F, 0.4F, 0.2F));
-  expect_near(material.environment.ambient, {0.4F, 0.2F, 0.1F});
+  expect_near(material.ambient, {0.4F, 0.2F, 0.1F});
   expect_near(material.diffuse, vec3(0.4F, 0.2F, 0.1F) * std::numbers::inv_pi_v<float>);
   expect_near(material.specular, ks);
   EXPECT_NEAR(material.shininess, (2.0 / 0.00050625 - 2.0) / 4.0, 1e-3);
@@ -366,7 +366,7 @@ TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.emissive, vec3(0.5F, 0.25F, 0));
   EXPECT_EQ(material.diffuse, vec3(0));
-  EXPECT_EQ(material.environment.ambient, vec3(0));
+  EXPECT_EQ(material.ambient, vec3(0));
   EXPECT_EQ(material.specular, vec3(0));
 }
 

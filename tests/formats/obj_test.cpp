@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "formats/obj/triangulate.h"
+#include "formats/source_file.h"
 #include "support/scene_folder.h"
 
 namespace promin {
@@ -91,8 +92,8 @@ TEST_F(ObjTest, ObjectsAndGroupsWithFacesAreNumbered) {
 TEST_F(ObjTest, DegenerateTrianglesKeepTheirNumber) {
   const LoadedScene scene = load(kSquare + "f 1 1 2\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(2));
-  EXPECT_TRUE(is_degenerate(mesh_of(scene), 0));
-  EXPECT_FALSE(is_degenerate(mesh_of(scene), 1));
+  EXPECT_TRUE(world::is_degenerate(mesh_of(scene), 0));
+  EXPECT_FALSE(world::is_degenerate(mesh_of(scene), 1));
 }
 
 TEST_F(ObjTest, NormalsHaveIndicesOfTheirOwn) {

@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "promin/load_scene.h"
+#include "scene/world_scene.h"
 #include "support/process.h"
 #include "support/scene_files.h"
 
@@ -62,7 +63,7 @@ TEST_F(ScenesTest, EverySceneLoadsWithoutWarning) {
   EXPECT_GE(files.size(), 22U);
   for (const fs::path& file : files) {
     SCOPED_TRACE(file);
-    const world::Scene scene = world::flatten(load_scene(file));
+    const Scene scene = load_scene(file);
     EXPECT_THAT(scene.warnings, testing::IsEmpty());
     if (file.extension() == ".gltf") {
       EXPECT_THAT(scene.cameras, testing::Not(testing::IsEmpty()));
@@ -76,7 +77,8 @@ TEST_F(ScenesTest, SphereflakeHasNineSpheresOnEachSphere) {
   const fs::path file = folder_ / "flake.gltf";
   ASSERT_NO_FATAL_FAILURE(run_make_scenes({"--sphereflake", "3", "-o", file}));
   std::vector<world::Sphere> spheres;
-  for (const world::Object& object : world::flatten(load_scene(file)).objects) {
+  const world::Scene flat = world::flatten(load_scene(file));
+  for (const world::Object& object : flat.objects) {
     if (const auto* sphere = std::get_if<world::Sphere>(&object.shape)) spheres.push_back(*sphere);
   }
   ASSERT_EQ(spheres.size(), 1U + 9U + 81U + 729U);

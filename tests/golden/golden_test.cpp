@@ -17,6 +17,7 @@
 #include "promin/image.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 
 namespace promin {
 namespace {
@@ -61,7 +62,7 @@ Subject load_subject(const std::string& name) {
 
 class GoldenTest : public test::DeviceTest {
  protected:
-  static Image render(const Subject& subject) { return Renderer(device(), subject.scene).render(subject.view).image; }
+  static Image render(const Subject& subject) { return make_renderer(device(), subject.scene).render(subject.view).image; }
 };
 
 class SceneGoldenTest : public GoldenTest, public testing::WithParamInterface<std::string> {};
@@ -112,9 +113,9 @@ TEST_F(GoldenTest, AHalfPixelShiftIsSeen) {
 
 TEST_F(GoldenTest, MissingShadowsAreSeen) {
   const Subject subject = load_subject(kControl);
-  TunedRendererOptions options;
-  options.left_out_features = layout::FEATURE_SHADOWS;
-  EXPECT_NE(compare_changed(Renderer(device(), subject.scene, options).render(subject.view).image), "");
+  View view = subject.view;
+  view.mode.has_shadows = false;
+  EXPECT_NE(compare_changed(make_renderer(device(), subject.scene).render(view).image), "");
 }
 
 TEST_F(GoldenTest, MissingMirrorRaysAreSeen) {

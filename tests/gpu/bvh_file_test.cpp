@@ -14,6 +14,8 @@
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "promin/renderer.h"
+#include "render/caster_access.h"
+#include "render/renderer_impl.h"
 
 namespace promin {
 namespace {
@@ -44,8 +46,8 @@ TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
     SCOPED_TRACE(builder);
     write_bvh_file(file_, pack_scene(scene, builder).tree());
 
-    Renderer built(device(), scene, {.builder = builder});
-    Renderer read(device(), scene, {.builder = "", .bvh = file_});
+    Renderer built = make_renderer(device(), scene, {.builder = builder});
+    Renderer read = make_renderer(device(), scene, {.builder = "", .bvh = file_});
     EXPECT_TRUE(test::has_same_bits(built.render(view).image, read.render(view).image));
     EXPECT_EQ(read.setup_stats().bvh.builder, builder);
     EXPECT_EQ(read.setup_stats().bvh.sah_cost, built.setup_stats().bvh.sah_cost);
@@ -53,8 +55,8 @@ TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
 
     std::vector<Hit> hits(rays.size());
     std::vector<Hit> expected(rays.size());
-    Caster(device(), scene, {.builder = builder}).cast(rays, expected);
-    Caster(device(), scene, {.builder = "", .bvh = file_}).cast(rays, hits);
+    make_caster(device(), scene, {.builder = builder}).cast(rays, expected);
+    make_caster(device(), scene, {.builder = "", .bvh = file_}).cast(rays, hits);
     EXPECT_EQ(std::memcmp(hits.data(), expected.data(), rays.size() * sizeof(Hit)), 0);
   }
 }
@@ -62,9 +64,9 @@ TEST_F(BvhFileOnDevice, PicturesAndHitsAreThoseOfTheBuiltTree) {
 TEST_F(BvhFileOnDevice, AFileOfAnotherSceneIsRefused) {
   write_bvh_file(file_, pack_scene(test::make_scene_of_everything(3), "sah").tree());
   const world::Scene scene = test::make_scene_of_everything(4);
-  EXPECT_THROW(Renderer(device(), scene, {.bvh = file_}), InputError);
-  EXPECT_THROW(Caster(device(), scene, {.bvh = file_}), InputError);
-  EXPECT_THROW(Caster(device(), scene, {.bvh = folder_ / "none.pbvh"}), InputError);
+  EXPECT_THROW(make_renderer(device(), scene, {.bvh = file_}), InputError);
+  EXPECT_THROW(make_caster(device(), scene, {.bvh = file_}), InputError);
+  EXPECT_THROW(make_caster(device(), scene, {.bvh = folder_ / "none.pbvh"}), InputError);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@
 #include "oracle/verdict.h"
 #include "promin/error.h"
 #include "promin/renderer.h"
+#include "render/caster_access.h"
+#include "render/renderer_impl.h"
 #include "rays/ray_tiles.h"
 #include "trace/ray_kernel.h"
 
@@ -33,7 +35,7 @@ class CasterTest : public test::DeviceTest {
  protected:
   static std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) {
     std::vector<Hit> hits(rays.size());
-    Caster(device(), scene).cast(rays, hits, query);
+    make_caster(device(), scene).cast(rays, hits, query);
     return hits;
   }
 };
@@ -314,7 +316,7 @@ TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
 TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
   const world::Scene scene = test::make_scene_of_everything();
   const std::vector<Ray> rays = test::make_rays(3000);
-  Caster caster(device(), scene);
+  Caster caster = make_caster(device(), scene);
   std::vector<Hit> together(rays.size());
   caster.cast(rays, together);
   std::vector<Hit> apart(rays.size());
@@ -380,7 +382,7 @@ TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
 }
 
 TEST_F(CasterTest, UnknownBuildersAreRefused) {
-  EXPECT_THROW(Caster(device(), test::make_scene_of_everything(), TunedCasterOptions{.builder = "shah"}), UsageError);
+  EXPECT_THROW(make_caster(device(), test::make_scene_of_everything(), CasterOptions{.builder = "shah"}), UsageError);
 }
 
 // AOVs are what a cast of the pixel's ray tells, and leave the picture's bits alone.
@@ -390,9 +392,9 @@ TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
   TunedRendererOptions options;
   options.with_aovs = true;
   options.blocks_per_dispatch = 7;
-  Renderer renderer(device(), scene, options);
+  Renderer renderer = make_renderer(device(), scene, options);
   const RenderResult with = renderer.render(view);
-  EXPECT_TRUE(test::has_same_bits(with.image, Renderer(device(), scene).render(view).image));
+  EXPECT_TRUE(test::has_same_bits(with.image, make_renderer(device(), scene).render(view).image));
 
   std::vector<Ray> rays;
   const dvec3 look(view.camera.look);

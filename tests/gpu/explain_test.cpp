@@ -13,6 +13,8 @@
 #include "promin/error.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
+#include "render/caster_access.h"
+#include "render/renderer_impl.h"
 
 namespace promin {
 namespace {
@@ -42,8 +44,8 @@ class ExplainTest : public test::DeviceTest {
  protected:
   /// Holds explanations of pixels all over the picture against it, against cast rays and against themselves.
   static void check(const world::Scene& scene, const View& view) {
-    Renderer renderer(device(), scene);
-    Caster caster(device(), scene);
+    Renderer renderer = make_renderer(device(), scene);
+    Caster caster = make_caster(device(), scene);
     const Image picture = renderer.render(view).image;
     for (uint32_t i = 0; i < 40; ++i) {
       const uvec2 pixel(i * 37 % view.size.x, (i * 23 + i / 7) % view.size.y);
@@ -137,7 +139,7 @@ TEST_F(ExplainTest, TooLongALogIsRefused) {
   world::Scene scene = test::make_scene_of_everything();
   scene.lights.resize(1000);
   View view = test::make_view(uvec2(16, 16));
-  Renderer renderer(device(), scene);
+  Renderer renderer = make_renderer(device(), scene);
   EXPECT_NO_THROW(renderer.explain(view, uvec2(0)));
   view.max_depth = 1000;
   EXPECT_THROW(renderer.explain(view, uvec2(0)), RunError);

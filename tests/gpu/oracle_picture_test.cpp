@@ -13,6 +13,7 @@
 #include "oracle/compare_picture.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 
 namespace promin {
 namespace {
@@ -63,7 +64,7 @@ class OraclePictureTest : public test::DeviceTest, public testing::WithParamInte
   static oracle::PictureReport compare(const world::Scene& scene, const View& view) {
     TunedRendererOptions options;
     options.with_aovs = true;
-    const RenderResult result = Renderer(device(), scene, options).render(view);
+    const RenderResult result = make_renderer(device(), scene, options).render(view);
     const oracle::DeviceAovs aovs{result.aovs.depth, result.aovs.normal, result.aovs.object, result.aovs.primitive};
     oracle::PictureReport report = compare_picture(scene, oracle::render(scene, view), result.image, aovs);
     std::printf("%s\n", report.summary(scene).c_str());

@@ -15,6 +15,7 @@
 #include "gpu/test_scenes.h"
 #include "layout.h"
 #include "promin/error.h"
+#include "render/renderer_impl.h"
 
 namespace promin {
 namespace {
@@ -27,13 +28,13 @@ const uvec2 kSize(150, 100);  // neither is a multiple of the block
 class RendererTest : public test::DeviceTest {
  protected:
   static RenderResult render(const world::Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
-    return Renderer(device(), scene, options).render(view);
+    return make_renderer(device(), scene, options).render(view);
   }
 };
 
 TEST_F(RendererTest, TwoRunsGiveTheSameBits) {
   const world::Scene scene = make_scene_of_everything();
-  Renderer renderer(device(), scene);
+  Renderer renderer = make_renderer(device(), scene);
   const View view = test::make_view(kSize);
   EXPECT_TRUE(has_same_bits(renderer.render(view).image, renderer.render(view).image));
 }
@@ -79,7 +80,7 @@ TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
 TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {
   const world::Scene scene = make_scene_of_everything();
   View view = test::make_view(kSize);
-  Renderer renderer(device(), scene);
+  Renderer renderer = make_renderer(device(), scene);
   const Image whole = renderer.render(view).image;
   view.crop = PixelWindow{uvec2(13, 29), uvec2(90, 71)};
   const Image crop = renderer.render(view).image;
@@ -110,12 +111,12 @@ TEST_F(RendererTest, SpecialisationChangesNoBit) {
   const world::Scene everything = make_scene_of_everything();
   TunedRendererOptions forced;
   forced.force_all_features = true;
-  for (const Scene* scene : std::array<const Scene*, 2>{&spheres, &everything}) {
+  for (const world::Scene* scene : std::array<const world::Scene*, 2>{&spheres, &everything}) {
     const View view = test::make_view(uvec2(300, 200));
-    Renderer specialised(device(), *scene);
-    Renderer general(device(), *scene, forced);
-    EXPECT_EQ(specialised.setup_stats().features, features_of(*scene));
-    EXPECT_EQ(general.setup_stats().features, all_features());
+    Renderer specialised = make_renderer(device(), *scene);
+    Renderer general = make_renderer(device(), *scene, forced);
+    EXPECT_EQ(specialised.setup_stats().features, feature_names(features_of(*scene)));
+    EXPECT_EQ(general.setup_stats().features, feature_names(all_features()));
     RenderResult of_scene = specialised.render(view);
     RenderResult of_all = general.render(view);
     EXPECT_TRUE(has_same_bits(of_scene.image, of_all.image));
@@ -142,7 +143,7 @@ TEST_F(RendererTest, TheInsideOfASphereIsDark) {
 TEST_F(RendererTest, TheHeadlightFollowsTheCameraOfEachView) {
   world::Scene scene = make_scene_of_everything();
   scene.lights = {make_headlight()};
-  Renderer renderer(device(), scene);
+  Renderer renderer = make_renderer(device(), scene);
   View view = test::make_view(kSize);
   for (const vec3& look : {vec3(0, 0, -1), vec3(0.28F, 0, -0.96F), vec3(-0.6F, 0, -0.8F)}) {
     view.camera.look = look;
@@ -277,7 +278,7 @@ TEST_F(RendererTest, PicturesLargerThanAFilmComeInBands) {
 TEST_F(RendererTest, UnknownBuildersAreRefused) {
   TunedRendererOptions options;
   options.builder = "shah";
-  EXPECT_THROW(Renderer(device(), make_scene_of_everything(), options), UsageError);
+  EXPECT_THROW(make_renderer(device(), make_scene_of_everything(), options), UsageError);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/shading.h"
+#include "promin/debug_view.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,7 @@
 #include "gpu/test_scenes.h"
 #include "layout.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 #include "trace/ray_kernel.h"
 
 namespace promin {
@@ -32,12 +33,12 @@ class ShadingTest : public test::DeviceTest {
   ShadingTest() {
     TunedRendererOptions options;
     options.with_aovs = true;
-    renderer_.emplace(device(), scene_, options);
+    renderer_.emplace(make_renderer(device(), scene_, options));
     aovs_ = renderer_->render(view_).aovs;
   }
 
   Image show(DebugView shading) {
-    view_.shading = shading;
+    view_.mode.debug_view = shading;
     return renderer_->render(view_).image;
   }
 
@@ -98,7 +99,7 @@ TEST_F(ShadingTest, ColorsTellObjectsAndPrimitivesApart) {
 TEST_F(ShadingTest, ColorsDoNotDependOnTheTree) {
   TunedRendererOptions options;
   options.builder = "spatial";
-  Renderer other(device(), scene_, options);
+  Renderer other = make_renderer(device(), scene_, options);
   const Image objects = show(DebugView::kObject);
   EXPECT_TRUE(has_same_bits(other.render(view_).image, objects));
   const Image primitives = show(DebugView::kPrimitive);
@@ -123,7 +124,7 @@ TEST_F(ShadingTest, UvAreTheHits) {
 TEST_F(ShadingTest, StepsAreAHeatMapOfTheCounts) {
   // With so many spheres steps reach beyond the scale's first half, where colours out of order would show.
   scene_ = test::make_scene_of_everything(5000);
-  renderer_.emplace(device(), scene_);
+  renderer_.emplace(make_renderer(device(), scene_));
   const Image picture = show(DebugView::kSteps);
   std::vector<layout::RayRecord> rays;
   std::vector<vec3> colors;

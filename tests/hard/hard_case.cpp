@@ -19,6 +19,7 @@
 #include "core/parallel.h"
 #include "hard/figures.h"
 #include "promin/caster.h"
+#include "render/caster_access.h"
 
 namespace promin::hard {
 namespace {
@@ -95,7 +96,7 @@ std::vector<Hit> Lab::cast(const world::Scene& scene, std::span<const Ray> rays,
   TunedCasterOptions options;
   options.spirv = cast_kernel();
   std::vector<Hit> hits(rays.size());
-  Caster(device_, scene, options).cast(rays, hits, query);
+  make_caster(device_, scene, options).cast(rays, hits, query);
   return hits;
 }
 

@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "hard/hard_case.h"
+#include "shapes/shapes.h"
 
 namespace promin::hard {
 namespace {

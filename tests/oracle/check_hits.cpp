@@ -13,6 +13,7 @@
 #include "promin/device.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
+#include "render/caster_access.h"
 
 namespace {
 
@@ -60,7 +61,7 @@ bool check(const std::string& file, const std::string& builder, size_t count) {
   const gpu::DeviceHandle device = gpu::open_device();
   TunedCasterOptions options;
   options.builder = builder;
-  Caster(*device, scene, options).cast(rays, hits);
+  make_caster(*device, scene, options).cast(rays, hits);
 
   std::vector<oracle::Verdict> verdicts(count);
   for_each_index(count, 0, [&](size_t i) {

@@ -297,9 +297,9 @@ TEST(ComparePicture, SizesMustMatch) {
   picture.pixels.resize(2);
   DevicePicture device(picture);
   device.depth.pop_back();
-  EXPECT_THROW(compare_picture(Scene(), picture, device.image, device.aovs()), std::invalid_argument);
+  EXPECT_THROW(compare_picture(world::Scene(), picture, device.image, device.aovs()), std::invalid_argument);
   device.image.size = uvec2(1, 2);
-  EXPECT_THROW(compare_picture(Scene(), picture, device.image, {}), std::invalid_argument);
+  EXPECT_THROW(compare_picture(world::Scene(), picture, device.image, {}), std::invalid_argument);
 }
 
 }  // namespace

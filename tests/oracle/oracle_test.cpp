@@ -40,11 +40,11 @@ Mesh make_triangle() {
   return mesh;
 }
 
-const Cylinder kCylinder{{0, 1, 0}, {0, 1, 0}, 1, 0.5F};
+const world::Cylinder kCylinder{{0, 1, 0}, {0, 1, 0}, 1, 0.5F};
 /// Apex at (0, 2, 0), base disk of radius 1 at y = 0.
-const Cone kCone{{0, 1, 0}, {0, 1, 0}, 1, 1, 0};
+const world::Cone kCone{{0, 1, 0}, {0, 1, 0}, 1, 1, 0};
 /// Radius 2 at y = 0, 1 at y = 2.
-const Cone kFrustum{{0, 1, 0}, {0, 1, 0}, 1, 2, 1};
+const world::Cone kFrustum{{0, 1, 0}, {0, 1, 0}, 1, 2, 1};
 
 TEST(Oracle, Sphere) {
   const world::Sphere sphere{{0, 0, 0}, 2};

@@ -13,7 +13,7 @@ namespace {
 /// Cameras, lights and colours are fp32 numbers.
 constexpr Real kTolerance = 1e-6L;
 
-const Plane kFloor{{0, 0, 0}, {0, 1, 0}};
+const world::Plane kFloor{{0, 0, 0}, {0, 1, 0}};
 
 void expect_color(const Vector& color, const Vector& expected) {
   EXPECT_LE(glm::distance(color, expected), kTolerance)

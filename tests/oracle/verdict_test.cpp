@@ -25,15 +25,15 @@ void expect_margin(const Verdict& verdict, Real expected) {
   EXPECT_NEAR(verdict.margin, expected, 1e-5L * expected);
 }
 
-const Scene kSphere = scene_of({world::Sphere{{0, 0, 0}, 1}});
-const Scene kTriangle = [] {
+const world::Scene kSphere = scene_of({world::Sphere{{0, 0, 0}, 1}});
+const world::Scene kTriangle = [] {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 1, 1}};
   return scene_of({mesh});
 }();
 /// From y = -2 to 2.
-const Scene kCan = scene_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}});
+const world::Scene kCan = scene_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}});
 
 TEST(Verdict, TheExactAnswerIsTheSame) {
   const Verdict verdict = judge(kSphere, {{0, 0, 5}, kDown}, {4, 0, 0});

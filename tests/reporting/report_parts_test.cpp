@@ -38,8 +38,8 @@ TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
   others[1].materials[0].shininess += 1.0F;
   others[2].lights.emplace_back();
   others[3].cameras.at(0).eye.x += 0.5F;
-  others[4].background.z += 0.1F;
-  others[5].ambient.z += 0.1F;
+  others[4].environment.background.z += 0.1F;
+  others[5].environment.ambient.z += 0.1F;
   std::swap(others[6].objects[0], others[6].objects[1]);
   others[7].objects.pop_back();
   others[8].objects[0].shape = world::Sphere{vec3(0.0F), 0.25F};

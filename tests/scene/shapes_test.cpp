@@ -8,6 +8,7 @@
 #include <random>
 
 #include "scene/world_scene.h"
+#include "shapes/shapes.h"
 
 namespace promin {
 namespace {
@@ -88,7 +89,7 @@ TEST(ShapesTest, TrianglesAreDegenerateWhenTheyHaveNoArea) {
     Mesh mesh;
     mesh.positions = {a, b, c};
     mesh.triangles = {{0, 1, 2}};
-    return is_degenerate(mesh, 0);
+    return world::is_degenerate(mesh, 0);
   };
   EXPECT_FALSE(is_flat({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_TRUE(is_flat({0, 0, 0}, {1, 0, 0}, {1, 0, 0}));
@@ -100,15 +101,15 @@ TEST(ShapesTest, TrianglesAreDegenerateWhenTheyHaveNoArea) {
   Mesh repeated;
   repeated.positions = {{0, 0, 0}, {1, 0, 0}};
   repeated.triangles = {{0, 1, 1}};
-  EXPECT_TRUE(is_degenerate(repeated, 0));
+  EXPECT_TRUE(world::is_degenerate(repeated, 0));
 }
 
 TEST(ShapesTest, TriangleBoundsHoldTheirCornersExactly) {
   Mesh mesh;
   mesh.positions = {{9, 9, 9}, {0, 2, 0}, {1, 0, -3}, {0.5F, 1, 4}};
   mesh.triangles = {{1, 2, 3}};
-  EXPECT_EQ(bounds_of_triangle(mesh, 0).lo, vec3(0, 0, -3));
-  EXPECT_EQ(bounds_of_triangle(mesh, 0).hi, vec3(1, 2, 4));
+  EXPECT_EQ(world::bounds_of_triangle(mesh, 0).lo, vec3(0, 0, -3));
+  EXPECT_EQ(world::bounds_of_triangle(mesh, 0).hi, vec3(1, 2, 4));
 }
 
 world::Scene scene_of(const std::vector<world::Shape>& shapes) {

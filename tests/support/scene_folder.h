@@ -30,7 +30,7 @@ class SceneFolder : public TempFolder {
   }
 
   LoadedScene load(const std::string& name, std::string_view bytes) const {
-    const world::Scene scene = load_scene(write(name, bytes));
+    const Scene scene = load_scene(write(name, bytes));
     return {world::flatten(scene), scene.warnings};
   }
 

@@ -18,7 +18,7 @@ View make_view() {
 
 TileScheduler cut(const TileOptions& options) {
   const View view = make_view();
-  return {layout::Frame{}, layout::Dispatch{}, view, {uvec2(0), view.size}, options};
+  return {SceneConstants{}, view, {uvec2(0), view.size}, options};
 }
 
 TEST(TileScheduler, CoverEverySampleOnceAndInOrder) {
@@ -63,7 +63,7 @@ TEST(TileScheduler, ALaneTakesSeveralPathsWhereThereAreGroupsEnough) {
 TEST(TileScheduler, TheQueueOfPathsIsBounded) {
   View view = make_view();
   view.size = uvec2(4096);
-  TileScheduler pieces({}, {}, view, {uvec2(0), view.size});
+  TileScheduler pieces(SceneConstants{}, view, {uvec2(0), view.size});
   const layout::Dispatch dispatch = pieces.next(1e9).dispatch;
   EXPECT_EQ(dispatch.range.y - dispatch.range.x, TileScheduler::kMaxBlocks);
 }

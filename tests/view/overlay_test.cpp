@@ -19,7 +19,7 @@ namespace {
 class OverlayTest : public test::DeviceTest {
  protected:
   void SetUp() override {
-    picture_.emplace(device(), std::make_shared<const DeviceScene>(device(), pack_scene(scene_, "sah")),
+    picture_.emplace(device(), upload_scene(device(), pack_scene(scene_, "sah"), scene_),
                      features_of(scene_), 1.0);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
@@ -47,7 +47,7 @@ class OverlayTest : public test::DeviceTest {
     OverlayContent content;
     content.statistics = &statistics_;
     content.picture = &*picture_;
-    content.scene = &scene_;
+    content.scene = &described_;
     content.device = "device";
     show_overlay(content, switches_);
     ImGui::Render();
@@ -75,6 +75,13 @@ class OverlayTest : public test::DeviceTest {
   }
 
   const world::Scene scene_ = test::make_scene_of_everything();
+  /// What the overlay lists: its lights and cameras.
+  const Scene described_ = [this] {
+    Scene scene;
+    scene.lights = scene_.lights;
+    scene.cameras = scene_.cameras;
+    return scene;
+  }();
   FrameStatistics statistics_;
   std::optional<ProgressivePicture> picture_;
   Switches switches_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "view/progressive_picture.h"
+#include "trace/progressive_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,9 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 
-namespace promin::app {
+namespace promin {
 namespace {
 
 const uvec2 kSize(150, 100);  // neither is a multiple of the block
@@ -18,8 +19,7 @@ class ProgressivePictureTest : public test::DeviceTest {
  protected:
   ProgressivePicture make_picture() const {
     const PackedScene packed = pack_scene(scene_, "sah");
-    ProgressivePicture picture(device(), std::make_shared<const DeviceScene>(device(), packed), features_of(scene_),
-                               1.0);
+    ProgressivePicture picture(device(), upload_scene(device(), packed, scene_), features_of(scene_), 1.0);
     picture.resize(kSize);
     return picture;
   }
@@ -46,7 +46,7 @@ class ProgressivePictureTest : public test::DeviceTest {
 
 TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {
   ProgressivePicture picture = make_picture();
-  Renderer renderer(device(), scene_);
+  Renderer renderer = make_renderer(device(), scene_);
   View view = test::make_view(kSize);
   picture.want(view);
   for (const uint32_t samples : {1U, 4U, 16U}) {
@@ -58,16 +58,16 @@ TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {
 
 // Frames in which one piece ends and the next begins, with all samples of some blocks and a few of others.
 TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
-  Renderer renderer(device(), scene_);
+  Renderer renderer = make_renderer(device(), scene_);
   View view = test::make_view(kSize);
   view.samples_per_pixel = 16;
   const Image expected = renderer.render(view).image;
   for (const double units : {150.0, 1050.0, 3000.0}) {
     ProgressivePicture picture = make_picture();
-    picture.learn(1.0, 1.0);  // the first is not taken
+    picture.take_finished({.units = 1.0, .time_ms = 1.0, .took_many_paths = true});  // the first is not taken
     picture.want(view);
     while (!picture.is_complete() || picture.shown()->samples_per_pixel != 16) {
-      picture.learn(units, 1.0);
+      picture.take_finished({.units = units, .time_ms = 1.0, .took_many_paths = true});
       trace(picture);
     }
     EXPECT_TRUE(test::has_same_bits(read(picture), expected)) << units << " units a frame";
@@ -102,7 +102,7 @@ TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
   // It has the aspect ratio of the window, to a pixel, and shows the new view.
   view.size = picture.shown()->size;
   EXPECT_NEAR(view.size.x * kSize.y, view.size.y * kSize.x, kSize.x + kSize.y);
-  EXPECT_TRUE(test::has_same_bits(read(picture), Renderer(device(), scene_).render(view).image));
+  EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
 }
 
 TEST_F(ProgressivePictureTest, AFirstPictureIsFinishedAlthoughTheViewChanges) {
@@ -149,12 +149,12 @@ TEST_F(ProgressivePictureTest, IsTracedAgainWhereLoopsWereCut) {
   picture.want(view);
   while (!picture.is_complete()) trace(picture);
   trace(picture);  // refining is under way
-  picture.shorten_loops();
+  picture.take_finished({.units = 1.0, .time_ms = 1.0, .has_cut_loops = true, .took_many_paths = true});
   EXPECT_FALSE(picture.takes_many_paths());
   EXPECT_FALSE(picture.is_complete());
   view.samples_per_pixel = 4;
   while (!picture.is_complete() || picture.shown()->samples_per_pixel != 4) trace(picture);
-  EXPECT_TRUE(test::has_same_bits(read(picture), Renderer(device(), scene_).render(view).image));
+  EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
 }
 
 TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
@@ -163,8 +163,8 @@ TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
   picture.want(view);
   const double units = trace(picture);
   const uvec2 before = picture.shown()->size;
-  picture.learn(units, 1.0);  // the first, which compiles, is not taken
-  picture.learn(units, 0.5);
+  picture.take_finished({.units = units, .time_ms = 1.0, .took_many_paths = true});  // the first, which compiles, is not taken
+  picture.take_finished({.units = units, .time_ms = 0.5, .took_many_paths = true});
   view.camera.eye.x += 0.25F;
   picture.want(view);
   trace(picture);
@@ -173,4 +173,4 @@ TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
 }
 
 }  // namespace
-}  // namespace promin::app
+}  // namespace promin

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "device_scene/pack_scene.h"
 #include "view/describe_command.h"
 #include "view/flight.h"
 #include "view/keys.h"
@@ -32,7 +33,7 @@ TEST(DescribeCommand, NamesTheViewForAShell) {
 
 TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
   View view;
-  view.shading = DebugView::kSteps;
+  view.mode.debug_view = DebugView::kSteps;
   view.camera.projection = Projection::kOrthographic;
   const std::string command =
       describe_command({.file = "s", .has_shadows = false, .lights_off = {0, 2}, .camera_index = 1}, view);
@@ -43,13 +44,13 @@ TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
   View view;
   EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::Not(testing::HasSubstr("median")));
-  view.shading = DebugView::kSteps;
+  view.mode.debug_view = DebugView::kSteps;
   EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::EndsWith(" --builder median"));
   EXPECT_THAT(describe_command({.file = "s", .bvh = "a tree"}, view), testing::EndsWith(" --bvh 'a tree'"));
 }
 
 TEST(DescribeCommand, HasNoneForAnOrthographicViewOfNoCamera) {
-  world::Scene scene;
+  Scene scene;
   View view;
   EXPECT_TRUE(can_describe({.file = "s"}, view));
   view.camera.projection = Projection::kOrthographic;
@@ -181,11 +182,11 @@ TEST(PackChoice, EndsByWhatItsProgressThrows) {
   scene.objects.push_back({"", mesh, 0});
   for (const std::string_view builder : builder_names()) {
     int calls = 0;
-    const auto stop = [&](double) {
+    const auto stop = [&](double) -> bool {
       ++calls;
       throw std::domain_error("stop");
     };
-    EXPECT_THROW(pack_choice(scene, {std::string(builder), std::nullopt, {}}, stop), std::domain_error) << builder;
+    EXPECT_THROW(pack_scene(scene, builder, {.progress = stop}), std::domain_error) << builder;
     EXPECT_LE(calls, 8) << builder << ": of each thread one at most";
   }
 }

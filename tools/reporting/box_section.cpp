@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "bvh/pack_tree.h"
 #include "cancelling_boxes.spv.h"
 #include "device/device.h"
 #include "full_boxes.spv.h"
@@ -85,11 +86,12 @@ PackedScene pack_boxes(std::span<const Boxes> nodes, bool is_full) {
   }
   packed.primitives.resize(1);
   packed.primitives[0] = {vec4(0.0F, 0.0F, 0.0F, 1.0F), vec4(0.0F), uvec4(0, 0, layout::KIND_SPHERE, 0)};
-  packed.shading.resize(sizeof(uvec4));
+  // Where the kernel takes the boxes to end.
+  packed.references.resize(nodes.size());
+  packed.surfaces.surfaces.resize(1);
   const dvec3 reach = glm::max(dvec3(all.hi) - dvec3(all.center()), dvec3(all.center()) - dvec3(all.lo));
   packed.tree_bounds =
       vec4(all.center(), std::nextafter(static_cast<float>(glm::max(reach.x, glm::max(reach.y, reach.z))), HUGE_VALF));
-  packed.dispatch.counts = uvec4(nodes.size(), 0, 0, layout::LOOP_CHECK_TURNS);
   return packed;
 }
 

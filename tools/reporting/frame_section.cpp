@@ -13,6 +13,7 @@
 #include "reporting/picture.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
+#include "render/renderer_impl.h"
 
 namespace promin::report {
 namespace {
@@ -112,7 +113,8 @@ class FrameBench {
     const auto key = std::pair(method, builder);
     const auto found = renderers_.find(key);
     if (found != renderers_.end()) return found->second;
-    return renderers_.try_emplace(key, session_.device(), scene_, options_for(picture_method(method), builder))
+    return renderers_
+        .try_emplace(key, make_renderer(session_.device(), scene_, options_for(picture_method(method), builder)))
         .first->second;
   }
 
@@ -192,7 +194,7 @@ class FrameBench {
     for (const PictureMethod& method : picture_methods()) {
       TunedRendererOptions options = options_for(method);
       options.with_aovs = true;
-      Json row = compare_with_oracle(expected, Renderer(session_.device(), scene_, options).render(view));
+      Json row = compare_with_oracle(expected, make_renderer(session_.device(), scene_, options).render(view));
       add_error(errors, "precision", method.name, view.size, row);
       errors.back()["what"] = method.what;
     }

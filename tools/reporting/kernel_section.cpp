@@ -46,7 +46,7 @@ std::vector<Method> methods_for(const gpu::Device& device) {
 RayKernel make_kernel(const gpu::Device& device, const world::Scene& scene, const Method& method) {
   RayKernelOptions options;
   options.spirv = method.spirv;
-  options.features = features_of(scene) & ~(layout::FEATURE_SMOOTH_NORMALS | layout::FEATURE_VERTEX_COLORS);
+  options.features = features_of(scene).without(layout::FEATURE_SMOOTH_NORMALS | layout::FEATURE_VERTEX_COLORS);
   return RayKernel(device, upload_scene(device, pack_scene(scene, "median")), options);
 }
 

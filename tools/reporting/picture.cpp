@@ -15,6 +15,7 @@
 #include "reporting/full_boxes.h"
 #include "textbook_camera_stage.spv.h"
 #include "textbook_mirror_stage.spv.h"
+#include "render/renderer_impl.h"
 
 namespace promin::report {
 

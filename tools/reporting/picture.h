@@ -7,6 +7,7 @@
 
 #include "promin/image.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 
 namespace promin::report {
 

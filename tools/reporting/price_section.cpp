@@ -13,6 +13,8 @@
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "promin/renderer.h"
+#include "render/caster_access.h"
+#include "render/renderer_impl.h"
 #include "reporting/misjudged.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
@@ -53,10 +55,10 @@ void compare_casters(const Session& session, const world::Scene& scene, Json& ro
   const std::string name = session.name_of(scene);
   const bool is_closed = measure::is_generated_and_closed(scene);
   session.say("robustness: " + name);
-  Caster robust(session.device(), scene);
+  Caster robust = make_caster(session.device(), scene);
   TunedCasterOptions options;
   options.spirv = k_textbook_cast_spirv;
-  Caster plain(session.device(), scene, options);
+  Caster plain = make_caster(session.device(), scene, options);
   const uint32_t side = session.side();
   const Camera camera = view_of(scene, uvec2(side)).camera;
   const std::string hash = hash_of(scene);
@@ -90,7 +92,7 @@ double time_compiling(const Session& session, const world::Scene& scene, const T
   setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   const gpu::DeviceHandle device = gpu::open_device(session.options().device);
   unsetenv("MESA_SHADER_CACHE_DISABLE");
-  return Renderer(*device, scene, options).setup_stats().pipeline_ms;
+  return make_renderer(*device, scene, options).setup_stats().pipeline_ms;
 }
 
 Json compare_specialisation(const Session& session, const world::Scene& scene) {
@@ -98,8 +100,8 @@ Json compare_specialisation(const Session& session, const world::Scene& scene) {
   session.say("specialisation: " + name);
   TunedRendererOptions forced;
   forced.force_all_features = true;
-  Renderer specialised(session.device(), scene);
-  Renderer general(session.device(), scene, forced);
+  Renderer specialised = make_renderer(session.device(), scene);
+  Renderer general = make_renderer(session.device(), scene, forced);
   const View view = view_of(scene, session.pick(uvec2(320, 180), uvec2(128, 72)));
   Image of_scene;
   Image of_all;

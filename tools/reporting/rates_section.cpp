@@ -15,6 +15,7 @@
 #include "measure/step_counts.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
+#include "render/caster_access.h"
 
 namespace promin::report {
 namespace {
@@ -78,7 +79,7 @@ void add_rates(const Session& session, const world::Scene& scene, Json& rates) {
   const std::unique_ptr<EmbreeCaster> embree = runs > 0 ? measure::make_embree_caster(scene) : nullptr;
   TunedCasterOptions options;
   options.builder = builder;
-  Caster caster(session.device(), scene, options);
+  Caster caster = make_caster(session.device(), scene, options);
 
   const SetupStats& setup = caster.setup_stats();
   uint64_t primitives = 0;

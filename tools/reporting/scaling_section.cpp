@@ -15,6 +15,8 @@
 #include "promin/renderer.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
+#include "render/caster_access.h"
+#include "render/renderer_impl.h"
 
 namespace promin::report {
 namespace {
@@ -44,7 +46,7 @@ class ScalingBench {
     Size(const Session& session, uint32_t wanted_triangles)
         : wanted(wanted_triangles),
           scene(measure::open_scene(fmt::format("wavy:{}", wanted))),
-          caster(session.device(), scene) {
+          caster(make_caster(session.device(), scene)) {
       const uint32_t side = session.side();
       sets = measure::make_ray_sets(caster, scene, view_of(scene, uvec2(side)).camera, side, false);
       const measure::StepCounter counter(session.device(), scene, "sah");
@@ -122,20 +124,20 @@ class ScalingBench {
 
   struct Frame {
     double value = 0.0;
-    const Scene* scene = nullptr;
+    const world::Scene* scene = nullptr;
     View view;
   };
 
   /// Pictures that differ in one variable, in turns.
   void measure_frames(const std::string& variable, const std::vector<Frame>& frames) {
     session_.say("scaling: " + variable);
-    std::map<const Scene*, Renderer> renderers;
-    std::map<const Scene*, std::string> hashes;
+    std::map<const world::Scene*, Renderer> renderers;
+    std::map<const world::Scene*, std::string> hashes;
     std::vector<std::function<double()>> contestants;
     std::vector<RayCounts> counts(frames.size());
     for (size_t i = 0; i < frames.size(); ++i) {
-      const Scene* scene = frames[i].scene;
-      Renderer& renderer = renderers.try_emplace(scene, session_.device(), *scene).first->second;
+      const world::Scene* scene = frames[i].scene;
+      Renderer& renderer = renderers.try_emplace(scene, make_renderer(session_.device(), *scene)).first->second;
       hashes[scene] = hash_of(*scene);
       contestants.emplace_back([&, i] {
         const RenderResult result = renderer.render(frames[i].view);

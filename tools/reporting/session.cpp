@@ -32,7 +32,7 @@ std::vector<world::Scene> Session::open_scenes(const std::vector<std::string>& o
 
 std::vector<world::Scene> Session::load_scenes(const std::vector<std::string>& own) const {
   std::vector<world::Scene> scenes = open_scenes(own);
-  for (world::Scene& scene : scenes) app::light_up(scene, app::Console(app::Verbosity::kQuiet));
+  for (world::Scene& scene : scenes) add_default_lights(scene);
   return scenes;
 }
 
@@ -43,9 +43,11 @@ std::string Session::name_of(const world::Scene& scene) const {
 }
 
 View view_of(const world::Scene& scene, const uvec2& size) {
-  app::ViewOptions options;
-  options.size = size;
-  return app::make_view(scene, options, app::Console(app::Verbosity::kQuiet));
+  View view;
+  view.size = size;
+  view.camera = scene.cameras.empty() ? frame_scene(scene, static_cast<float>(size.x) / static_cast<float>(size.y))
+                                      : scene.cameras.front();
+  return view;
 }
 
 Json json_of_few(const std::vector<double>& times) {

@@ -14,6 +14,8 @@ float step_floats(float x, float along) {
 }
 
 vec3 lift_off(vec3 position, vec3 geometric_normal, float lift) {
-  return vec3(step_floats(position.x, geometric_normal.x), step_floats(position.y, geometric_normal.y),
-              step_floats(position.z, geometric_normal.z));
+  // `precise`, or glslang 12 fails.
+  precise vec3 origin = vec3(step_floats(position.x, geometric_normal.x), step_floats(position.y, geometric_normal.y),
+                             step_floats(position.z, geometric_normal.z));
+  return origin;
 }
