@@ -55,7 +55,10 @@ struct Renderer::Impl {
 
   void make_film(Shading of) {
     const FeatureMask features = stats.features | features_of(of) | (options.with_aovs ? layout::FEATURE_AOVS : 0);
-    film.emplace(device, scene, features, FilmOptions{.packet_size = options.packet_size, .shaders = options.shaders});
+    film.emplace(
+        device, scene, features,
+        FilmOptions{
+            .packet_size = options.packet_size, .avoids_texels = options.avoids_texels, .shaders = options.shaders});
     film->warm_up();
     shading = of;
   }

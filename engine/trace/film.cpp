@@ -63,7 +63,8 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
       packet_size_(options.packet_size.value_or(pick_packet_size(device, features))),
       frame_(device, sizeof(layout::Frame), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
-  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_, options.shaders));
+  kernel_.emplace(make_picture_kernel(device, *scene_, features_, packet_size_, frame_, *buffer_, options.shaders,
+                                      options.avoids_texels));
 }
 
 void Film::reserve(uint32_t pixel_count) {
@@ -161,12 +162,12 @@ uint32_t Film::max_capacity() const {
 
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
                                   uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
-                                  const PictureShaders& shaders) {
-  const std::array constants{
-      gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
-      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
-      gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
-      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() ? 1U : 0U}};
+                                  const PictureShaders& shaders, bool avoids_texels) {
+  const bool fetches_texels = scene.fetches_texels() && !avoids_texels;
+  const std::array constants{gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
+                             gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features},
+                             gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
+                             gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, fetches_texels ? 1U : 0U}};
   std::vector<gpu::BoundBuffer> buffers = scene.geometry();
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
   buffers.push_back({layout::BINDING_FRAME, vk::DescriptorType::eUniformBuffer, &frame});

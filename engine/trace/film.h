@@ -25,6 +25,9 @@ struct FilmCounts {
 struct FilmOptions {
   /// Pixels that a lane of the camera stage takes together, 1, 2 or 4; empty: as suits the device.
   std::optional<uint32_t> packet_size = std::nullopt;
+  /// Reads storage buffers although the device's texel buffers would do, for tests: what devices take whose texel
+  /// buffers are too small.
+  bool avoids_texels = false;
   /// Others with the same bindings are for measurements.
   PictureShaders shaders = picture_shaders();
 };
@@ -89,10 +92,11 @@ class Film {
   std::optional<TracingKernel> kernel_;
 };
 
-/// The stages of a picture for a scene's `features`, bound to the scene and to these buffers.
+/// The stages of a picture for a scene's `features`, bound to the scene and to these buffers; the rest as in
+/// FilmOptions.
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
                                   uint32_t packet_size, const gpu::Buffer& frame, const gpu::Buffer& film,
-                                  const PictureShaders& shaders = picture_shaders());
+                                  const PictureShaders& shaders = picture_shaders(), bool avoids_texels = false);
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);

@@ -65,6 +65,8 @@ struct RendererOptions {
   std::optional<double> target_dispatch_ms = std::nullopt;
   /// Pixels that a lane traces together: 1, 2 or 4; where empty, as suits the device. The image's bits stay the same.
   std::optional<uint32_t> packet_size = std::nullopt;
+  /// Reads the scene from storage buffers although texel buffers would do, for tests. The image's bits stay the same.
+  bool avoids_texels = false;
   /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
   uint32_t blocks_per_dispatch = 0;
   /// Others with the same bindings are for measurements of pictures; Renderer::explain does not take them.
