@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -55,9 +55,8 @@ inline constexpr const char* kSquareGltf =
 class CliTest : public testing::Test {
  protected:
   void SetUp() override {
-    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::replace(name.begin(), name.end(), '/', '_');
-    options_.folder = std::filesystem::path(testing::TempDir()) / ("promin_cli_" + name);
+    // Tests of several suites have the same name, and run side by side.
+    options_.folder = std::filesystem::path(testing::TempDir()) / ("promin_cli_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder());
     std::filesystem::create_directories(folder());
     write("triangle.obj", kTriangleObj);

@@ -93,6 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Structs, LayoutTest, testing::ValuesIn(kLayouts),
 
 TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
   const std::map<std::string, uint32_t> expected = {{"FEATURES", layout::CONSTANT_FEATURES},
+                                                    {"MORE_FEATURES", layout::CONSTANT_MORE_FEATURES},
                                                     {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},
                                                     {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
                                                     {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE},

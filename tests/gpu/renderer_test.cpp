@@ -9,12 +9,17 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "device/device.h"
+#include "device_scene/device_scene.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "layout.h"
 #include "promin/error.h"
+#include "promin/load_scene.h"
 #include "render/renderer_impl.h"
 
 namespace promin {
@@ -74,6 +79,35 @@ TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
     EXPECT_EQ(result.aovs.normal, expected.aovs.normal) << packet_size;
     EXPECT_EQ(result.aovs.depth, expected.aovs.depth) << packet_size;
     EXPECT_EQ(result.aovs.primitive, expected.aovs.primitive) << packet_size;
+  }
+}
+
+// Two ways to the same memory: the words of a storage buffer, and texels.
+TEST_F(RendererTest, TexelsAndStorageBuffersGiveTheSameBits) {
+  std::vector<std::pair<world::Scene, View>> pictures = {{make_scene_of_everything(2000), test::make_view(kSize)}};
+  for (const char* name : {"light_physical.gltf", "showcase.gltf", "vertex_colors.gltf"}) {
+    world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name));
+    View view;
+    view.size = kSize;
+    view.camera = scene.cameras.at(0);
+    pictures.emplace_back(std::move(scene), view);
+  }
+  for (const auto& [scene, view] : pictures) {
+    const bool has_texels = DeviceScene(device(), pack_scene(scene, "sah")).fetches_texels();
+    if (!has_texels && !device().is_lavapipe()) GTEST_SKIP() << "the device's texel buffers are too small";
+    ASSERT_TRUE(has_texels);
+    TunedRendererOptions options;
+    options.with_aovs = true;
+    const RenderResult by_texels = render(scene, view, options);
+    options.avoids_texels = true;
+    const RenderResult by_words = render(scene, view, options);
+    EXPECT_TRUE(has_same_bits(by_words.image, by_texels.image)) << scene.objects.size() << " objects";
+    EXPECT_EQ(by_words.rays.shadow, by_texels.rays.shadow);
+    EXPECT_EQ(by_words.rays.total(), by_texels.rays.total());
+    EXPECT_EQ(by_words.aovs.normal, by_texels.aovs.normal);
+    EXPECT_EQ(by_words.aovs.depth, by_texels.aovs.depth);
+    EXPECT_EQ(by_words.aovs.object, by_texels.aovs.object);
+    EXPECT_EQ(by_words.aovs.primitive, by_texels.aovs.primitive);
   }
 }
 
@@ -241,7 +275,7 @@ TEST_F(RendererTest, TooManyTurnsAreRefusedOrTraced) {
     EXPECT_EQ(render(make_facing_mirrors(60), view).image.pixels[0], vec3(1001.0F / 1024.0F));
   } catch (const RunError& error) {
     EXPECT_TRUE(device().is_lavapipe());
-    EXPECT_THAT(error.what(), testing::HasSubstr("--max-depth"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("take a smaller depth"));
   }
 }
 
