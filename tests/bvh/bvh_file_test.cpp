@@ -356,7 +356,9 @@ TEST_F(BvhFileTest, RandomFaultsAreRefusedOrHarmless) {
 }
 
 TEST_F(BvhFileTest, OtherGeometryMakesItStale) {
-  const auto refusal_for = [&](const world::Scene& scene) { return message_of([&] { pack_scene_with(file_, scene); }); };
+  const auto refusal_for = [&](const world::Scene& scene) {
+    return message_of([&] { pack_scene_with(file_, scene); });
+  };
   EXPECT_EQ(refusal_for(scene_), "");
 
   const std::string stale = "the BVH file is stale: it was built over other geometry than the scene's, " +

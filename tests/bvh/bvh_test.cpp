@@ -288,9 +288,9 @@ TEST(BvhBuilders, TellTheirProgress) {
     for (const unsigned thread_count : {1U, 3U}) {
       std::vector<double> told = {0.0};
       build_bvh(builder, {boxes}, {thread_count, [&](double fraction) {
-                                               told.push_back(fraction);
-                                               return true;
-                                             }});
+                                     told.push_back(fraction);
+                                     return true;
+                                   }});
       EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
       EXPECT_GT(told.size(), 5U) << builder;
       EXPECT_GT(told.back(), 0.7) << builder;

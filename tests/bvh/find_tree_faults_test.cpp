@@ -7,8 +7,8 @@
 
 #include <bit>
 
-#include "bvh/read_node.h"
 #include "bvh/pack_tree.h"
+#include "bvh/read_node.h"
 #include "device_scene/pack_scene.h"
 #include "gpu/test_scenes.h"
 #include "promin/load_scene.h"
@@ -113,11 +113,10 @@ TEST(FindTreeFaults, TheFirstIsNamedWhateverTheThreads) {
   for (Node& node : packed.nodes) node.frame.w &= 0xFF000000;
   const TreeFaults by_one = find_tree_faults(packed, {.thread_count = 1});
   double told = 0.0;
-  const TreeFaults by_many =
-      find_tree_faults(packed, {.thread_count = 5, .progress = [&](double fraction) {
-                                  told = fraction;
-                                  return true;
-                                }});
+  const TreeFaults by_many = find_tree_faults(packed, {.thread_count = 5, .progress = [&](double fraction) {
+                                                         told = fraction;
+                                                         return true;
+                                                       }});
   EXPECT_EQ(by_one.count, packed.solid_count);
   EXPECT_EQ(by_many.count, by_one.count);
   EXPECT_EQ(by_many.first, by_one.first);

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "bvh/read_node.h"
 #include "bvh/pack_tree.h"
+#include "bvh/read_node.h"
 #include "device_scene/pack_scene.h"
 
 namespace promin {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a program does with promin as a library: a scene in memory, checked, rendered, changed, rendered again, and rays.
+// What a program does with promin as a library: a scene in memory, checked, rendered, changed, rendered again, and
+// rays.
 #include <cstdio>
 #include <vector>
 
@@ -42,8 +43,8 @@ int main() {
   const std::vector<promin::Ray> rays = {{{0, 5, 0}, 0, {0, -1, 0}}};
   std::vector<promin::Hit> hits(rays.size());
   caster.cast(rays, hits);
-  const bool is_right = !is_rebuilt && before.image.pixels != after.image.pixels && hits[0].object == 1 &&
-                        hits[0].t == 3.0F;
+  const bool is_right =
+      !is_rebuilt && before.image.pixels != after.image.pixels && hits[0].object == 1 && hits[0].t == 3.0F;
   std::puts(is_right ? "the library works" : "the library does not do what it says");
   return is_right ? 0 : 1;
 }

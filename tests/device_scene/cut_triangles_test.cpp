@@ -63,7 +63,8 @@ TEST(CutTriangles, CutsAcrossTrianglesInOneLine) {
 TEST(CutTriangles, NumbersStayThoseOfTheScene) {
   Mesh mesh = make_mesh();
   mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
-  const PackedScene packed = pack_scene(scene_of({world::Sphere(), mesh, world::NotDrawn(), mesh, world::Plane()}), "sah");
+  const PackedScene packed =
+      pack_scene(scene_of({world::Sphere(), mesh, world::NotDrawn(), mesh, world::Plane()}), "sah");
   // One sphere, twice five triangles with one cut in two, of which one is not packed, and a plane.
   ASSERT_EQ(packed.primitives.size(), 12U);
   const std::vector<PrimitiveId> expected = {{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 3}, {1, 3}, {1, 4},

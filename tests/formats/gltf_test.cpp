@@ -221,7 +221,7 @@ GltfBuilder shape_gltf(const json& shape, const json& node = json::object()) {
 
 TEST_F(GltfTest, SpheresScaleAndMove) {
   const LoadedScene scene = load(shape_gltf({{"type", "sphere"}, {"sphere", {{"radius", 2}}}},
-                                      {{"translation", {1, 2, 3}}, {"scale", {-3, 3, 3}}}));
+                                            {{"translation", {1, 2, 3}}, {"scale", {-3, 3, 3}}}));
   const auto& sphere = std::get<world::Sphere>(scene.objects.at(0).shape);
   EXPECT_EQ(sphere.center, vec3(1, 2, 3));
   EXPECT_EQ(sphere.radius, 6.0F);
@@ -259,7 +259,8 @@ TEST_F(GltfTest, TwoRadiiMakeAConeOrAFrustum) {
 }
 
 TEST_F(GltfTest, PlanesTurnTheirNormal) {
-  const LoadedScene scene = load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
+  const LoadedScene scene =
+      load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
   const auto& plane = std::get<world::Plane>(scene.objects[0].shape);
   EXPECT_EQ(plane.point, vec3(0, 3, 0));
   expect_near(plane.normal, {0, -1, 0});
@@ -312,15 +313,15 @@ GltfBuilder material_gltf(const json& material) {
 
 TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
   const LoadedScene scene = load(material_gltf({{"name", "m"},
-                                          {"emissiveFactor", {1, 0, 0}},
-                                          {"extensions",
-                                           {{"PROMIN_materials_phong",
-                                             {{"ambientFactor", {0.1, 0.2, 0.3}},
-                                              {"diffuseFactor", {0.4, 0.5, 0.6}},
-                                              {"specularFactor", {2, 2, 2}},
-                                              {"shininess", 64},
-                                              {"reflectionFactor", {0.7, 0.8, 0.9}}}},
-                                            {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}));
+                                                {"emissiveFactor", {1, 0, 0}},
+                                                {"extensions",
+                                                 {{"PROMIN_materials_phong",
+                                                   {{"ambientFactor", {0.1, 0.2, 0.3}},
+                                                    {"diffuseFactor", {0.4, 0.5, 0.6}},
+                                                    {"specularFactor", {2, 2, 2}},
+                                                    {"shininess", 64},
+                                                    {"reflectionFactor", {0.7, 0.8, 0.9}}}},
+                                                  {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.ambient, vec3(0.1F, 0.2F, 0.3F));
   EXPECT_EQ(material.diffuse, vec3(0.4F, 0.5F, 0.6F));
@@ -333,7 +334,7 @@ TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
 
 TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
   const LoadedScene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
-                                          {"extensions", {{"PROMIN_materials_phong", json::object()}}}}));
+                                                {"extensions", {{"PROMIN_materials_phong", json::object()}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.diffuse, vec3(0.5F, 0.25F, 0));
   EXPECT_EQ(material.ambient, material.diffuse);
@@ -362,7 +363,7 @@ TEST_F(GltfTest, ExponentsAreKeptInRange) {
 
 TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
   const LoadedScene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
-                                          {"extensions", {{"KHR_materials_unlit", json::object()}}}}));
+                                                {"extensions", {{"KHR_materials_unlit", json::object()}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.emissive, vec3(0.5F, 0.25F, 0));
   EXPECT_EQ(material.diffuse, vec3(0));

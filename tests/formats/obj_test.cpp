@@ -193,8 +193,8 @@ TEST_F(ObjTest, AMissingMtlIsGrey) {
 TEST_F(ObjTest, FacesKeepTheirMaterials) {
   write("two.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
   const LoadedScene scene = load(kSquare +
-                           "mtllib two.mtl\nf 1 2 3\nusemtl blue\nf 1 2 3 4\nusemtl red\nf 1 2 3\n"
-                           "o one\nusemtl blue\nf 1 2 3\n");
+                                 "mtllib two.mtl\nf 1 2 3\nusemtl blue\nf 1 2 3 4\nusemtl red\nf 1 2 3\n"
+                                 "o one\nusemtl blue\nf 1 2 3\n");
   const Mesh& mesh = mesh_of(scene);
   ASSERT_THAT(mesh.triangle_materials, SizeIs(4));
   std::vector<vec3> colors;

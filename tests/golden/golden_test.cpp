@@ -62,7 +62,9 @@ Subject load_subject(const std::string& name) {
 
 class GoldenTest : public test::DeviceTest {
  protected:
-  static Image render(const Subject& subject) { return make_renderer(device(), subject.scene).render(subject.view).image; }
+  static Image render(const Subject& subject) {
+    return make_renderer(device(), subject.scene).render(subject.view).image;
+  }
 };
 
 class SceneGoldenTest : public GoldenTest, public testing::WithParamInterface<std::string> {};

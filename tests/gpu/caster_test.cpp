@@ -19,9 +19,9 @@
 #include "oracle/verdict.h"
 #include "promin/error.h"
 #include "promin/renderer.h"
+#include "rays/ray_tiles.h"
 #include "render/caster_access.h"
 #include "render/renderer_impl.h"
-#include "rays/ray_tiles.h"
 #include "trace/ray_kernel.h"
 
 namespace promin {
@@ -33,7 +33,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class CasterTest : public test::DeviceTest {
  protected:
-  static std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) {
+  static std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays,
+                               HitQuery query = HitQuery::kNearest) {
     std::vector<Hit> hits(rays.size());
     make_caster(device(), scene).cast(rays, hits, query);
     return hits;
@@ -242,8 +243,8 @@ TEST_F(AnyHitTest, IsFoundBesideSolids) {
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
   // All in one leaf.
-  const world::Scene scene = scene_of(
-      {mesh, world::Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F}, world::Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}});
+  const world::Scene scene = scene_of({mesh, world::Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F},
+                                       world::Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}});
   std::vector<Ray> rays;
   for (const float z : {4.0F, 4.0e3F, 4.0e6F}) {
     for (int i = 0; i <= 64; ++i) {
@@ -353,7 +354,8 @@ TEST_F(CasterTest, ObjectsWithoutPrimitivesTakeANumber) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 1}, {0, 1, 2}};  // the first is degenerate
-  scene.objects = {{"", world::NotDrawn{}, 0}, {"", Mesh{}, 0}, {"", mesh, 0}, {"", world::NotDrawn{}, 0}, {"", world::Sphere{}, 0}};
+  scene.objects = {
+      {"", world::NotDrawn{}, 0}, {"", Mesh{}, 0}, {"", mesh, 0}, {"", world::NotDrawn{}, 0}, {"", world::Sphere{}, 0}};
   scene.objects[4].shape = world::Sphere{vec3(0, 0, 9), 1.0F};
   const std::vector<Ray> rays = {{vec3(0.2F, 0.2F, 4), 0, vec3(0, 0, -1), kInfinity},
                                  {vec3(0.2F, 0.2F, 4), 0, vec3(0, 0, 1), kInfinity}};

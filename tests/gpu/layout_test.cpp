@@ -44,8 +44,9 @@ const Layout kLayouts[] = {
      {OFFSET(LightRecord, position), OFFSET(LightRecord, direction), OFFSET(LightRecord, diffuse),
       OFFSET(LightRecord, specular), OFFSET(LightRecord, kind)}},
     {"ViewConstants",
-     {OFFSET(ViewConstants, eye), OFFSET(ViewConstants, look), OFFSET(ViewConstants, right), OFFSET(ViewConstants, up), OFFSET(ViewConstants, ambient),
-      OFFSET(ViewConstants, background), OFFSET(ViewConstants, tree_bounds), OFFSET(ViewConstants, film_center), OFFSET(ViewConstants, first_index)}},
+     {OFFSET(ViewConstants, eye), OFFSET(ViewConstants, look), OFFSET(ViewConstants, right), OFFSET(ViewConstants, up),
+      OFFSET(ViewConstants, ambient), OFFSET(ViewConstants, background), OFFSET(ViewConstants, tree_bounds),
+      OFFSET(ViewConstants, film_center), OFFSET(ViewConstants, first_index)}},
     {"Dispatch",
      {OFFSET(Dispatch, range), OFFSET(Dispatch, window), OFFSET(Dispatch, sampling), OFFSET(Dispatch, counts),
       OFFSET(Dispatch, outcome), OFFSET(Dispatch, queue)}},
@@ -92,12 +93,10 @@ INSTANTIATE_TEST_SUITE_P(Structs, LayoutTest, testing::ValuesIn(kLayouts),
                          [](const auto& param_info) { return std::string(param_info.param.name); });
 
 TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
-  const std::map<std::string, uint32_t> expected = {{"FEATURES", layout::CONSTANT_FEATURES},
-                                                    {"MORE_FEATURES", layout::CONSTANT_MORE_FEATURES},
-                                                    {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},
-                                                    {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
-                                                    {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE},
-                                                    {"ANY_HIT", layout::CONSTANT_ANY_HIT}};
+  const std::map<std::string, uint32_t> expected = {
+      {"FEATURES", layout::CONSTANT_FEATURES},       {"MORE_FEATURES", layout::CONSTANT_MORE_FEATURES},
+      {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},   {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
+      {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE}, {"ANY_HIT", layout::CONSTANT_ANY_HIT}};
   EXPECT_EQ(test::SpirvModule(k_camera_stage_spirv).spec_ids, expected);
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
 }

@@ -140,7 +140,8 @@ TEST_F(RendererTest, BitsDoNotDependOnTheBuilder) {
 // The mask costs nothing but time: what a scene does not use changes no bit.
 TEST_F(RendererTest, SpecialisationChangesNoBit) {
   world::Scene spheres = make_scene_of_everything();
-  std::erase_if(spheres.objects, [](const world::Object& o) { return !std::holds_alternative<world::Sphere>(o.shape); });
+  std::erase_if(spheres.objects,
+                [](const world::Object& o) { return !std::holds_alternative<world::Sphere>(o.shape); });
   for (Light& light : spheres.lights) light.kind = LightKind::kPoint;
   const world::Scene everything = make_scene_of_everything();
   TunedRendererOptions forced;
@@ -229,7 +230,8 @@ world::Scene make_facing_mirrors(uint32_t light_count) {
   scene.materials[0].diffuse = vec3(0.0F);
   scene.materials[0].emissive = vec3(1.0F / 1024.0F);
   scene.materials[0].reflection = vec3(1.0F);
-  scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
+  scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0},
+                   {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
   scene.lights.resize(light_count);
   for (Light& light : scene.lights) light.position = vec3(0, 0, 1);
   return scene;
@@ -243,7 +245,8 @@ TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
   scene.materials[0].diffuse = vec3(0.0F);
   scene.materials[0].reflection = vec3(0.5F);
   scene.environment.ambient = vec3(1.0F);
-  scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0}, {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
+  scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0},
+                   {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
   View view;
   view.size = uvec2(1, 1);
   for (const uint32_t depth : {0U, 1U, 2U, 10U}) {

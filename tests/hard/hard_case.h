@@ -86,7 +86,8 @@ class Lab {
   double rounding_factor() const;
 
   /// Casts through the public Caster, or the kernel that PROMIN_TEST_KERNELS names.
-  std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays, HitQuery query = HitQuery::kNearest) const;
+  std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays,
+                        HitQuery query = HitQuery::kNearest) const;
 
   /// Each answer against the oracle's; shared out over all cores.
   static Tally judge(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);

@@ -128,7 +128,8 @@ void run_invalid_rays(Lab& lab) {
 void expect_directions(Lab& lab, double scale, double length, bool has_denormals, const std::string& where) {
   Random random(301);
   const auto size = static_cast<float>(scale);
-  const world::Scene scene = scene_of({world::Sphere{vec3(0.0F), size}, world::Plane{vec3(0.0F, -2.0F * size, 0.0F), vec3(0, 1, 0)}});
+  const world::Scene scene =
+      scene_of({world::Sphere{vec3(0.0F), size}, world::Plane{vec3(0.0F, -2.0F * size, 0.0F), vec3(0, 1, 0)}});
   std::vector<Ray> rays;
   for (int i = 0; i < 20000; ++i) {
     const double reach = 0.9 * scale * random.uniform();

@@ -76,8 +76,9 @@ void run_self_hits(Lab& lab) {
     const auto size = static_cast<float>(scale);
     const auto shapes_at = [&](const vec3& center) {
       return std::vector<world::Shape>{world::Sphere{center, size}, world::Cylinder{center, axis, size, 0.5F * size},
-                                world::Cone{center, axis, size, 0.7F * size, 0.0F},
-                                world::Cone{center, axis, size, 0.3F * size, 0.8F * size}, make_octahedron(center, size)};
+                                       world::Cone{center, axis, size, 0.7F * size, 0.0F},
+                                       world::Cone{center, axis, size, 0.3F * size, 0.8F * size},
+                                       make_octahedron(center, size)};
     };
     for (const world::Shape& shape : shapes_at(vec3(0.0F))) {
       near_origin += count_self_hits(lab, shape, scale, dvec3(0.0), random);
@@ -211,8 +212,8 @@ void run_reflections(Lab& lab) {
 void run_facing_mirrors(Lab& lab) {
   Random random(36);
   for (const float gap : {0.5F, 1.0F, 2.0F}) {
-    const world::Scene scene =
-        scene_of({world::Plane{vec3(0.0F), vec3(0.0F, 0.0F, 1.0F)}, world::Plane{vec3(0.0F, 0.0F, gap), vec3(0.0F, 0.0F, -1.0F)}});
+    const world::Scene scene = scene_of({world::Plane{vec3(0.0F), vec3(0.0F, 0.0F, 1.0F)},
+                                         world::Plane{vec3(0.0F, 0.0F, gap), vec3(0.0F, 0.0F, -1.0F)}});
     Bouncer bouncer(lab.device(), scene);
     std::vector<Ray> rays;
     for (int i = 0; i < 10000; ++i) {

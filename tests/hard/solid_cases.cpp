@@ -41,15 +41,16 @@ struct Solid {
 };
 
 Solid make_cylinder(const vec3& center, const dvec3& axis, double half_height, double radius) {
-  const world::Cylinder c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height), static_cast<float>(radius)};
+  const world::Cylinder c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height),
+                          static_cast<float>(radius)};
   return {"cylinder", c, dvec3(center), glm::normalize(dvec3(c.axis)), c.half_height, c.radius, c.radius};
 }
 
 /// A cone, with its apex at the axis' end, where `radius_top` is 0.
 Solid make_cone(const vec3& center, const dvec3& axis, double half_height, double radius_bottom,
                 double radius_top = 0.0) {
-  const world::Cone c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height), static_cast<float>(radius_bottom),
-               static_cast<float>(radius_top)};
+  const world::Cone c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height),
+                      static_cast<float>(radius_bottom), static_cast<float>(radius_top)};
   return {radius_top == 0.0 ? "cone" : "frustum",
           c,
           dvec3(center),

@@ -71,8 +71,8 @@ world::Scene make_ties() {
       mesh.triangles.emplace_back(p, p + 9, p + 8);
     }
   }
-  return scene_of(
-      {mesh, world::Plane{vec3(0.0F), vec3(0, 1, 0)}, world::Sphere{vec3(3.5F, 0, 3.5F), 1.5F}, world::Sphere{vec3(3.5F, 0, 3.5F), 1.5F}});
+  return scene_of({mesh, world::Plane{vec3(0.0F), vec3(0, 1, 0)}, world::Sphere{vec3(3.5F, 0, 3.5F), 1.5F},
+                   world::Sphere{vec3(3.5F, 0, 3.5F), 1.5F}});
 }
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {

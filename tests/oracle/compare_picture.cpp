@@ -207,8 +207,8 @@ std::string PictureReport::summary(const world::Scene& scene, size_t most_lines)
   return text;
 }
 
-PictureReport compare_picture(const world::Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
-                              const PictureBounds& bounds) {
+PictureReport compare_picture(const world::Scene& scene, const Picture& expected, const Image& image,
+                              const DeviceAovs& aovs, const PictureBounds& bounds) {
   const size_t count = expected.pixels.size();
   const bool has_aovs = !aovs.object.empty();
   const bool is_complete = aovs.depth.size() == count && aovs.normal.size() == count && aovs.object.size() == count &&

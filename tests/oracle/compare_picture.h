@@ -85,7 +85,7 @@ struct PictureReport {
 };
 
 /// Throws std::invalid_argument if the sizes differ. Without AOVs (empty spans) colours alone are compared.
-PictureReport compare_picture(const world::Scene& scene, const Picture& expected, const Image& image, const DeviceAovs& aovs,
-                              const PictureBounds& bounds = {});
+PictureReport compare_picture(const world::Scene& scene, const Picture& expected, const Image& image,
+                              const DeviceAovs& aovs, const PictureBounds& bounds = {});
 
 }  // namespace promin::oracle

@@ -239,7 +239,8 @@ TEST_F(ComparePictureTest, ErrorsOfNormalsFail) {
 world::Scene make_can() {
   world::Scene scene;
   scene.materials.resize(1);
-  scene.objects = {{"can", world::Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 1}, 0}, {"wall", world::Plane{{0, 0, 4}, {0, 0, 1}}, 0}};
+  scene.objects = {{"can", world::Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 1}, 0},
+                   {"wall", world::Plane{{0, 0, 4}, {0, 0, 1}}, 0}};
   return scene;
 }
 

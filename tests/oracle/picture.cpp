@@ -120,7 +120,8 @@ bool is_in_shadow(const world::Scene& scene, const SurfacePoint& point, const Li
 /// I = Ka i_a + sum over visible sources of Kd (N.L) i_d + Ks (R.V)^s i_s, and what the material emits.
 Vector shade(const world::Scene& scene, const SurfacePoint& point, const Vector& to_eye) {
   const Material& material = *point.material;
-  Vector sum = Vector(material.ambient) * point.vertex_color * Vector(scene.environment.ambient) + Vector(material.emissive);
+  Vector sum =
+      Vector(material.ambient) * point.vertex_color * Vector(scene.environment.ambient) + Vector(material.emissive);
   for (const Light& light : scene.lights) {
     const Illumination illumination = illuminate(light, point.position);
     const Real cosine = glm::dot(point.normal, illumination.to_light);

@@ -266,8 +266,9 @@ TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
   scene.materials = {make_mirror(vec3(1.0F)), make_emitter(vec3(0, 1, 0)), make_emitter(vec3(1, 0, 0))};
   Mesh mesh = make_bent_triangle();
   mesh.normals.assign(3, vec3(0.6F, 0, 0.8F));
-  scene.objects = {
-      {"", mesh, 0}, {"above", world::Plane{{0, 0, 1}, {0, 0, 1}}, 1}, {"below", world::Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
+  scene.objects = {{"", mesh, 0},
+                   {"above", world::Plane{{0, 0, 1}, {0, 0, 1}}, 1},
+                   {"below", world::Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
   // The ray along (0.96, 0, -0.28) would go on along (0.5376, 0, -0.8432), below the triangle.
   const View view = look_at(vec3(-1.92F, 0, 0.56F), vec3(0), vec3(0.28F, 0, 0.96F));
   expect_color(color_of(scene, view), {0, 1, 0});

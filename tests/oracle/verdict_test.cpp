@@ -166,7 +166,8 @@ TEST(Verdict, AllThatLiesInFrontNeedsAnExcuse) {
   // The exact hit is passed by its silhouette; the second sphere is in full view.
   const Real offset = 0.5L * kU * (std::hypot(Real(1), Real(5)) + 1);
   const world::Scene two = scene_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}});
-  const world::Scene three = scene_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}, world::Sphere{{1, 0, -5}, 1}});
+  const world::Scene three =
+      scene_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}, world::Sphere{{1, 0, -5}, 1}});
   expect_margin(judge(two, {{1 - offset, 0, 5}, kDown}, {13, 1, 0}), 0.5L);
   EXPECT_GT(judge(three, {{1 - offset, 0, 5}, kDown}, {13, 1, 0}).margin, 1000);
 }

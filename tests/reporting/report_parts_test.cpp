@@ -26,7 +26,8 @@ namespace {
 using testing::ElementsAre;
 
 TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
-  const world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / "all_primitives.gltf"));
+  const world::Scene scene =
+      world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / "all_primitives.gltf"));
   const std::string hash = hash_of(scene);
   EXPECT_EQ(hash.size(), 16);
   for (const char* builder : {"median", "sah", "spatial"}) {

@@ -173,8 +173,9 @@ TEST(SceneTest, TheFramingCameraSeesEverything) {
 }
 
 TEST(SceneTest, TheFramingCameraIsUpright) {
-  for (const world::Scene& scene : {scene_of({}), scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
-                             scene_of({world::Sphere{vec3(1e7F), 1e-3F}}), scene_of({world::Sphere{vec3(0), 1e15F}})}) {
+  for (const world::Scene& scene :
+       {scene_of({}), scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
+        scene_of({world::Sphere{vec3(1e7F), 1e-3F}}), scene_of({world::Sphere{vec3(0), 1e15F}})}) {
     const Camera camera = frame_scene(scene, 1.5F);
     EXPECT_TRUE(is_finite(camera.eye));
     EXPECT_NEAR(glm::length(camera.look), 1.0, 1e-6);
@@ -185,7 +186,8 @@ TEST(SceneTest, TheFramingCameraIsUpright) {
     EXPECT_EQ(camera.near, 0.0F);
     EXPECT_EQ(camera.aspect_ratio, 1.5F);
   }
-  EXPECT_GT(frame_scene(scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F) << "above the ground";
+  EXPECT_GT(frame_scene(scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F)
+      << "above the ground";
 }
 
 TEST(SceneTest, TheHeadlightHasTheThesisPowers) {

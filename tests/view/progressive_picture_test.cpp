@@ -163,7 +163,8 @@ TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
   picture.want(view);
   const double units = trace(picture);
   const uvec2 before = picture.shown()->size;
-  picture.take_finished({.units = units, .time_ms = 1.0, .took_many_paths = true});  // the first, which compiles, is not taken
+  picture.take_finished(
+      {.units = units, .time_ms = 1.0, .took_many_paths = true});  // the first, which compiles, is not taken
   picture.take_finished({.units = units, .time_ms = 0.5, .took_many_paths = true});
   view.camera.eye.x += 0.25F;
   picture.want(view);

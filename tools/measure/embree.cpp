@@ -235,9 +235,10 @@ std::string embree_version() {
 }
 
 std::unique_ptr<EmbreeCaster> make_embree_caster(const world::Scene& scene) {
-  const bool has_meshes_alone = std::all_of(scene.objects.begin(), scene.objects.end(), [](const world::Object& object) {
-    return std::holds_alternative<Mesh>(object.shape) || std::holds_alternative<world::NotDrawn>(object.shape);
-  });
+  const bool has_meshes_alone =
+      std::all_of(scene.objects.begin(), scene.objects.end(), [](const world::Object& object) {
+        return std::holds_alternative<Mesh>(object.shape) || std::holds_alternative<world::NotDrawn>(object.shape);
+      });
   return has_meshes_alone ? std::make_unique<Caster>(scene) : nullptr;
 }
 

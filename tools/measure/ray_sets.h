@@ -26,7 +26,8 @@ RaySet make_camera_rays(const Camera& camera, uint32_t side);
 
 /// From each point that a camera ray sees, a little off its surface, to one light: the scene's first, or where it has
 /// none a point beside the camera. `hits` are those of the camera rays; misses are left out, so no ray is idle.
-RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, const world::Scene& scene, const Camera& camera);
+RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, const world::Scene& scene,
+                        const Camera& camera);
 
 /// Chords between uniform points of the sphere around everything finite in the scene.
 RaySet make_random_rays(const world::Scene& scene, size_t count);

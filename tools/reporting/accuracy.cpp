@@ -50,7 +50,8 @@ void Accuracy::add(const Accuracy& other) {
   misclassified += other.misclassified;
 }
 
-Accuracy judge_records(const world::Scene& scene, std::span<const Ray> rays, std::span<const layout::HitRecord> records) {
+Accuracy judge_records(const world::Scene& scene, std::span<const Ray> rays,
+                       std::span<const layout::HitRecord> records) {
   constexpr size_t kChunk = 1024;
   std::vector<Accuracy> parts((rays.size() + kChunk - 1) / kChunk);
   for_each_chunk(rays.size(), kChunk, 0, [&](size_t begin, size_t end) {

@@ -28,7 +28,8 @@ struct Accuracy {
 };
 
 /// Judges records of rays at a scene of one primitive; on all cores.
-Accuracy judge_records(const world::Scene& scene, std::span<const Ray> rays, std::span<const layout::HitRecord> records);
+Accuracy judge_records(const world::Scene& scene, std::span<const Ray> rays,
+                       std::span<const layout::HitRecord> records);
 
 /// Puts "rays", "max_k", "rms_k" and "misclassified_per_million" into a row.
 void put_accuracy(Json& row, const Accuracy& accuracy);

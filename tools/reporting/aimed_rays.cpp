@@ -59,7 +59,8 @@ world::Scene make_primitives(const std::string& name, size_t count, Random& rand
   return measure::scene_of(std::move(shapes), name);
 }
 
-std::vector<Ray> aim_rays(const world::Scene& scene, const dvec3& center, double distance, size_t count, Random& random) {
+std::vector<Ray> aim_rays(const world::Scene& scene, const dvec3& center, double distance, size_t count,
+                          Random& random) {
   const auto* plane = std::get_if<world::Plane>(&scene.objects[0].shape);
   std::vector<Ray> rays;
   while (rays.size() < count) {

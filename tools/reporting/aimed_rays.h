@@ -22,7 +22,8 @@ world::Scene make_primitive(const std::string& name, const dvec3& center, Random
 world::Scene make_primitives(const std::string& name, size_t count, Random& random);
 
 /// From `distance` at the primitive of make_primitive, up to 1.05 of its size beside its centre.
-std::vector<Ray> aim_rays(const world::Scene& scene, const dvec3& center, double distance, size_t count, Random& random);
+std::vector<Ray> aim_rays(const world::Scene& scene, const dvec3& center, double distance, size_t count,
+                          Random& random);
 /// Chords of the ball of make_primitives.
 std::vector<Ray> make_chords(size_t count, Random& random);
 

@@ -10,10 +10,10 @@
 #include "device_scene/pack_scene.h"
 #include "measure/samples.h"
 #include "oracle/picture.h"
+#include "render/renderer_impl.h"
 #include "reporting/picture.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
-#include "render/renderer_impl.h"
 
 namespace promin::report {
 namespace {

@@ -12,10 +12,10 @@
 #include "full_boxes_mirror_stage.spv.h"
 #include "integer_offset_camera_stage.spv.h"
 #include "integer_offset_mirror_stage.spv.h"
+#include "render/renderer_impl.h"
 #include "reporting/full_boxes.h"
 #include "textbook_camera_stage.spv.h"
 #include "textbook_mirror_stage.spv.h"
-#include "render/renderer_impl.h"
 
 namespace promin::report {
 

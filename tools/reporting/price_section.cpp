@@ -31,8 +31,8 @@ void put_misjudged(Json& row, const std::string& kernel, const Misjudged& misjud
 }
 
 /// Whom the truth is asked of, and what both kernels come to by it.
-void judge_pair(const Session& session, const world::Scene& scene, const measure::RaySet& set, const measure::KernelPair& pair,
-                bool is_inside, Json& row) {
+void judge_pair(const Session& session, const world::Scene& scene, const measure::RaySet& set,
+                const measure::KernelPair& pair, bool is_inside, Json& row) {
   if (is_inside) {
     row["truth"] = "each hits";
     row["judged"] = pair.count;

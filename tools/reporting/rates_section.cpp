@@ -13,9 +13,9 @@
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "measure/step_counts.h"
+#include "render/caster_access.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
-#include "render/caster_access.h"
 
 namespace promin::report {
 namespace {
@@ -50,7 +50,8 @@ void time_rays(Caster& caster, EmbreeCaster* embree, const measure::RaySet& set,
 }
 
 /// From triangles in memory to all that is copied to the device, and the builder's part of it.
-void time_builds(const world::Scene& scene, const std::string& builder, EmbreeCaster* embree, uint32_t runs, Json& row) {
+void time_builds(const world::Scene& scene, const std::string& builder, EmbreeCaster* embree, uint32_t runs,
+                 Json& row) {
   std::vector<double> bvh_ms;
   std::vector<std::function<double()>> contestants = {[&] {
     const Stopwatch packing;

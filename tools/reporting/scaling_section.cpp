@@ -13,10 +13,10 @@
 #include "measure/samples.h"
 #include "measure/step_counts.h"
 #include "promin/renderer.h"
-#include "reporting/scene_hash.h"
-#include "reporting/session.h"
 #include "render/caster_access.h"
 #include "render/renderer_impl.h"
+#include "reporting/scene_hash.h"
+#include "reporting/session.h"
 
 namespace promin::report {
 namespace {

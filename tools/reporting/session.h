@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "promin/device.h"
-#include "scene/world_scene.h"
 #include "promin/view.h"
+#include "scene/world_scene.h"
 
 namespace promin::report {
 
