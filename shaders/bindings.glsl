@@ -33,7 +33,11 @@ bool is_kind(uint kind, uint wanted, uint feature) {
   return TREE_KIND_COUNT == 1u || kind == wanted;
 }
 
-layout(std140, set = 0, binding = BINDING_VIEW) uniform ViewBlock { ViewConstants view; };
+// A dispatch has one workgroup in z, so this is element 0. Lavapipe makes constants of uniforms at offsets that it
+// knows and compiles the kernel anew for their values, with every dispatch (lvp_inline_uniforms.c); one that hangs on
+// the workgroup it leaves alone.
+layout(std140, set = 0, binding = BINDING_VIEW) uniform ViewBlock { ViewConstants views[1]; };
+#define VIEW views[gl_WorkGroupID.z]
 
 // Nodes and primitives come as storage buffers, which every device has for any scene, and as texel buffers of the same
 // memory: lavapipe gathers a load from a storage buffer word by word, a texel at once.

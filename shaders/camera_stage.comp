@@ -85,7 +85,7 @@ void arrive() {
       continue;
     }
     begin_path_log(ray, found[i], 0u, paths[i].weight);
-    seen[i] = view.background.xyz;
+    seen[i] = VIEW.background.xyz;
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
       points[i] = make_shading_point(ray, found[i]);
@@ -156,7 +156,7 @@ void trace_pixels() {
       is_first_turn = false;
     }
     if (source >= sources) break;
-    aim_at_source(load_light(view.first_index.y + source));
+    aim_at_source(load_light(VIEW.first_index.y + source));
   }
 }
 

@@ -37,7 +37,7 @@ vec3 primitive_color(Hit hit, vec4 normal_and_depth) {
 
 vec3 depth_color(Hit hit, vec4 normal_and_depth) {
   if (is_miss(hit)) return vec3(0.0);
-  float size = view.tree_bounds.w > 0.0 ? view.tree_bounds.w : 1.0;
+  float size = VIEW.tree_bounds.w > 0.0 ? VIEW.tree_bounds.w : 1.0;
   precise float nearness = size / (size + normal_and_depth.w);
   precise float brightness = nearness * nearness;
   return vec3(brightness);

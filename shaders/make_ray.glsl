@@ -26,7 +26,7 @@ vec3 signs_of(vec3 v) { return vec3(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1
 
 // For the box test, from the origin and the direction.
 void pad_origin(inout Ray ray) {
-  precise float reach = max_abs(ray.origin - view.tree_bounds.xyz) + view.tree_bounds.w;
+  precise float reach = max_abs(ray.origin - VIEW.tree_bounds.xyz) + VIEW.tree_bounds.w;
   precise vec3 padding =
       signs_of(ray.direction) * (BOX_PADDING * reach + ORIGIN_PADDING * abs(ray.origin));
   precise vec3 near_origin = ray.origin + padding;
@@ -40,12 +40,12 @@ void pad_origin(inout Ray ray) {
 const float FAR_AWAY = 1024.0;
 
 float distance_to_tree(Ray ray) {
-  precise float distance = max_abs(ray.origin - view.tree_bounds.xyz);
+  precise float distance = max_abs(ray.origin - VIEW.tree_bounds.xyz);
   return distance;
 }
 
 bool is_far_away(Ray ray) {
-  precise float near = FAR_AWAY * view.tree_bounds.w;
+  precise float near = FAR_AWAY * VIEW.tree_bounds.w;
   return distance_to_tree(ray) > near;
 }
 
@@ -53,7 +53,7 @@ bool is_far_away(Ray ray) {
 // product with half of the direction's bits is exact.
 float shift_to_tree(Ray ray) {
   if (!is_far_away(ray)) return 0.0;
-  precise float shift = 0.999 * (distance_to_tree(ray) - 4.0 * view.tree_bounds.w) / max_abs(ray.direction);
+  precise float shift = 0.999 * (distance_to_tree(ray) - 4.0 * VIEW.tree_bounds.w) / max_abs(ray.direction);
   return uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
 }
 

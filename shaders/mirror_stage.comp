@@ -46,7 +46,7 @@ void follow_path() {
 bool arrive(Hit hit) {
   begin_path_log(ray, hit, bounces, path.weight);
   bool is_miss = hit.primitive == NO_PRIMITIVE;
-  seen = view.background.xyz;
+  seen = VIEW.background.xyz;
   if (!is_miss) {
     path.direction = normalize3(ray.direction);
     point = make_shading_point(ray, hit);
@@ -68,7 +68,7 @@ void add_share(vec3 unblocked) {
 bool aim_at_source() {
   while (source < source_count()) {
     begin_source_log(source);
-    LightRecord light = load_light(view.first_index.y + source);
+    LightRecord light = load_light(VIEW.first_index.y + source);
     LightSample sampled = sample_light(light, point.position);
     share = unshadowed_share(point, -path.direction, light, sampled);
     if (has(FEATURE_SHADOWS) && max_abs(share) > 0.0) {

@@ -3,7 +3,7 @@
 // Phong shading (docs/model.md, "Light") of a point that a ray hit.
 
 // Views of one buffer: four storage buffers a stage are all that Vulkan guarantees. Each view starts at a multiple of
-// its own stride (view.first_index).
+// its own stride (VIEW.first_index).
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
@@ -56,9 +56,9 @@ vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
 }
 
 void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, vec3 weights, bool is_flipped) {
-  vec3 n0 = load_vertex(view.first_index.z + corners.x);
-  vec3 n1 = load_vertex(view.first_index.z + corners.y);
-  vec3 n2 = load_vertex(view.first_index.z + corners.z);
+  vec3 n0 = load_vertex(VIEW.first_index.z + corners.x);
+  vec3 n1 = load_vertex(VIEW.first_index.z + corners.y);
+  vec3 n2 = load_vertex(VIEW.first_index.z + corners.z);
   // The interpolated normal faces the ray by the geometric normal's side, so its own sign stays as wound.
   float side = is_flipped ? -1.0 : 1.0;
   precise vec3 interpolated = (weights.x * n0 + weights.y * n1 + weights.z * n2) * side;
@@ -83,15 +83,15 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
   point.lift = surface.lift;
   point.shadow_position = surface.position;
   point.color = vec3(1.0);
-  point.material = load_material(view.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK));
+  point.material = load_material(VIEW.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK));
   precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
   if (has(FEATURE_SMOOTH_NORMALS) && (record.corners_material.w & SURFACE_IS_SMOOTH) != 0u) {
     apply_vertex_normals(point, p, record.corners_material.xyz, weights, is_flipped);
   }
   if (has(FEATURE_VERTEX_COLORS) && (record.corners_material.w & SURFACE_IS_COLORED) != 0u) {
-    precise vec3 color = weights.x * load_vertex(view.first_index.w + record.corners_material.x) +
-                         weights.y * load_vertex(view.first_index.w + record.corners_material.y) +
-                         weights.z * load_vertex(view.first_index.w + record.corners_material.z);
+    precise vec3 color = weights.x * load_vertex(VIEW.first_index.w + record.corners_material.x) +
+                         weights.y * load_vertex(VIEW.first_index.w + record.corners_material.y) +
+                         weights.z * load_vertex(VIEW.first_index.w + record.corners_material.z);
     point.color = color;
   }
   if (has(FEATURE_RAY_LOG)) {
@@ -129,7 +129,7 @@ Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
 
 // What the point sends without any source.
 vec3 own_light(ShadingPoint point) {
-  precise vec3 own = point.material.ambient.xyz * point.color * view.ambient.xyz + point.material.emissive.xyz;
+  precise vec3 own = point.material.ambient.xyz * point.color * VIEW.ambient.xyz + point.material.emissive.xyz;
   return own;
 }
 
