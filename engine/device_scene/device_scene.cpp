@@ -3,7 +3,6 @@
 #include "device_scene/device_scene.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "device/device.h"
 
@@ -19,36 +18,53 @@ gpu::Buffer upload(const gpu::Device& device, std::span<const std::byte> bytes) 
   return buffer;
 }
 
-/// Appends records at the next multiple of their stride; returns their first index in that stride.
+/// Records of one kind in the buffer of shading.
+struct Placed {
+  std::span<const std::byte> bytes;
+  uint64_t offset = 0;
+  /// Of its first record, in its own stride.
+  uint32_t first_index = 0;
+  uint64_t end() const { return offset + bytes.size(); }
+};
+
+/// At the next multiple of the stride from `offset` on.
 template <typename Records>
-uint32_t append_records(std::vector<std::byte>& bytes, uint64_t bytes_before, const Records& records) {
-  using Record = typename Records::value_type;
-  const size_t first = (bytes_before + bytes.size() + sizeof(Record) - 1) / sizeof(Record);
-  const size_t offset = first * sizeof(Record) - bytes_before;
-  bytes.resize(offset + records.size() * sizeof(Record));
-  if (!records.empty()) std::memcpy(bytes.data() + offset, records.data(), records.size() * sizeof(Record));
-  return static_cast<uint32_t>(first);
+Placed place(const Records& records, uint64_t offset) {
+  constexpr uint64_t kStride = sizeof(typename Records::value_type);
+  const uint64_t first = (offset + kStride - 1) / kStride;
+  return {std::as_bytes(std::span(records)), first * kStride, static_cast<uint32_t>(first)};
+}
+
+void write(gpu::Buffer& buffer, const Placed& placed) {
+  if (!placed.bytes.empty()) buffer.write(placed.bytes, placed.offset);
 }
 
 }  // namespace
 
-DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed)
+DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading)
     : device_(&device),
       nodes_(upload(device, std::as_bytes(packed.tree().nodes))),
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)))),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
+      materials_(pack_materials(shading.materials)),
       // In steps, so that scenes of about the same depth share pipelines.
       stack_size_((packed.stack_size + 7) / 8 * 8) {
-  append_records(head_, 0, packed.surfaces.surfaces);
-  constants_.first_index.z = append_records(head_, 0, packed.surfaces.normals);
-  constants_.first_index.w = append_records(head_, 0, packed.surfaces.colors);
-  head_bytes_ = head_.size();
+  const Placed surfaces = place(packed.surfaces.surfaces, 0);
+  const Placed normals = place(packed.surfaces.normals, surfaces.end());
+  const Placed colors = place(packed.surfaces.colors, normals.end());
+  constants_.first_index.z = normals.first_index;
+  constants_.first_index.w = colors.first_index;
+  head_bytes_ = colors.end();
   constants_.tree_bounds = packed.tree_bounds;
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
-  uploads_.geometry = nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_;
+  constants_.environment = shading.environment;
+  pack(shading.lights);
+  take_shading_buffer(make_shading_buffer());
+  for (const Placed& placed : {surfaces, normals, colors}) write(*shading_, placed);
   write_tail();
+  uploads_.geometry = nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_;
 }
 
 void DeviceScene::set_materials(std::span<const Material> materials) {
@@ -57,11 +73,15 @@ void DeviceScene::set_materials(std::span<const Material> materials) {
 }
 
 void DeviceScene::set_lights(std::span<const Light> lights) {
+  pack(lights);
+  write_tail();
+}
+
+void DeviceScene::pack(std::span<const Light> lights) {
   PackedLights packed = pack_lights(lights);
   lights_ = std::move(packed.records);
   light_numbers_ = std::move(packed.numbers);
   constants_.light_count = static_cast<uint32_t>(lights_.size());
-  write_tail();
 }
 
 void DeviceScene::set_environment(const Environment& environment) {
@@ -86,47 +106,44 @@ std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
           {layout::BINDING_SHADING_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &shading_texels_}};
 }
 
-void DeviceScene::write_tail() {
-  std::vector<std::byte> tail;
-  constants_.first_index.x = append_records(tail, head_bytes_, materials_);
-  constants_.first_index.y = append_records(tail, head_bytes_, lights_);
-  const uint64_t needed = head_bytes_ + tail.size();
-  if (!shading_ || shading_->size_bytes() < needed) {
-    // With room for some lights more, so that switching them on needs no other buffer.
-    constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
-    gpu::Buffer larger(*device_, needed + kSpareBytes, kStorageOrTexels);
-    if (shading_) {
-      larger.copy_from(*shading_, head_bytes_);
-    } else {
-      larger.write(head_);
-      head_ = {};
-    }
-    vk::raii::BufferView texels = larger.make_texel_view();
-    shading_texels_ = std::move(texels);
-    shading_.emplace(std::move(larger));
-    fetches_texels_ = std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_->size_bytes()}) <=
-                      device_->limits().maxTexelBufferElements * gpu::kTexelBytes;
-  }
-  if (!tail.empty()) shading_->write(tail, head_bytes_);
-  uploads_.shading += tail.size();
+uint64_t DeviceScene::end_of_tail() const {
+  return place(lights_, place(materials_, head_bytes_).end()).end();
 }
 
-std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed) {
-  std::shared_ptr<const DeviceScene> scene;
-  gpu::translate_vulkan_errors([&] { scene = std::make_shared<const DeviceScene>(device, packed); });
-  return scene;
+gpu::Buffer DeviceScene::make_shading_buffer() const {
+  // With room for some lights more, so that switching them on needs no other buffer.
+  constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
+  return {*device_, end_of_tail() + kSpareBytes, kStorageOrTexels};
+}
+
+void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
+  vk::raii::BufferView texels = buffer.make_texel_view();
+  shading_texels_ = std::move(texels);
+  shading_.emplace(std::move(buffer));
+  fetches_texels_ = std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_->size_bytes()}) <=
+                    device_->limits().maxTexelBufferElements * gpu::kTexelBytes;
+}
+
+void DeviceScene::write_tail() {
+  if (shading_->size_bytes() < end_of_tail()) {
+    gpu::Buffer larger = make_shading_buffer();
+    larger.copy_from(*shading_, head_bytes_);
+    take_shading_buffer(std::move(larger));
+  }
+  const Placed materials = place(materials_, head_bytes_);
+  const Placed lights = place(lights_, materials.end());
+  constants_.first_index.x = materials.first_index;
+  constants_.first_index.y = lights.first_index;
+  write(*shading_, materials);
+  write(*shading_, lights);
+  uploads_.shading += materials.bytes.size() + lights.bytes.size();
 }
 
 std::shared_ptr<DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed,
-                                          const world::Scene& scene) {
-  std::shared_ptr<DeviceScene> uploaded;
-  gpu::translate_vulkan_errors([&] {
-    uploaded = std::make_shared<DeviceScene>(device, packed);
-    uploaded->set_materials(scene.materials);
-    uploaded->set_lights(scene.lights);
-    uploaded->set_environment(scene.environment);
-  });
-  return uploaded;
+                                          const ShadingParts& shading) {
+  std::shared_ptr<DeviceScene> scene;
+  gpu::translate_vulkan_errors([&] { scene = std::make_shared<DeviceScene>(device, packed, shading); });
+  return scene;
 }
 
 }  // namespace promin

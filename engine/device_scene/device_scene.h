@@ -14,13 +14,19 @@
 
 namespace promin {
 
+/// The parts of a scene that are replaced apart.
+struct ShadingParts {
+  std::span<const Material> materials;
+  std::span<const Light> lights;
+  Environment environment;
+};
+
 /// A scene in device memory, in parts that are replaced apart: tree, primitives and surfaces for good; materials,
 /// lights and environment as often as they change. Keeps no reference to the PackedScene.
 class DeviceScene {
  public:
-  /// Uploads geometry and surfaces; there are no materials and lights yet, which only pictures need. Throws
-  /// vk::SystemError, and RunError where a device limit is passed.
-  DeviceScene(const gpu::Device& device, const PackedScene& packed);
+  /// Casts need no shading. Throws vk::SystemError, and RunError where a device limit is passed.
+  DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading = {});
 
   // Nothing on the device reads the scene meanwhile. Where they need more room than there is, the buffer of shading is
   // another one afterwards: what is bound to it must be bound anew (Film::bind_scene).
@@ -52,8 +58,12 @@ class DeviceScene {
   const Uploads& uploads() const { return uploads_; }
 
  private:
+  uint64_t end_of_tail() const;
+  gpu::Buffer make_shading_buffer() const;
+  void take_shading_buffer(gpu::Buffer buffer);
   /// Copies materials and lights behind the surfaces, into a larger buffer where they need one.
   void write_tail();
+  void pack(std::span<const Light> lights);
 
   const gpu::Device* device_;
   gpu::Buffer nodes_;
@@ -61,7 +71,6 @@ class DeviceScene {
   vk::raii::BufferView node_texels_;
   vk::raii::BufferView primitive_texels_;
   /// Of surfaces and vertices, at the head of the buffer of shading.
-  std::vector<std::byte> head_;
   uint64_t head_bytes_ = 0;
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};
@@ -74,12 +83,8 @@ class DeviceScene {
   Uploads uploads_;
 };
 
-/// Copies a packed scene's geometry and surfaces to the device. Throws RunError where memory does not suffice or a
-/// device limit is passed.
-std::shared_ptr<const DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed);
-
-/// The same of all of a scene.
+/// Copies a packed scene to the device. Throws RunError where memory does not suffice or a device limit is passed.
 std::shared_ptr<DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed,
-                                          const world::Scene& scene);
+                                          const ShadingParts& shading = {});
 
 }  // namespace promin

@@ -68,7 +68,7 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   material_features_ = promin::material_features(scene.materials, shown_materials_);
   light_features_ = promin::light_features(scene.lights);
   const Stopwatch uploading;
-  device_scene_ = upload_scene(device, packed, scene);
+  device_scene_ = upload_scene(device, packed, {scene.materials, scene.lights, scene.environment});
   stats.upload_ms = uploading.ms();
   stats.device_bytes = device_scene_->size_bytes();
   numbers_ = std::move(packed.numbers);
