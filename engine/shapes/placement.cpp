@@ -62,6 +62,11 @@ bool Placement::keeps_cylinders(const dvec3& axis) const {
          is_right_angle(z, x);
 }
 
+bool Placement::keeps_boxes() const {
+  return is_right_angle(columns_[0], columns_[1]) && is_right_angle(columns_[1], columns_[2]) &&
+         is_right_angle(columns_[2], columns_[0]);
+}
+
 dvec3 Placement::direction(const dvec3& v) const {
   return combine(columns_, v);
 }

@@ -21,6 +21,9 @@ class Placement {
   /// Circles around the axis stay circles around an axis at right angles.
   bool keeps_cylinders(const dvec3& axis) const;
 
+  /// Boxes along the axes stay boxes along three directions.
+  bool keeps_boxes() const;
+
   dvec3 point(const dvec3& p) const { return origin_ + direction(p); }
   /// Zero components add nothing, not even the sign of a zero.
   dvec3 direction(const dvec3& v) const;

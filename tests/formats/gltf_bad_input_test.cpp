@@ -177,6 +177,16 @@ const BadGltf kBadGltf[] = {
        g.json["nodes"][1]["scale"] = {1e16, 1e16, 1e16};
      },
      "is 1e+16 in the world", "nodes[1]"},
+    {"BoxWithoutDepth",
+     [](auto& g) {
+       shape(g, 0) = {{"type", "box"}, {"box", {{"size", {1, 2, 0}}}}};
+     },
+     "0 is out of range", "extensions.KHR_implicit_shapes.shapes[0].box.size"},
+    {"CapsuleOfNegativeHeight",
+     [](auto& g) {
+       shape(g, 0) = {{"type", "capsule"}, {"capsule", {{"height", -1}}}};
+     },
+     "-1 is out of range", "extensions.KHR_implicit_shapes.shapes[0].capsule.height"},
     {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "\"torus\" is none of",
      "extensions.KHR_implicit_shapes.shapes[0].type"},
     // Vertices

@@ -10,6 +10,7 @@
 
 #include "hard/bouncer.h"
 #include "hard/hard_case.h"
+#include "hard/self_hits.h"
 
 namespace promin::hard {
 namespace {
@@ -20,16 +21,6 @@ using oracle::Vector;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Real kU = kUnitRoundoff;
 
-double uniform_cosine(Random& random) {
-  // As many grazing ones as steep ones.
-  return std::pow(10.0, random.uniform(-6.0, 0.0));
-}
-
-/// A unit vector that makes this cosine with a unit normal.
-vec3 direction_at(const dvec3& normal, double cosine, Random& random) {
-  return vec3(cosine * normal + std::sqrt(1.0 - cosine * cosine) * random.perpendicular(normal));
-}
-
 Mesh make_octahedron(const vec3& center, float size) {
   Mesh mesh;
   for (const vec3& axis : {vec3(size, 0, 0), vec3(0, size, 0), vec3(0, 0, size)}) {
@@ -38,32 +29,6 @@ Mesh make_octahedron(const vec3& center, float size) {
   }
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   return mesh;
-}
-
-/// Rays from around a convex shape, then from where they hit it outwards: the second must not meet it.
-uint64_t count_self_hits(Lab& lab, const world::Shape& shape, double scale, const dvec3& center, Random& random) {
-  const world::Scene scene = scene_of({shape});
-  std::vector<Ray> rays;
-  for (int i = 0; i < 2000; ++i) {
-    const dvec3 origin = center + 4.0 * scale * random.direction();
-    rays.push_back(ray_towards(origin, center + 0.8 * scale * random.direction()));
-  }
-  const std::vector<Hit> hits = lab.cast(scene, rays);
-  const std::vector<Bounce> bounces = Bouncer(lab.device(), scene).bounce(rays);
-  std::vector<Ray> next;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    if (!bounces[i].is_hit || hits[i].object < 0) continue;
-    const dvec3 n = glm::normalize(dvec3(hits[i].normal));
-    const dvec3 facing = glm::dot(n, dvec3(rays[i].direction)) > 0.0 ? -n : n;
-    next.push_back({bounces[i].origin, 0.0F, bounces[i].mirrored, kInfinity});
-    for (int k = 0; k < 3; ++k) {
-      next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kInfinity});
-    }
-  }
-  EXPECT_GT(next.size(), rays.size()) << "four for each ray that meets the shape: a quarter at least do";
-  const std::vector<Hit> again = lab.cast(scene, next);
-  return static_cast<uint64_t>(
-      std::count_if(again.begin(), again.end(), [](const Hit& hit) { return hit.object >= 0; }));
 }
 
 void run_self_hits(Lab& lab) {

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hard/random_shapes.h"
+
+#include <cmath>
+
+namespace promin::hard {
+namespace {
+
+using measure::Random;
+
+/// As many small ones as large ones.
+float random_size(Random& random) {
+  return static_cast<float>(0.05 * std::pow(40.0, random.uniform()));
+}
+
+/// Every third along an axis of space.
+vec3 random_axis(Random& random) {
+  const dvec3 axis = random.direction();
+  if (random.uniform() > 1.0 / 3.0) return vec3(axis);
+  return std::abs(axis.x) > 0.6 ? vec3(1, 0, 0) : std::abs(axis.y) > 0.6 ? vec3(0, -1, 0) : vec3(0, 0, 1);
+}
+
+}  // namespace
+
+template <>
+world::Sphere random_shape(const vec3& center, Random& random) {
+  return {center, random_size(random)};
+}
+
+template <>
+world::Plane random_shape(const vec3& center, Random& random) {
+  return {center, random_axis(random)};
+}
+
+template <>
+world::Cylinder random_shape(const vec3& center, Random& random) {
+  return {center, random_axis(random), random_size(random), random_size(random)};
+}
+
+template <>
+world::Cone random_shape(const vec3& center, Random& random) {
+  const float top = random.uniform() < 0.5 ? 0.0F : random_size(random);
+  return {center, random_axis(random), random_size(random), random_size(random), top};
+}
+
+}  // namespace promin::hard

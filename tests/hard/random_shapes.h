@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "measure/random.h"
+#include "scene/world_scene.h"
+
+namespace promin::hard {
+
+/// A shape around `center` that is 0.05 to 2 in size, of any proportions and orientation. Each shape of
+/// promin/kinds/primitives.def has its own; the suite over all of them does not link without.
+template <class Shape>
+Shape random_shape(const vec3& center, measure::Random& random);
+
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  template <>                                                        \
+  world::TYPE random_shape(const vec3& center, measure::Random& random);
+#include "promin/kinds/primitives.def"
+
+/// One of a shape that lies in the tree.
+template <class Visitor>
+void for_each_solid(const vec3& center, measure::Random& random, const Visitor& visit) {
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) visit(random_shape<world::TYPE>(center, random));
+#include "promin/kinds/primitives.def"
+}
+
+}  // namespace promin::hard

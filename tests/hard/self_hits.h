@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "hard/hard_case.h"
+
+namespace promin::hard {
+
+/// A cosine from 1e-6 to 1, as many grazing ones as steep ones.
+double uniform_cosine(Random& random);
+
+/// A unit vector that makes this cosine with a unit normal.
+vec3 direction_at(const dvec3& normal, double cosine, Random& random);
+
+/// Sends rays from around a convex shape of about `scale`, then others from where they hit it outwards, with the
+/// renderer's own lift: counts those that meet it again, which is always wrong.
+uint64_t count_self_hits(const Lab& lab, const world::Shape& shape, double scale, const dvec3& center, Random& random);
+
+}  // namespace promin::hard
