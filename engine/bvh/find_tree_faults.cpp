@@ -59,8 +59,8 @@ Cut<Polygon> cut_at(const Polygon& polygon, int axis, double plane, Side side) {
   return cut;
 }
 
-Cut<Box> cut_at(const Box& box, int axis, double plane, Side side) {
-  Cut<Box> cut;
+Cut<ExactBounds> cut_at(const ExactBounds& box, int axis, double plane, Side side) {
+  Cut<ExactBounds> cut;
   const bool is_below = side == Side::kBelow;
   const double outer = is_below ? box.lo[axis] : box.hi[axis];
   const double inner = is_below ? box.hi[axis] : box.lo[axis];
@@ -74,7 +74,7 @@ Cut<Box> cut_at(const Box& box, int axis, double plane, Side side) {
 
 /// What is left of `piece` outside of `box`.
 template <typename Piece>
-void subtract(const Piece& piece, const Box& box, std::vector<Piece>& left) {
+void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& left) {
   const size_t first = left.size();
   Piece rest = piece;
   for (int axis = 0; axis < 3; ++axis) {
@@ -94,10 +94,10 @@ void subtract(const Piece& piece, const Box& box, std::vector<Piece>& left) {
 
 /// Whether boxes that are larger by `tolerance` on all sides cover a piece.
 template <typename Piece>
-bool is_covered(const Piece& piece, std::span<const Box> boxes, double tolerance) {
+bool is_covered(const Piece& piece, std::span<const ExactBounds> boxes, double tolerance) {
   std::vector<Piece> pieces = {piece};
   std::vector<Piece> left;
-  for (const Box& box : boxes) {
+  for (const ExactBounds& box : boxes) {
     left.clear();
     for (const Piece& each : pieces) subtract(each, {box.lo - tolerance, box.hi + tolerance}, left);
     std::swap(pieces, left);
@@ -111,17 +111,17 @@ Polygon polygon_of(const Primitive& p) {
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Box kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
+constexpr ExactBounds kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
 
 /// What both hold.
-Box intersect(const Box& a, const Box& b) {
-  const Box both{glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
+ExactBounds intersect(const ExactBounds& a, const ExactBounds& b) {
+  const ExactBounds both{glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
   // Written so that a NaN holds nothing.
   const bool is_box = glm::all(glm::lessThanEqual(b.lo, b.hi)) && glm::all(glm::lessThanEqual(both.lo, both.hi));
   return is_box ? both : kNothing;
 }
 
-bool contains(const Box& outer, const Box& inner) {
+bool contains(const ExactBounds& outer, const ExactBounds& inner) {
   return glm::all(glm::lessThanEqual(outer.lo, inner.lo)) && glm::all(glm::greaterThanEqual(outer.hi, inner.hi));
 }
 
@@ -162,7 +162,7 @@ class Inspection {
     for (uint32_t i = 0; i < layout::NODE_WIDTH; ++i) {
       const NodeChild child = child_of(node, i);
       if (child.kind == ChildKind::kAbsent) continue;
-      const Box box = intersect(node_boxes_[index], child_box(node, i));
+      const ExactBounds box = intersect(node_boxes_[index], child_box(node, i));
       if (child.kind == ChildKind::kNode) {
         node_boxes_[child.first] = box;
         continue;
@@ -188,13 +188,13 @@ class Inspection {
     const auto slots = std::span(slots_).subspan(first_slot_[index], first_slot_[index + 1] - first_slot_[index]);
     const Primitive& primitive = primitives_[slots.front()];
     const Bounds bounds = primitive_bounds(primitive);
-    const Box whole{bounds.lo, bounds.hi};
+    const ExactBounds whole{bounds.lo, bounds.hi};
     if (slots.size() == 1) {
       if (contains(box_of(slots.front()), whole)) return;
       add_fault(faults, name_of(primitive) + " reaches out of the box of its leaf or of a node above it");
       return;
     }
-    std::vector<Box> boxes;
+    std::vector<ExactBounds> boxes;
     for (const uint32_t slot : slots) boxes.push_back(box_of(slot));
     const float size = std::max(max_abs_component(bounds.lo), max_abs_component(bounds.hi));
     const double tolerance = static_cast<double>(kUnitRoundoff) * static_cast<double>(size);
@@ -205,7 +205,7 @@ class Inspection {
                           " leaves, and their boxes do not cover it");
   }
 
-  const Box& box_of(uint32_t slot) const { return leaf_boxes_[leaf_of_slot_[slot]]; }
+  const ExactBounds& box_of(uint32_t slot) const { return leaf_boxes_[leaf_of_slot_[slot]]; }
 
   std::string name_of(const Primitive& primitive) const {
     const PrimitiveId id = primitive_of_order(numbers_, primitive.c.y);
@@ -220,8 +220,8 @@ class Inspection {
   std::span<const Primitive> primitives_;
   const PrimitiveNumbers& numbers_;
   /// Of each node, and of each leaf: what its own box and those of all nodes above have in common.
-  std::vector<Box> node_boxes_;
-  std::vector<Box> leaf_boxes_;
+  std::vector<ExactBounds> node_boxes_;
+  std::vector<ExactBounds> leaf_boxes_;
   std::vector<uint32_t> leaf_of_slot_;
   std::vector<uint32_t> slots_;
   std::vector<uint32_t> first_slot_;

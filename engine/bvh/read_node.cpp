@@ -26,9 +26,9 @@ NodeChild child_of(const layout::Node& node, uint32_t child) {
   return {ChildKind::kLeaf, word & layout::CHILD_FIRST_MASK, ((word >> layout::CHILD_COUNT_SHIFT) & 15) + 1};
 }
 
-Box child_box(const layout::Node& node, uint32_t child) {
+ExactBounds child_box(const layout::Node& node, uint32_t child) {
   const uvec3 hi_words(node.lo.w, node.hi.x, node.hi.y);
-  Box box;
+  ExactBounds box;
   for (int axis = 0; axis < 3; ++axis) {
     const double origin = std::bit_cast<float>(node.frame[axis]);
     const double step = std::bit_cast<float>(byte_of(node.frame.w, static_cast<uint32_t>(axis)) << 23);

@@ -11,8 +11,8 @@
 // Reads on the host what pack_tree and pack_scene write, as the shaders read it: for checks, tests and builders.
 namespace promin {
 
-/// A box in double. Everything by default: what nothing confines.
-struct Box {
+/// Bounds in double. Everything by default: what nothing confines.
+struct ExactBounds {
   dvec3 lo{-std::numeric_limits<double>::infinity()};
   dvec3 hi{std::numeric_limits<double>::infinity()};
 };
@@ -34,7 +34,7 @@ uint32_t child_count(const layout::Node& node);
 NodeChild child_of(const layout::Node& node, uint32_t child);
 
 /// The box of a child that is there. Bits that are no box (NaN, infinity) come as they are.
-Box child_box(const layout::Node& node, uint32_t child);
+ExactBounds child_box(const layout::Node& node, uint32_t child);
 
 /// Of any primitive of the tree, conservative as bounds_of of its shape is.
 Bounds primitive_bounds(const layout::Primitive& primitive);

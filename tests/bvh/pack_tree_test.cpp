@@ -24,7 +24,7 @@ uint32_t byte_of(uint32_t word, uint32_t index) {
 /// That fp32 gives each plane of a child's box once rounded, with a fused multiply-add and without one: steps are
 /// powers of two.
 void expect_contraction_is_no_matter(const Node& node, uint32_t child) {
-  const Box box = child_box(node, child);
+  const ExactBounds box = child_box(node, child);
   const uvec3 hi_words(node.lo.w, node.hi.x, node.hi.y);
   for (int axis = 0; axis < 3; ++axis) {
     const auto origin = std::bit_cast<float>(node.frame[axis]);
@@ -85,7 +85,7 @@ class Walk {
     for (uint32_t i = 0; i < count; ++i) {
       const NodeChild child = child_of(node, i);
       const Bounds held = child.kind == ChildKind::kLeaf ? visit_leaf(child) : visit(child.first, entries + 1);
-      const Box box = child_box(node, i);
+      const ExactBounds box = child_box(node, i);
       expect_contraction_is_no_matter(node, i);
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_LE(box.lo[axis], static_cast<double>(held.lo[axis])) << "node " << index << ", child " << i;
