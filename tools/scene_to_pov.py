@@ -54,6 +54,9 @@ class PovWriter(SceneReader):
             body = f"cone {{ {half:.9g} * -y, {bottom:.9g}, {half:.9g} * y, {top:.9g}"
             if bottom == top:
                 body = f"cylinder {{ {half:.9g} * -y, {half:.9g} * y, {top:.9g}"
+        elif kind == "box":
+            corner = vector(0.5 * length for length in size.get("size", (1, 1, 1)))
+            body = f"box {{ -{corner}, {corner}"
         else:
             raise Unsupported(f"a shape of KHR_implicit_shapes ({kind})")
         self._add(body, material, world)

@@ -258,6 +258,30 @@ TEST_F(GltfTest, TwoRadiiMakeAConeOrAFrustum) {
   }
 }
 
+TEST_F(GltfTest, BoxesStretchAndTurn) {
+  const auto box_of = [&](const json& node, const json& size = {2, 4, 6}) {
+    return std::get<world::Box>(load(shape_gltf({{"type", "box"}, {"box", {{"size", size}}}}, node)).objects[0].shape);
+  };
+  const world::Box plain = box_of({{"translation", {1, 2, 3}}});
+  EXPECT_EQ(plain.center, vec3(1, 2, 3));
+  EXPECT_EQ(plain.half_size, vec3(1, 2, 3));
+  EXPECT_EQ(plain.turn, vec3(0));
+  EXPECT_EQ(box_of({{"scale", {-3, 2, 1}}}).half_size, vec3(3, 4, 3));
+  // A quarter turn is another order of the axes, exactly.
+  const world::Box quarter = box_of({{"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
+  EXPECT_EQ(quarter.half_size, vec3(2, 1, 3));
+  EXPECT_EQ(quarter.turn, vec3(0));
+  // 30 degrees about x.
+  const world::Box turned = box_of({{"rotation", {std::sin(0.2617993877991494), 0, 0, std::cos(0.2617993877991494)}}});
+  EXPECT_EQ(turned.half_size, vec3(1, 2, 3));
+  expect_near(turned.turn, {0.25881905F, 0, 0});
+  // 75 degrees about x are -15 with two axes renamed.
+  const world::Box more = box_of({{"rotation", {std::sin(0.6544984694978736), 0, 0, std::cos(0.6544984694978736)}}});
+  EXPECT_EQ(more.half_size, vec3(1, 3, 2));
+  expect_near(more.turn, {-0.13052619F, 0, 0});
+  EXPECT_EQ(std::get<world::Box>(load(shape_gltf({{"type", "box"}})).objects[0].shape).half_size, vec3(0.5F));
+}
+
 TEST_F(GltfTest, PlanesTurnTheirNormal) {
   const LoadedScene scene =
       load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
@@ -270,7 +294,7 @@ TEST_F(GltfTest, PlanesTurnTheirNormal) {
 
 TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
   const std::vector<std::pair<json, json>> cases = {
-      {{{"type", "box"}, {"box", {{"size", {1, 1, 1}}}}}, {}},
+      {{{"type", "box"}}, {{"matrix", {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}},
       {{{"type", "capsule"}}, {}},
       {{{"type", "plane"}, {"plane", {{"sizeX", 1}, {"sizeZ", 1}}}}, {}},
       {{{"type", "sphere"}}, {{"scale", {1, 2, 1}}}},

@@ -45,18 +45,16 @@ View view_of(world::Scene& scene) {
   return view;
 }
 
-void move(world::Shape& shape, const vec3& offset) {
-  if (auto* mesh = std::get_if<Mesh>(&shape)) {
-    for (vec3& position : mesh->positions) position += offset;
-  } else if (auto* sphere = std::get_if<world::Sphere>(&shape)) {
-    sphere->center += offset;
-  } else if (auto* plane = std::get_if<world::Plane>(&shape)) {
-    plane->point += offset;
-  } else if (auto* cylinder = std::get_if<world::Cylinder>(&shape)) {
-    cylinder->center += offset;
-  } else if (auto* cone = std::get_if<world::Cone>(&shape)) {
-    cone->center += offset;
-  }
+void move(Mesh& mesh, const vec3& offset) {
+  for (vec3& position : mesh.positions) position += offset;
+}
+void move(world::Plane& plane, const vec3& offset) {
+  plane.point += offset;
+}
+void move(world::NotDrawn& /*shape*/, const vec3& /*offset*/) {}
+template <class Solid>
+void move(Solid& solid, const vec3& offset) {
+  solid.center += offset;
 }
 
 class OraclePictureTest : public test::DeviceTest, public testing::WithParamInterface<std::string> {
@@ -105,7 +103,9 @@ TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {
   world::Scene scene = test::make_scene_of_everything();
   View view = test::make_view(uvec2(96, 72));
   const vec3 offset(1e5F, -1e5F, 1e5F);
-  for (world::Object& object : scene.objects) move(object.shape, offset);
+  for (world::Object& object : scene.objects) {
+    std::visit([&](auto& shape) { move(shape, offset); }, object.shape);
+  }
   for (Light& light : scene.lights) light.position += offset;
   view.camera.eye += offset;
   const oracle::PictureReport report = compare(scene, view);

@@ -47,6 +47,7 @@ std::span<const HardCase> ray_cases();
 std::span<const HardCase> secondary_cases();
 std::span<const HardCase> host_cases();
 std::span<const HardCase> tree_cases();
+std::span<const HardCase> implicit_cases();
 
 /// What the answers to many rays come to against the oracle. Errors in units of u S (docs/accuracy.md).
 struct Tally {

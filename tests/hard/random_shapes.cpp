@@ -44,4 +44,12 @@ world::Cone random_shape(const vec3& center, Random& random) {
   return {center, random_axis(random), random_size(random), random_size(random), top};
 }
 
+template <>
+world::Box random_shape(const vec3& center, Random& random) {
+  const vec3 half_size(random_size(random), random_size(random), random_size(random));
+  // As far as orientations go, and every third along the axes of space.
+  const double sine = random.uniform() < 1.0 / 3.0 ? 0.0 : random.uniform(0.0, 0.52);
+  return {center, half_size, vec3(sine * random.direction())};
+}
+
 }  // namespace promin::hard

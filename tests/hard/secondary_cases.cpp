@@ -40,9 +40,11 @@ void run_self_hits(Lab& lab) {
     const double scale = std::pow(10.0, exponent);
     const auto size = static_cast<float>(scale);
     const auto shapes_at = [&](const vec3& center) {
-      return std::vector<world::Shape>{world::Sphere{center, size}, world::Cylinder{center, axis, size, 0.5F * size},
+      return std::vector<world::Shape>{world::Sphere{center, size},
+                                       world::Cylinder{center, axis, size, 0.5F * size},
                                        world::Cone{center, axis, size, 0.7F * size, 0.0F},
                                        world::Cone{center, axis, size, 0.3F * size, 0.8F * size},
+                                       world::Box{center, size * vec3(1.0F, 0.7F, 0.4F), vec3(0.2F, -0.1F, 0.3F)},
                                        make_octahedron(center, size)};
     };
     for (const world::Shape& shape : shapes_at(vec3(0.0F))) {

@@ -38,7 +38,7 @@ world::Scene make_strewn(const dvec3& center, double radius, int count, Random& 
   for (int i = 0; i < count; ++i) {
     const vec3 place(random_point(center, radius, random));
     const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
-    switch (i % 5) {
+    switch (i % 6) {
       case 0:
         shapes.emplace_back(world::Sphere{place, size});
         break;
@@ -47,6 +47,9 @@ world::Scene make_strewn(const dvec3& center, double radius, int count, Random& 
         break;
       case 2:
         shapes.emplace_back(world::Cone{place, turned_axis(random), size, size, i % 2 == 0 ? 0.0F : 0.4F * size});
+        break;
+      case 3:
+        shapes.emplace_back(world::Box{place, size * vec3(1.0F, 0.6F, 0.3F), 0.4F * turned_axis(random)});
         break;
       default: {
         Mesh mesh;

@@ -33,6 +33,7 @@ struct Bound {
   BoundingSphere operator()(const world::Cone& c) const {
     return {Vector(c.center), std::hypot(Real(c.half_height), Real(std::max(c.radius_bottom, c.radius_top)))};
   }
+  BoundingSphere operator()(const world::Box& b) const { return {Vector(b.center), glm::length(Vector(b.half_size))}; }
   BoundingSphere operator()(const Mesh& mesh) const {
     const Corners corners = corners_of(mesh, primitive);
     const Vector center = (corners[0] + corners[1] + corners[2]) / Real(3);
@@ -41,6 +42,14 @@ struct Bound {
     return {center, radius};
   }
 };
+
+/// A point in a box's frame, by symmetry where no component is negative, from the corner: positive beyond a face.
+Vector from_corner(const world::Box& box, const Vector& point) {
+  const Vector from_center = point - Vector(box.center);
+  Vector result;
+  for (int i = 0; i < 3; ++i) result[i] = std::abs(glm::dot(from_center, axis_of(box, i))) - box.half_size[i];
+  return result;
+}
 
 struct CreaseDistance {
   const Vector& point;
@@ -54,6 +63,18 @@ struct CreaseDistance {
   }
   Real operator()(const world::Cone& c) const {
     return to_rims(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
+  }
+
+  /// To the edges, each along one axis where the other two end.
+  Real operator()(const world::Box& b) const {
+    const Vector p = from_corner(b, point);
+    Real least = kInfinity;
+    for (int i = 0; i < 3; ++i) {
+      Vector to_edge = p;
+      to_edge[i] = std::max(p[i], Real(0));
+      least = std::min(least, glm::length(to_edge));
+    }
+    return least;
   }
 
   Real to_rims(const Vector& center, const Vector& axis, Real h, Real bottom, Real top) const {
@@ -92,6 +113,11 @@ struct SignedDistance {
     if (inside <= 0) return inside;
     return std::min({distance_to_segment(q, bottom_rim, top_rim), distance_to_segment(q, Vector(0, -h, 0), bottom_rim),
                      distance_to_segment(q, Vector(0, h, 0), top_rim)});
+  }
+
+  Real operator()(const world::Box& b) const {
+    const Vector p = from_corner(b, point);
+    return glm::length(glm::max(p, Vector(0))) + std::min(Real(0), std::max({p.x, p.y, p.z}));
   }
 
   Real operator()(const Mesh& mesh) const {

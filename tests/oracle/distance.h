@@ -18,18 +18,20 @@ struct BoundingSphere {
 /// Whether the primitive exists and can be hit: a degenerate triangle cannot.
 bool is_hittable(const world::Shape& shape, int32_t primitive);
 
-/// Of a plane its point and 0; of a triangle around its centroid, of cylinder and cone around the middle of the axis.
+/// Of a plane its point and 0; of a triangle around its centroid, of cylinder and cone around the middle of the axis,
+/// of a box around its centre.
 /// The primitive is hittable, here and below.
 BoundingSphere bounding_sphere(const world::Shape& shape, int32_t primitive);
 
 /// docs/accuracy.md's S = |o - c| + size, the length that bounds B1, B2 and BK are counted in, times kRoundoff.
 Real scale_of(const world::Shape& shape, int32_t primitive, const Ray& ray);
 
-/// From a point to the surface. Inside a sphere, cylinder or cone it is negative, so that it is a convex function of
+/// From a point to the surface. Inside a solid it is negative, so that it is a convex function of
 /// the point; disks are part of the surface.
 Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
 
-/// From a point to where the surface has a crease: the rims of cylinder and cone and the apex; infinite for others.
+/// From a point to where the surface has a crease: the rims of cylinder and cone, the apex, a box's edges;
+/// infinite for others.
 Real distance_to_crease(const world::Shape& shape, const Vector& point);
 
 /// From a point to the segment between `a` and `b`, which may be the same.

@@ -41,6 +41,18 @@ TEST(Distance, ConesHaveASlope) {
   EXPECT_NEAR(signed_distance(cone, 0, {2, -3, 0}), 2, kTolerance);
 }
 
+TEST(Distance, BoxesHaveFacesEdgesAndCorners) {
+  const world::Box box{{1, 0, 0}, {1, 2, 3}, {0, 0, 0}};
+  EXPECT_NEAR(signed_distance(box, 0, {1, 0, 0}), -1, kTolerance);
+  EXPECT_NEAR(signed_distance(box, 0, {1, 1.5L, 0}), -0.5L, kTolerance);
+  EXPECT_NEAR(signed_distance(box, 0, {1, -4, 0}), 2, kTolerance);
+  EXPECT_NEAR(signed_distance(box, 0, {5, 6, 0}), 5, kTolerance) << "to an edge, 3 and 4 away";
+  EXPECT_NEAR(signed_distance(box, 0, {4, 4, 4}), 3, kTolerance) << "to a corner, 2, 2 and 1 away";
+  EXPECT_NEAR(distance_to_crease(box, {5, 6, 0}), 5, kTolerance);
+  EXPECT_NEAR(distance_to_crease(box, {1, 2, 0.5L}), 1, kTolerance) << "in a face";
+  EXPECT_NEAR(distance_to_crease(box, {4, 4, 4}), 3, kTolerance);
+}
+
 TEST(Distance, TrianglesHaveFacesEdgesAndCorners) {
   const Mesh mesh = make_triangle();
   EXPECT_NEAR(signed_distance(mesh, 0, {1, 1, -2}), 2, kTolerance);

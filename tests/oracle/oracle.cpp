@@ -106,6 +106,24 @@ class Search {
     if (radius > 0 && glm::dot(p, p) <= radius * radius) offer(near + t, normal);
   }
 
+  /// |(P - C) . A| = h for each axis A, where the other two are within theirs.
+  void intersect(const world::Box& box) {
+    const Real near = approach(box.center);
+    const Vector oc = ray_.origin - Vector(box.center) + near * ray_.direction;
+    for (int i = 0; i < 3; ++i) {
+      const Vector axis = axis_of(box, i);
+      for (const Real side : {Real(-1), Real(1)}) {
+        const Real t = (side * box.half_size[i] - glm::dot(oc, axis)) / glm::dot(ray_.direction, axis);
+        const Vector p = oc + t * ray_.direction;
+        bool is_within = true;
+        for (const int j : {(i + 1) % 3, (i + 2) % 3}) {
+          is_within = is_within && std::abs(glm::dot(p, axis_of(box, j))) <= box.half_size[j];
+        }
+        if (is_within) offer(near + t, side * axis);
+      }
+    }
+  }
+
   void intersect(const Mesh& mesh) {
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
       const glm::uvec3& corners = mesh.triangles[i];
@@ -136,6 +154,16 @@ class Search {
 };
 
 }  // namespace
+
+Vector axis_of(const world::Box& box, int i) {
+  // The rotation matrix of a unit quaternion (w, q).
+  const Vector q(box.turn);
+  const Real w = std::sqrt(1 - glm::dot(q, q));
+  const Vector rows[] = {{1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y - w * q.z), 2 * (q.x * q.z + w * q.y)},
+                         {2 * (q.x * q.y + w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z - w * q.x)},
+                         {2 * (q.x * q.z - w * q.y), 2 * (q.y * q.z + w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y)}};
+  return {rows[0][i], rows[1][i], rows[2][i]};
+}
 
 bool can_hit(const Ray& ray) {
   return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Vector(0) && ray.tmin < ray.tmax;

@@ -42,6 +42,9 @@ struct Hit {
   bool exists() const { return object >= 0; }
 };
 
+/// A box's axis in the world, a unit vector.
+Vector axis_of(const world::Box& box, int i);
+
 /// Whether a ray may meet anything at all: see Ray.
 bool can_hit(const Ray& ray);
 

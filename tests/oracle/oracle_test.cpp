@@ -56,6 +56,23 @@ TEST(Oracle, Sphere) {
   EXPECT_FALSE(cast(sphere, {2.001L, 0, 5}, {0, 0, -1}).exists());
 }
 
+TEST(Oracle, Box) {
+  const world::Box box{{1, 0, 0}, {1, 2, 3}, {0, 0, 0}};
+  expect_hit(cast(box, {1, 0, 8}, {0, 0, -1}), 5, {0, 0, 1});
+  expect_hit(cast(box, {1.5L, 1.5L, 0}, {0, -1, 0}), 3.5L, {0, -1, 0});
+  expect_hit(cast(box, {-4, 1, 1}, {2, 0, 0}), 2, {-1, 0, 0});
+  EXPECT_FALSE(cast(box, {2.01L, 0, 8}, {0, 0, -1}).exists());
+  EXPECT_FALSE(cast(box, {1, 0, 8}, {0, 0, 1}).exists());
+
+  // An eighth of a turn about z, by sin(pi / 8).
+  const world::Box turned{{0, 0, 0}, {1, 1, 1}, {0, 0, 0.38268343F}};
+  const Real half = std::sqrt(Real(0.5));
+  const Hit hit = cast(turned, {4, 0.25L, 0}, {-1, 0, 0});
+  EXPECT_NEAR(hit.t, 4 - (2 * half - 0.25L), 1e-7L);
+  EXPECT_NEAR(hit.normal.x, half, 1e-7L);
+  EXPECT_NEAR(hit.normal.y, half, 1e-7L);
+}
+
 TEST(Oracle, PlaneKeepsItsOwnNormal) {
   const world::Plane plane{{0, 1, 0}, {0, 1, 0}};
   expect_hit(cast(plane, {0, 3, 0}, {1, -1, 0}), 2, {0, 1, 0});

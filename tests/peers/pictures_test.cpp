@@ -109,6 +109,10 @@ TEST_F(PeerPictureTest, PovrayAllPrimitives) {
   expect_same_picture(povray(), scenes_ / "all_primitives.gltf");
 }
 
+TEST_F(PeerPictureTest, PovrayBoxes) {
+  expect_same_picture(povray(), scenes_ / "box.gltf");
+}
+
 TEST_F(PeerPictureTest, PovraySphereflake) {
   expect_same_picture(povray(), make_sphereflake());
 }

@@ -33,6 +33,10 @@ METHODS = {
         "cap slab cut with the lateral interval, solved from the point in the slab nearest to axis and apex",
         "Haines et al., ch. 7, for the re-centring; Press et al., Numerical Recipes, 5.6, for the quadratic",
     ),
+    "box": (
+        "three slabs in the box's frame, from the closest approach to its centre",
+        "Kay and Kajiya, Ray Tracing Complex Scenes, SIGGRAPH 1986",
+    ),
     "triangle": (
         "shear to the ray's axis, edge functions by compared products, edges belong to the triangle",
         "Woop, Benthin, Wald, Watertight Ray/Triangle Intersection, JCGT 2013",

@@ -55,6 +55,11 @@ class ContentHash {
     add(cone.radius_bottom);
     add(cone.radius_top);
   }
+  void add(const world::Box& box) {
+    add(box.center);
+    add(box.half_size);
+    add(box.turn);
+  }
   void add(const Material& material) {
     for (const vec3& factor :
          {material.ambient, material.diffuse, material.specular, material.reflection, material.emissive}) {

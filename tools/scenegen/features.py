@@ -95,6 +95,22 @@ def cone():
     return g
 
 
+def box():
+    """Boxes upright, turned and on a corner, a plate, and one in a mirror: all kinds of faces and edges are seen."""
+    g = _stage()
+    cube = g.box("cube", (0.9, 0.9, 0.9), _glossy(g, "cube", CORAL))
+    g.node("cube", mesh=cube, translation=(-1.5, 0.45, 0.3), rotation=quaternion_about((0.0, 1.0, 0.0), 30.0))
+    tilt = axis_rotation((1.0, 1.0, 1.0))
+    g.node("on its corner", mesh=cube, translation=(0.1, 0.78, 0.0), rotation=tilt, scale=0.85)
+    slab = g.box("slab", (1.6, 0.2, 0.9), _glossy(g, "slab", TEAL))
+    g.node("slab", mesh=slab, translation=(1.75, 0.1, 0.5), rotation=quaternion_about((0.0, 1.0, 0.0), -20.0))
+    g.node("stretched", mesh=cube, translation=(1.7, 0.6, 0.45), scale=(0.5, 0.9, 0.4))
+    plate = g.box("plate", (4.6, 2.0, 0.02), g.material("plate", SLATE, specular=0.3, shininess=80.0, reflection=0.6))
+    g.node("plate", mesh=plate, translation=(0.2, 1.0, -1.5), rotation=quaternion_about((0.0, 1.0, 0.0), 8.0))
+    g.camera("camera", (0.5, 2.1, 5.6), (0.1, 0.75, 0.0))
+    return g
+
+
 def triangles_sharp():
     """Meshes without normals: every face is flat."""
     g = _stage()
@@ -382,6 +398,7 @@ SCENES = (
     plane,
     cylinder,
     cone,
+    box,
     triangles_sharp,
     triangles_smooth,
     strip_and_fan,

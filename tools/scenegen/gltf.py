@@ -111,7 +111,8 @@ class Gltf:
         return self._append("meshes", {"name": name, "primitives": [self._primitive(mesh, material, mode)]})
 
     def _shape(self, name, kind, parameters, fallback, material):
-        shape = {"type": kind, kind: {key: shortest(value) for key, value in parameters.items()}}
+        numbers = {key: shortest(value) if isinstance(value, float) else _numbers(value) for key, value in parameters.items()}
+        shape = {"type": kind, kind: numbers}
         index = self._append_to_extension("KHR_implicit_shapes", "shapes", shape)
         self._extensions.add("PROMIN_mesh_primitive_implicit_shape")
         primitive = self._primitive(fallback, material)
@@ -131,6 +132,9 @@ class Gltf:
         parameters = {"height": height, "radiusBottom": radius_bottom, "radiusTop": radius_top}
         fallback = meshes.frustum(height, radius_bottom, radius_top, 16)
         return self._shape(name, "cylinder", parameters, fallback, material)
+
+    def box(self, name, size, material):
+        return self._shape(name, "box", {"size": size}, meshes.box(*size), material)
 
     def plane(self, name, material, fallback_size=40.0):
         """The infinite plane y = 0."""

@@ -30,6 +30,7 @@ class ShapeReader {
     if (type == "sphere") return read_sphere();
     if (type == "cylinder") return read_cylinder();
     if (type == "plane") return read_plane();
+    if (type == "box") return read_box();
     return fall_back("is a " + type + ", which is no analytic shape here");
   }
 
@@ -93,6 +94,14 @@ class ShapeReader {
       return plane;
     }
     return check(plane);
+  }
+
+  std::optional<Geometry> read_box() {
+    dvec3 size(1.0);
+    if (const auto box = shape_.find("box"); box != shape_.end() && box->contains("size")) {
+      for (int i = 0; i < 3; ++i) size[i] = (*box)["size"][static_cast<size_t>(i)];
+    }
+    return check(Box{dvec3(0.0), 0.5 * size});
   }
 
   static constexpr dvec3 kAxis{0.0, 1.0, 0.0};

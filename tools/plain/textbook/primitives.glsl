@@ -124,6 +124,41 @@ Crossing intersect_cone(Ray ray, Primitive p) {
   return intersect_frustum(ray, p.a.xyz, p.b.xyz, real(p.b.w), real(p.a.w), real(uintBitsToFloat(p.c.x)));
 }
 
+// Slabs, in the frame that the rotation matrix of the box's quaternion leads to.
+mat3 box_axes(Primitive p) {
+  vec3 q = vec3(p.b.zw, uintBitsToFloat(p.c.x));
+  float w = sqrt(1.0 - dot(q, q));
+  return mat3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + w * q.z), 2.0 * (q.x * q.z - w * q.y),
+              2.0 * (q.x * q.y - w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + w * q.x),
+              2.0 * (q.x * q.z + w * q.y), 2.0 * (q.y * q.z - w * q.x), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
+}
+
+Crossing intersect_box(Ray ray, Primitive p) {
+  mat3 axes = box_axes(p);
+  real3 half_size = real3(p.a.w, p.b.xy);
+  real3 oc;
+  real start = recentre(ray, p.a.xyz, oc);
+  real near = real(-INFINITY);
+  real far = real(INFINITY);
+  uint near_face = 0u;
+  uint far_face = 0u;
+  for (int i = 0; i < 3; ++i) {
+    real3 axis = real3(axes[i]);
+    real d = dot(real3(ray.direction), axis);
+    real o = dot(oc, axis);
+    real low = (-half_size[i] - o) / d;
+    real high = (half_size[i] - o) / d;
+    uint face = 2u * uint(i);
+    if (min(low, high) > near) near_face = face + (low < high ? 0u : 1u);
+    if (max(low, high) < far) far_face = face + (low < high ? 1u : 0u);
+    near = max(near, min(low, high));
+    far = min(far, max(low, high));
+  }
+  if (!(near <= far)) return NO_CROSSING;
+  bool takes_near = float(start + near) > ray.tmin;
+  return Crossing(float(start + (takes_near ? near : far)), 0.0, 0.0, takes_near ? near_face : far_face);
+}
+
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
   vec3 position = ray.origin + hit.t * ray.direction;
   vec3 from_center = position - p.a.xyz;
@@ -136,5 +171,6 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
     if (hit.part == PART_SIDE) normal = normalize(radial) - slope * p.b.xyz;
     if (hit.part == PART_BOTTOM) normal = -p.b.xyz;
   }
+  if (p.c.z == KIND_BOX) normal = ((hit.part & 1u) != 0u ? 1.0 : -1.0) * box_axes(p)[hit.part / 2u];
   return SurfacePoint(position, normalize(normal), 1e-4);
 }

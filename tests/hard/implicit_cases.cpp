@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Boxes, as KHR_implicit_shapes has them.
+#include <array>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+
+#include "hard/hard_case.h"
+#include "oracle/distance.h"
+
+namespace promin::hard {
+namespace {
+
+/// For each of the orientations.
+constexpr size_t kRayCount = 25000;
+/// Where many answers differ from the oracle's: the search for the margin of one takes a millisecond.
+constexpr size_t kGrazingRayCount = 1000;
+
+/// BK, B2 and well-formed hits. B1 has no meaning where rays come near an edge: the normal jumps there.
+void expect_bounds(Lab& lab, const std::string& where, const Tally& tally) {
+  lab.expect_at_most("|P - surface| / uS (BK), " + where, 8.0 * lab.rounding_factor(), tally.max_surface_error);
+  lab.expect_at_most("margin of other answers / uS (B2), " + where, 2.0, tally.max_margin);
+  lab.expect_at_most("malformed hits, " + where, 0.0, static_cast<double>(tally.malformed));
+}
+
+/// As box.cpp has them: none, small, of ordinary size, and as far as they go.
+constexpr std::array<vec3, 4> kTurns = {vec3(0.0F), vec3(1e-5F, -2e-6F, 3e-7F), vec3(0.1F, -0.25F, 0.2F),
+                                        vec3(0.3F, 0.3F, -0.3F)};
+
+struct BoxForm {
+  const char* name;
+  vec3 half_size;
+};
+constexpr BoxForm kCube{"cube", vec3(1.0F)};
+constexpr BoxForm kBrick{"brick", vec3(1.0F, 0.6F, 0.3F)};
+constexpr BoxForm kPlate{"plate", vec3(1.0F, 1e-4F, 1.0F)};
+constexpr BoxForm kRod{"rod", vec3(1e-4F, 1e-4F, 1.0F)};
+constexpr BoxForm kSmall{"small box", vec3(1e-3F, 2e-3F, 1e-3F)};
+
+/// A box and the numbers to aim at it by.
+struct AimedBox {
+  world::Box box;
+  dvec3 axes[3];
+
+  AimedBox(const BoxForm& form, const vec3& center, const vec3& turn) : box{center, form.half_size, turn} {
+    for (int i = 0; i < 3; ++i) axes[i] = dvec3(oracle::axis_of(box, i));
+  }
+
+  /// Of coordinates from -1 to 1.
+  dvec3 at(const dvec3& place) const {
+    dvec3 point(box.center);
+    for (int i = 0; i < 3; ++i) point += place[i] * static_cast<double>(box.half_size[i]) * axes[i];
+    return point;
+  }
+  double size() const { return glm::length(dvec3(box.half_size)); }
+};
+
+dvec3 random_place(Random& random, double spread) {
+  return {random.uniform(-spread, spread), random.uniform(-spread, spread), random.uniform(-spread, spread)};
+}
+
+using MakeRay = std::function<Ray(const AimedBox&, Random&)>;
+
+Tally cast_boxes(Lab& lab, const BoxForm& form, const vec3& center, Random& random, const MakeRay& make_ray,
+                 size_t count = kRayCount) {
+  Tally tally;
+  for (const vec3& turn : kTurns) {
+    const AimedBox aimed(form, center, turn);
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < count; ++i) rays.push_back(make_ray(aimed, random));
+    tally.add(lab.cast_and_judge(scene_of({aimed.box}), rays));
+  }
+  return tally;
+}
+
+void run_around(Lab& lab, const BoxForm& form, std::initializer_list<double> distances, const vec3& center,
+                Random& random) {
+  for (const double distance : distances) {
+    const Tally tally = cast_boxes(lab, form, center, random, [&](const AimedBox& aimed, Random& r) {
+      return ray_towards(dvec3(aimed.box.center) + distance * r.direction(), aimed.at(random_place(r, 1.1)));
+    });
+    Lab::credit("box", tally.without_t_errors());
+    expect_bounds(lab, form.name + label(", distance", distance), tally);
+  }
+}
+
+void run_boxes_far_away(Lab& lab) {
+  Random random(39);
+  run_around(lab, kCube, {3.0, 1e1, 1e2, 1e3, 1e4, 1e5}, vec3(0.0F), random);
+  run_around(lab, kBrick, {3.0, 1e3}, vec3(0.0F), random);
+  run_around(lab, kPlate, {3.0, 1e3}, vec3(0.0F), random);
+  run_around(lab, kRod, {3.0, 1e3}, vec3(0.0F), random);
+  run_around(lab, kSmall, {10.0}, vec3(0.0F), random);
+  run_around(lab, kBrick, {10.0}, vec3(1e5F, -1e5F, 1e5F), random);
+}
+
+/// At edges and corners from where both or all of their faces are seen, well inside the silhouette: none may miss. At a
+/// plate from near by: from too far u S would reach its other side.
+void run_box_edges(Lab& lab) {
+  Random random(40);
+  for (const BoxForm& form : {kCube, kBrick, kPlate}) {
+    uint64_t leaks = 0;
+    Tally all;
+    for (const int fixed : {2, 3}) {
+      const Tally tally = cast_boxes(lab, form, vec3(0.3F, -0.2F, 0.1F), random, [&](const AimedBox& aimed, Random& r) {
+        // Not too near the edges with faces that are not seen.
+        dvec3 place = random_place(r, 0.9);
+        dvec3 outward(0.0);
+        const int first = static_cast<int>(3.0 * r.uniform());
+        for (int k = 0; k < fixed; ++k) {
+          const int axis = (first + k) % 3;
+          place[axis] = place[axis] < 0.0 ? -1.0 : 1.0;
+          outward += place[axis] * r.uniform(0.2, 1.0) * aimed.axes[axis];
+        }
+        const dvec3 target = aimed.at(place);
+        return ray_towards(target + aimed.size() *
+                                        std::pow(10.0, r.uniform(0.5, form.half_size == kPlate.half_size ? 1.5 : 3.0)) *
+                                        glm::normalize(outward),
+                           target);
+      });
+      leaks += tally.misses;
+      all.add(tally);
+    }
+    lab.expect_at_most(std::string("leaks at edges and corners, ") + form.name, 0.0, static_cast<double>(leaks));
+    Lab::credit("box", all.without_t_errors(), leaks);
+    expect_bounds(lab, std::string("edges and corners, ") + form.name, all);
+  }
+}
+
+/// Along a face as nearly as fp32 can be: in its plane, a little inside of it and a little beside it.
+void run_along_faces(Lab& lab) {
+  Random random(41);
+  for (const BoxForm& form : {kCube, kPlate}) {
+    for (const double gap : {0.0, 1e-6, 1e-3}) {
+      const Tally tally = cast_boxes(
+          lab, form, vec3(0.0F), random,
+          [&](const AimedBox& aimed, Random& r) {
+            const int axis = static_cast<int>(3.0 * r.uniform());
+            dvec3 place = random_place(r, 1.0);
+            place[axis] = (place[axis] < 0.0 ? -1.0 : 1.0) * (1.0 + r.uniform(-gap, gap));
+            const dvec3 along = r.perpendicular(aimed.axes[axis]);
+            const dvec3 target = aimed.at(place);
+            return ray_towards(target - 10.0 * along, target);
+          },
+          kGrazingRayCount);
+      Lab::credit("box", tally.without_t_errors());
+      expect_bounds(lab, std::string("along faces, ") + form.name + label(", gap", gap), tally);
+    }
+  }
+}
+
+constexpr std::array kCases{HardCase{39, "BoxFarAway", run_boxes_far_away}, HardCase{40, "BoxEdges", run_box_edges},
+                            HardCase{41, "AlongBoxFaces", run_along_faces}};
+
+}  // namespace
+
+std::span<const HardCase> implicit_cases() {
+  return kCases;
+}
+
+}  // namespace promin::hard
