@@ -24,7 +24,7 @@ constexpr size_t kSubtreeSize = 16384;
 constexpr double kLeastOverlap = 1e-4;
 
 /// A cut that costs up to this much more than the best object split is taken: the heuristic takes the sides for leaves,
-/// but sides that do not overlap are also split better further down. Measured, docs/performance.md.
+/// but sides that do not overlap are also split better further down. Measured, docs/performance_log.md.
 constexpr double kCutAdvantage = 1.1;
 
 /// The box of a record's primitive below or above a plane.

@@ -27,7 +27,7 @@ using layout::HitRecord;
 using layout::RayRecord;
 
 /// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...8
-/// (docs/performance.md).
+/// (docs/performance_log.md).
 constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
