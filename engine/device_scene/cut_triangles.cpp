@@ -114,7 +114,7 @@ CutTriangles::CutTriangles(const world::Scene& scene) {
     for (const uint32_t i : degenerate_.back()) {
       const uvec3& corners = mesh->triangles[i];
       const std::array p{mesh->positions[corners.x], mesh->positions[corners.y], mesh->positions[corners.z]};
-      // Where two corners are in one place, its neighbours share a whole edge.
+      // Where two corners of the triangle are in one place, its neighbours share a whole edge.
       if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
       const uint32_t group = groups.add();
       for (size_t side = 0; side < 3; ++side) {
