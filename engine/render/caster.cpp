@@ -42,7 +42,7 @@ float scale_of(const vec3& direction) {
 
 RayRecord record_of(const Ray& ray) {
   const float scale = scale_of(ray.direction);
-  // tmin * direction is kept. The product may round to 0 here; hit_of decides.
+  // tmin * direction is kept. The scaled tmin may round to 0 here; hit_of decides.
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
 }
 
