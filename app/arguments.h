@@ -27,16 +27,16 @@ class OptionValues {
 
   const std::vector<std::string>& all() const { return words_; }
   const std::string& text() const { return words_.front(); }
-  /// A decimal number min...max.
+  /// Reads a decimal number in min...max.
   uint32_t whole(size_t i, uint32_t min, uint32_t max) const;
-  /// A number min...max, both included.
+  /// Reads a number in min...max, both included.
   double real(size_t i, double min, double max) const;
-  /// Three numbers -max...max.
+  /// Reads three numbers in -max...max.
   dvec3 vector(double max) const;
-  /// One of `choices`.
+  /// Reads one of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
 
-  /// Parts of the words, to be read as words of the same option.
+  /// Splits the words into parts, each to be read as a word of the same option.
   OptionValues with(std::vector<std::string> words) const { return {command_, option_, std::move(words)}; }
 
   [[noreturn]] void refuse(const std::string& what) const;
@@ -56,7 +56,7 @@ class OptionTable {
   /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
   /// takes: "N", "W H".
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
-  /// What the command cannot do without.
+  /// Adds an argument that the command cannot do without.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// An option of one word that may be given several times; the setter gets all.
   void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);

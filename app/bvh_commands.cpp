@@ -33,7 +33,7 @@ struct BvhOptions {
   std::filesystem::path scene;
   std::filesystem::path file;
   std::string builder{builder_names().front()};
-  /// 0: one per core.
+  /// 0 takes one thread per core.
   unsigned thread_count = 0;
   bool is_quiet = false;
   bool is_verbose = false;

@@ -13,7 +13,7 @@ const dvec3 kStartUp(0.0, 1.0, 0.0);
 /// Unit vectors rounded to fp32 miss |v| = 1 and u.v = 0 by 1.2e-7 to 2.1e-7; a caller's printing may add as much.
 constexpr double kOrthonormalTolerance = 1e-6;
 
-/// Of directions that differ by less, fp32 can no longer tell which way is up.
+/// If two directions differ by less, fp32 can no longer tell which way is up.
 constexpr double kMinSine = 1e-6;
 
 /// GLM takes columns; the formulas are written in rows.

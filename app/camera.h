@@ -18,21 +18,21 @@ dmat3 make_rotation_y(double beta);
 /// tips to the left, and the picture turns clockwise.
 dmat3 make_rotation_z(double alpha);
 
-/// The thesis' free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
+/// The thesis's free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
 ///   M(alpha, beta, gamma) = Mz(alpha) My(beta) Mx(gamma),  Q <- Q M
 ///   look = Q (0, 0, -1),  up = Q (0, 1, 0),  right = look x up
-/// The vectors come from the start vectors every time, never from vectors already turned (erratum 8), and M stands on
-/// the right: angles are about the camera's own axes. Q stays orthonormal however long the camera is in use.
+/// The vectors are computed from the start vectors every time, never from vectors that have been turned already, and M
+/// stands on the right: angles are about the camera's own axes. Q stays orthonormal however long the camera is in use.
 class FreeCamera {
  public:
   /// At the origin, looking along -Z with +Y up; the projection is Camera's default.
   FreeCamera() : FreeCamera(Camera{}) {}
 
-  /// Takes over pose and projection. RenderMode and up are orthonormal to fp32 rounding, as Camera promises.
+  /// Takes over pose and projection. `look` and `up` are orthonormal to fp32 rounding, as Camera promises.
   explicit FreeCamera(const Camera& camera);
 
-  /// From directions of any length. They are used as given, to the bit, where they are orthonormal to rounding;
-  /// otherwise up is made perpendicular to look. Throws UsageError if they are zero, not finite or parallel.
+  /// Makes a camera of directions of any length. They are used as given, to the bit, where they are orthonormal to
+  /// rounding; otherwise up is made perpendicular to look. Throws UsageError if they are zero, not finite or parallel.
   static FreeCamera from_pose(const vec3& eye, const vec3& look, const vec3& up);
 
   /// O <- O + ahead * look + up * up + right * right, in world units.
@@ -47,7 +47,7 @@ class FreeCamera {
   dvec3 up() const;
   dvec3 right() const;
 
-  /// Pose and projection for the renderer. What was neither moved nor rotated has the bits it came with.
+  /// Pose and projection for the renderer. What was neither moved nor rotated keeps its bits.
   const Camera& camera() const { return camera_; }
 
  private:

@@ -49,7 +49,7 @@ vec3 read_vector(const json& v) {
   return {v[0].get<float>(), v[1].get<float>(), v[2].get<float>()};
 }
 
-/// Of a frame that keeps the rules.
+/// Reads a frame that keeps the rules.
 TimedCamera read_frame(const json& frame, const std::string& place, LoadReport& report) {
   TimedCamera timed;
   timed.time_s = frame["time_s"].get<double>();
@@ -93,7 +93,7 @@ glm::dquat rotation_of(const Camera& camera) {
   return glm::normalize(glm::dquat(FreeCamera(camera).rotation()));
 }
 
-/// `share` in (0, 1).
+/// `share` is in (0, 1).
 Camera interpolate(const Camera& from, const Camera& to, double share) {
   // A camera that rests keeps its bits.
   if (shows_same(from, to)) return from;

@@ -20,7 +20,7 @@ struct TimedCamera {
 struct CameraPath {
   /// At least one, times finite, not negative and strictly increasing.
   std::vector<TimedCamera> frames;
-  /// Pictures a second that the flight is meant to be played with; none: each frame is a picture.
+  /// The number of pictures a second that the flight is meant to be played with; nullopt: each frame is a picture.
   std::optional<double> fps;
 };
 
@@ -31,21 +31,22 @@ CameraPath read_camera_path(const std::filesystem::path& file);
 /// ratios of cameras are left out. Throws RunError.
 void write_camera_path(const std::filesystem::path& file, const CameraPath& path);
 
-/// The camera at a time: a stored frame's at its time, to the bit, and the first and the last beyond the ends. Between,
-/// rotations follow the shortest great arc, all else straight lines; a change of projection waits for its frame.
+/// The camera at a time. At a stored frame's time it is that frame's to the bit, and beyond the ends that of the first
+/// or last frame. In between, rotations follow the shortest great arc and all else straight lines; a change of
+/// projection waits for its frame.
 Camera camera_at(const CameraPath& path, double time_s);
 
 /// The pictures that a path is played as, for whoever renders or shows it: both get the same cameras, to the bit.
 class PathPictures {
  public:
-  /// `fps` pictures a second, picture i at the time i / fps, until the last frame's time; with kStored the frames as
-  /// they are stored; none: as the path says. Throws UsageError for more pictures than kMaxCount.
+  /// Takes `fps` pictures a second, picture i at the time i / fps, until the last frame's time; with kStored the frames
+  /// as they are stored; with nullopt what the path says. Throws UsageError for more pictures than kMaxCount.
   explicit PathPictures(CameraPath path, std::optional<double> fps = std::nullopt);
 
-  /// At least one.
+  /// The number of pictures, at least one.
   size_t count() const { return count_; }
   Camera camera(size_t picture) const;
-  /// Seconds from picture to picture; 0 where they are the stored frames.
+  /// The seconds from picture to picture; 0 where the pictures are the stored frames.
   double interval_s() const { return fps_ == kStored ? 0.0 : 1.0 / fps_; }
 
   static constexpr double kStored = 0.0;

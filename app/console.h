@@ -8,19 +8,19 @@ namespace promin::app {
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
-/// Of the flags --quiet and --verbose. Throws UsageError where both are set.
+/// Makes a console by the flags --quiet and --verbose. Throws UsageError where both are set.
 Verbosity verbosity_of(bool is_quiet, bool is_verbose);
 
-/// What a command says beside its result: on the standard error stream, a line each, nothing when quiet.
+/// Prints what a command says beside its result: a line each on the standard error stream, and nothing when quiet.
 class Console {
  public:
   explicit Console(Verbosity verbosity, std::string program = "promin")
       : verbosity_(verbosity), program_(std::move(program)) {}
 
-  /// What was assumed where the scene or the user did not say.
+  /// Says what was assumed where the scene or the user did not say.
   void note(const std::string& text) const { print("note: " + text, Verbosity::kNormal); }
   void warn(const std::string& text) const { print("warning: " + text, Verbosity::kNormal); }
-  /// Only when verbose.
+  /// Says something only when verbose.
   void detail(const std::string& text) const { print(text, Verbosity::kVerbose); }
 
   bool is_quiet() const { return verbosity_ == Verbosity::kQuiet; }

@@ -4,8 +4,9 @@
 
 namespace promin::app {
 
-/// While one exists, SIGINT, SIGTERM and SIGHUP wait: a file that is being written gets whole before they end the
-/// program. At any other time no temporary file exists, and they end it at once. One at a time.
+/// While one exists, SIGINT, SIGTERM and SIGHUP wait, so that a file that is being written gets whole before they end
+/// the program. At any other time no temporary file exists, and they end the program at once. Only one may exist at a
+/// time.
 class DeferredSignals {
  public:
   DeferredSignals();
@@ -13,7 +14,7 @@ class DeferredSignals {
   DeferredSignals(const DeferredSignals&) = delete;
   DeferredSignals& operator=(const DeferredSignals&) = delete;
 
-  /// Whether one waits: long work stops then, and leaves nothing behind.
+  /// Whether a signal waits: long work stops then, and leaves nothing behind.
   bool is_pending() const;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity: null.
+/// JSON has no infinity, so null stands for it.
 Json json_of(float value) {
   return std::isfinite(value) ? Json::parse(fmt::format("{:.9g}", value)) : Json(nullptr);
 }
@@ -29,7 +29,7 @@ Json json_of(const Ray& ray) {
           {"tmax", json_of(ray.tmax)}};
 }
 
-/// Without what only the hits of the path have.
+/// Writes the members that any hit has, a blocker too; json_of(ExplainedRay) adds those of the hits on the path.
 Json json_of(const Hit& hit) {
   if (hit.object < 0) return nullptr;
   return {{"object", hit.object},

@@ -12,10 +12,10 @@ namespace promin::app {
 
 // A pixel's ray tree for people and programs; the scene is the one that was rendered, with the lights that stand in.
 
-/// As docs/explain.md says; numbers read back to the same bits.
+/// Writes the JSON that docs/explain.md describes; numbers read back to the same bits.
 std::string explain_json(const Explanation& explanation, const Scene& scene);
 
-/// A line for each ray and source, indented under what sends it.
+/// Writes a line for each ray and source, indented under the ray that leads to it.
 std::string explain_text(const Explanation& explanation, const Scene& scene);
 
 }  // namespace promin::app

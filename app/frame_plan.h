@@ -11,9 +11,9 @@
 
 namespace promin::app {
 
-/// One picture of those that a command renders.
+/// One of the pictures that a command renders.
 struct PlannedFrame {
-  /// Of a camera path; empty where the scene's cameras or the user's pose are meant.
+  /// The camera of a camera path; nullopt where the scene's cameras or the user's pose are meant.
   std::optional<uint32_t> number;
   std::optional<Camera> camera;
   std::vector<std::filesystem::path> pictures;

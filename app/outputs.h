@@ -11,7 +11,7 @@ namespace promin::app {
 /// Throws UsageError for a picture of an ending that write_image does not know.
 void check_pictures(const std::vector<std::filesystem::path>& pictures);
 
-/// Finds before the work what would make it useless: the same file twice, an input as an output (UsageError), a
+/// Finds before the work what would make it useless: the same file twice, or an input as an output (UsageError), a
 /// missing folder or one that cannot be written (RunError). No file is changed.
 void check_outputs(const std::vector<std::filesystem::path>& inputs, const std::vector<std::filesystem::path>& outputs,
                    const std::optional<std::filesystem::path>& stats);

@@ -20,9 +20,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// The fraction of the whole work that is done, 0...1, and what it is at, which may be empty.
+  /// Shows the fraction of the whole work that is done, 0...1, and its current step, which may be empty.
   void update(double fraction, const std::string& at = {});
-  /// For work that tells only how far it is.
+  /// A callback for work that reports only its fraction.
   ProgressCallback callback() {
     return [this](double fraction) {
       update(fraction);

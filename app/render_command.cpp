@@ -134,7 +134,8 @@ void render_frame(const PlannedFrame& planned, const RenderOptions& options, con
   stats.write_ms += write.ms();
 }
 
-/// All of them, with what is loaded once. What fails says at which; those before are whole.
+/// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
+/// are whole.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const gpu::Device& device,
                    Renderer& renderer, RunStats& stats, const Console& console) {
   Progress progress(console.is_quiet());

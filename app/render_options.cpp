@@ -26,7 +26,7 @@ constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 constexpr uint32_t kMaxFrame = 9999999;
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
-/// From names between commas.
+/// Reads names between commas.
 AovChoice read_aovs(const OptionValues& words) {
   AovChoice choice;
   std::istringstream list(words.text() + ",");
@@ -57,7 +57,7 @@ DebugView read_debug_view(const OptionValues& words) {
   return static_cast<DebugView>(place - names.begin());
 }
 
-/// "3-7", or "3" alone.
+/// Reads "3-7", or "3" alone.
 FrameRange read_frames(const OptionValues& words) {
   const std::string& text = words.text();
   const size_t dash = text.find('-');
@@ -67,7 +67,7 @@ FrameRange read_frames(const OptionValues& words) {
   return range;
 }
 
-/// Numbers between commas.
+/// Reads numbers between commas.
 std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
   std::istringstream list(words.text() + ",");

@@ -22,19 +22,19 @@ namespace promin::app {
 /// Longest side of a picture, in pixels.
 inline constexpr uint32_t kMaxSide = 32768;
 
-/// What replaces parts of the chosen camera. Directions need not be unit vectors.
+/// The user's choices that replace parts of the chosen camera. Directions need not be unit vectors.
 struct PoseOptions {
   std::optional<dvec3> eye;
   std::optional<dvec3> look;
   std::optional<dvec3> up;
-  /// Vertical, degrees in (0, 180).
+  /// The vertical field of view, degrees in (0, 180).
   std::optional<double> fov_deg;
   std::optional<double> near;
 
   bool any() const { return eye || look || up || fov_deg || near; }
 };
 
-/// What of the scene is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
+/// The part of a scene that is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
 struct ViewOptions {
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
@@ -42,16 +42,16 @@ struct ViewOptions {
   uint32_t max_depth = View{}.max_depth;
   DebugView debug_view = DebugView::kNone;
   bool has_no_shadows = false;
-  /// Indices of the scene's lights.
+  /// Indices of the scene's lights to leave out.
   std::vector<uint32_t> lights_off;
-  /// Name or number of a camera.
+  /// The name or number of a camera.
   std::optional<std::string> camera;
-  /// Takes the place of the scene's cameras.
+  /// A pose that takes the place of the scene's cameras.
   std::optional<Camera> given_camera;
   PoseOptions pose;
 };
 
-/// What --aov asks for.
+/// The AOVs that --aov asks for.
 struct AovChoice {
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) bool FIELD = false;
 #include "promin/kinds/aovs.def"
@@ -76,21 +76,21 @@ struct RenderOptions {
   ViewOptions view;
   /// Channels that an EXR carries beside R, G and B.
   AovChoice aovs;
-  /// A camera path, and which of its frames; all where empty.
+  /// A camera path, and which of its frames to render; without `frames` all.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
-  /// As PathPictures takes it.
+  /// The rate of pictures, as PathPictures takes it.
   std::optional<double> fps;
   /// A pixel to explain instead of writing a picture.
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 };
 
-/// The rows of what a window takes as well: what of the scene is shown, and the camera. `view` must outlive the
+/// Adds the rows that a window takes as well: what of the scene is shown, and the camera. `view` must outlive the
 /// parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 
-/// The row of --fps, for whatever plays a path. `fps` must outlive the parsing.
+/// Adds the row of --fps, for whatever plays a path. `fps` must outlive the parsing.
 void add_fps_option(OptionTable& table, std::optional<double>& fps);
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
@@ -99,7 +99,7 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 /// Throws UsageError where there is a camera beside the option of this name, which brings cameras of its own.
 void check_no_camera(const ViewOptions& options, std::string_view name);
 
-/// Throws UsageError for what no single option shows: two that contradict each other.
+/// Throws UsageError where two options contradict each other.
 void check_render_options(const RenderOptions& options);
 
 }  // namespace promin::app

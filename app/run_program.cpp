@@ -18,7 +18,7 @@ namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4 };
 
-/// What the library says without words of a command line, with the options that it comes down to here.
+/// Names the options of this command line in a message of the library, which knows none.
 std::string name_options(std::string message) {
   constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
       {"asked for as the device", "asked for by --device"},

@@ -14,7 +14,7 @@
 
 namespace promin::app {
 
-/// What one run over a scene made and cost: the content of `--stats`. Times in milliseconds.
+/// The content of `--stats`: what one run over a scene made and cost. Times are in milliseconds.
 struct RunStats {
   gpu::DeviceInfo device;
   std::string scene_file;
@@ -22,13 +22,13 @@ struct RunStats {
   size_t object_count = 0;
   size_t material_count = 0;
   size_t light_count = 0;
-  /// Of a picture.
+  /// Only set for pictures.
   std::optional<View> view;
   SetupStats setup;
   RayCounts rays;
-  /// Of a camera path, the numbers of its frames; the rays are those of all.
+  /// The numbers of a camera path's frames; the rays are then those of all frames.
   std::vector<uint32_t> frames;
-  /// Of each repetition; of a path, the median of each frame.
+  /// The time of each repetition; for a path, the median of each frame.
   std::vector<double> trace_ms;
   double load_ms = 0.0;
   double write_ms = 0.0;
@@ -36,14 +36,14 @@ struct RunStats {
 
   /// The median.
   double median_trace_ms() const;
-  /// All rays over the median trace time, or over that of all frames; 0 where that was too short to measure.
+  /// All rays over the median trace time, or over the time of all frames; 0 where that was too short to measure.
   double mrays_per_s() const;
 };
 
-/// What an EXR of the run's view says of it.
+/// The metadata of an EXR about the run's view.
 Metadata describe_picture(const RunStats& stats);
 
-/// As a JSON object, indented.
+/// Writes the stats as a JSON object, indented.
 std::string to_json(const RunStats& stats);
 
 }  // namespace promin::app

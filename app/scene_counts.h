@@ -11,7 +11,7 @@
 
 namespace promin::app {
 
-/// What an object may be: not drawn, or of the alternatives of Geometry, in its order; in the plural.
+/// Names of what an object may be, in the plural: not drawn, or an alternative of Geometry, in its order.
 inline constexpr auto kObjectNames = [] {
   std::array<std::string_view, 1 + std::variant_size_v<Geometry>> names{"not_drawn"};
   for (size_t i = 1; i < names.size(); ++i) names[i] = kGeometryNames[i - 1];
@@ -20,11 +20,11 @@ inline constexpr auto kObjectNames = [] {
 
 /// What a scene holds, for `promin info` and `--stats`.
 struct SceneCounts {
-  /// Objects of each kind, as kObjectNames.
+  /// The number of objects of each kind, in the order of kObjectNames.
   std::array<uint64_t, kObjectNames.size()> objects{};
   uint64_t primitives = 0;
   uint64_t triangles = 0;
-  /// Of the vertices, triangles and shapes in the host's memory.
+  /// The size of vertices, triangles and shapes in the host's memory.
   uint64_t geometry_bytes = 0;
 };
 

@@ -15,7 +15,7 @@ namespace promin::app {
 
 class OptionTable;
 
-/// What every command that traces a scene takes.
+/// The options that every command which traces a scene takes.
 struct TracingOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> stats;
@@ -30,17 +30,17 @@ struct TracingOptions {
   Verbosity verbosity() const { return verbosity_of(is_quiet, is_verbose); }
 };
 
-/// The row of SCENE, which comes first on the command line; and those of the others. `options` must outlive the
-/// parsing.
+/// Add the row of SCENE, which comes first on the command line, and those of the other options. `options` must outlive
+/// the parsing.
 void add_scene_argument(OptionTable& table, TracingOptions& options);
 void add_tracing_options(OptionTable& table, TracingOptions& options);
-/// Those of commands that end and then tell what tracing took.
+/// Adds the rows of commands that end and then report what tracing cost.
 void add_measuring_options(OptionTable& table, TracingOptions& options);
 
-/// Throws UsageError for what no single option shows: two that contradict each other.
+/// Throws UsageError where two options contradict each other.
 void check_tracing_options(const TracingOptions& options);
 
-/// Files that are read: none may be an output.
+/// The files that are read, none of which may be an output.
 std::vector<std::filesystem::path> input_files(const TracingOptions& options);
 
 /// Hands the choice of the tree on, to RendererOptions or CasterOptions.

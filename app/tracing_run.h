@@ -11,11 +11,12 @@
 
 namespace promin::app {
 
-// The steps that every command takes that traces a scene. Each tells the console and leaves what it took in the stats.
+// The steps that every command which traces a scene takes. Each reports to the console and leaves its times in the
+// stats.
 
 /// Throws InputError.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console);
-/// As much, and tells of the scene's files as load_scene does.
+/// Does the same, and reports the scene's files as load_scene does.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources);
 
@@ -25,7 +26,7 @@ gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats
 /// Takes over what setting the scene up has cost.
 void take_setup(const SetupStats& setup, RunStats& stats, const Console& console);
 
-/// Throws RunError if the validation layers have spoken: then nothing is written.
+/// Throws RunError if the validation layers have reported anything: then nothing is written.
 void check_validation(const gpu::Device& device, const RunStats& stats);
 
 }  // namespace promin::app

@@ -26,7 +26,7 @@ std::string list_cameras(const Scene& scene) {
   return text;
 }
 
-/// By name first: a camera may be called "2".
+/// The name is tried first, because a camera may be called "2".
 const Camera& find_camera(const Scene& scene, const std::string& selection) {
   if (scene.cameras.empty()) {
     throw UsageError({"the scene has no cameras to choose from", scene.file.string(), "leave --camera out"});

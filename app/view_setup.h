@@ -14,10 +14,10 @@ namespace promin::app {
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 
 /// Gives a scene without lights a headlight, which follows the camera of each view, and ambient light where it has
-/// none, and a note says so.
+/// none. A note says so.
 void light_up(Scene& scene, const Console& console);
 
-/// Throws UsageError where the scene, lit up, has no light of such an index.
+/// Throws UsageError where the scene, with its default lights, has no light of such an index.
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices);
 
 /// Switches lights off by their indices, and all others on.

@@ -5,19 +5,20 @@
 
 layout(constant_id = CONSTANT_FEATURES) const uint FEATURES = 0xFFFFFFFFu;
 layout(constant_id = CONSTANT_MORE_FEATURES) const uint MORE_FEATURES = 0xFFFFFFFFu;
-// Entries that the traversal stack needs: one for each node above the deepest, known when the tree is built.
+// The number of entries that the traversal stack needs is one for each node above the deepest, and is known when the
+// tree is built.
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
-// Rays that an invocation traces together (traversal.glsl).
+// The number of rays that an invocation traces together (traversal.glsl).
 layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
-// All of the kernel's rays ask for any hit.
+// 1 where all of the kernel's rays ask for any hit.
 layout(constant_id = CONSTANT_ANY_HIT) const uint ANY_HIT = 0u;
 
-// 1 where the pipeline has the feature FEATURE_*, else 0; a constant.
+// This is 1 where the pipeline has the feature FEATURE_*, else 0. It is a constant.
 #define FEATURE_BIT(FEATURE) ((((FEATURE) < 32u ? FEATURES : MORE_FEATURES) >> ((FEATURE) & 31u)) & 1u)
 
 bool has(uint feature) { return FEATURE_BIT(feature) != 0u; }
 
-// How many kinds of primitive the tree holds, and how many of lights there are.
+// The number of kinds of primitive in the tree, and the number of kinds of lights.
 const uint TREE_KIND_COUNT = 0u
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/primitives.def"
@@ -27,7 +28,7 @@ const uint LIGHT_KIND_COUNT = 0u
 #include "promin/kinds/lights.def"
     ;
 
-// Whether a primitive of the tree is of this kind; without a test where the scene has no other.
+// Whether a primitive of the tree is of this kind. Where the scene has no other kind, the answer needs no test.
 bool is_kind(uint kind, uint wanted, uint feature) {
   if (!has(feature)) return false;
   return TREE_KIND_COUNT == 1u || kind == wanted;
@@ -39,15 +40,15 @@ bool is_kind(uint kind, uint wanted, uint feature) {
 layout(std140, set = 0, binding = BINDING_VIEW) uniform ViewBlock { ViewConstants views[1]; };
 #define VIEW views[gl_WorkGroupID.z]
 
-// Nodes and primitives come as storage buffers, which every device has for any scene, and as texel buffers of the same
-// memory: lavapipe gathers a load from a storage buffer word by word, a texel at once.
+// Nodes and primitives are bound as storage buffers, which every device has for any scene, and as texel buffers of the
+// same memory, because lavapipe gathers a load from a storage buffer word by word and a texel at once.
 layout(constant_id = CONSTANT_FETCHES_TEXELS) const uint FETCHES_TEXELS = 0u;
 layout(std430, set = 0, binding = BINDING_NODES) readonly buffer Nodes { Node nodes[]; };
 layout(std430, set = 0, binding = BINDING_PRIMITIVES) readonly buffer Primitives { Primitive primitives[]; };
 layout(set = 0, binding = BINDING_NODE_TEXELS) uniform usamplerBuffer node_texels;
 layout(set = 0, binding = BINDING_PRIMITIVE_TEXELS) uniform usamplerBuffer primitive_texels;
 
-// A node but for its children, which traversal reads on their own.
+// A node without its children, which traversal reads separately.
 struct NodeBoxes {
   uvec4 frame;
   uvec4 lo;
@@ -78,13 +79,13 @@ uint load_primitive_kind(uint index) {
   return texelFetch(primitive_texels, int(PRIMITIVE_TEXELS * index + 2u)).z;
 }
 
-// What the last four words of a Primitive are (layout.h).
+// These name the last words of a Primitive (layout.h).
 uint kind_of(Primitive p) { return p.c.z; }
 uint order_of(Primitive p) { return p.c.y; }
 uint object_hash_of(Primitive p) { return p.c.w & 0xFFFFu; }
 uint primitive_hash_of(Primitive p) { return p.c.w >> 16; }
 
-// What the words of a node are.
+// These name the words of a node.
 vec3 origin_of(NodeBoxes node) { return uintBitsToFloat(node.frame.xyz); }
 vec3 steps_of(NodeBoxes node) {
   return uintBitsToFloat(((uvec3(node.frame.w) >> uvec3(0u, 8u, 16u)) & 0xFFu) << 23);
@@ -93,7 +94,7 @@ uint child_count_of(NodeBoxes node) { return node.frame.w >> 24; }
 uvec3 low_planes_of(NodeBoxes node) { return node.lo.xyz; }
 uvec3 high_planes_of(NodeBoxes node) { return uvec3(node.lo.w, node.hi.xy); }
 
-// What the words of a child are.
+// These name the bits of a child's word.
 bool is_inner(uint child) { return (child & CHILD_IS_LEAF) == 0u; }
 uint first_of_leaf(uint child) { return child & CHILD_FIRST_MASK; }
 uint count_of_leaf(uint child) { return ((child >> CHILD_COUNT_SHIFT) & CHILD_COUNT_MASK) + 1u; }

@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels, sample points and primary rays.
 
-// Lanes of a block in Morton order: neighbours in a subgroup of any width are neighbours in the picture.
+// The lanes of a block lie in Morton order, so that neighbours in a subgroup of any width are neighbours in the
+// picture.
 uvec2 pixel_in_block(uint lane) {
   uint x = (lane & 1u) | ((lane >> 1) & 2u) | ((lane >> 2) & 4u);
   uint y = ((lane >> 1) & 1u) | ((lane >> 2) & 2u) | ((lane >> 3) & 4u);
   return uvec2(x, y);
 }
 
-// The i-th of n sample points in the unit square: a lattice with one point in each of n columns and rows, symmetric
-// about the centre, (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n; n = 1 is the centre, n = 4 the rotated grid. The host
-// chooses g (trace/sampling.h).
+// The i-th of n sample points in the unit square. They form a lattice with one point in each of n columns and rows,
+// symmetric about the centre: (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n. n = 1 gives the centre, n = 4 the rotated
+// grid. The host chooses g (engine/device_scene/sampling.h).
 vec2 lattice_point(uint index) {
   uint count = samples_per_pixel();
   uint row = (lattice_generator() * (index + 1u)) % (count + 1u) - 1u;
@@ -19,8 +20,8 @@ vec2 lattice_point(uint index) {
   return point;
 }
 
-// D = V - O with V on the viewport at distance 1 along `look`, so that t counts in viewport distances and t > near is
-// what lies beyond the near plane. It is not normalised.
+// The direction is D = V - O with V on the viewport at distance 1 along `look`. So t counts in viewport distances, and
+// t > near is what lies beyond the near plane. D is not normalised.
 Ray camera_ray(uvec2 window_pixel, uint sample_index) {
   vec2 corner = vec2(window_corner() + window_pixel);
   precise vec2 from_center = (corner - VIEW.film_center.xy) + lattice_point(sample_index);

@@ -28,15 +28,15 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
 uvec3 ray_count = uvec3(0u);
 
-// Of each pixel of the packet.
+// The arrays below have an entry for each pixel of the packet.
 bool is_inside[PACKET_SIZE];
-bool is_lit[PACKET_SIZE];  // it shows a surface
+bool is_lit[PACKET_SIZE];  // the pixel shows a surface
 Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
-vec3 seen[PACKET_SIZE];  // from the hit, so far
+vec3 seen[PACKET_SIZE];  // light that the hit sends, summed so far
 vec3 shares[PACKET_SIZE];
 
-// Bits of the normal, as wound or outward, and of the distance from the ray's origin; infinite on a miss.
+// The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
   if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
   SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
@@ -44,7 +44,7 @@ uvec4 normal_and_depth(Ray ray, Hit hit) {
   return floatBitsToUint(vec4(surface.normal, depth));
 }
 
-// Of the packet's pixels those in the window, with their camera rays. False where there is none.
+// Prepares those pixels of the packet that lie in the window, with their camera rays. False where none does.
 bool begin_packet() {
   uint place = PACKET_SIZE * (shared_out_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
   uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);
@@ -63,17 +63,18 @@ bool begin_packet() {
   return is_any_inside;
 }
 
-// The pixel's record, new or of the samples before, with what the AOVs want of this one.
+// Writes the pixel's record: a new one for the first sample, and for the middle sample what the AOVs need.
 void put_record(Path path, Ray ray, Hit hit) {
   bool is_first = sample_at_hand() == 0u;
-  // Depths and ids have no average: the middle sample stands for the pixel. Of an odd number it is the centre.
+  // Depths and ids have no average, so the middle sample stands for the pixel. With an odd number of samples it is the
+  // centre.
   bool is_middle = has(FEATURE_AOVS) && sample_at_hand() == samples_per_pixel() / 2u;
   if (is_middle) pixels[window_pixel_count() + path.pixel] = normal_and_depth(ray, hit);
   if (is_first) pixels[path.pixel] = uvec4(0u, 0u, 0u, NO_ORDER);
   if (is_middle) pixels[path.pixel].w = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
 }
 
-// What the camera rays hit, before any source.
+// Shades what the camera rays hit, without any source.
 void arrive() {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     is_lit[i] = false;
@@ -95,13 +96,14 @@ void arrive() {
   }
 }
 
-// One source's shares, and a packet of the shadow rays that they need.
+// Computes the shares of one source, and makes a packet of the shadow rays that they need.
 void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     shares[i] = vec3(0.0);
     packet[i].tmax = -1.0;
     if (!is_lit[i]) continue;
-    // Copies of points and rays, here and elsewhere: glslang 12 fails over packets made of points made of packets.
+    // Points and rays are copied, here and elsewhere, because glslang 12 fails over packets made of points made of
+    // packets.
     ShadingPoint point = points[i];
     LightSample sampled = sample_light(light, point.position);
     shares[i] = unshadowed_share(point, -paths[i].direction, light, sampled);
@@ -138,8 +140,8 @@ void leave() {
   }
 }
 
-// Camera rays in the first turn, in each of the others shadow rays to one source: one copy of the traversal for both,
-// which halves what drivers compile.
+// The first turn traces camera rays, each of the others shadow rays to one source. So there is one copy of the
+// traversal for both, which halves what drivers compile.
 void trace_pixels() {
   uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
   uint source = 0u;
@@ -150,7 +152,7 @@ void trace_pixels() {
       add_shares(source);
       ++source;
     }
-    // A loop, which CPU drivers leave out where no lane is in it; both sides of a branch they execute.
+    // This is a loop because CPU drivers leave a loop out where no lane is in it, but execute both sides of a branch.
     while (is_first_turn) {
       arrive();
       is_first_turn = false;

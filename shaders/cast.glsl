@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays in, records out, a lane for each PACKET_SIZE rays in a row: the body of cast.comp, which differs from a variant
-// only in what it includes before this.
+// Takes rays and writes records; a lane takes PACKET_SIZE rays in a row. This is the body of cast.comp, which differs
+// from a variant only in what it includes before this.
 
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;
 
-// A ray's t in units of the direction as given, over that in units of the direction as traced; a power of two.
+// The factor from t in units of the traced direction to t in units of the given direction. It is a power of two.
 float units_of(RayRecord request) { return power_of_two_inverse(max_abs(request.direction_tmax.xyz)); }
 
 HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
   HitRecord miss = HitRecord(uvec4(floatBitsToUint(INFINITY), NO_ORDER, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   if (hit.primitive == NO_PRIMITIVE) return miss;
-  // Who asks for any hit is not told where.
+  // A ray that asks for any hit is not told where the hit is.
   if (ANY_HIT != 0u) return HitRecord(uvec4(0u, hit.order, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   precise float t = hit.t * units_of(request);
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
@@ -28,12 +28,12 @@ void main() {
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    // What is beyond the end casts the last ray once more.
+    // A lane whose rays end before the packet does casts the last ray once more.
     indices[i] = min(first + i, end_ray() - 1u);
     requests[i] = load_ray(indices[i]);
     packet[i] = make_ray(requests[i].origin_tmin.xyz, requests[i].direction_tmax.xyz, requests[i].origin_tmin.w,
                          requests[i].direction_tmax.w);
-    // Farther away there is no t to tell of.
+    // Beyond this distance t has no finite value in the given units.
     float farthest = LARGEST_FLOAT * power_of_two_inverse(units_of(requests[i]));
     packet[i].tmax = packet[i].tmax < farthest ? packet[i].tmax : farthest;
   }
@@ -41,7 +41,7 @@ void main() {
   trace_packet(ANY_HIT != 0u);
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     HitRecord record = record_of(requests[i], packet[i], found[i]);
-    // A CPU driver stores word by word and lane by lane.
+    // Words that nobody reads are not stored, because a CPU driver stores word by word and lane by lane.
     if (ANY_HIT != 0u && !has(FEATURE_STEP_COUNTS)) {
       hits[indices[i]].a.xy = record.a.xy;
     } else {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a kernel that takes rays and gives records is bound to beyond the scene (engine/trace/ray_kernel.h).
+// The buffers that a kernel which takes rays and gives records needs besides the scene (engine/trace/ray_kernel.h).
 
 layout(std430, set = 0, binding = BINDING_RAYS) readonly buffer Rays { RayRecord rays[]; };
 layout(set = 0, binding = BINDING_RAY_TEXELS) uniform usamplerBuffer ray_texels;

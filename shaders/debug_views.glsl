@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What pictures show instead of light (docs/shadings.md): of a camera ray its hit, or what finding it took. Each view of
-// promin/kinds/debug_views.def has a function *_color here, of a hit and of `normal_and_depth` as an AOV has them; it is
-// asked on a miss as well.
+// Debug views: what pictures show instead of light (docs/shadings.md), which is the hit of a camera ray or the cost of
+// finding it. Each view of promin/kinds/debug_views.def has a function *_color here. It takes the hit and
+// `normal_and_depth`, which are those of the AOVs, and is called on a miss as well.
 
 const uint DEBUG_VIEW = (MORE_FEATURES >> DEBUG_VIEW_SHIFT) & DEBUG_VIEW_MASK;
 
-// Of 15 bits; never black.
+// Makes a colour of a hash of 15 bits. It is never black.
 vec3 color_of_hash(uint hash) {
   vec3 parts = vec3((uvec3(hash) >> uvec3(0u, 5u, 10u)) & 31u);
   precise vec3 color = 0.03 + parts * 0.03;
@@ -43,7 +43,8 @@ vec3 depth_color(Hit hit, vec4 normal_and_depth) {
   return vec3(brightness);
 }
 
-// From black over violet, red and orange to white: five colours a quarter of the perceived lightness (L*) apart.
+// A heat map from black over violet, red and orange to white. The five colours are a quarter of the perceived lightness
+// (L*) apart.
 vec3 steps_color(Hit hit, vec4 normal_and_depth) {
   const vec3 colors[5] =
       vec3[](vec3(0.0), vec3(0.1, 0.0, 0.317), vec3(0.7, 0.04, 0.09), vec3(1.0, 0.375, 0.03), vec3(1.0));

@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What the words of `dispatch` (layout.h, Dispatch) mean. Whoever declares the buffer with it includes this after.
+// Names for the words of `dispatch` (layout.h, Dispatch). Whoever declares the buffer that holds it includes this file
+// afterwards.
 
-// Of pictures: blocks [first, end), one sample of each pixel.
+// Pictures: blocks [first, end) are traced, one sample of each pixel.
 uint first_block() { return dispatch.range.x; }
 uint end_block() { return dispatch.range.y; }
 uint sample_at_hand() { return dispatch.range.z; }
 uint most_bounces() { return dispatch.range.w; }
-// Of rays to cast: [first, end).
+// Casts: rays [first, end) are traced.
 uint first_ray() { return dispatch.range.x; }
 uint end_ray() { return dispatch.range.y; }
 
-// In pixels.
+// The window is in pixels.
 uvec2 window_corner() { return dispatch.window.xy; }
 uvec2 window_size() { return dispatch.window.zw; }
 uint window_pixel_count() { return dispatch.window.z * dispatch.window.w; }

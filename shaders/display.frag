@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Shows an encoded film (encode_film.comp) in a window of any size: the nearest pixel.
+// Shows an encoded film (encode_film.comp) in a window of any size. Each pixel of the window shows the nearest one of
+// the film.
 #version 450
 
-// For surfaces that take linear values and encode themselves.
+// 1 for surfaces that take linear values and encode them themselves.
 layout(constant_id = 0) const uint DECODES = 0u;
 
 layout(std430, set = 0, binding = 0) readonly buffer Encoded { uint encoded[]; };

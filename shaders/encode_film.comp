@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A film's pixels for a window: the sum over samples divided, and encoded to sRGB in 8 bits as PNGs are.
+// Encodes a film's pixels for a window: divides the sum over samples by their number and encodes it to sRGB in 8 bits,
+// as PNG files do.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
-// As in film.glsl. The head is that of the picture's last dispatch.
+// The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   Dispatch dispatch;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];

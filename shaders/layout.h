@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What host and shaders share: one definition that both compilers read. Members are vec4 and uvec4 alone, so that
-// C++, std140 and std430 agree; tests/gpu/layout_test.cpp holds the offsets against the SPIR-V.
+// The definitions that host and shaders share, written once for both compilers. Members are vec4 and uvec4 alone, so
+// that C++, std140 and std430 agree; tests/gpu/layout_test.cpp holds the offsets against the SPIR-V.
 #ifndef PROMIN_LAYOUT_H
 #define PROMIN_LAYOUT_H
 
@@ -17,8 +17,9 @@ using uint = uint32_t;
 #define LAYOUT_CONSTANT const uint
 #endif
 
-// What a scene may use, and what a caller may ask of a pipeline whatever the scene: numbers of bits in two words, to
-// which a pipeline is specialised. The tables of promin/kinds bring kinds, lights, features and debug views.
+// Features: what a scene may use, and what a caller may ask of a pipeline whatever the scene. Each is the number of a
+// bit in two words, to which a pipeline is specialised. The tables of promin/kinds define kinds, lights, features and
+// debug views.
 #ifdef __cplusplus
 enum class Feature : uint {};
 #define LAYOUT_FEATURE(NAME, BIT) inline constexpr Feature NAME{BIT};
@@ -39,14 +40,14 @@ LAYOUT_CONSTANT FEATURE_WORDS = 2u;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #include "promin/kinds/features.def"
 
-// What a picture shows: light, or a debug view. The number lies in the second word of features.
+// What a picture shows: light, or a debug view. The number of the view lies in the second word of features.
 LAYOUT_CONSTANT DEBUG_VIEW_NONE = 0u;
 #define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   LAYOUT_CONSTANT DEBUG_VIEW_##VIEW = NUMBER;
 #include "promin/kinds/debug_views.def"
 LAYOUT_CONSTANT DEBUG_VIEW_SHIFT = 24u;
 LAYOUT_CONSTANT DEBUG_VIEW_MASK = 0xFFu;
-// Steps at which the heat map of DEBUG_VIEW_STEPS is white.
+// The number of steps at which the heat map of DEBUG_VIEW_STEPS is white.
 LAYOUT_CONSTANT HEAT_STEPS = 64u;
 
 // Descriptor bindings; Vulkan's required minimum is four storage buffers a stage.
@@ -73,14 +74,15 @@ LAYOUT_CONSTANT CONSTANT_MORE_FEATURES = 5u;  // the second word
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
 
-// Up to four children with their boxes in bytes: a plane of a box lies at origin + byte * 2^(exponent - 127), each axis
-// with an exponent of its own. The four bytes of a word are the four children's, the first the lowest.
-// A child that is an inner node is its index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below, and its
-// first primitive in the rest.
+// A node has up to four children with their boxes in bytes. A plane of a box lies at origin + byte * 2^(exponent -
+// 127), and each axis has an exponent of its own. The four bytes of a word belong to the four children, the lowest byte
+// to the first.
+// A child that is an inner node is given by its index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below,
+// and its first primitive in the rest.
 struct Node {
   uvec4 frame;     // bits of the origin; w = exponents of x, y, z, the lowest byte first, then how many children
-  uvec4 lo;        // of x, y, z; w = hi of x
-  uvec4 hi;        // of y, z; 0, 0
+  uvec4 lo;        // lower planes of x, y, z; w = upper planes of x
+  uvec4 hi;        // upper planes of y, z; 0, 0
   uvec4 children;  // 0 beyond the last
 };
 LAYOUT_CONSTANT NODE_WIDTH = 4u;
@@ -92,10 +94,10 @@ LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
 // Traversal keeps a node's index in 24 bits (traversal.glsl, NO_FAMILY).
 LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
 
-// One primitive in leaf order; planes follow after those of the tree.
-// a, b and c.x are the kind's own: the comment at its pack() and its shader file in primitives/ say what.
-// c.y is the scene-wide number in (object, primitive) order, which breaks ties; c.z the kind; c.w hashes of the object,
-// in the lower 16 bits, and of the primitive, which debug views make colours of.
+// One primitive in leaf order; the unbounded ones follow after those of the tree.
+// a, b and c.x are the kind's own: the comment at its pack() and its shader file in primitives/ define them.
+// c.y is the primitive's number in (object, primitive) order, which breaks ties. c.z is the kind. c.w has hashes of the
+// object, in the lower 16 bits, and of the primitive; debug views make colours of them.
 struct Primitive {
   vec4 a;
   vec4 b;
@@ -103,8 +105,8 @@ struct Primitive {
 };
 LAYOUT_CONSTANT PRIMITIVE_TEXELS = 3u;
 
-// What shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with vertex
-// normals or colours), w = material index and SURFACE_* bits.
+// The data that shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with
+// vertex normals or colours), w = material index and SURFACE_* bits.
 struct SurfaceRecord {
   uvec4 corners_material;
 };
@@ -123,28 +125,28 @@ LAYOUT_CONSTANT MATERIAL_TEXELS = 5u;
 
 struct LightRecord {
   vec4 position;   // w = 1 / range
-  vec4 direction;  // the light travels so; w = cosine of a spot's outer angle
+  vec4 direction;  // the direction in which the light travels; w = cosine of a spot's outer angle
   vec4 diffuse;    // w = 1 / max(0.001, cos inner - cos outer)
   vec4 specular;
   uvec4 kind;  // x = LIGHT_*, y = 1 if it falls off with distance
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 
-// Constants of a view of a scene (uniform buffer). None of them decides a branch or a loop: see Dispatch.
+// The constants of a view of a scene (uniform buffer). None of them decides a branch or a loop; those are in Dispatch.
 struct ViewConstants {
   vec4 eye;  // w = near: distance of the viewport plane
   vec4 look;
-  vec4 right;  // from one pixel to the next on the projection plane at distance 1 (orthographic: in the world)
+  vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world)
   vec4 up;
   vec4 ambient;
   vec4 background;
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
-  uvec4 first_index;  // of x = materials, y = lights, z = normals, w = colours in their views of the shading buffer
+  uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
 };
 
-// What decides branches and loops, at the head of the buffer that is written: not in push constants or a uniform
-// buffer, because lavapipe compiles the shader anew for each value of those that control flow depends on.
+// The numbers that decide branches and loops, at the head of the buffer that is written. They are not in push constants
+// or a uniform buffer, because lavapipe compiles the shader anew for each value of those that control flow depends on.
 struct Dispatch {
   uvec4 range;     // x = first block, y = one past the last, z = sample, w = mirror bounces
                    // casting: x = first ray, y = one past the last
@@ -152,11 +154,11 @@ struct Dispatch {
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
   uvec4 outcome;   // casting: x = 1 after the dispatch if were_loops_cut(); 0 else
-  uvec4 queue;     // of paths from one stage to the next: x = its first record, y = paths put, z = paths taken,
+  uvec4 queue;     // paths from one stage to the next: x = the first record, y = paths put, z = paths taken,
                    // w = paths that a lane takes at most
 };
 
-// More than one, and not known to the compiler (loop_check.glsl).
+// The number is more than one, and the compiler does not know it (loop_check.glsl).
 LAYOUT_CONSTANT LOOP_CHECK_TURNS = 2u;
 
 // A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.
@@ -166,26 +168,26 @@ struct RayRecord {
 };
 LAYOUT_CONSTANT RAY_TEXELS = 2u;
 
-// What it meets. FEATURE_STEP_COUNTS brings the counts, each clamped to its 16 bits. Who asks for any hit is told a.x,
-// 0 or infinite on a miss, and a.y, and without the counts nothing else is written.
+// The answer to a ray. FEATURE_STEP_COUNTS adds the counts, each clamped to its 16 bits. A ray that asks for any hit
+// gets a.x, which is 0 or infinite on a miss, and a.y; without the counts nothing else is written.
 struct HitRecord {
   uvec4 a;  // bits of t (infinite on a miss), the primitive's number in order (NO_ORDER on a miss), bits of u and v
   uvec4 b;  // bits of the geometric normal; w = node steps + primitive tests * 2^16
 };
 LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 
-// What FEATURE_RAY_LOG keeps of a ray of the path, or of a source that may light its hit: LOG_SOURCE. Sources come
-// before the ray whose hit they light. Rays are as traced: the direction's largest component is in [1, 2), and t in
-// its units.
+// What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
+// its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is
+// in [1, 2), and t is in its units.
 struct RayLog {
   uvec4 ids;  // x = LOG_*; y = the bounce or the source; z = the material; w = 1 where a source has a shadow ray
   vec4 origin_tmin;
   vec4 direction_tmax;
-  uvec4 hit;            // as HitRecord::a; of a shadow ray, of what it met first
+  uvec4 hit;            // as HitRecord::a; for a shadow ray, what it met first
   vec4 position;        // w = lift
   vec4 normal;          // geometric, as Hit::normal
   vec4 shading_normal;  // faces the ray
-  vec4 weight;          // by which what the hit sends counts
+  vec4 weight;          // factor of what the hit sends
   vec4 own;             // ambient and emitted light
   vec4 radiance;        // the path's so far; a source's contribution
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Lights as a surface point sees them, each kind of promin/kinds/lights.def by its sample_* function.
+// Lights as a surface point sees them. Each kind of promin/kinds/lights.def has a function sample_*.
 
 // A source as a surface point sees it: the shadow ray's direction (not normalised) and its tmax, and a factor to the
 // source's powers.
@@ -17,6 +17,6 @@ LightSample sample_light(LightRecord light, vec3 position) {
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (has(FEATURE_##FEATURE) && (LIGHT_KIND_COUNT == 1u || light.kind.x == NUMBER)) return sample_##PREFIX(light, position);
 #include "promin/kinds/lights.def"
-  // No kind that the pipeline was specialised to: it lights nothing.
+  // The pipeline was specialised to none of this kind, so the light adds nothing.
   return LightSample(vec3(0.0), 0.0, 0.0);
 }

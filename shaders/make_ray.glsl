@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// From an origin and a direction to what traversal needs of them.
+// Makes a ray of an origin and a direction, with everything that traversal needs of it.
 
 // The box test's allowance, as a multiple of the distance that intersections may span: every accepted hit lies within
 // 8 u S of its primitive (docs/accuracy.md, BK), and the box test's own rounding moves a plane by 6 u S. Divisions that
 // are good to 2.5 ulp, Vulkan's promise, instead of 0.5 add 4 u S to each, and 8 to the t that a hit so far limits boxes
 // by: so a box grown by 32 u S never hides a hit, whatever the tree.
 const float BOX_PADDING = 32.0 * UNIT_ROUNDOFF;
-// Twice what rounding can take of the padding when it is added to the origin: far from the world's origin that would be
-// all of it, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
+// Adding the padding to the origin rounds, and this is twice what that can take. Far from the world's origin it would
+// be all of the padding, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
 const float ORIGIN_PADDING = 2.0 * UNIT_ROUNDOFF;
-// Components of the direction count as no less in the box test: then nothing overflows in scenes of 10^15, and a ray
-// along a box's side still comes no nearer to its plane than the padding.
+// In the box test no component of the direction counts as less than this. Then nothing overflows in scenes of 10^15,
+// and a ray along a box's side still comes no nearer to its plane than the padding.
 const float SMALLEST_SLOPE = 8.67361737988403547e-19;  // 2^-60
 
-// Whether all components are finite; by their bits, as a compiler may assume that there are no NaNs.
+// Whether all components are finite. The bits tell, because a compiler may assume that there are no NaNs.
 bool is_finite(vec3 v) {
   uvec3 exponents = floatBitsToUint(v) & 0x7F800000u;
   return all(notEqual(exponents, uvec3(0x7F800000u)));
@@ -24,7 +24,7 @@ bool is_nan(float x) { return (floatBitsToUint(x) & 0x7FFFFFFFu) > 0x7F800000u; 
 
 vec3 signs_of(vec3 v) { return vec3(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0, v.z < 0.0 ? -1.0 : 1.0); }
 
-// For the box test, from the origin and the direction.
+// Sets the two origins of the box test from the origin and the direction.
 void pad_origin(inout Ray ray) {
   precise float reach = max_abs(ray.origin - VIEW.tree_bounds.xyz) + VIEW.tree_bounds.w;
   precise vec3 padding =
@@ -35,8 +35,8 @@ void pad_origin(inout Ray ray) {
   ray.far_origin = far_origin;
 }
 
-// From 7e5 radii of the tree away, which is where a floor may send a mirror ray or a shadow ray from, the padding is as
-// large as the tree: every box would be met. So rays from beyond this many radii start nearer for the tree's sake.
+// From 7e5 radii of the tree away the padding is as large as the tree, so that every box would be met. A floor may send
+// a mirror ray or a shadow ray from there. So rays from beyond this many radii start nearer to the tree.
 const float FAR_AWAY = 1024.0;
 
 float distance_to_tree(Ray ray) {
@@ -49,16 +49,16 @@ bool is_far_away(Ray ray) {
   return distance_to_tree(ray) > near;
 }
 
-// How far along the ray that may be, or 0. It leaves 4 radii and a thousandth of the way, and has 12 bits, so that its
-// product with half of the direction's bits is exact.
+// The distance along the ray, in its t, by which the origin is moved, or 0. It leaves 4 radii and a thousandth of the
+// way, and has 12 bits, so that its product with half of the direction's bits is exact.
 float shift_to_tree(Ray ray) {
   if (!is_far_away(ray)) return 0.0;
   precise float shift = 0.999 * (distance_to_tree(ray) - 4.0 * VIEW.tree_bounds.w) / max_abs(ray.direction);
   return uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
 }
 
-// The same ray from there on, but for its interval. Where it comes near the tree, so that the origin cancels, it strays
-// from itself by no more than some u times what is left of the way.
+// The same ray from the shifted origin on; its interval is left as it was. Where it comes near the tree, so that the
+// origin cancels, it strays from the ray by no more than some u times what is left of the way.
 Ray moved_along(Ray ray, float shift) {
   vec3 upper = uintBitsToFloat(floatBitsToUint(ray.direction) & 0xFFFFF000u);
   precise vec3 origin = (ray.origin + shift * upper) + shift * (ray.direction - upper);
@@ -67,14 +67,14 @@ Ray moved_along(Ray ray, float shift) {
   return ray;
 }
 
-// What t has to pass so that t + shift, rounded to nearest even, passes tmin. All that is computed is exact where the
-// tree is: there tmin is between a half and twice the shift, or what is negative counts as 0.
+// The t that a crossing of a moved ray has to pass so that t + shift, rounded to nearest even, passes tmin. All that is
+// computed is exact where the tree is: there tmin is between a half and twice the shift. A negative result counts as 0.
 float shifted_tmin(float tmin, float shift) {
   uint bits = floatBitsToUint(tmin);
   precise float half_step = uintBitsToFloat(bits & 0x7F800000u) * UNIT_ROUNDOFF;
   precise float rounds_to_tmin = (tmin - shift) + half_step;
   if (!(rounds_to_tmin > 0.0)) return 0.0;
-  // A tie goes to the even one.
+  // A tie is rounded to the even number.
   return (bits & 1u) == 0u ? rounds_to_tmin : uintBitsToFloat(floatBitsToUint(rounds_to_tmin) - 1u);
 }
 
@@ -88,9 +88,9 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   float scale = is_valid ? power_of_two_inverse(size) : 1.0;
   ray.origin = is_valid ? origin : vec3(0.0);
   ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);
-  // t * direction is kept, so t grows by what the direction loses.
+  // t * direction is kept, so t grows by the factor by which the direction shrinks.
   float unscale = power_of_two_inverse(scale);
-  // Of -0 too: traversal sorts by the bits of what is no less.
+  // -0 counts as 0 too, because traversal sorts distances that are not negative by their bits.
   precise float scaled_tmin = (tmin > 0.0 ? tmin : 0.0) * unscale;
   precise float scaled_tmax = tmax * unscale;
   ray.tmin = is_valid ? scaled_tmin : 1.0;

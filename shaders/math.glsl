@@ -19,7 +19,7 @@ precise float length3(vec3 v) { return sqrt(dot3(v, v)); }
 
 float max_abs(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// 2^-e for x in [2^e, 2^(e+1)): multiplying by it is exact. For normal x below 2^127.
+// 2^-e for x in [2^e, 2^(e+1)), so that multiplying by it is exact. For normal x below 2^127.
 float power_of_two_inverse(float x) { return uintBitsToFloat((254u << 23) - (floatBitsToUint(x) & 0x7F800000u)); }
 
 // v / |v| for any v between overflow and underflow; relative error <= 3 u. A zero vector stays zero.
@@ -61,9 +61,9 @@ float times_sign_of(float x, float other) {
   return uintBitsToFloat(floatBitsToUint(x) ^ (floatBitsToUint(other) & 0x80000000u));
 }
 
-// Of each pair the greater and the lesser; the second where either is a NaN, which comes of 0 * infinity in scenes
-// beyond 10^18: what a NaN should bound is then bounded by tmin or the hit so far alone. GLSL's max and min take three
-// instructions each on lavapipe, these one.
+// greater() and lesser() take the second number where either is a NaN. NaNs come of 0 * infinity in scenes beyond
+// 10^18, and what a NaN should bound is then bounded by tmin or the hit so far. GLSL's max and min take three
+// instructions each on lavapipe, these take one.
 vec4 greater(vec4 a, vec4 b) {
   precise vec4 result =
       vec4(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z, a.w > b.w ? a.w : b.w);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The second stage of a picture: the paths that camera_stage.comp has put into the queue, with all of their mirror and
-// shadow rays. These go everywhere, so lanes do not wait for each other: the loop's every turn traces one ray of each
-// lane, be it of its path or to a source.
+// The second stage of a picture traces the paths that camera_stage.comp has put into the queue, with all of their
+// mirror rays and shadow rays. These go everywhere, so lanes do not wait for each other: every turn of the loop traces
+// one ray of each lane, which may belong to its path or go to a source.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -28,12 +28,12 @@ uvec3 ray_count = uvec3(0u);
 
 Path path;
 uint bounces;
-ShadingPoint point;  // where the path has come to
-vec3 seen;           // from there, so far
+ShadingPoint point;  // the point that the path has reached
+vec3 seen;           // light that the point sends, summed so far
 uint source;         // the next one to look at; source_count() after the last
-vec3 share;          // of the source that the shadow ray goes to
-Ray ray;             // to trace next
-bool is_to_source;   // it is a shadow ray
+vec3 share;          // what the source of the shadow ray adds where nothing blocks it
+Ray ray;             // the ray to trace next
+bool is_to_source;   // the ray is a shadow ray
 
 void follow_path() {
   ray = make_ray(path.origin, path.direction, 0.0, INFINITY);
@@ -42,7 +42,7 @@ void follow_path() {
   ++ray_count.z;
 }
 
-// False where the path ends.
+// Shades the hit. False where the path ends.
 bool arrive(Hit hit) {
   begin_path_log(ray, hit, bounces, path.weight);
   bool is_miss = hit.primitive == NO_PRIMITIVE;
@@ -64,7 +64,7 @@ void add_share(vec3 unblocked) {
   ++source;
 }
 
-// Takes the sources in turn up to one that needs a shadow ray. False where none is left.
+// Takes the sources in turn, up to one that needs a shadow ray. False where no source is left.
 bool aim_at_source() {
   while (source < source_count()) {
     begin_source_log(source);
@@ -82,7 +82,7 @@ bool aim_at_source() {
   return false;
 }
 
-// False where the path ends.
+// Adds the point to the path and turns to its mirror ray. False where the path ends.
 bool leave(bool is_on_surface) {
   add_radiance(path, seen);
   end_path_log(path.radiance);

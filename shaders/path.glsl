@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Whitted's recursion without refraction is a loop: I = sum of (product of kr so far) * Phong.
+// A path is Whitted's recursion without refraction, written as a loop: I = sum of (product of kr so far) * Phong.
 
 struct Path {
-  vec3 origin;     // of its ray
-  vec3 direction;  // likewise, unit
+  vec3 origin;     // origin of the next ray
+  vec3 direction;  // direction of the next ray, unit
   vec3 weight;     // product of kr so far
   vec3 radiance;   // sum so far
   uint pixel;
@@ -15,7 +15,7 @@ void add_radiance(inout Path path, vec3 seen) {
   path.radiance = sum;
 }
 
-// Turns the path into its mirror ray. False where that brings nothing.
+// Turns the path into its mirror ray. False where the mirror ray would add nothing.
 bool bounce(inout Path path, ShadingPoint point) {
   precise vec3 weight = path.weight * point.material.reflection.xyz;
   path.weight = weight;
@@ -25,13 +25,14 @@ bool bounce(inout Path path, ShadingPoint point) {
   return true;
 }
 
-// Adds a sample to its pixel.
+// Adds the path's radiance to its pixel, as one sample.
 void finish_path(Path path) {
   precise vec3 sum = uintBitsToFloat(pixels[path.pixel].xyz) + path.radiance;
   pixels[path.pixel].xyz = floatBitsToUint(sum);
 }
 
-// The queue from one stage to the next: four records a path. No path waits for another, so its place is free.
+// The queue of paths from one stage to the next; a path takes four records. Paths do not wait for each other, so each
+// takes the next free place.
 const uint QUEUED_PATH_SIZE = 4u;
 
 void put_path(Path path) {
@@ -42,7 +43,7 @@ void put_path(Path path) {
   pixels[first + 3u] = uvec4(floatBitsToUint(path.radiance), 0u);
 }
 
-// False where none is left.
+// Takes the next path from the queue. False where none is left.
 bool take_path(out Path path) {
   uint place = atomicAdd(dispatch.queue.z, 1u);
   if (place >= dispatch.queue.y) return false;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Primitives as promin/kinds/primitives.def lists them, each with its file in primitives/.
+// The primitives that promin/kinds/primitives.def lists, each with its file in primitives/.
 
-// A hit rebuilt on its primitive.
+// A hit's point, rebuilt on its primitive.
 struct SurfacePoint {
   vec3 position;
   vec3 normal;  // geometric, unit: outward, or as wound
@@ -19,6 +19,6 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (is_kind(kind_of(p), NUMBER, FEATURE_##FEATURE)) return PREFIX##_surface(ray, p, hit);
 #include "promin/kinds/primitives.def"
-  // No kind that the pipeline was specialised to: nothing has been hit.
+  // The pipeline was specialised to none of this kind, so that nothing of it has been hit.
   return SurfacePoint(vec3(0.0), vec3(0.0), 0.0);
 }

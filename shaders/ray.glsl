@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays as the intersections want them (make_ray.glsl makes them), and hits as they give them.
+// Rays as the intersections take them (make_ray.glsl makes them), and hits as they return them.
 
 struct Ray {
   vec3 origin;
@@ -9,18 +9,18 @@ struct Ray {
   float tmax;
   float inverse_length2;   // 1 / |direction|^2
   vec3 inverse_direction;  // finite: components under 2^-60 count as 2^-60 with their sign
-  vec3 near_origin;        // origin, moved so that the slab test's near and far planes lie `padding` further out
+  vec3 near_origin;        // origin, moved so that the slab test's near and far planes lie the padding further out
   vec3 far_origin;
   uint shear_axis;  // where |direction| is largest
   vec3 shear;       // direction of the two other axes over the largest, and 1 / largest
 };
 
-// A hit, or what is known of the nearest so far: then t = tmax.
+// A hit, or the state of the search for the nearest: at first t = tmax.
 struct Hit {
   float t;
   float u;  // weights of a triangle's second and third corner
   float v;
-  uint part;       // of an analytic shape: PART_*
+  uint part;       // the face of an analytic shape that was hit: PART_*
   uint primitive;  // index into `primitives`; NO_PRIMITIVE on a miss
   uint order;      // scene-wide number: the lower wins at equal t
 };
@@ -42,9 +42,9 @@ const Crossing NO_CROSSING = Crossing(-1.0, 0.0, 0.0, PART_SIDE);
 // Rotates axes so that `axis` comes last.
 vec3 permute_axes(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
 
-// A ray's closest approach to `center`: the point is center + offset, at t = t_far + t_near. The two parts of t are
-// kept apart until the small one has met the half chord: that keeps the error at u * |t|. Haines et al., Ray Tracing
-// Gems ch. 7, with one correction step more.
+// A ray's closest approach to `center`: the point is center + offset, at t = t_far + t_near. The two terms of t are
+// added only after the small one has been combined with the half chord, which keeps the error at u * |t|. Haines et
+// al., Ray Tracing Gems ch. 7, with one more correction step.
 struct Approach {
   vec3 offset;
   float t_far;

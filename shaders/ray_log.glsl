@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// FEATURE_RAY_LOG: the rays of a picture of one pixel, behind that in the film. What is logged is what the picture is
-// made of: nothing here computes.
+// FEATURE_RAY_LOG keeps the rays of a picture of one pixel, behind that pixel in the film. The log contains the numbers
+// that the picture is made of: nothing here computes any.
 
 layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
   Dispatch logged_dispatch;
   uvec4 logged_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 logged_pixel;
-  uvec4 log_count;  // x
+  uvec4 log_count;  // x = number of entries
   RayLog logs[];
 };
 
-RayLog path_log;    // of the ray that the path follows
-RayLog source_log;  // of the source at hand
+RayLog path_log;    // entry of the ray that the path follows
+RayLog source_log;  // entry of the source at hand
 
 void append_log(RayLog log) {
   logs[log_count.x] = log;

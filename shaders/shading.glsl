@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Phong shading (docs/model.md, "Light") of a point that a ray hit.
 
-// Views of one buffer: four storage buffers a stage are all that Vulkan guarantees. Each view starts at a multiple of
-// its own stride (VIEW.first_index).
+// These are views of one buffer, because four storage buffers per stage are all that Vulkan guarantees. Each view
+// starts at a multiple of its own stride (VIEW.first_index).
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
@@ -36,19 +36,19 @@ vec3 load_vertex(uint index) {
   return shading_vector(index).xyz;
 }
 
-// What the light loop and the mirror ray need of a hit.
+// The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
-  vec3 geometric_normal;  // unit; faces the incoming ray, as does
-  vec3 normal;            // the interpolated one, or the geometric
+  vec3 geometric_normal;  // unit; faces the incoming ray
+  vec3 normal;            // the interpolated normal or the geometric one; faces the incoming ray
   float lift;
-  vec3 shadow_position;  // where shadow rays start from, before the lift
+  vec3 shadow_position;  // origin of shadow rays, before the lift
   vec3 color;            // vertex colour
   MaterialRecord material;
 };
 
-// Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4: lifts the point onto the curved surface that the
-// vertex normals suggest, so that its own coarse polygon does not shadow what is shaded as lit.
+// Lifts the point onto the curved surface that the vertex normals suggest, so that its own coarse polygon does not
+// shadow what is shaded as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
 vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
   precise float height = min(0.0, dot3(position - corner, normal));
   precise vec3 projected = position - height * normal;
@@ -59,7 +59,8 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   vec3 n0 = load_vertex(VIEW.first_index.z + corners.x);
   vec3 n1 = load_vertex(VIEW.first_index.z + corners.y);
   vec3 n2 = load_vertex(VIEW.first_index.z + corners.z);
-  // The interpolated normal faces the ray by the geometric normal's side, so its own sign stays as wound.
+  // The side of the geometric normal decides which way the interpolated normal faces, so the sign of the latter stays
+  // as wound.
   float side = is_flipped ? -1.0 : 1.0;
   precise vec3 interpolated = (weights.x * n0 + weights.y * n1 + weights.z * n2) * side;
   vec3 normal = normalize3(interpolated);
@@ -101,7 +102,7 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
   return point;
 }
 
-// What a source adds where nothing is between.
+// What a source adds to the point's light where nothing blocks it.
 vec3 unshadowed_share(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
   vec3 to_light = normalize3(sampled.direction);
   precise float cosine = dot3(point.normal, to_light);
@@ -112,7 +113,7 @@ vec3 unshadowed_share(ShadingPoint point, vec3 to_eye, LightRecord light, LightS
     precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
     precise float highlight = dot3(mirrored, to_eye);
     if (highlight > 0.0) {
-      // 1 is the most that unit vectors give; beyond it is rounding.
+      // Unit vectors give at most 1; anything beyond is rounding.
       share += point.material.specular.xyz * light.specular.xyz *
                power(min(highlight, 1.0), point.material.specular.w);
     }
@@ -127,7 +128,7 @@ Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
   return make_ray(origin, to_source, 0.0, sampled.tmax);
 }
 
-// What the point sends without any source.
+// The light that the point sends without any source: ambient and emitted.
 vec3 own_light(ShadingPoint point) {
   precise vec3 own = point.material.ambient.xyz * point.color * VIEW.ambient.xyz + point.material.emissive.xyz;
   return own;

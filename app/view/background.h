@@ -13,13 +13,13 @@ namespace promin::app {
 template <typename Result>
 class Background {
  public:
-  /// Not while busy.
+  /// Must not be called while busy.
   template <typename Work>
   void start(Work work) {
     result_ = std::async(std::launch::async, std::move(work));
   }
 
-  /// Until its result is taken.
+  /// True until the result is taken.
   bool is_busy() const { return result_.valid(); }
   bool is_ready() const { return is_busy() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
   /// The result, once it is there. Throws what the work threw.

@@ -8,10 +8,10 @@
 namespace promin::app {
 namespace {
 
-/// Radians a second.
+/// The speeds are in radians a second.
 constexpr double kRollSpeed = 0.8;
 constexpr double kOrbitSpeed = 0.8;
-/// Share of the distance to the center that a second of orbiting nearer takes away, as an exponent.
+/// A second of orbiting nearer multiplies the distance to the center by exp(-kApproach).
 constexpr double kApproach = 1.0;
 constexpr double kSpeedStep = 1.2;
 

@@ -12,14 +12,14 @@
 
 namespace promin::app {
 
-/// What of a scene a command leaves out, and where an orthographic view has its size from.
+/// What of a scene a command leaves out, and which camera gives an orthographic view its size.
 struct DescribedScene {
   std::filesystem::path file;
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
-  /// Of the scene's camera with the view's half height.
+  /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
-  /// The tree, whose steps a picture may show.
+  /// The tree, which decides the steps that a picture may show.
   std::string builder = "sah";
   std::optional<std::filesystem::path> bvh = std::nullopt;
 };
@@ -27,7 +27,8 @@ struct DescribedScene {
 /// The scene's camera that has an orthographic camera's half height, which no option gives.
 std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera);
 
-/// Whether there is such a command: not for an orthographic view whose half height no camera of the scene has.
+/// Whether there is such a command. There is none for an orthographic view whose half height no camera of the scene
+/// has.
 bool can_describe(const DescribedScene& scene, const View& view);
 
 /// The `promin render` command that gives the picture of a view, to the bit, for a shell.

@@ -13,7 +13,7 @@
 namespace promin::app {
 namespace {
 
-/// As in shaders/display.frag.
+/// The push constants of shaders/display.frag.
 struct DisplayConstants {
   uvec4 size;
   vec4 scale;

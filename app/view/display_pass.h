@@ -32,7 +32,7 @@ class DisplayPass {
  private:
   const gpu::Device* device_;
   std::optional<gpu::Buffer> encoded_;
-  /// Of the picture in it; none at first.
+  /// The size of the encoded picture; none at first.
   std::optional<uvec2> encoded_size_;
   std::array<std::optional<gpu::ComputePipeline>, kFilmCount> encoders_;
   vk::raii::DescriptorSetLayout set_layout_{nullptr};

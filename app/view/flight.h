@@ -10,15 +10,15 @@
 
 namespace promin::app {
 
-/// Keeps a flight of the camera for a file.
+/// Records a flight of the camera for a file.
 class FlightRecorder {
  public:
-  /// The camera at a time in seconds; the first is at 0. Between two calls the camera is taken to move evenly: a call
-  /// belongs to each frame and to the end of each rest. Of a rest the beginning and the end are kept.
+  /// Adds the camera at a time in seconds; the first is at 0. Between two calls the camera is taken to move evenly, so
+  /// a call belongs to each frame and to the end of each rest. Of a rest the beginning and the end are kept.
   void add(double time_s, const Camera& camera);
   const CameraPath& path() const { return path_; }
 
-  /// What a recorded flight is meant to be played with.
+  /// The rate that a recorded flight is meant to be played with, in pictures a second.
   static constexpr double kFps = 30.0;
 
  private:
@@ -26,7 +26,7 @@ class FlightRecorder {
   CameraPath path_{{}, kFps};
 };
 
-/// Plays a flight picture by picture, none left out, however long each takes, and measures that.
+/// Plays a flight picture by picture, without leaving any out, however long each takes, and measures their times.
 class FlightReplay {
  public:
   explicit FlightReplay(PathPictures pictures) : pictures_(std::move(pictures)) {}
@@ -34,7 +34,7 @@ class FlightReplay {
   /// Whether it is time for the next picture: none comes earlier than its interval after the one before. Never when
   /// done. Times are in seconds.
   bool is_due(double time_s) const { return !is_done() && time_s >= due_s_; }
-  /// The next picture's camera; not when done.
+  /// The next picture's camera. Must not be called when done.
   Camera next_camera(double time_s);
   bool is_done() const { return next_ == pictures_.count(); }
 

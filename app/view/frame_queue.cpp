@@ -98,7 +98,7 @@ void FrameQueue::poll(const std::function<void(const FinishedFrame&)>& on_finish
 void FrameQueue::finish(const std::function<void(const FinishedFrame&)>& on_finished) {
   device_->wait_idle();
   poll(on_finished);
-  // What was presented last belongs to the queue until it is idle again.
+  // The image that was presented last belongs to the queue until the device is idle again.
   device_->wait_idle();
 }
 

@@ -19,24 +19,24 @@ struct StageTimes {
   double overlay = 0.0;
 };
 
-/// What a frame was, once the device has finished it.
+/// What is known of a frame once the device has finished it.
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
   /// The driver cut the tracing short (trace/film.h): pixels are wrong.
   bool has_cut_loops = false;
-  /// How it was traced, as ProgressivePicture has it.
+  /// How it was traced: the value of ProgressivePicture::takes_many_paths.
   bool takes_many_paths = false;
-  /// Units of tracing (ProgressivePicture::record).
+  /// The units of tracing (ProgressivePicture::record).
   double units = 0.0;
-  /// As Frame::is_of_flight.
+  /// The value of Frame::is_of_flight.
   bool is_of_flight = false;
-  /// From when it was first asked for, or from the end of the frame before if that was later, to its end: waiting for
-  /// the display counts, a rest does not.
+  /// The time to its end, from when it was first asked for, or from the end of the frame before if that was later.
+  /// Waiting for the display counts, a rest does not.
   double time_ms = 0.0;
 };
 
-/// Where in a frame a timestamp is taken.
+/// The places in a frame where timestamps are taken.
 enum class FrameMark { kBegin, kTraced, kDisplayed, kEnd };
 
 /// One of the frames in flight.
@@ -67,11 +67,12 @@ class FrameQueue {
   /// show an older camera.
   FrameQueue(const gpu::Device& device, Swapchain& swapchain);
 
-  /// A frame is wanted: its time counts from here on, or from the end of the frame before. Asking again is nothing new.
+  /// Says that a frame is wanted: its time counts from here on, or from the end of the frame before. Asking again has
+  /// no effect.
   void ask();
   /// Whether another frame may begin beside those in flight.
   bool has_room() const;
-  /// The next frame, with an image of the swapchain and its commands begun; null where none is free just now.
+  /// The next frame, with an image of the swapchain and its commands begun; null where none is free now.
   Frame* begin();
   /// Ends the commands and hands the frame to the device.
   void submit(Frame& frame);
@@ -92,7 +93,7 @@ class FrameQueue {
   std::array<Frame, 2> frames_;
   size_t most_in_flight_;
   size_t next_ = 0;
-  /// Presenting would wait for the device: present when it has finished.
+  /// Whether presenting would wait for the device: then a frame is presented when it has finished.
   bool presents_late_;
   /// When the next frame was first asked for; none where it has not been.
   std::optional<double> asked_time_;

@@ -27,7 +27,7 @@ vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
 
 void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 #if IMGUI_VERSION_NUM >= 19000
-  // It submits by itself.
+  // This version submits to the queue by itself.
   device.use_queue([](const vk::raii::Queue&) { ImGui_ImplVulkan_CreateFontsTexture(); });
 #else
   device.run([](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
@@ -46,7 +46,7 @@ ImguiRenderer::ImguiRenderer(const gpu::Device& device, const Window& window, co
 }
 
 void ImguiRenderer::set_scale(const OverlayScale& scale) {
-  // Its textures, and the fonts in them, are made at its start, in every version.
+  // Every version makes ImGui's textures, and the fonts in them, when the backend starts.
   ImGui_ImplVulkan_Shutdown();
   scale_ = scale;
   start_backend();

@@ -22,7 +22,7 @@ constexpr Press debug_view(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstDebugView) + number);
 }
 
-// A row without an effect shares its neighbour's.
+// A row without a text is described by the row above it.
 constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_W, "W", "ahead; nearer when orbiting", Hold::kAhead},
     KeyBinding{GLFW_KEY_S, "S", "back; away when orbiting", Hold::kBack},

@@ -14,7 +14,8 @@ inline constexpr size_t kHoldCount = 10;
 
 /// What the keys and the pointer asked of the camera over some time.
 struct Motion {
-  /// Along the camera's right, up and look: seconds that the keys were down, more of them when fast.
+  /// Movement along the camera's right, up and look: the seconds that the keys were down, counted several times when
+  /// fast.
   dvec3 travel{0.0};
   /// Seconds of roll, anticlockwise.
   double roll = 0.0;
@@ -27,10 +28,10 @@ struct Motion {
 /// Sums motion up between frames, event by event: how far the camera goes does not depend on when frames are taken.
 class MotionSum {
  public:
-  /// A key goes down or up at a time in seconds, which never goes back.
+  /// Takes note that a key goes down or up at a time in seconds, which never goes back.
   void set(Hold hold, bool is_down, double time);
   void turn(const dvec2& pixels) { sum_.turn += pixels; }
-  /// All keys go up: the window has lost them.
+  /// Takes note that all keys go up, because the window has lost them.
   void release_all(double time);
 
   /// The motion since the last call.

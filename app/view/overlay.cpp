@@ -15,14 +15,14 @@ namespace promin::app {
 namespace {
 
 const ImVec4 kFailureColor(1.0F, 0.45F, 0.35F, 1.0F);
-// Lengths on an ordinary display.
+// These lengths are for an ordinary display.
 constexpr float kFontSize = 13.0F;
 constexpr float kMargin = 10.0F;
 constexpr float kPanelWidth = 270.0F;
 constexpr float kBarHeight = 4.0F;
 constexpr float kRounding = 4.0F;
 
-/// Such a length here.
+/// Converts such a length to this display.
 float scaled(float length) {
   return length * ImGui::GetFontSize() / kFontSize;
 }
@@ -136,7 +136,7 @@ std::optional<Camera> choose_camera(const OverlayContent& content) {
 }  // namespace
 
 void FrameStatistics::add(const FinishedFrame& frame) {
-  // Of frames that trace nothing there is no rate.
+  // A frame that traces nothing has no rate.
   if (frame.units == 0.0) return;
   constexpr double kMemoryMs = 100.0;
   const double share = std::exchange(is_first_, false) ? 1.0 : 1.0 - std::exp(-frame.time_ms / kMemoryMs);

@@ -13,16 +13,16 @@
 
 namespace promin::app {
 
-/// What frames took lately: each a mean in which the last tenth of a second or so weighs most.
+/// What frames cost lately: each a mean in which the last tenth of a second or so weighs most.
 class FrameStatistics {
  public:
   void add(const FinishedFrame& frame);
 
   double frame_ms() const { return frame_ms_; }
   const StageTimes& stages() const { return stages_; }
-  /// Of primary, shadow and reflection rays, 1e6 a second of tracing.
+  /// The rates of primary, shadow and reflection rays, in 1e6 a second of tracing.
   const dvec3& mrays_per_s() const { return mrays_per_s_; }
-  /// What of a frame's work is not tracing. Waiting for the display is no work.
+  /// The part of a frame's work that is not tracing. Waiting for the display is not work.
   double overhead_ms() const { return stages_.display + stages_.overlay; }
 
  private:
@@ -32,21 +32,21 @@ class FrameStatistics {
   dvec3 mrays_per_s_{0.0};
 };
 
-/// What the user chooses in the overlay, or otherwise.
+/// What the user has chosen, in the overlay or otherwise.
 struct Switches {
   SceneChoice scene;
   uint32_t max_depth = View{}.max_depth;
   bool has_mirrors = true;
   bool has_shadows = true;
   DebugView debug_view = DebugView::kNone;
-  /// As ProgressivePicture::fix_scale.
+  /// The scale, as ProgressivePicture::fix_scale takes it.
   std::optional<double> scale;
   bool is_paused = false;
 
   uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
 };
 
-/// What the overlay shows beside.
+/// What else the overlay shows.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
   const ProgressivePicture* picture = nullptr;
@@ -54,9 +54,9 @@ struct OverlayContent {
   std::string device;
   double speed = 0.0;
   bool is_orbiting = false;
-  /// What is under way beside; empty where nothing is.
+  /// The work that goes on beside the picture; empty where there is none.
   std::string awaited;
-  /// What happened last; a failure stands out.
+  /// What happened last; a failure is highlighted.
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;

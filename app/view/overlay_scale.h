@@ -4,11 +4,11 @@
 
 namespace promin::app {
 
-/// How large the overlay is on a display of many pixels an inch.
+/// The size of the overlay on a display of many pixels an inch.
 struct OverlayScale {
-  /// Pixels for one of an ordinary display.
+  /// The number of pixels that correspond to one pixel of an ordinary display.
   double content = 1.0;
-  /// Pixels for a unit of the window's coordinates, in which the overlay is laid out.
+  /// The number of pixels in a unit of the window's coordinates, in which the overlay is laid out.
   double pixel_ratio = 1.0;
 
   bool operator==(const OverlayScale&) const = default;

@@ -19,20 +19,20 @@ struct PixelText {
 /// Traces single pixels of a shown scene beside its picture, each question on a thread of its own.
 class PixelQuery {
  public:
-  /// What a pixel of the view is made of, as it is with one sample. A question that comes before the answer to the one
-  /// before is passed over.
+  /// Asks what a pixel of the view is made of, traced with one sample. A question that comes before the answer to the
+  /// one before is dropped.
   void ask_why(std::shared_ptr<const ShownScene> scene, const View& view, const uvec2& pixel);
-  /// What is in the middle of what the camera sees; likewise.
+  /// Asks what is in the middle of the picture; it is dropped in the same case.
   void ask_middle(std::shared_ptr<const ShownScene> scene, const Camera& camera);
 
   bool is_busy() const { return text_.is_busy() || middle_.is_busy(); }
   bool is_looking_for_middle() const { return middle_.is_busy(); }
   /// The answers, once they are there. They throw RunError.
   std::optional<PixelText> take_text() { return text_.take(); }
-  /// A point in the world; none where there is nothing.
+  /// The point in the world; nullopt where there is nothing.
   std::optional<std::optional<dvec3>> take_middle() { return middle_.take(); }
 
-  /// Until nothing is under way.
+  /// Waits until no question is being answered.
   void wait() const;
 
  private:

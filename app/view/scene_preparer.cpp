@@ -14,10 +14,10 @@
 namespace promin::app {
 namespace {
 
-/// At the files of the scene, in seconds.
+/// The seconds between two looks at the scene's files.
 constexpr double kLookInterval = 0.1;
 
-/// Those lights that a scene has.
+/// Keeps the lights that a scene has.
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
   std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
   return lights;
@@ -65,7 +65,7 @@ bool ScenePreparer::update(const std::shared_ptr<const ShownScene>& shown, const
 }
 
 std::optional<ReadyPicture> ScenePreparer::take() {
-  // Only of what was read: other work leaves the files as they are known.
+  // Only reading tells of files; other work leaves the watched files as they are.
   if (is_ready() && !sources_.empty()) watch_.follow(std::exchange(sources_, {}));
   return work_.take();
 }
@@ -110,7 +110,7 @@ std::string ScenePreparer::describe() const {
 }
 
 void ScenePreparer::enter(Step step) {
-  // Nobody is left to take it.
+  // The owner is gone, so nobody would take the picture.
   if (is_given_up_) throw RunError({"given up", "while a picture was made", "keep the window open"});
   step_ = step;
 }

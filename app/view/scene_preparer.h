@@ -14,11 +14,11 @@
 
 namespace promin::app {
 
-/// With which tree a scene is shown, and which of its lights are on.
+/// The tree that a scene is shown with, and which of its lights are on.
 struct SceneChoice {
   std::string builder;
   std::optional<std::filesystem::path> bvh;
-  /// Indices of the scene's lights, in their order; those that a scene does not have are passed over.
+  /// Indices of the scene's lights, in their order; those that a scene does not have are ignored.
   std::vector<uint32_t> lights_off;
 
   bool operator==(const SceneChoice&) const = default;
@@ -26,21 +26,21 @@ struct SceneChoice {
 
 /// A scene in device memory.
 struct ShownScene {
-  /// As its file has it, lit up, whatever lights are on.
+  /// The scene as its file has it, with default lights added, whatever lights are on.
   std::shared_ptr<const Scene> scene;
-  /// What of it is on the device.
+  /// The tree and the lights that are on the device.
   SceneChoice choice;
   std::shared_ptr<Renderer> renderer;
 };
 
 /// A picture that can be traced at once.
 struct ReadyPicture {
-  /// Its lights may be others than those on the device: take_lights() comes before anything is traced.
+  /// The lights may be others than those on the device, so take_lights() comes before anything is traced.
   std::shared_ptr<const ShownScene> scene;
   RenderMode mode;
   ProgressivePicture picture;
 
-  /// Brings the lights that are on to the device; nothing is being traced there.
+  /// Brings the lights that are on to the device, while nothing is being traced there.
   void take_lights();
 };
 
@@ -48,7 +48,7 @@ struct ReadyPicture {
 struct PictureRequest {
   SceneChoice choice;
   RenderMode mode;
-  /// The window's, for which room is made.
+  /// The size of the window, for which room is made.
   uvec2 size{0};
 };
 
@@ -56,34 +56,34 @@ struct PictureRequest {
 /// picture is shown.
 class ScenePreparer {
  public:
-  /// Of a scene's file, and of what it was read from.
+  /// Takes a scene's file, and the files that it was read from.
   ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
                 std::vector<SourceFile> sources);
-  /// Gives up what is under way: a tree that is being built is not waited for.
+  /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 
-  /// The first picture of a scene that has been read and lit up.
+  /// Makes the first picture of a scene that has been read and has its default lights.
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// Makes another picture than the one shown where the request is another than the last, or where files of the scene
-  /// have changed. Returns whether it has begun to. What failed is not tried again.
+  /// have changed. Returns whether it has begun to. Work that failed is not tried again.
   bool update(const std::shared_ptr<const ShownScene>& shown, const PictureRequest& request, double time_s);
   /// Whether a picture in that mode, which is not shown, is still to come.
   bool will_show(const RenderMode& mode) const { return is_busy() || asked_.mode != mode; }
 
   bool is_busy() const { return work_.is_busy(); }
   bool is_ready() const { return work_.is_ready(); }
-  /// What it does just now, in words; empty where it does nothing.
+  /// The current work in words; empty where there is none.
   std::string describe() const;
-  /// What it was asked for last, once it is there. Throws InputError, UsageError, RunError.
+  /// The picture that was asked for last, once it is there. Throws InputError, UsageError, RunError.
   std::optional<ReadyPicture> take();
 
  private:
   enum class Step { kReading, kBuilding, kUploading, kCompiling };
 
-  // Start the work; not while busy.
+  // These start the work; they must not be called while busy.
   void read();
   void pack(std::shared_ptr<const Scene> scene);
-  /// For other lights or another mode of a scene on the device.
+  /// Makes a picture with other lights or another mode of a scene that is on the device.
   void compile(std::shared_ptr<const ShownScene> scene);
 
   // Parts of the work.
@@ -100,9 +100,9 @@ class ScenePreparer {
   std::atomic<Step> step_ = Step::kReading;
   std::atomic<double> built_ = 0.0;
   std::atomic<bool> is_given_up_ = false;
-  /// Of what was read last, also where that failed.
+  /// The files that were read last, also where reading failed.
   std::vector<SourceFile> sources_;
-  /// Last: its thread uses the others.
+  /// This is the last member, because its thread uses the others.
   Background<ReadyPicture> work_;
 };
 

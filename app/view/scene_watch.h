@@ -17,17 +17,17 @@ class SceneWatch {
  public:
   explicit SceneWatch(std::vector<SourceFile> sources) { follow(std::move(sources)); }
 
-  /// From now on these, as they were when they were read.
+  /// Watches these files from now on, as they were when they were read.
   void follow(std::vector<SourceFile> sources);
-  /// Whether one has been written, or has appeared, since it was read, and all have been left alone since the last
-  /// call. Says so once for each change.
+  /// Whether a file has been written, or has appeared, since it was read, and all have been left alone since the last
+  /// call. Returns true once for each change.
   bool has_changed();
 
  private:
   using Stamps = std::vector<std::optional<FileStamp>>;
 
   std::vector<SourceFile> sources_;
-  /// Of the last call.
+  /// The stamps at the last call.
   Stamps last_;
 };
 

@@ -13,22 +13,22 @@
 
 namespace promin::app {
 
-/// Pictures of the window on their way to files: promin-NNNN.exr and .png with the next number that is free in the
-/// working folder. One at a time, without the window waiting.
+/// Writes pictures of the window to files: promin-NNNN.exr and .png with the next number that is free in the working
+/// folder. It writes one at a time, and the window does not wait.
 class Screenshot {
  public:
   explicit Screenshot(const gpu::Device& device) : device_(&device) {}
 
   bool is_busy() const { return copy_.has_value() || written_.valid(); }
-  /// Records copying a film that holds all of the picture. Not while busy.
+  /// Records copying a film that holds all of the picture. Must not be called while busy.
   void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view);
-  /// To be called when the device has done that; writes on a thread of its own.
+  /// Is called when the device has done that; writes on a thread of its own.
   void write(const Metadata& metadata);
-  /// Instead of writing: the copy was not worth it.
+  /// Is called instead of writing, where the copy is not wanted after all.
   void drop() { copy_.reset(); }
-  /// Until it is written; the device has finished.
+  /// Waits until the picture is written; the device must have finished.
   void wait() const;
-  /// What was written, as a sentence, once it is. Throws RunError.
+  /// A sentence about what was written, once it is. Throws RunError.
   std::optional<std::string> take();
 
  private:

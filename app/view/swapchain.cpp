@@ -16,8 +16,8 @@ bool is_srgb(vk::Format format) {
   return format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eR8G8B8A8Srgb;
 }
 
-/// Of eight bits and sRGB colours, one that takes encoded values before one that encodes: the overlay's colours are
-/// meant for the former.
+/// Chooses a format of eight bits and sRGB colours. A format that takes encoded values is preferred to one that
+/// encodes, because the overlay's colours are meant for the former.
 vk::SurfaceFormatKHR choose_format(const std::vector<vk::SurfaceFormatKHR>& formats) {
   const std::array wanted{vk::Format::eB8G8R8A8Unorm, vk::Format::eR8G8B8A8Unorm, vk::Format::eB8G8R8A8Srgb,
                           vk::Format::eR8G8B8A8Srgb};

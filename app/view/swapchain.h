@@ -23,10 +23,10 @@ class Swapchain {
   /// Makes images anew for a window of this size, which is not 0; the device must be idle. False, and nothing is made,
   /// while the surface has no pixels. Otherwise size() is what the surface gives.
   bool recreate(const uvec2& size);
-  /// Whether they have to be, since the window has changed.
+  /// Whether the images have to be made anew, because the window has changed.
   bool is_out_of_date() const { return is_out_of_date_; }
   const uvec2& size() const { return size_; }
-  /// One of present_mode_names().
+  /// The mode in use, one of present_mode_names().
   std::string_view present_mode() const;
 
   /// Takes the next image, whose readiness signals the semaphore; none where all are in use or the window has changed.

@@ -74,7 +74,7 @@ void check_window_options(const WindowOptions& options) {
   if (options.record) check_outputs(inputs, {*options.record}, std::nullopt);
 }
 
-/// Waits for it while the window answers; none where the user closes that.
+/// Waits for the picture while the window answers; nullopt where the user closes the window.
 std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, ScenePreparer& maker) {
   constexpr double kWait = 0.02;
   while (!maker.is_ready()) {
@@ -120,7 +120,7 @@ void view(const WindowOptions& options) {
   stats.device = device.info();
   console.detail(device.choice());
   ScenePreparer maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
-  // The longest last: without a window it would be in vain.
+  // This takes longest and comes last, because without a window it would be in vain.
   maker.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
   if (!picture) return;

@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// What promin-view does, which has no commands: shows a scene in a window.
+/// The work of promin-view, which has no commands: it shows a scene in a window.
 Command add_view_command(CLI::App& program);
 
 }  // namespace promin::app

@@ -13,11 +13,11 @@
 namespace promin::app {
 namespace {
 
-/// While there is something to do but no frame is free.
+/// The wait in seconds while there is something to do but no frame is free.
 constexpr double kShortWait = 1e-3;
-/// While there is nothing to do, in seconds; the scene's files are looked at as often.
+/// The wait in seconds while there is nothing to do; the scene's files are looked at as often.
 constexpr double kLongWait = 0.1;
-/// What a frame spends on tracing at least, of its target.
+/// The least part of a frame's target time that is spent on tracing.
 constexpr double kLeastTraceShare = 0.5;
 
 }  // namespace
@@ -155,12 +155,13 @@ void Viewer::update_screenshot() {
 }
 
 void Viewer::update_picture() {
-  // A frame in flight traces the picture that would go, and a question the lights that would change.
+  // Both must be idle: a frame in flight traces the picture that would go, and a question uses the lights that would
+  // change.
   if (maker_.is_ready() && frames_.is_idle() && !asker_.is_busy()) {
     try {
       show_picture(std::move(*maker_.take()));
     } catch (const std::exception& error) {
-      // Whatever it is, memory that is too short too: the old picture stays.
+      // Whatever the error is, lack of memory included, the old picture stays.
       report_failure(error.what());
     }
   }
@@ -169,7 +170,7 @@ void Viewer::update_picture() {
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
-  // It may be too large for the memory: before the old one goes.
+  // The new picture may be too large for the memory, so its room is made before the old one goes.
   if (asked_size_ != uvec2(0)) ready.picture.resize(swapchain_.size());
   ready.take_lights();
   const bool is_new = scene_ && scene_->scene != ready.scene->scene;
@@ -177,7 +178,7 @@ void Viewer::show_picture(ReadyPicture ready) {
   picture_.emplace(std::move(ready.picture));
   scene_ = std::move(ready.scene);
   mode_ = ready.mode;
-  // Before the window has images it has no size.
+  // The window has no size before it has images.
   if (asked_size_ != uvec2(0)) fit_picture();
   draw_again();
   if (!is_new) return;
@@ -267,7 +268,7 @@ void Viewer::take_finished(const FinishedFrame& finished) {
 }
 
 bool Viewer::has_work() const {
-  // It is taken in when the last frame is done.
+  // The ready picture is taken in when the last frame is done, so no new frame may begin.
   if (maker_.is_ready()) return false;
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
   return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
@@ -278,7 +279,7 @@ void Viewer::record(Frame& frame) {
   build_overlay();
   picture_->fix_scale(switches_.scale);
   picture_->want(current_view());
-  // A screenshot takes what it needs, and no more.
+  // While paused, tracing goes on only as far as a screenshot needs.
   picture_->pause(switches_.is_paused && !(wants_screenshot_ && !picture_->is_complete()));
   record_tracing(frame);
   record_display(frame);
@@ -287,7 +288,7 @@ void Viewer::record(Frame& frame) {
 
 void Viewer::record_tracing(Frame& frame) {
   using Stage = vk::PipelineStageFlagBits;
-  // Of the film that is traced now the frame before may have taken a screenshot.
+  // The frame before may have copied a screenshot from the film that is traced now.
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
   frame.takes_many_paths = picture_->takes_many_paths();
   frame.units = picture_->record(frame.commands);
@@ -297,7 +298,7 @@ void Viewer::record_tracing(Frame& frame) {
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
     frame.on_finished = [this, view](const FinishedFrame& finished) {
-      // It is traced again, and taken then.
+      // The picture is traced again, and the screenshot is taken then.
       if (finished.has_cut_loops && finished.takes_many_paths) {
         screenshot_.drop();
         wants_screenshot_ = true;

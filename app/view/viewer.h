@@ -24,27 +24,27 @@
 
 namespace promin::app {
 
-/// What a viewer starts with.
+/// The options that a viewer starts with.
 struct ViewerStart {
   std::filesystem::path file;
   SceneChoice choice;
   View view;
   std::optional<std::string> present_mode;
-  /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
+  /// nullopt stands for the display's refresh interval on a GPU and kCpuTargetMs on a CPU device.
   std::optional<double> target_ms;
-  /// As ProgressivePicture::fix_scale.
+  /// The scale, as ProgressivePicture::fix_scale takes it.
   std::optional<double> scale;
 
-  /// What of a flight to play, and whether the window stays open after it.
+  /// The pictures of a flight to play, and whether the window stays open after it.
   std::optional<PathPictures> replay;
   bool stays_open = false;
-  /// Where the camera's flight goes when the window closes.
+  /// The file for the camera's flight, which is written when the window closes.
   std::optional<std::filesystem::path> record;
 
   static constexpr double kCpuTargetMs = 100.0;
 };
 
-/// The window's program: takes input in, records frames, shows them, until the user quits.
+/// The window's program: it takes input, records frames and shows them, until the user quits.
 class Viewer {
  public:
   /// Throws RunError, vk::SystemError.
@@ -61,24 +61,24 @@ class Viewer {
   void handle_input();
   void handle_press(Press press);
   void move_camera(Frame& frame);
-  /// Takes the camera down for the flight that is recorded, if one is.
+  /// Adds the camera to the flight that is recorded, if one is.
   void keep_camera();
   bool is_replaying() const { return replay_ && has_replay_started_; }
-  /// Of a replay.
+  /// Whether the next picture of a replay is due.
   bool is_picture_due() const;
   /// Begins the replay when its first camera is shown, and ends it.
   void update_replay();
-  /// Says what has become of screenshots.
+  /// Reports what has become of screenshots.
   void update_screenshot();
-  /// Takes in a picture that is ready, and has those made that changed switches and files ask for.
+  /// Takes over a picture that is ready, and asks for those that changed switches and files need.
   void update_picture();
   void show_picture(ReadyPicture ready);
-  /// Says what has become of questions about pixels.
+  /// Reports the answers to questions about pixels.
   void update_answers();
   RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
-  /// Whether another mode than the one shown is on its way.
+  /// Whether a picture in another mode than the one shown is being made.
   bool awaits_mode() const;
-  /// What is under way beside the picture, in words.
+  /// The work that goes on beside the picture, in words.
   std::string describe_awaited() const;
   /// Fits everything to the window. False while it has no pixels.
   bool fit_window();
@@ -95,13 +95,13 @@ class Viewer {
   void draw_again() { frames_to_draw_ = kSettlingFrames; }
   void report(const std::string& text);
   void report_failure(const std::string& text);
-  /// Of the command that gives a view's picture.
+  /// What describe_command needs for the command that gives a view's picture.
   DescribedScene described_scene(const View& view) const;
   View current_view() const;
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
 
-  /// ImGui settles its windows within so many frames.
+  /// ImGui settles its windows within this many frames.
   static constexpr int kSettlingFrames = 3;
 
   Window& window_;
@@ -115,7 +115,7 @@ class Viewer {
   double target_ms_;
 
   std::shared_ptr<const ShownScene> scene_;
-  /// Of the picture.
+  /// The mode of the picture.
   RenderMode mode_;
   Switches switches_;
   PixelQuery asker_;
@@ -130,13 +130,13 @@ class Viewer {
   FlightRecorder recorder_;
 
   Swapchain swapchain_;
-  /// That the swapchain was made for; 0 before it is.
+  /// The size that the swapchain was made for; 0 before it is.
   uvec2 asked_size_{0};
   DisplayPass display_;
   std::unique_ptr<ImguiRenderer> imgui_;
   FrameQueue frames_;
   std::optional<ProgressivePicture> picture_;
-  /// ProgressivePicture::shown_count of what was encoded last.
+  /// The value of ProgressivePicture::shown_count when a picture was encoded last.
   uint64_t encoded_count_ = 0;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;
@@ -144,12 +144,12 @@ class Viewer {
   FrameStatistics statistics_;
   std::string message_;
   bool is_failure_ = false;
-  /// Without a text where none is shown.
+  /// Empty where no text is shown.
   PixelText explanation_;
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;
-  /// Frames to draw although there is nothing to trace: the overlay answers to events.
+  /// The number of frames to draw although there is nothing to trace, because the overlay answers to events.
   int frames_to_draw_ = 0;
 };
 

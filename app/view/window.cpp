@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/window.h"
 
-// Before GLFW, which then declares its Vulkan part.
+// Vulkan comes before GLFW, which then declares its Vulkan part.
 #include <vulkan/vulkan.h>
 
 #include <GLFW/glfw3.h>
@@ -27,7 +27,7 @@ constexpr double kClickSlack = 3.0;
                      "render pictures without one with promin render"});
 }
 
-/// The one that most of the window is on; null where there is none.
+/// The monitor that most of the window is on; null where there is none.
 GLFWmonitor* find_monitor(GLFWwindow* window) {
   if (GLFWmonitor* full_screen = glfwGetWindowMonitor(window); full_screen != nullptr) return full_screen;
   ScreenArea place;
@@ -146,7 +146,7 @@ double Window::pixel_ratio() const {
 OverlayScale Window::overlay_scale() const {
   float scale = 1.0F;
   glfwGetWindowContentScale(window_, &scale, nullptr);
-  // Minimised it has no pixels.
+  // A minimised window has no pixels.
   return {scale > 0.0F ? static_cast<double>(scale) : 1.0, std::max(pixel_ratio(), 0.1)};
 }
 
@@ -233,7 +233,7 @@ void Window::on_button(int button, int action) {
   const bool is_down = action == GLFW_PRESS;
   if (is_down && wants_pointer_ && !is_captured_) return;
   if (button == GLFW_MOUSE_BUTTON_RIGHT && is_down) capture_pointer(!is_captured_);
-  // The captured pointer is nowhere in the window.
+  // A captured pointer is nowhere in the window.
   if (button != GLFW_MOUSE_BUTTON_LEFT || is_captured_) return;
   if (is_down) {
     is_dragging_ = true;

@@ -17,25 +17,25 @@ namespace promin::app {
 /// A window of the desktop and what its user does with keys and pointer. One at a time, on the main thread.
 class Window {
  public:
-  /// `size` in screen coordinates. Throws DeviceError where there is no display.
+  /// `size` is in screen coordinates. Throws DeviceError where there is no display.
   Window(const uvec2& size, const std::string& title);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// What a device needs to present here; valid as long as the window.
+  /// The surface that a device needs to present here; valid as long as the window.
   gpu::Presentation presentation() const;
   GLFWwindow* handle() const { return window_; }
 
-  /// In pixels; 0 while minimised.
+  /// The size in pixels; 0 while minimised.
   uvec2 framebuffer_size() const;
-  /// Pixels of the framebuffer for a unit of screen coordinates.
+  /// The number of pixels of the framebuffer in a unit of screen coordinates.
   double pixel_ratio() const;
-  /// How large the overlay is to be.
+  /// The scale that the overlay is to have.
   OverlayScale overlay_scale() const;
-  /// Of the display that most of the window is on, in milliseconds.
+  /// The refresh interval of the display that most of the window is on, in milliseconds.
   double refresh_interval_ms() const;
-  /// A clock in seconds.
+  /// The time in seconds, by a clock of the window.
   static double now();
 
   /// Takes events in without waiting, or waits until one comes, for at most so many seconds.
@@ -43,12 +43,12 @@ class Window {
   void wait(double seconds);
 
   bool should_close() const;
-  /// Whether that, or the key to quit is among the presses to take.
+  /// Whether the window was asked to close, or the key to quit is among the presses that are to be taken.
   bool wants_to_close() const;
   void set_title(const std::string& title);
   void toggle_fullscreen();
 
-  // What happened since it was last taken.
+  // These return what happened since they were last called.
   Motion take_motion() { return motion_.take(now()); }
   std::vector<Press> take_presses();
   double take_wheel();

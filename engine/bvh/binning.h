@@ -41,9 +41,9 @@ struct LaneBox {
     hi = max(high, hi);
   }
   void extend(const LaneBox& box) { extend(box.lo, box.hi); }
-  /// In double: fp32 would overflow from coordinates of 1e19 on. Of a box that is not empty.
+  /// Computed in double, because fp32 would overflow from coordinates of 1e19 on. The box must not be empty.
   double half_area() const {
-    // Indices in the spare lane are slow to convert: most are subnormal.
+    // Indices in the spare lane are slow to convert, because most are subnormal as floats.
     const DoubleLanes size = __builtin_convertvector(clear_spare_lane(hi), DoubleLanes) -
                              __builtin_convertvector(clear_spare_lane(lo), DoubleLanes);
     return size[0] * size[1] + (size[1] + size[0]) * size[2];
@@ -65,8 +65,8 @@ struct Record {
 
   Bounds bounds() const { return LaneBox{lo, hi}.bounds(); }
   uint32_t index() const { return std::bit_cast<uint32_t>(static_cast<float>(lo[3])); }
-  /// Halved before the sum, which could overflow. Read as floats most indices are subnormal, and arithmetic on those
-  /// is slow.
+  /// The coordinates are halved before they are added, because the sum could overflow. The spare lane is cleared,
+  /// because most indices are subnormal as floats and arithmetic on those is slow.
   Lanes center() const { return fill_lanes(0.5F) * clear_spare_lane(lo) + fill_lanes(0.5F) * hi; }
 };
 
@@ -97,7 +97,7 @@ class BinGrid {
   uint32_t bin_count() const { return bin_count_; }
   /// False where the centres coincide (or are too near or far apart for a float): everything falls into bin 0.
   bool is_divided(int axis) const { return scale_[axis] > 0.0F; }
-  /// On each axis; the spare lane is not one.
+  /// The bin on each axis; the spare lane has no meaning.
   IntLanes bins_of(Lanes center) const { return __builtin_convertvector((center - origin_) * scale_, IntLanes); }
 
  private:
@@ -122,7 +122,7 @@ inline bool is_below(Lanes center, const BinGrid& grid, const Split& split) {
 
 /// Boxes and numbers of the records in every bin of a grid, by bin and axis.
 struct Bins {
-  // Not boxes, which would all be made empty.
+  // These are not boxes, because the default constructor would make all of them empty.
   Lanes lo[BinGrid::kMaxBins][3];
   Lanes hi[BinGrid::kMaxBins][3];
   uint32_t counts[BinGrid::kMaxBins][3];
@@ -131,14 +131,14 @@ struct Bins {
   void add(const BinGrid& grid, std::span<const Record> records);
   void add(const Bins& bins, const BinGrid& grid);
   uint32_t count_below(const Split& split) const;
-  /// Of what is below the plane, and above; empty without a plane.
+  /// The boxes of the records below the plane and above it; empty where there is no plane.
   std::pair<LaneBox, LaneBox> boxes_of(const Split& split, const BinGrid& grid) const;
 };
 
-/// As find_best_split says of the bins of two records.
+/// The split that find_best_split finds in the bins of two records.
 Split find_best_split(const BinGrid& grid, const Record& a, const Record& b);
 
-/// The cheapest plane; of equal ones the first by axis, then by bin.
+/// The cheapest plane; where several are equally cheap, the first by axis, then by bin.
 Split find_best_split(const BinGrid& grid, const Bins& bins);
 
 }  // namespace promin

@@ -48,16 +48,16 @@ inline constexpr double kTestCost = 1.0;
 
 /// What a tree is built over.
 struct BuildInput {
-  /// Of each primitive; not empty, finite.
+  /// The box of each primitive; not empty, finite.
   std::span<const Bounds> boxes;
-  /// Gives a box inside `window` that no point of the primitive's part in there is outside of; empty only where there
-  /// is no such point. `window` lies inside the primitive's box. For builders that split primitives; without it none is
-  /// split. Must bear calls from several threads.
+  /// Gives a box inside `window` that holds every point of the primitive's part in there. The box is empty only where
+  /// there is no such point. `window` lies inside the primitive's box. Only builders that split primitives use this;
+  /// without it none is split. It must bear calls from several threads.
   std::function<Bounds(uint32_t primitive, const Bounds& window)> clip = {};
 };
 
 struct BuildOptions {
-  /// 0: one per core. The tree is the same, to the bit, for any number.
+  /// 0 takes one thread per core. The tree has the same bits for any number.
   unsigned thread_count = 0;
   ProgressCallback progress = {};
 };

@@ -7,11 +7,11 @@
 // The builders behind build_bvh, for the table in builder.cpp alone.
 namespace promin {
 
-/// From here on ranges are halved by number, whatever lies where: 2^32 references halved 32 times fit into leaves.
+/// Deeper ranges are halved by number, whatever lies where: 2^32 references halved 32 times fit into leaves.
 inline constexpr uint32_t kMaxSahDepth = kMaxBvhDepth - 32;
 
-/// The thesis' tree (docs/model.md, "Acceleration"): sort the centroids along the longest axis of the node's box, equal
-/// ones by index; split at N/2; stop at two objects. The named baseline that better builders are measured against.
+/// The thesis's tree (docs/model.md, "Acceleration"): sort the centroids along the longest axis of the node's box,
+/// equal ones by index; split at N/2; stop at two objects. It is the baseline that other builders are compared with.
 Bvh build_median(const BuildInput& input, const BuildOptions& options);
 
 /// Binned surface area heuristic on all three axes (Wald, "On fast Construction of SAH-based Bounding Volume

@@ -26,17 +26,17 @@ using layout::Node;
 
 static_assert(std::endian::native == std::endian::little, "the file is little-endian and used as it lies in memory");
 
-// A byte beyond ASCII and both line ends, so that what damages binary files shows here.
+// The magic number has a byte beyond ASCII and both line ends, so that a transfer in text mode shows here.
 constexpr std::array<char, 8> kMagic = {'\x89', 'P', 'B', 'V', 'H', '\r', '\n', '\x1A'};
 constexpr uint32_t kByteOrder = 0x01020304;
 constexpr uint32_t kVersion = 1;
 
-/// docs/bvh_file.md
+/// The head of the file; docs/bvh_file.md describes it.
 struct Header {
   std::array<char, 8> magic = kMagic;
   uint32_t byte_order = kByteOrder;
   uint32_t version = kVersion;
-  /// Of the whole file, with 0 in this place.
+  /// The checksum of the whole file, computed with 0 in this place.
   uint64_t checksum = 0;
   uint64_t layout_hash = 0;
   uint64_t geometry_hash = 0;
@@ -44,15 +44,15 @@ struct Header {
   uint32_t reference_count = 0;
   uint32_t primitive_count = 0;
   uint32_t stack_size = 0;
-  // BvhStats.
+  // The next members are those of BvhStats.
   uint64_t tree_nodes = 0;
   uint64_t leaves = 0;
   double sah_cost = 0.0;
   uint32_t depth = 0;
   uint32_t max_leaf_size = 0;
-  /// Filled up with zeros, at least one.
+  /// The name is filled up with zeros, at least one.
   std::array<char, 36> builder{};
-  /// Of the kinds of primitive in the tree, those beyond kFirstKinds, as bits 1 << KIND_*.
+  /// The kinds of primitive in the tree beyond kFirstKinds, as bits 1 << KIND_*.
   uint32_t further_kinds = 0;
 };
 static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && std::is_trivially_copyable_v<Header>);
@@ -60,9 +60,9 @@ static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && st
 /// The traversal stack of a tree of kMaxBvhDepth cannot need more: an entry for each node above the deepest.
 constexpr uint32_t kMaxStackSize = kMaxBvhDepth - 1;
 
-/// The kinds that the first files told of, whatever they held: triangles, spheres, cylinders and cones. Their numbers
-/// are in the hash of every file, those of further kinds where the tree holds them, so that a new kind leaves older
-/// files valid.
+/// The number of kinds that the first files knew: triangles, spheres, cylinders and cones. Their numbers are in the
+/// hash of every file, whatever it holds. Those of further kinds are in it only where the tree holds them, so that a
+/// new kind leaves older files valid.
 constexpr uint32_t kFirstKinds = 4;
 
 /// The kinds of primitive that lie in trees, as bits 1 << KIND_*.
@@ -73,11 +73,11 @@ constexpr uint32_t kTreeKinds = 0
 constexpr uint32_t kFirstKindBits = (1U << kFirstKinds) - 1;
 static_assert((kTreeKinds & kFirstKindBits) == kFirstKindBits);
 
-/// Of what pack_tree makes of a small tree, and of the kinds that it holds: a change of what a node's bits mean, or of
-/// how many entries the stack takes, changes it.
+/// A hash of what pack_tree makes of a small tree, and of the kinds that the tree holds. It changes with the meaning of
+/// a node's bits and with the number of entries that the stack takes.
 uint64_t hash_layout(uint32_t further_kinds) {
   Bvh probe;
-  // Five leaves, one more than a node holds: inner, leaf and absent children.
+  // Five leaves are one more than a node holds, so there are inner, leaf and absent children.
   for (uint32_t i = 0; i < 5; ++i) {
     const auto x = static_cast<float>(i);
     const Bounds box{{x, -0.3F * x, 1e-3F * x}, {5.3F, 0.7F + x, 2e3F}};
@@ -134,7 +134,7 @@ Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
 
 std::string read_builder(const Header& header, const fs::path& file) {
   const auto end = std::find(header.builder.begin(), header.builder.end(), '\0');
-  // It is printed: nothing that a terminal would obey.
+  // The name is printed, so it may hold nothing that a terminal would obey.
   const bool is_name = end != header.builder.end() && std::all_of(header.builder.begin(), end, [](char c) {
                          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
                        });
@@ -158,7 +158,7 @@ class TreeCheck {
     if (tree_.nodes.empty()) refuse(file_, "the BVH file has no nodes");
     if (tree_.nodes.size() > layout::MAX_NODES) refuse(file_, "the BVH file has too many nodes");
     entries_[0] = 0;
-    // A child comes after its parent, so no way leads back, and each has been reached when its turn comes.
+    // A child comes after its parent, so there is no cycle, and each node has been reached when its turn comes.
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     if (most_entries_ != tree_.stack_size) {
       refuse(file_, "the BVH file's tree takes a stack of " + std::to_string(most_entries_) + " and claims " +
@@ -210,7 +210,7 @@ class TreeCheck {
     }
   }
 
-  /// What is told of the tree: it is printed, and goes to --stats.
+  /// Checks the statistics, which are printed and written by --stats.
   void check_stats() const {
     const BvhStats& stats = tree_.stats;
     const uint64_t binary_nodes = leaf_count_ > 0 ? 2 * leaf_count_ - 1 : 0;
@@ -274,7 +274,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
                  .max_leaf_size = header.max_leaf_size,
                  .sah_cost = header.sah_cost,
                  .bytes = node_bytes};
-  // Before memory is taken for them.
+  // This is checked before memory is taken for the counts.
   if (header.primitive_count > header.reference_count)
     refuse(file, "the BVH file has fewer references than primitives");
   TreeCheck(tree_, file).run();

@@ -18,7 +18,7 @@ class BvhFile {
   /// primitives. That the boxes hold the primitives is not checked (find_tree_faults does). Throws InputError.
   explicit BvhFile(const std::filesystem::path& file);
 
-  /// Lives as long as this.
+  /// The tree lives as long as this.
   const TreeView& tree() const { return tree_; }
   size_t size_bytes() const { return mapped_.bytes().size(); }
 

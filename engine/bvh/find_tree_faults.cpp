@@ -27,7 +27,7 @@ bool is_beyond(double coordinate, double plane, Side side) {
   return side == Side::kBelow ? coordinate < plane : coordinate > plane;
 }
 
-// Apart from bvh/clip_triangle on purpose: what cuts for builders must not check itself.
+// This is separate from bvh/clip_triangle on purpose: the code that cuts for builders must not check itself.
 
 /// Something cut at a plane; either part may be missing.
 template <typename Piece>
@@ -72,7 +72,7 @@ Cut<ExactBounds> cut_at(const ExactBounds& box, int axis, double plane, Side sid
   return cut;
 }
 
-/// What is left of `piece` outside of `box`.
+/// Collects what is left of `piece` outside of `box`.
 template <typename Piece>
 void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& left) {
   const size_t first = left.size();
@@ -81,7 +81,7 @@ void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& le
     for (const Side side : {Side::kBelow, Side::kAbove}) {
       Cut<Piece> cut = cut_at(rest, axis, side == Side::kBelow ? box.lo[axis] : box.hi[axis], side);
       if (!cut.within) {
-        // The box has nothing of it: it stays whole.
+        // The box holds nothing of the piece, so it stays whole.
         left.resize(first);
         left.push_back(piece);
         return;
@@ -113,7 +113,7 @@ Polygon polygon_of(const Primitive& p) {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr ExactBounds kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
 
-/// What both hold.
+/// The intersection of both boxes.
 ExactBounds intersect(const ExactBounds& a, const ExactBounds& b) {
   const ExactBounds both{glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
   // Written so that a NaN holds nothing.
@@ -219,7 +219,7 @@ class Inspection {
   const TreeView& tree_;
   std::span<const Primitive> primitives_;
   const PrimitiveNumbers& numbers_;
-  /// Of each node, and of each leaf: what its own box and those of all nodes above have in common.
+  /// The boxes of each node and of each leaf, intersected with those of all nodes above.
   std::vector<ExactBounds> node_boxes_;
   std::vector<ExactBounds> leaf_boxes_;
   std::vector<uint32_t> leaf_of_slot_;

@@ -53,7 +53,7 @@ Bvh build_median(const BuildInput& input, const BuildOptions& options) {
       bvh.nodes[range.node] = {bounds, range.begin, range.end - range.begin};
       continue;
     }
-    // The halves of the sorted sequence: their order within is settled by the sorts below them.
+    // The halves of the sorted sequence. The sorts of the levels below settle the order within each.
     const uint32_t middle = range.begin + (range.end - range.begin) / 2;
     std::nth_element(first, bvh.references.begin() + middle, last, comes_before);
     const auto child = static_cast<uint32_t>(bvh.nodes.size());

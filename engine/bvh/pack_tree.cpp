@@ -16,7 +16,7 @@ namespace {
 
 using layout::Node;
 
-/// At least this many subtrees of a large tree, so that threads which finish early find another.
+/// A large tree is packed as at least this many subtrees, so that threads which finish early find another.
 constexpr size_t kSubtrees = 256;
 
 /// Indices of binary nodes.
@@ -32,7 +32,7 @@ class Collapse {
  public:
   explicit Collapse(const Bvh& bvh) : bvh_(bvh), root_area_(bvh.nodes[0].bounds.half_area()), plans_(bvh.nodes.size()) {
     if (!(root_area_ > 0.0)) root_area_ = 1.0;
-    // Those of the top, level by level, until there are enough subtrees for all threads.
+    // The nodes of the top, level by level, until there are enough subtrees for all threads.
     std::vector<uint32_t> top = {0};
     size_t planned = 0;
     for (; planned < top.size() && top.size() - planned < kSubtrees; ++planned) push_children(top[planned], top);
@@ -45,7 +45,7 @@ class Collapse {
     plan_upwards(std::span(top).first(planned));
   }
 
-  /// Of the wide node that an inner node becomes.
+  /// The children of the wide node that an inner node becomes.
   Children children_of(uint32_t node) const {
     Children children;
     divide(node, layout::NODE_WIDTH, children);
@@ -58,13 +58,13 @@ class Collapse {
     if (bvh_.nodes[node].count == 0) nodes.insert(nodes.end(), {first, first + 1});
   }
 
-  /// Of nodes that come after their parents.
+  /// Plans nodes that come after their parents.
   void plan_upwards(std::span<const uint32_t> nodes) {
     for (size_t i = nodes.size(); i-- > 0;) plans_[nodes[i]] = plan(bvh_.nodes[nodes[i]]);
   }
 
-  /// What a subtree costs in 1...NODE_WIDTH slots (at index slots - 1), and how many of them its first child then
-  /// takes; 0: it does not use the last slot.
+  /// The cost of a subtree in 1...NODE_WIDTH slots (at index slots - 1), and the number of slots that its first child
+  /// then takes. 0 means that it does not use the last slot.
   struct Plan {
     std::array<float, layout::NODE_WIDTH> cost;
     std::array<uint8_t, layout::NODE_WIDTH> first_slots;
@@ -89,10 +89,10 @@ class Collapse {
         result.first_slots[slots - 1] = static_cast<uint8_t>(of_first);
       }
     }
-    // In one slot it is a wide node of its own.
+    // A subtree in one slot is a wide node of its own.
     result.cost[0] = static_cast<float>(kNodeCost * area) + result.cost[layout::NODE_WIDTH - 1];
     for (uint32_t slots = 2; slots < layout::NODE_WIDTH; ++slots) {
-      // Of equal ones the fuller node: where all areas are 0 too.
+      // At equal cost the fuller node is taken, also where all areas are 0.
       if (result.cost[slots - 2] >= result.cost[slots - 1]) continue;
       result.cost[slots - 1] = result.cost[slots - 2];
       result.first_slots[slots - 1] = 0;
@@ -113,7 +113,7 @@ class Collapse {
   }
 
   const Bvh& bvh_;
-  /// So that costs are of the size of counts, whatever that of the scene.
+  /// Costs are divided by this, so that they are of the size of counts, whatever the size of the scene.
   double root_area_;
   UnsetVector<Plan> plans_;
 };
@@ -129,7 +129,7 @@ struct Axis {
     const auto whole = static_cast<uint32_t>(steps);
     return whole + (whole < steps ? 1 : 0);
   }
-  /// Exact, as the step is a power of two; not negative for planes from the origin on.
+  /// The result is exact, because the step is a power of two. It is not negative for planes from the origin on.
   double steps_to(float plane) const {
     const auto inverse_step = std::bit_cast<double>(uint64_t{1023 + 127 - exponent} << 52);
     return (static_cast<double>(plane) - static_cast<double>(origin)) * inverse_step;
@@ -152,7 +152,7 @@ uint32_t leaf_reference(const BvhNode& leaf) {
   return layout::CHILD_IS_LEAF | ((leaf.count - 1) << layout::CHILD_COUNT_SHIFT) | leaf.first;
 }
 
-/// A node of these boxes; its children are left out.
+/// Makes a node of these boxes; its children are left out.
 Node make_node(std::span<const Bounds> boxes) {
   Bounds all;
   for (const Bounds& box : boxes) all.extend(box);
@@ -171,7 +171,7 @@ Node make_node(std::span<const Bounds> boxes) {
   return node;
 }
 
-/// An inner node of the binary tree that gets a node of the device's.
+/// An inner node of the binary tree that becomes a node of the device's.
 struct Open {
   uint32_t source = 0;
   uint32_t target = 0;
@@ -201,7 +201,7 @@ void pack_node(const Bvh& bvh, const Collapse& collapse, const Open& open, Packe
   tree.nodes[open.target] = node;
 }
 
-/// The nodes below one, which becomes node 0.
+/// The packed nodes below one node, which becomes node 0.
 PackedTree pack_subtree(const Bvh& bvh, const Collapse& collapse, Open root) {
   root.target = 0;
   PackedTree tree;
@@ -236,7 +236,7 @@ PackedTree pack_tree(const Bvh& bvh) {
   tree.nodes[0] = {};
   if (bvh.nodes.empty()) return tree;
   if (bvh.nodes[0].count > 0) {
-    // A root must be an inner node: an only leaf becomes its child.
+    // A root must be an inner node, so an only leaf becomes its child.
     tree.nodes[0] = make_node(std::array{bvh.nodes[0].bounds});
     tree.nodes[0].children.x = leaf_reference(bvh.nodes[0]);
     return tree;

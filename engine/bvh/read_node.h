@@ -11,7 +11,7 @@
 // Reads on the host what pack_tree and pack_scene write, as the shaders read it: for checks, tests and builders.
 namespace promin {
 
-/// Bounds in double. Everything by default: what nothing confines.
+/// A box in double. By default it is unbounded.
 struct ExactBounds {
   dvec3 lo{-std::numeric_limits<double>::infinity()};
   dvec3 hi{std::numeric_limits<double>::infinity()};
@@ -27,19 +27,19 @@ struct NodeChild {
   uint32_t count = 0;
 };
 
-/// How many children a node tells of: at most NODE_WIDTH unless the bits are no node's.
+/// The number of children that a node claims: at most NODE_WIDTH, unless the bits are not those of a node.
 uint32_t child_count(const layout::Node& node);
 
-/// Child 0...NODE_WIDTH - 1; those from child_count on are absent.
+/// Child 0...NODE_WIDTH - 1; children from child_count on are absent.
 NodeChild child_of(const layout::Node& node, uint32_t child);
 
-/// The box of a child that is there. Bits that are no box (NaN, infinity) come as they are.
+/// The box of a child that is there. Bits that are no box (NaN, infinity) are returned as they are.
 ExactBounds child_box(const layout::Node& node, uint32_t child);
 
-/// Of any primitive of the tree, conservative as bounds_of of its shape is.
+/// The bounds of any primitive of the tree, as conservative as bounds_of of its shape.
 Bounds primitive_bounds(const layout::Primitive& primitive);
 
-/// Of a KIND_TRIANGLE.
+/// The corners of a primitive of KIND_TRIANGLE.
 std::array<vec3, 3> triangle_corners(const layout::Primitive& primitive);
 
 }  // namespace promin

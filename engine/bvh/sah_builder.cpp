@@ -10,10 +10,10 @@
 #include "core/parallel.h"
 #include "core/shared_progress.h"
 
-// In two phases. The top of the tree is split breadth first: the ranges of one level are cut into chunks, which all
-// threads bin and scatter. Ranges below kSubtreeSize are then subtrees, one task each, and are put behind the top in
-// their order at the end. Nothing depends on which thread does what: chunks and subtrees have fixed sizes, and their
-// results are merged in order.
+// The builder has two phases. First the top of the tree is split breadth first: the ranges of one level are cut into
+// chunks, which all threads bin and scatter. Ranges below kSubtreeSize are then subtrees, one task each, and are put
+// behind the top in their order at the end. Nothing depends on which thread does what: chunks and subtrees have fixed
+// sizes, and their results are merged in order.
 namespace promin {
 namespace {
 
@@ -119,10 +119,10 @@ struct Chunk {
   uint32_t begin;
   uint32_t end;
   Bins bins;
-  /// Where its first record below and its first above the plane go.
+  /// The places of its first record below the plane and its first above.
   uint32_t first_below = 0;
   uint32_t first_above = 0;
-  /// What went there.
+  /// The extents of the records that went there.
   Extent below;
   Extent above;
 
@@ -201,7 +201,7 @@ class SahBuild {
   std::vector<Range> split_level(const std::vector<Range>& level);
   void build_subtrees();
 
-  /// Of `count` records, where each level halves them.
+  /// The work for `count` records, if each level halves them.
   static double count_levels(size_t count) { return static_cast<double>(count) * std::log2(1.0 + count); }
 
   /// Large ranges are split with the next level, small or deep ones become subtrees.
@@ -215,7 +215,7 @@ class SahBuild {
 
   std::span<const Bounds> boxes_;
   unsigned thread_count_;
-  /// In records times levels.
+  /// Counted in records times levels.
   SharedProgress progress_;
   /// The records of the current level, and where its chunks scatter them to.
   UnsetVector<Record> records_;
@@ -287,7 +287,7 @@ void SahBuild::build_subtrees() {
     for (uint32_t k = range.begin; k < range.end; ++k) bvh_.references[k] = records[k].index();
     progress_.add(count_levels(range.count()));
   });
-  // A subtree's root takes its place in the top; its others follow what there is.
+  // A subtree's root takes its place in the top; its other nodes follow those that are there.
   std::vector<size_t> starts = {bvh_.nodes.size()};
   for (const UnsetVector<BvhNode>& nodes : built) starts.push_back(starts.back() + nodes.size() - 1);
   bvh_.nodes.resize(starts.back());

@@ -11,8 +11,8 @@
 #include "core/parallel.h"
 #include "core/shared_progress.h"
 
-// Large sets of references are split one after the other, each by all threads in chunks of fixed size; the small ones
-// are subtrees, a task each. Chunks and subtrees are put together in their order.
+// Large sets of references are split one after the other, each by all threads in chunks of fixed size. The small ones
+// are subtrees, one task each. Chunks and subtrees are put together in their order.
 namespace promin {
 namespace {
 
@@ -24,7 +24,7 @@ constexpr size_t kSubtreeSize = 16384;
 constexpr double kLeastOverlap = 1e-4;
 
 /// A cut that costs up to this much more than the best object split is taken: the heuristic takes the sides for leaves,
-/// but sides that do not overlap are also split better further down. Measured, docs/performance.md.
+/// but sides that do not overlap are also split better further down. Measured, docs/performance_log.md.
 constexpr double kCutAdvantage = 1.1;
 
 /// The box of a record's primitive below or above a plane.
@@ -62,7 +62,7 @@ class PlaneGrid {
     while (slab + 1 < slab_count_ && x >= planes_[axis][slab + 1]) ++slab;
     return slab;
   }
-  /// As much; on the plane between two, the lower one.
+  /// The slab that holds a coordinate in the box; on the plane between two, the lower one.
   uint32_t slab_below(float x, int axis) const {
     uint32_t slab = guess_slab(x, axis);
     while (slab > 0 && x <= planes_[axis][slab]) --slab;
@@ -85,7 +85,7 @@ class PlaneGrid {
 struct Cut {
   int axis = -1;
   float plane = 0.0F;
-  /// What lies on both sides.
+  /// The boxes of both sides.
   LaneBox below;
   LaneBox above;
   uint32_t below_count = 0;
@@ -98,7 +98,7 @@ struct Cut {
 /// The parts of primitives in every slab of a grid.
 struct Slabs {
   LaneBox boxes[3][PlaneGrid::kMaxSlabs];
-  /// Records whose first, whose last slab it is.
+  /// The number of records whose first slab this is, and of those whose last slab it is.
   uint32_t entries[3][PlaneGrid::kMaxSlabs] = {};
   uint32_t exits[3][PlaneGrid::kMaxSlabs] = {};
 
@@ -134,7 +134,8 @@ struct Slabs {
   }
 };
 
-/// The cheapest plane that makes no more than `max_count` references; of equal ones the first by axis, then from below.
+/// The cheapest plane that makes no more than `max_count` references; where several are equally cheap, the first by
+/// axis, then from below.
 Cut find_best_cut(const PlaneGrid& grid, const Slabs& slabs, size_t max_count) {
   Cut best;
   for (int axis = 0; axis < 3; ++axis) {
@@ -162,7 +163,7 @@ Cut find_best_cut(const PlaneGrid& grid, const Slabs& slabs, size_t max_count) {
   return best;
 }
 
-/// Half the area of what two boxes have in common.
+/// Half the area of the intersection of two boxes.
 double overlap_of(const LaneBox& a, const LaneBox& b) {
   return LaneBox{max(a.lo, b.lo), min(a.hi, b.hi)}.bounds().half_area();
 }
@@ -194,8 +195,8 @@ struct Sides {
   bool are_filled() const { return !below.records.empty() && !above.records.empty(); }
 };
 
-/// Puts a record on its side of the plane; one that the plane meets on both, or, where that costs less, whole on one
-/// (Stich et al., section 4.4).
+/// Puts a record on its side of the plane. One that the plane meets goes to both sides or, where that costs less, whole
+/// to one (Stich et al., section 4.4).
 void cut_record(const Record& record, const Cut& cut, const BuildInput& input, Sides& sides) {
   const float lo = record.lo[cut.axis];
   const float hi = record.hi[cut.axis];
@@ -220,7 +221,7 @@ struct Task {
   Side side;
   uint32_t node = 0;
   uint32_t depth = 1;
-  /// References that cutting may add below.
+  /// The number of references that cutting may add below.
   size_t spare = 0;
 
   size_t count() const { return side.records.size(); }
@@ -258,7 +259,7 @@ class SpatialBuild {
   }
 
  private:
-  /// Builds below one task on `thread_count` threads. Small sets go to `subtrees` if there is such.
+  /// Builds everything below one task on `thread_count` threads. Small sets go to `subtrees`, unless it is null.
   void build(Task root, unsigned thread_count, Bvh& bvh, std::vector<Task>* subtrees) const;
   /// Splits the references in two, or not where a leaf is cheaper.
   std::optional<Sides> split(const Task& task, unsigned thread_count) const;
@@ -367,7 +368,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
     bvh.nodes.resize(bvh.nodes.size() + 2);
     const size_t below = sides->below.records.size();
     const size_t both = below + sides->above.records.size();
-    // Parts without a point are dropped, so `both` may even be less than there were.
+    // Parts without a point are dropped, so `both` may even be less than the number before.
     const size_t spare = task.spare + task.count() - both;
     const size_t spare_below = spare * below / both;
     open.push_back({std::move(sides->above), child + 1, task.depth + 1, spare - spare_below});
@@ -391,7 +392,7 @@ void SpatialBuild::append(const Bvh& subtree, uint32_t root, Bvh& bvh) {
 }  // namespace
 
 Bvh build_spatial(const BuildInput& input, const BuildOptions& options) {
-  // Of the time, roughly.
+  // The fraction of the time, roughly, that building with cuts takes.
   constexpr double kCutShare = 0.9;
   BuildOptions of_cut = options;
   BuildOptions of_whole = options;
@@ -400,7 +401,7 @@ Bvh build_spatial(const BuildInput& input, const BuildOptions& options) {
     of_whole.progress = [&](double fraction) { return options.progress(kCutShare + (1.0 - kCutShare) * fraction); };
   }
   Bvh cut = SpatialBuild(input, of_cut).run();
-  // Greed does not always pay: in a few scenes the tree without cuts is the better one as a whole.
+  // Cutting is greedy and does not always pay: in a few scenes the tree without cuts is better as a whole.
   Bvh whole = build_sah(input, of_whole);
   return measure_bvh("", whole).sah_cost < measure_bvh("", cut).sah_cost ? whole : cut;
 }

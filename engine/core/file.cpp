@@ -72,7 +72,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (fs::is_directory(target_, error)) {
     throw RunError({"the output file is a folder", target_.string(), "name a file"});
   }
-  // As root, rename() would replace a device by a file.
+  // For the root user rename() would even replace a device by a file.
   if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
     throw RunError({"the output file is a device or a pipe", target_.string(), "name a file"});
   }

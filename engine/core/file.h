@@ -17,17 +17,17 @@ namespace promin {
 /// The file's ending in lower case, with its dot; empty if it has none.
 std::string lower_case_ending(const std::filesystem::path& file);
 
-/// What a file is, for a reader. Throws InputError if it is missing or cannot be reached.
+/// The status of a file that is to be read. Throws InputError if it is missing or cannot be reached.
 std::filesystem::file_status find_input(const std::filesystem::path& file);
 
-/// What changes when a file is written or another takes its place.
+/// Identifies a version of a file: it differs when the file is written or another takes its place.
 struct FileStamp {
   int64_t written_ns = 0;
   uint64_t size_bytes = 0;
   uint64_t inode = 0;
   bool operator==(const FileStamp&) const = default;
 };
-/// None where there is no such file.
+/// nullopt where there is no such file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
 /// The whole of a regular file. Throws InputError, with the place and the cure, if it is missing, a folder, not
@@ -35,8 +35,8 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 std::vector<std::byte> read_file(const std::filesystem::path& file);
 
 /// A file that appears whole or not at all: write to temporary(), then commit() renames it to the target. Without a
-/// commit the destructor removes the temporary file and the target stays as it was. At the file size limit that needs a
-/// program that ignores SIGXFSZ: the signal would end it before the destructor runs.
+/// commit the destructor removes the temporary file and the target stays as it was. A program that may reach the file
+/// size limit must ignore SIGXFSZ, because the signal would end it before the destructor runs.
 class AtomicFile {
  public:
   /// Follows a symbolic link. Throws RunError if the target's folder does not exist or the target is anything but a
@@ -46,7 +46,8 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Beside the target, with the target's ending (writers that pick the format by it see the right one).
+  /// The temporary file lies beside the target and has its ending, so that writers which pick the format by the ending
+  /// see the right one.
   const std::filesystem::path& temporary() const { return temporary_; }
 
   /// Flushes the temporary file to disk and renames it. Throws RunError.

@@ -10,7 +10,8 @@
 namespace promin {
 
 /// A 64-bit checksum over words of 8 bytes: each is mixed in by xor, a multiplication by an odd number and a shift.
-/// Each step is one to one, so data that differ in one word alone never have the same value. Not against forgers.
+/// Each step is one to one, so data that differ in one word alone never have the same value. It does not protect
+/// against forgers.
 class Hash64 {
  public:
   void add(uint64_t word) {

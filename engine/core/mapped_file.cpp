@@ -13,7 +13,7 @@
 namespace promin {
 
 MappedFile::MappedFile(const std::filesystem::path& file) {
-  // Before it is opened: that of a pipe would wait for a writer.
+  // The status is read before the file is opened, because opening a pipe would wait for a writer.
   if (!std::filesystem::is_regular_file(find_input(file))) {
     throw InputError({"not a regular file", file.string(), "name a regular file"});
   }

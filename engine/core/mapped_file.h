@@ -18,7 +18,7 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Begins at a page.
+  /// The bytes begin at a page boundary.
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

@@ -37,7 +37,7 @@ void for_each_index(size_t count, unsigned thread_count, const std::function<voi
     try {
       while (helpers.size() < helper_count) helpers.emplace_back(work);
     } catch (const std::system_error&) {
-      // The system gives no more threads: the ones there are do the work.
+      // The system gives no more threads, so those that there are do the work.
     }
     work();
   }

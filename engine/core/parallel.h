@@ -8,7 +8,7 @@
 
 namespace promin {
 
-/// The machine's, or 1 where it does not tell.
+/// The machine's number of cores, or 1 where it is not known.
 unsigned core_count();
 
 /// Calls task(i) once for every i in [0, count) and returns when all calls have. The calls share up to `thread_count`
@@ -16,7 +16,7 @@ unsigned core_count();
 /// starts, and the first one is rethrown here.
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task);
 
-/// As much for ranges: calls task(begin, end) for [0, count) in pieces of `size`, the last one what is left.
+/// Does the same for ranges: calls task(begin, end) for [0, count) in pieces of `size`; the last one has what is left.
 template <typename Task>
 void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task& task) {
   for_each_index((count + size - 1) / size, thread_count,

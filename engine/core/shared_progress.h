@@ -10,7 +10,8 @@
 
 namespace promin {
 
-/// Tells a callback, which may be empty, how far a work is. Throws Cancelled where it wants an end.
+/// Reports to a callback, which may be empty, the fraction of some work that is done. Throws Cancelled where the
+/// callback returns false.
 inline void tell_progress(const ProgressCallback& callback, double fraction) {
   if (callback && !callback(fraction)) throw Cancelled();
 }
@@ -18,10 +19,10 @@ inline void tell_progress(const ProgressCallback& callback, double fraction) {
 /// Sums progress from several threads; reports in steps of at least 0.1 %, one call at a time.
 class SharedProgress {
  public:
-  /// `callback` may be empty and must outlive this. `total` > 0 may be an estimate; more than all is told as all.
+  /// `callback` may be empty and must outlive this. `total` > 0 may be an estimate: a sum beyond it is reported as 1.
   SharedProgress(const ProgressCallback& callback, double total) : callback_(callback), total_(total) {}
 
-  /// Throws Cancelled, from each call on after the callback wanted an end.
+  /// Throws Cancelled once the callback has returned false.
   void add(double amount) {
     if (!callback_) return;
     const std::lock_guard lock(mutex_);

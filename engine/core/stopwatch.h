@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// Wall time since its making.
+/// Wall time since it was made.
 class Stopwatch {
  public:
   double ms() const {

@@ -10,12 +10,12 @@
 
 namespace promin {
 
-/// Memory that is aligned to 64 bytes; from 4 MiB on in huge pages where the system has such, as touching millions of
-/// elements for the first time costs as much as computing them otherwise. Throws std::bad_alloc.
+/// Memory that is aligned to 64 bytes. From 4 MiB on it is in huge pages where the system has them, because touching
+/// millions of elements for the first time costs as much as computing them otherwise. Throws std::bad_alloc.
 void* allocate_pages(size_t bytes);
 void free_pages(void* memory, size_t bytes);
 
-/// Leaves elements that are made without a value as the memory is.
+/// Elements that are made without a value are left uninitialised.
 template <typename T>
 struct UnsetAllocator {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= 64);
@@ -35,8 +35,8 @@ struct UnsetAllocator {
   bool operator==(const UnsetAllocator&) const = default;
 };
 
-/// For millions of elements that several threads fill: resize() does not touch the memory, so the pages of each part
-/// come to the thread that writes it.
+/// A vector for millions of elements that several threads fill: resize() does not touch the memory, so the pages of
+/// each part come to the thread that writes it.
 template <typename T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 

@@ -15,7 +15,7 @@ constexpr size_t kChunkSize = 16384;
 using Point = std::array<float, 3>;
 
 Point point_of(const vec3& v) {
-  // -0 is 0 here: positions are compared by value.
+  // -0 counts as 0 here, because positions are compared by value.
   return {v.x + 0.0F, v.y + 0.0F, v.z + 0.0F};
 }
 
@@ -114,7 +114,7 @@ CutTriangles::CutTriangles(const world::Scene& scene) {
     for (const uint32_t i : degenerate_.back()) {
       const uvec3& corners = mesh->triangles[i];
       const std::array p{mesh->positions[corners.x], mesh->positions[corners.y], mesh->positions[corners.z]};
-      // With two corners in one place, its neighbours share a whole edge.
+      // Where two corners of the triangle are in one place, its neighbours share a whole edge.
       if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
       const uint32_t group = groups.add();
       for (size_t side = 0; side < 3; ++side) {

@@ -22,12 +22,12 @@ gpu::Buffer upload(const gpu::Device& device, std::span<const std::byte> bytes) 
 struct Placed {
   std::span<const std::byte> bytes;
   uint64_t offset = 0;
-  /// Of its first record, in its own stride.
+  /// The index of its first record, in its own stride.
   uint32_t first_index = 0;
   uint64_t end() const { return offset + bytes.size(); }
 };
 
-/// At the next multiple of the stride from `offset` on.
+/// Places records at the next multiple of their stride from `offset` on.
 template <typename Records>
 Placed place(const Records& records, uint64_t offset) {
   constexpr uint64_t kStride = sizeof(typename Records::value_type);
@@ -48,7 +48,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
       materials_(pack_materials(shading.materials)),
-      // In steps, so that scenes of about the same depth share pipelines.
+      // The size grows in steps, so that scenes of about the same depth share pipelines.
       stack_size_((packed.stack_size + 7) / 8 * 8) {
   const Placed surfaces = place(packed.surfaces.surfaces, 0);
   const Placed normals = place(packed.surfaces.normals, surfaces.end());
@@ -111,7 +111,7 @@ uint64_t DeviceScene::end_of_tail() const {
 }
 
 gpu::Buffer DeviceScene::make_shading_buffer() const {
-  // With room for some lights more, so that switching them on needs no other buffer.
+  // The buffer has room for some more lights, so that switching them on needs no other buffer.
   constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
   return {*device_, end_of_tail() + kSpareBytes, kStorageOrTexels};
 }

@@ -25,32 +25,32 @@ struct ShadingParts {
 /// lights and environment as often as they change. Keeps no reference to the PackedScene.
 class DeviceScene {
  public:
-  /// Casts need no shading. Throws vk::SystemError, and RunError where a device limit is passed.
+  /// Scenes for casts need no shading. Throws vk::SystemError, and RunError where a device limit is passed.
   DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading = {});
 
-  // Nothing on the device reads the scene meanwhile. Where they need more room than there is, the buffer of shading is
-  // another one afterwards: what is bound to it must be bound anew (Film::bind_scene).
+  // The setters need that nothing on the device reads the scene meanwhile. Where they need more room than there is, the
+  // buffer of shading is replaced: what is bound to it must be bound anew (Film::bind_scene).
   void set_materials(std::span<const Material> materials);
   void set_lights(std::span<const Light> lights);
   void set_environment(const Environment& environment);
 
-  /// What the constants of pictures and casts take from the scene.
+  /// What the scene contributes to the constants of pictures and casts.
   const SceneConstants& constants() const { return constants_; }
-  /// Of each light on the device its index in Scene::lights.
+  /// The index in Scene::lights of each light on the device.
   const std::vector<uint32_t>& light_numbers() const { return light_numbers_; }
   uint32_t stack_size() const { return stack_size_; }
-  /// Of all that it holds in device memory.
+  /// The size of all that the scene holds in device memory.
   uint64_t size_bytes() const;
 
-  /// What traversal reads: nodes and primitives, as storage buffers and as texels.
+  /// The buffers that traversal reads: nodes and primitives, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> geometry() const;
   /// Whether the device's texel buffers hold all of it: CONSTANT_FETCHES_TEXELS.
   bool fetches_texels() const { return fetches_texels_; }
-  /// What shading reads, likewise.
+  /// The buffers that shading reads, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> shading() const;
 
-  /// Bytes that have been copied to the device so far, of geometry and surfaces and of all else: what a change uploads
-  /// can be counted.
+  /// The number of bytes copied to the device so far: geometry and surfaces, and all else. Tests count by it what a
+  /// change uploads.
   struct Uploads {
     uint64_t geometry = 0;
     uint64_t shading = 0;
@@ -70,7 +70,7 @@ class DeviceScene {
   gpu::Buffer primitives_;
   vk::raii::BufferView node_texels_;
   vk::raii::BufferView primitive_texels_;
-  /// Of surfaces and vertices, at the head of the buffer of shading.
+  /// The size of surfaces and vertices, at the head of the buffer of shading.
   uint64_t head_bytes_ = 0;
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};

@@ -26,14 +26,14 @@ namespace {
 
 using namespace layout;
 
-/// Triangles or references that a thread takes at a time.
+/// The number of triangles or references that a thread takes at a time.
 constexpr size_t kChunkSize = 16384;
 
 uint32_t bits_of(float value) {
   return std::bit_cast<uint32_t>(value);
 }
 
-/// As corner0, corner1 and corner2 of shaders/primitives/triangle.glsl and triangle_corners read it.
+/// Packs corners as corner0, corner1 and corner2 of shaders/primitives/triangle.glsl and triangle_corners read them.
 Primitive pack(const TrianglePart& part) {
   const auto& [a, b, c] = part;
   return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),
@@ -59,7 +59,7 @@ uint32_t hash_of(std::initializer_list<uint64_t> words) {
   return static_cast<uint32_t>(hash.value() >> 48);
 }
 
-/// Primitive::c.w.
+/// The value of Primitive::c.w.
 uint32_t hashes_of(size_t object, uint32_t primitive) {
   return hash_of({object}) | hash_of({object, primitive}) << 16;
 }
@@ -154,7 +154,7 @@ class Collector {
     return mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[triangle];
   }
 
-  /// The triangles of a mesh, none of which is in parts: each has its place.
+  /// Adds the triangles of a mesh, none of which is in parts: the place of each is known beforehand.
   void add_whole(const Mesh& mesh, uint32_t flags) {
     const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
     result_.degenerate_count += degenerate.size();
@@ -186,7 +186,7 @@ class Collector {
     result_.order += static_cast<uint32_t>(mesh.triangles.size());
   }
 
-  /// The triangles of a mesh, some of which may be in parts.
+  /// Adds the triangles of a mesh, some of which may be in parts.
   void add_cut(const Mesh& mesh, uint32_t flags) {
     auto skipped = cut_triangles_.degenerate_triangles(object_).begin();
     result_.degenerate_count += cut_triangles_.degenerate_triangles(object_).size();
@@ -208,8 +208,8 @@ class Collector {
     }
   }
 
-  /// The vertex at a part's corner, from the mesh's first. Where a triangle was cut there is none with what it has
-  /// there, so it is added.
+  /// The index of the vertex at a part's corner, counted from the mesh's first. Where a triangle was cut, the mesh has
+  /// no such vertex, so it is added with interpolated values.
   uint32_t vertex_of(const Mesh& mesh, const uvec3& corners, const PartCorner& corner) {
     if (corner.weights == dvec2(0, 0)) return corners.x;
     if (corner.weights == dvec2(1, 0)) return corners.y;
@@ -251,9 +251,9 @@ class Collector {
   Collected result_;
   size_t object_ = 0;
   uint32_t material_ = 0;
-  /// Of the mesh at hand.
+  /// The first vertex of the current mesh.
   uint32_t first_vertex_ = 0;
-  /// Of the triangle at hand.
+  /// The parts of the current triangle.
   std::vector<TrianglePart> parts_;
 };
 
@@ -271,7 +271,7 @@ LightRecord pack(const Light& light) {
           uvec4(light.kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
 }
 
-/// What builders that split primitives see of them: triangles exactly, other shapes by their boxes.
+/// Clips a primitive for builders that split primitives: triangles exactly, other shapes by their boxes.
 Bounds clip(const Primitive& p, const Bounds& window) {
   if (p.c.z != KIND_TRIANGLE) return window;
   return clip_triangle(triangle_corners(p), window);
@@ -299,7 +299,7 @@ vec4 center_and_radius(const Bounds& box) {
   return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
 }
 
-/// Without what tells which object a primitive is of.
+/// A hash of the geometry, without what tells which object a primitive belongs to.
 uint64_t hash_geometry(std::span<const Primitive> solids) {
   Hash64 hash;
   hash.add(solids.size());
@@ -311,14 +311,14 @@ uint64_t hash_geometry(std::span<const Primitive> solids) {
   return hash.value();
 }
 
-/// As TreeView has them.
+/// The value of TreeView::kinds.
 uint32_t kinds_of(std::span<const Primitive> solids) {
   uint32_t kinds = 0;
   for (const Primitive& p : solids) kinds |= 1U << p.c.z;
   return kinds;
 }
 
-/// What a scene is packed to beside its tree, whose references are there.
+/// Packs what a scene has beside its tree, whose references are there already.
 void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected) {
   packed.numbers = std::move(collected.numbers);
   packed.features = geometry_features(scene.objects);

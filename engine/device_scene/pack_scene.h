@@ -25,9 +25,9 @@ namespace promin {
 /// What shading needs of the primitives, in leaf order: material numbers and vertices.
 struct PackedSurfaces {
   UnsetVector<layout::SurfaceRecord> surfaces;
-  /// Of the vertices that the records number; w is 0. Empty without smooth meshes.
+  /// The normals of the vertices that the records number; w is 0. Empty without smooth meshes.
   std::vector<vec4> normals;
-  /// Empty without coloured meshes.
+  /// The colours of these vertices. Empty without coloured meshes.
   std::vector<vec4> colors;
 
   uint64_t size_bytes() const;
@@ -35,40 +35,40 @@ struct PackedSurfaces {
 
 /// Tree, primitives and surfaces, ready to be copied to the device.
 struct PackedScene {
-  /// At least one; none where a file has them.
+  /// At least one node; empty where a file has the nodes.
   UnsetVector<layout::Node> nodes;
   /// Null where the tree was built.
   std::shared_ptr<const BvhFile> file;
-  /// As TreeView::references.
+  /// See TreeView::references.
   UnsetVector<uint32_t> references;
-  /// Those of the tree in leaf order, then the unbounded ones; at least one.
+  /// The primitives of the tree in leaf order, then the unbounded ones; at least one.
   UnsetVector<layout::Primitive> primitives;
   uint32_t unbounded_count = 0;
   PackedSurfaces surfaces;
   PrimitiveNumbers numbers;
-  /// What the geometry uses.
+  /// The features that the geometry uses.
   FeatureMask features;
-  /// Of Scene::materials those that are on something drawn.
+  /// Whether each of Scene::materials is on something that is drawn.
   std::vector<bool> shown_materials;
-  /// Triangles that are never hit.
+  /// The number of triangles that are never hit.
   uint64_t degenerate_count = 0;
   /// Center and max-norm radius of all that lies in the tree.
   vec4 tree_bounds{0.0F};
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
-  /// What the tree is over: everything but the unbounded and degenerate triangles.
+  /// The number of primitives that the tree is built over: all but the unbounded ones and degenerate triangles.
   uint32_t solid_count = 0;
-  /// As TreeView has them.
+  /// See TreeView::kinds.
   uint32_t kinds = 0;
   uint64_t geometry_hash = 0;
   BvhStats bvh;
   /// Time of the builder alone, or of reading and checking the file.
   double bvh_ms = 0.0;
 
-  /// The tree, wherever its nodes lie; lives as long as this.
+  /// The tree, whether its nodes lie here or in the file. It lives as long as this.
   TreeView tree() const;
   uint32_t first_unbounded() const { return static_cast<uint32_t>(references.size()); }
-  /// Primitives by their numbers, triangles in parts counted once, degenerate ones too.
+  /// The number of primitives: triangles in parts count once, degenerate ones too.
   uint64_t primitive_count() const { return numbers.first_order.empty() ? 0 : numbers.first_order.back(); }
   uint64_t size_bytes() const;
 };
@@ -81,15 +81,15 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
 /// scene's, and RunError as above.
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene);
 
-/// find_tree_faults of the scene's own tree.
+/// Applies find_tree_faults to the scene's own tree.
 TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});
 
 std::vector<layout::MaterialRecord> pack_materials(std::span<const Material> materials);
 
-/// Those that are on.
+/// The lights that are on.
 struct PackedLights {
   std::vector<layout::LightRecord> records;
-  /// Of each record its light's index in Scene::lights.
+  /// The index in Scene::lights of each record's light.
   std::vector<uint32_t> numbers;
 };
 PackedLights pack_lights(std::span<const Light> lights);

@@ -26,7 +26,8 @@ uint64_t shortest_vector2(uint32_t generator, uint32_t modulus) {
 }  // namespace
 
 uint32_t lattice_generator(uint32_t count) {
-  // The search is quadratic; beyond, the golden ratio's nearest coprime is good enough (Niederreiter 1992, ch. 5).
+  // The search is quadratic. For more points the golden ratio's nearest coprime is good enough (Niederreiter 1992, ch.
+  // 5).
   constexpr uint32_t kLargestSearched = 1024;
   const uint32_t modulus = count + 1;
   if (count > kLargestSearched) {

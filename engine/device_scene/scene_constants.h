@@ -8,26 +8,26 @@
 #include "promin/scene.h"
 #include "promin/view.h"
 
-// The blocks of constants that shaders read, each made whole by one function from what it names. Vulkan-free.
+// The blocks of constants that shaders read. One function makes each block whole from the arguments. Vulkan-free.
 namespace promin {
 
-/// What they take from a scene on the device.
+/// What a scene on the device contributes to these constants.
 struct SceneConstants {
   /// Center and max-norm radius of all that lies in the tree.
   vec4 tree_bounds{0.0F};
-  /// First records of materials, lights, normals and colours in their views of the buffer of shading.
+  /// The first records of materials, lights, normals and colours in their views of the buffer of shading.
   uvec4 first_index{0};
-  /// Of the primitives apart from the tree.
+  /// The unbounded primitives, which lie behind those of the tree.
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;
   uint32_t light_count = 0;
   Environment environment;
 };
 
-/// A view's camera and picture, computed in double.
+/// The constants of a view: its camera and picture, computed in double.
 layout::ViewConstants make_view_constants(const SceneConstants& scene, const View& view);
 
-/// Of casts, which have no camera.
+/// The constants of casts, which have no camera.
 layout::ViewConstants make_cast_constants(const SceneConstants& scene);
 
 /// One sample of each pixel of a range of blocks.
@@ -35,17 +35,17 @@ struct TileRange {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   uint32_t sample = 0;
-  /// Paths that a lane of the mirror stage takes at most.
+  /// The largest number of paths that a lane of the mirror stage takes.
   uint32_t most_paths_a_lane = 1;
   /// Where the queue of paths begins, in records of the film.
   uint32_t first_queue_record = 0;
-  /// As lattice_generator (device_scene/sampling.h) has it for the view's samples.
+  /// The value of lattice_generator (device_scene/sampling.h) for the view's samples.
   uint32_t lattice_generator = 1;
 };
 layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,
                                     const TileRange& range);
 
-/// Rays [first, end).
+/// Casts rays [first, end).
 layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_ray, uint32_t end_ray);
 
 }  // namespace promin

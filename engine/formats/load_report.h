@@ -31,7 +31,7 @@ class LoadReport {
 
   bool has_problems() const { return problem_count_ > 0; }
 
-  /// To be told of each file before it is read, or found missing.
+  /// Is called for each file before it is read, or found missing.
   void add_source(const std::filesystem::path& file);
   const std::vector<SourceFile>& sources() const { return sources_; }
 

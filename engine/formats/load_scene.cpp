@@ -28,7 +28,7 @@ bool has_anything_to_draw(const Scene& scene) {
 /// A triangle's area in the sheared plane must be a normal float (shaders/primitives/triangle.glsl).
 constexpr float kSmallestMesh = 1e-18F;
 
-/// Meshes that are not refused for their size, but too small to be hit.
+/// Warns of meshes that are not refused for their size, but are too small to be hit.
 void warn_of_tiny_meshes(Scene& scene) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];

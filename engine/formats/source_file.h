@@ -14,11 +14,13 @@ namespace promin {
 /// A file that a scene is read from.
 struct SourceFile {
   std::filesystem::path file;
-  /// From just before it was read: what is written meanwhile differs. None where it was missing.
+  /// The stamp from just before the file was read, so that a later change differs from it. nullopt where the file was
+  /// missing.
   std::optional<FileStamp> stamp;
 };
 
-/// load_scene that tells of each file that was read or missed, the scene's own first, also where it throws.
+/// Does what load_scene does, and reports each file that was read or missed, the scene's own first, also where it
+/// throws.
 Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources);
 
 }  // namespace promin

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// OpenImageIO's name of the format that a file's ending asks for; empty if write_image does not know it.
+/// The name that OpenImageIO gives to the format of a file's ending; empty if write_image does not know it.
 std::string format_of(const fs::path& file) {
   const std::string ending = lower_case_ending(file);
   if (ending == ".exr") return "openexr";
@@ -26,7 +26,7 @@ std::string format_of(const fs::path& file) {
   return "";
 }
 
-/// A pixel after the other, its channels in the order of the EXR's spec; each is four bytes.
+/// The pixels one after the other, with the channels in the order of the EXR's spec; each channel is four bytes.
 std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> channels) {
   std::vector<uint32_t> words;
   words.reserve(image.pixels.size() * (3 + channels.size()));
@@ -63,7 +63,8 @@ bool is_done(int status) {
   return status == PROMIN_PICTURES_DONE;
 }
 
-/// What the plugin hands an encoded picture to: writes the file. What it throws must not pass through the plugin.
+/// Writes the file with the encoded picture that the plugin hands over. What it throws must not pass through the
+/// plugin.
 struct FileSink {
   fs::path file;
   std::exception_ptr failure;

@@ -29,7 +29,7 @@ fs::path find_own_file() {
   link_map* map = nullptr;
   const bool is_found = dladdr1(reinterpret_cast<const void*>(&find_pictures), &info, reinterpret_cast<void**>(&map),
                                 RTLD_DL_LINKMAP) != 0;
-  // The loader knows the program by no name, and dladdr only by the one it was called by.
+  // The loader has an empty name for the program, and dladdr only knows the name that it was called by.
   return is_found && map != nullptr && *map->l_name != '\0' ? map->l_name : kProgram;
 }
 
@@ -44,10 +44,11 @@ std::vector<fs::path> list_folders() {
     std::error_code error;
     const fs::path folder = fs::canonical(file, error).parent_path();
     if (error) continue;
-    // Beside a program: as built, and as installed where libraries have a folder of their own for each machine type.
+    // These folders lie beside a program: as built, and as installed where each machine type has its own folder for
+    // libraries.
     add(folder / "../lib/promin");
     add(folder / PROMIN_PLUGIN_FOLDER);
-    // Beside a library.
+    // This one lies beside a library.
     add(folder / "promin");
   }
   return folders;
@@ -73,8 +74,9 @@ void find_function(void* library, const char* name, const fs::path& file, Functi
   }
 }
 
-/// Local, so that what OpenImageIO brings along meets no symbol of a Vulkan driver; and lazy, because few functions of
-/// its libraries are ever called. Nothing is closed again: they leave things to be done at the end of the process.
+/// The plugin is opened with local symbols, so that those of OpenImageIO's libraries meet none of a Vulkan driver, and
+/// lazily, because few functions of these libraries are ever called. Nothing is closed again, because the libraries
+/// leave work for the end of the process.
 constexpr int kHow = RTLD_LAZY | RTLD_LOCAL;
 
 /// Opens what the plugin needs one by one, each library after those that it needs itself: its symbols are then sought

@@ -25,13 +25,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "rays and hits lie in the file as in memory");
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-/// Larger headers than any array of numbers has.
+/// No array of numbers has a larger header.
 constexpr uint32_t kMaxHeaderBytes = 1U << 16;
 constexpr const char* kCure =
     "save it by numpy.save(file, numpy.ascontiguousarray(rays, '<f4')) with rays of shape (N, 8)";
 
-/// The entries of a Python dictionary of literals with string keys, each value as written: what a .npy header holds.
-/// None if it is not one.
+/// The entries of a Python dictionary of literals with string keys, which is what a .npy header holds, each value as
+/// written. nullopt if the text is no such dictionary.
 std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std::string_view text) {
   std::map<std::string_view, std::string_view> entries;
   size_t at = 0;
@@ -68,7 +68,7 @@ std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std
   return at == text.size() ? std::optional(entries) : std::nullopt;
 }
 
-/// N of "(N, 8)", however it is spaced.
+/// Reads N from "(N, 8)", however it is spaced.
 std::optional<uint64_t> parse_shape(std::string_view text) {
   std::string tight;
   for (const char c : text) {
@@ -83,7 +83,7 @@ std::optional<uint64_t> parse_shape(std::string_view text) {
   return count;
 }
 
-/// For a message: without what would move a terminal's cursor, and not longer than a line.
+/// Prepares text of the file for a message: without what would move a terminal's cursor, and no longer than a line.
 std::string quote(std::string_view text) {
   constexpr size_t kMost = 60;
   std::string quoted(text.substr(0, kMost));
@@ -97,7 +97,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// Number of rays by the header's dictionary.
+/// Reads the number of rays from the header's dictionary.
 uint64_t parse_header(std::string_view header, const fs::path& file) {
   const auto entries = parse_dictionary(header);
   if (!entries || !entries->contains("descr") || !entries->contains("fortran_order") || !entries->contains("shape")) {

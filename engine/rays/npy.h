@@ -21,7 +21,7 @@ class RayReader {
 
   uint64_t count() const { return count_; }
 
-  /// The next rays, as many as fit in `rays`; not more than are left. Throws InputError.
+  /// Reads the next rays, as many as fit in `rays`, but not more than are left. Throws InputError.
   void read(std::span<Ray> rays);
 
  private:
@@ -37,7 +37,7 @@ class HitWriter {
   HitWriter(const std::filesystem::path& file, uint64_t count);
 
   void write(std::span<const Hit> hits);
-  /// After `count` hits.
+  /// Is called after `count` hits.
   void commit();
 
  private:

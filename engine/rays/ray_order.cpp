@@ -14,14 +14,14 @@
 namespace promin {
 namespace {
 
-/// Pairs that are looked at, and how near two rays are that count as side by side, in parts of the cube's half side and
-/// of the direction's largest component.
+/// kSamplePairs pairs are looked at. Two rays count as side by side within kNearOrigin of the cube's half side and
+/// kNearDirection of the direction's largest component.
 constexpr size_t kSamplePairs = 256;
 constexpr float kNearOrigin = 0.1F;
 constexpr float kNearDirection = 0.1F;
 
-/// A sort key has kLevels bits of each coordinate of the entry point and of the direction, the highest first. As many
-/// cells as that are on each side of the cube that either is in.
+/// A sort key has kLevels bits of each coordinate of the entry point and of the direction, the highest first. So there
+/// are kCells cells along each side of the cube of points and of the cube of directions.
 constexpr uint32_t kLevels = 5;
 constexpr float kCells = 1U << kLevels;
 constexpr uint32_t kKeyBits = 6 * kLevels;
@@ -30,15 +30,15 @@ constexpr uint32_t kDigitBits = 10;
 constexpr uint32_t kBuckets = 1U << kDigitBits;
 static_assert(kKeyBits % kDigitBits == 0);
 
-/// What is worth a thread.
+/// A thread is worth its cost from this many rays on.
 constexpr size_t kLeastPart = 16384;
 
-// Keys are computed for so many rays at a time, loop by loop over arrays and without branches, which compilers turn
+// Keys are computed for this many rays at a time, loop by loop over arrays and without branches, which compilers turn
 // into vector instructions: ray by ray it takes five times as long.
 constexpr size_t kBlock = 64;
 using Block = std::array<float, kBlock>;
 
-// The first where the second is NaN.
+// These return the first number where the second is NaN.
 float lesser(float a, float b) {
   return b < a ? b : a;
 }
@@ -46,18 +46,19 @@ float greater(float a, float b) {
   return b > a ? b : a;
 }
 
-/// Of x in [-1, 1] the cell, not yet rounded down; of any other x, NaN too, a number of [0, kCells) all the same.
+/// The cell of x in [-1, 1], not yet rounded down. Any other x, NaN too, gives some number in [0, kCells).
 float cell_of(float x) {
   return lesser(kCells - 1.0F, greater(0.0F, 0.5F * kCells * (x + 1.0F)));
 }
 
-/// Of a cell's number, rounded down, bit i at 6 i: of copies a bit less than 6 apart, copy i has its bit i there.
+/// Rounds a cell down and moves bit i of its number to bit 6 i: the product has copies of the number a bit less than 6
+/// apart, and copy i has its bit i there.
 uint32_t spread_bits(float cell) {
   static_assert(kLevels == 5);
   return (static_cast<uint32_t>(static_cast<int32_t>(cell)) * 0x108421U) & 0x1041041U;
 }
 
-/// Of at most kBlock rays.
+/// Computes the keys of at most kBlock rays.
 void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<uint32_t, kBlock> keys) {
   std::array<Block, 3> origins{};
   std::array<Block, 3> directions{};
@@ -77,7 +78,7 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
     scales[i] = 1.0F / greater(size_of_two, std::fabs(directions[2][i]));
   }
 
-  // From here on in a cube from -1 to 1.
+  // From here on coordinates are in a cube from -1 to 1.
   Block entry;
   Block exit;
   entry.fill(0.0F);
@@ -111,13 +112,13 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
       point_cells[i] = cell_of(point);
       direction_cells[i] = cell_of(direction[i]);
     }
-    // A loop of its own: rounding next to a comparison is taken for a branch.
+    // This is a loop of its own, because the compiler takes rounding next to a comparison for a branch.
     for (size_t i = 0; i < kBlock; ++i) {
       keys[i] |= (spread_bits(point_cells[i]) << axis) | (spread_bits(direction_cells[i]) << (axis + 3));
     }
   }
   for (size_t i = 0; i < kBlock; ++i) {
-    // Also false where anything is infinite or NaN.
+    // This is also false where anything is infinite or NaN.
     const bool enters = entry[i] <= exit[i] && sums[i] - sums[i] == 0.0F;
     keys[i] = enters ? keys[i] : kMissKey;
   }
@@ -155,8 +156,8 @@ std::span<const uint32_t> RaySorter::sort(std::span<const Ray> rays, const Scene
     }
   });
 
-  // A stable counting sort for each digit, the lowest first, each thread of its part: the order does not depend on how
-  // many there are.
+  // There is a stable counting sort for each digit, the lowest first, and each thread sorts its part, so that the order
+  // does not depend on the number of threads.
   using Buckets = std::array<uint32_t, kBuckets>;
   std::vector<Buckets> buckets(part_count);
   for (uint32_t shift = 0; shift < kKeyBits; shift += kDigitBits) {

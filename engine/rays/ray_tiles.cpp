@@ -16,23 +16,23 @@ constexpr uint32_t kTileRows = 4;
 constexpr uint32_t kTileWidth = 8;
 constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
-/// The median distance of so many pairs of rays in a row is what is called a step here.
+/// The number of neighbouring pairs of rays whose median distance is called a step here.
 constexpr size_t kSamplePairs = 255;
-/// Every so many rays one is looked at for the end of a row: there is none where it is less than kFarSteps from the
-/// last one looked at.
+/// The search for the end of a row looks at one ray in kStride. There is no end where that ray is less than kFarSteps
+/// from the one looked at before.
 constexpr size_t kStride = 16;
 constexpr float kFarSteps = 32.0F;
-/// The first ray of a row is at least so many steps from the last of the row before.
+/// The first ray of a row is at least this many steps from the last one of the row before.
 constexpr float kLeastJump = 8.0F;
-/// How many steps rays of neighbouring rows may be apart that count as neighbours.
+/// Rays of neighbouring rows count as neighbours if they are at most this many steps apart.
 constexpr float kMostNeighbourSteps = 16.0F;
-/// Rows whose columns differ by less are left so: fours that are askew by a ray trace as well as rays that make no
-/// four.
+/// Rows whose columns differ by less than this are not shifted: fours that are askew by a ray trace as well as rays
+/// that make no four.
 constexpr float kLeastLag = 1.5F;
-/// What a thread takes at a time; what it leaves over is put behind it.
+/// A thread takes this many bands at a time; the rays that it leaves over are put behind them.
 constexpr size_t kChunkBands = 16;
 
-/// Where a ray begins and whither it goes, in units of the scene.
+/// A ray's origin and direction as one place, in units of the scene.
 struct Place {
   vec3 origin{0.0F};
   vec3 direction{0.0F};
@@ -46,7 +46,7 @@ float dot(const Place& a, const Place& b) {
   return glm::dot(a.origin, b.origin) + glm::dot(a.direction, b.direction);
 }
 
-/// NaN where either ray is none.
+/// NaN where either ray has no direction.
 float square_distance(const Place& a, const Place& b) {
   const Place difference = a - b;
   return dot(difference, difference);
@@ -68,7 +68,7 @@ class Rows {
 
   Place place_of(size_t ray) const { return {rays_[ray].origin * unit_, scaled_direction(rays_[ray])}; }
 
-  /// It is looked at soon: rays that wait for memory would take most of the time.
+  /// Fetches a ray that is looked at soon: waiting for memory would take most of the time.
   void expect(size_t ray) const { __builtin_prefetch(&rays_[std::min(ray, rays_.size() - 1)]); }
 
   bool are_neighbours(const Place& a, const Place& b) const {
@@ -85,7 +85,7 @@ class Rows {
     return rows;
   }
 
-  /// Rows that lie next to each other, up to kTileRows at a time.
+  /// Joins rows that lie next to each other to bands of up to kTileRows.
   std::vector<Band> join(std::span<Row> rows) const {
     std::vector<Band> bands;
     size_t first = 0;
@@ -110,15 +110,15 @@ class Rows {
     return *median;
   }
 
-  /// Whether the row whose first ray has the place `start` ends after `last`: the next ray is nearer to where
-  /// the row began.
+  /// Whether the row that began at `start` ends after ray `last`: the next ray is nearer to the row's beginning than to
+  /// this ray.
   bool is_end(const Place& start, size_t last) const {
     const Place next = place_of(last + 1);
     const float jump = square_distance(place_of(last), next);
     return jump > kLeastJump * kLeastJump * square_step_ && square_distance(next, start) < jump;
   }
 
-  /// Where between rays `a` and `b` the largest jump is, if one is much larger than the others: the ray before it.
+  /// The ray before the largest jump between rays `a` and `b`, if one jump is much larger than the others.
   size_t find_jump(size_t a, size_t b) const {
     const Place place_a = place_of(a);
     const Place place_b = place_of(b);
@@ -130,19 +130,20 @@ class Rows {
     return a;
   }
 
-  /// Whether so many rays may be one row rather than two: the middle one is about halfway.
+  /// Whether these rays may be one row rather than two: the middle one is about halfway.
   bool is_one_row(const Place& start, size_t begin, size_t last) const {
     const float half_square = square_distance(start, place_of((begin + last) / 2));
     const float square = square_distance(start, place_of(last));
     return 16.0F * half_square > square && 16.0F * half_square < 9.0F * square;
   }
 
-  /// `expected` is the length of the row before, or 0: most are nearly as long.
+  /// Finds the end of the row that begins at `begin`. `expected` is the length of the row before, or 0; most rows are
+  /// nearly as long.
   size_t find_end(size_t begin, size_t expected) const {
     const size_t count = rays_.size();
     const Place start = place_of(begin);
     if (expected >= kStride && begin + expected + kStride < count) {
-      // Where the next row may end, a cache line at a time.
+      // Fetches the rays where the next row may end, a cache line at a time.
       for (size_t i = 0; i <= 2 * kStride; i += 2) expect(begin + 2 * expected - kStride + i);
       const size_t last = find_jump(begin + expected - kStride, begin + expected + kStride);
       if (is_end(start, last) && is_one_row(start, begin, last)) return last + 1;
@@ -178,14 +179,14 @@ class Sink {
  public:
   explicit Sink(uint32_t* next) : next_(next) {}
 
-  /// Of one row.
+  /// Puts rays of one row.
   void put(uint32_t first, uint32_t count) {
     const uint32_t whole = count / kPacketSize * kPacketSize;
     for (uint32_t i = 0; i < whole; ++i) *next_++ = first + i;
     for (uint32_t i = whole; i < count; ++i) rest_.push_back(first + i);
   }
 
-  /// Of two rows next to each other.
+  /// Puts rays of two rows that lie next to each other.
   void put_pair(uint32_t a, uint32_t count_a, uint32_t b, uint32_t count_b) {
     const uint32_t both = std::min(count_a, count_b) / 2 * 2;
     for (uint32_t i = 0; i < both; i += 2) {
@@ -235,14 +236,14 @@ class BandWalk {
   }
 
  private:
-  /// The next ray of a row.
+  /// The next ray of a row, and where it is.
   struct Head {
     uint32_t next = 0;
     uint32_t end = 0;
-    /// How many are taken for the tile at hand.
+    /// The number of rays that the current tile takes.
     uint32_t taken = 0;
     Place place{};
-    /// How far along the rows, and how much farther a ray of this row is than the one before.
+    /// The place along the rows, and how much farther each ray of this row is than the one before.
     float column = 0.0F;
     float step = 0.0F;
   };
@@ -267,8 +268,8 @@ class BandWalk {
     head.step = step > 0.5F * mean_step_ && step < 2.0F * mean_step_ ? step : mean_step_;
   }
 
-  /// From each row that has not gone ahead of another: false where no row has rays left. Whatever the columns are, NaN
-  /// too, the one taken for the last gives rays: `column > farthest` is false of it.
+  /// Takes rays from each row that is not ahead of the others; false where no row has rays left. The row that is
+  /// furthest behind always gives rays, even where columns are NaN, because `column > farthest` is false for it.
   bool choose_tile() {
     const Head* last = nullptr;
     for (const Head& head : heads_) {
@@ -280,7 +281,7 @@ class BandWalk {
     return true;
   }
 
-  /// Of two rows next to each other; the one behind comes up with the other first.
+  /// Puts rays of two rows that lie next to each other; the one behind first comes up with the other.
   void put_pair(Head& a, Head& b, Sink& sink) const {
     if (a.taken == 0 || b.taken == 0 || !rows_.are_neighbours(a.place, b.place)) {
       sink.put(a.next, a.taken);
@@ -305,8 +306,8 @@ class BandWalk {
   Place zero_{};
   Place along_{};
   float mean_step_ = 0.0F;
-  /// Rows of the same length that begin and end side by side are taken to be so everywhere: none of their other rays is
-  /// looked at.
+  /// Rows of the same length that begin and end side by side are taken to be side by side everywhere, so that none of
+  /// their other rays is looked at.
   bool is_regular_ = false;
 };
 

@@ -10,17 +10,18 @@
 
 namespace promin {
 
-/// Orders rays that come row by row, as those of a picture do, be it without some: the shadow rays of what it shows.
-/// Keeps the memory of the order for the next ones.
+/// Orders rays that come row by row, as those of a picture do. Some may be missing, as in the shadow rays of what the
+/// picture shows. It keeps the memory of the order for the next call.
 class RayTiler {
  public:
-  /// How many rays a packet has that is to hold neighbours.
+  /// The number of rays in a packet that is to hold neighbours.
   static constexpr uint32_t kPacketSize = 4;
 
-  /// The rays' indices, tile by tile of up to 8 rays of 4 rows in a row, where they lie near each other. Most fours in
-  /// a row, from the first on, are 2x2 of neighbouring rows, the others mostly of one row. Where rays do not come in
-  /// rows of some 50 or more: nothing. It looks at some fifth of the rays, or at far fewer where all rows are as long.
-  /// At most 2^32 - 1 rays; the same with any number of threads. Valid until the next call.
+  /// The rays' indices, tile by tile of up to 8 rays in each of 4 neighbouring rows, where these lie near each other.
+  /// Most groups of four indices, from the first on, are 2x2 rays of neighbouring rows; the others are mostly of one
+  /// row. Empty where rays do not come in rows of some 50 or more. It looks at some fifth of the rays, or at far fewer
+  /// where all rows are equally long. At most 2^32 - 1 rays; the order is the same with any number of threads, and
+  /// valid until the next call.
   std::span<const uint32_t> tile(std::span<const Ray> rays, const SceneCube& cube);
 
  private:

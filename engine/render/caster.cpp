@@ -26,13 +26,13 @@ namespace {
 using layout::HitRecord;
 using layout::RayRecord;
 
-/// Rays that a lane of lavapipe traces together where they run side by side: measured best of 1...8
-/// (docs/performance.md).
+/// The number of rays that a lane of lavapipe traces together where they run side by side. 4 was measured to be the
+/// best of 1...8 (docs/performance_log.md).
 constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
-  // Not max_abs_component: its calls of std::fmax took a seventh of all of the time of `promin cast`.
+  // max_abs_component is not used, because its calls of std::fmax took a seventh of the time of `promin cast`.
   const vec3 sizes = glm::abs(direction);
   const float size = std::max(std::max(sizes.x, sizes.y), sizes.z);
   if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;
@@ -42,7 +42,7 @@ float scale_of(const vec3& direction) {
 
 RayRecord record_of(const Ray& ray) {
   const float scale = scale_of(ray.direction);
-  // tmin * direction is kept. It may round to 0 here; hit_of has the last word.
+  // tmin * direction is kept. The scaled tmin may round to 0 here; hit_of decides.
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
 }
 
@@ -87,8 +87,8 @@ struct Caster::Impl {
     cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
   }
 
-  /// GPUs take rays as they come: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes
-  /// minutes to compile packets.
+  /// GPUs take rays as they come, because their lanes have few registers and hide latency. Among CPU devices
+  /// SwiftShader takes minutes to compile packets.
   enum class Order { kAsGiven, kInPackets, kSorted };
   Order order_of(std::span<const Ray> rays) const {
     if (!device.is_cpu()) return Order::kAsGiven;
@@ -118,7 +118,7 @@ struct Caster::Impl {
     return *kernel;
   }
 
-  /// At most RayKernel::kMaxRays.
+  /// Casts at most RayKernel::kMaxRays rays.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
     const Stopwatch ordering;
     const Order order = order_of(rays);
@@ -138,7 +138,7 @@ struct Caster::Impl {
   }
 
   const gpu::Device& device;
-  /// A copy: kernels are compiled as they are needed.
+  /// This is a copy, because kernels are compiled as they are needed.
   std::vector<uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
   PrimitiveNumbers numbers;

@@ -5,7 +5,7 @@
 #include "promin/caster.h"
 #include "scene/world_scene.h"
 
-// What is behind Caster, for tests and measurements.
+// Access to what is behind Caster, for tests and measurements.
 namespace promin {
 
 struct TunedCasterOptions : CasterOptions {
@@ -14,7 +14,7 @@ struct TunedCasterOptions : CasterOptions {
 };
 
 struct CasterAccess {
-  /// As Caster's constructor, of a scene that is in the world already and is valid.
+  /// Does what Caster's constructor does, for a scene that is in the world already and is valid.
   static Caster make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options);
 };
 

@@ -21,10 +21,10 @@ namespace {
 /// Vulkan guarantees for a storage buffer.
 constexpr uint32_t kMaxFilmRecords = ((64U << 20) - 4096) / sizeof(uvec4);
 
-/// So that recording them takes no time.
+/// Recording this many pieces takes no time.
 constexpr size_t kMostPiecesAtOnce = 64;
 
-/// A lane's counters have 32 bits: they are taken before they may have passed that.
+/// A lane's counters have 32 bits, so they are read before they can have overflowed.
 constexpr double kMaxRaysALane = 2e9;
 
 vec3 vec3_of(const uvec4& bits) {
@@ -99,7 +99,7 @@ struct Renderer::Impl {
         pipelines_before(device.compiled_pipelines().size()),
         pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), TileScheduler::kMinBlocks),
         scene(device, the_scene, options, stats) {
-    // It belonged to the constructor's caller.
+    // The callback belonged to the constructor's caller.
     options.progress = {};
     const Stopwatch compiling;
     prepare_film(options.mode);
@@ -120,7 +120,7 @@ struct Renderer::Impl {
     film_features = features;
   }
 
-  /// After a part of the scene has changed.
+  /// Is called after a part of the scene has changed.
   void take_change() {
     if (film) film->bind_scene();
   }
@@ -153,7 +153,7 @@ struct Renderer::Impl {
     double uncollected = 0.0;
     std::vector<TileSample> pieces;
     while (!picture.is_done()) {
-      // Of a small picture a piece is less than is asked for.
+      // The pieces of a small picture are smaller than what is asked for, so several run at once.
       pieces.clear();
       double units = 0.0;
       do {
@@ -174,7 +174,7 @@ struct Renderer::Impl {
     return counts;
   }
 
-  /// Adds what the film holds of a band to the result, from its pixel `first` on.
+  /// Adds what the film holds of a band to the result. The band's first pixel is pixel `first` of the result.
   void read_film(size_t first, size_t count, uint32_t samples, RenderResult& result) {
     film_records.resize(count * film->records_per_pixel());
     film->buffer().read(std::as_writable_bytes(std::span(film_records)), Film::kPixelsOffset);
@@ -183,7 +183,7 @@ struct Renderer::Impl {
     for (size_t i = 0; i < count; ++i) read_aovs(film_records[i], film_records[count + i], first + i, result.aovs);
   }
 
-  /// Of a pixel, from its two records (shaders/film.glsl).
+  /// Reads a pixel's AOVs from its two records (shaders/film.glsl).
   void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, size_t at, Aovs& aovs) const {
     aovs.normal[at] = vec3_of(normal_and_depth);
     aovs.depth[at] = std::bit_cast<float>(normal_and_depth.w);

@@ -13,28 +13,30 @@
 #include "trace/film.h"
 #include "trace/picture_shaders.h"
 
-// What is behind Renderer: for the window, which records its frames itself, and for tests and measurements.
+// Access to what is behind Renderer: for the window, which records its frames itself, and for tests and measurements.
 namespace promin {
 
 /// Options that pictures do not need: for tests and measurements.
 struct TunedRendererOptions : RendererOptions {
   /// Compile every feature in, whether the scene uses it or not: for measuring what specialisation brings.
   bool force_all_features = false;
-  /// A single dispatch is not meant to take longer. Where empty, as suits the device.
+  /// The longest time that a single dispatch should take. Where it is empty, the device decides.
   std::optional<double> target_dispatch_ms = std::nullopt;
-  /// Pixels that a lane traces together: 1, 2 or 4; where empty, as suits the device. The image's bits stay the same.
+  /// The number of pixels that a lane traces together: 1, 2 or 4. Where it is empty, the device decides. The image's
+  /// bits stay the same.
   std::optional<uint32_t> packet_size = std::nullopt;
-  /// Fixed number of 8x8 blocks a dispatch, for tests of tile independence; 0 adapts.
+  /// A fixed number of 8x8 blocks per dispatch, for tests of tile independence; 0 adapts.
   uint32_t blocks_per_dispatch = 0;
   /// Read the scene as storage buffers even where texel buffers hold it. The image's bits stay the same.
   bool avoids_texels = false;
-  /// Others with the same bindings; Renderer::explain does not take them.
+  /// Other shaders with the same bindings; Renderer::explain does not take them.
   PictureShaders shaders = picture_shaders();
-  /// What such shaders make of the scene before it is uploaded, where they read another layout of it; empty: nothing.
+  /// Changes the packed scene before it is uploaded, for shaders that read another layout of it. Empty: nothing is
+  /// changed.
   std::function<PackedScene(PackedScene)> repack = {};
 };
 
-/// A scene on a device and what its parts use: which pipeline a picture of it needs.
+/// A scene on a device and the features that its parts use, which decide what pipeline a picture needs.
 class SceneOnDevice {
  public:
   SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
@@ -44,7 +46,7 @@ class SceneOnDevice {
   const PrimitiveNumbers& numbers() const { return numbers_; }
   size_t material_count() const { return shown_materials_.size(); }
 
-  /// Features of a picture in a mode, with the lights that there are or with others.
+  /// The features of a picture in a mode, with the scene's lights or with others.
   FeatureMask features(const RenderMode& mode) const { return features_with(light_features_, mode); }
   FeatureMask features_with(std::span<const Light> lights, const RenderMode& mode) const {
     return features_with(light_features(lights), mode);
@@ -68,7 +70,7 @@ class SceneOnDevice {
 };
 
 struct RendererAccess {
-  /// As Renderer's constructor, of a scene that is in the world already and is valid.
+  /// Does what Renderer's constructor does, for a scene that is in the world already and is valid.
   static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
   static SceneOnDevice& scene_of(Renderer& renderer);
   static const SceneOnDevice& scene_of(const Renderer& renderer);

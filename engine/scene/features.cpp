@@ -13,7 +13,7 @@ namespace {
 
 using namespace layout;
 
-/// Of each bit what a scene may bring, the name of its feature; empty where there is none.
+/// The name of the feature of each bit that a scene may bring; empty for all other bits.
 constexpr auto kSceneFeatures = [] {
   std::array<std::string_view, 32 * FEATURE_WORDS> names{};
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;

@@ -8,7 +8,7 @@
 
 namespace promin {
 
-/// What frame_scene and add_default_lights do, whatever form the scene has.
+/// The implementation of frame_scene and add_default_lights, for both forms of a scene.
 Camera frame_bounds(const Bounds& bounds, float aspect_ratio);
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
 

@@ -7,7 +7,7 @@
 
 namespace promin {
 
-/// Whether fp32 can hold a size of a shape in the world; false of NaN.
+/// Whether fp32 can hold a size of a shape in the world; false for NaN.
 inline bool is_valid(const NamedSize& size) {
   return (size.size >= kMinSize || (size.may_be_zero && size.size == 0.0)) && size.size <= kMaxCoordinate;
 }

@@ -18,7 +18,7 @@ constexpr double kFramePitch = 0.25;
 constexpr double kFrameMargin = 1.05;
 constexpr float kFrameYfov = 0.7F;
 
-/// Of an object in the world, without a copy of its mesh.
+/// Computes the bounds of an object in the world, without a copy of its mesh.
 struct BoundsInWorld {
   const dmat4& world_from_object;
 
@@ -45,7 +45,7 @@ struct BoundsInWorld {
 #include "promin/kinds/primitives.def"
 };
 
-/// Where an unbounded shape lies; none of others.
+/// The place of an unbounded shape; nullopt for other shapes.
 struct CenterOfUnbounded {
   const dmat4& world_from_object;
 
@@ -60,7 +60,7 @@ struct CenterOfUnbounded {
 #include "promin/kinds/primitives.def"
 };
 
-/// What to look at: everything finite, or else a box of size 2 around the first plane's point or the origin.
+/// The box to look at: everything finite, or else a box of size 2 around the first plane's point or the origin.
 Bounds frame_of(const Scene& scene) {
   Bounds bounds = bounds_of(scene);
   if (!bounds.is_empty()) return bounds;

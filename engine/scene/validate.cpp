@@ -13,7 +13,7 @@ namespace {
 
 /// A transform whose determinant is less, relative to its columns' lengths, flattens what it moves.
 constexpr double kLeastVolume = 1e-12;
-/// What unit vectors may be off by.
+/// The most by which the length of a unit vector may be off.
 constexpr float kUnitTolerance = 1e-3F;
 
 std::string place_of(const char* array, size_t index) {
@@ -34,7 +34,7 @@ class Validation {
  public:
   explicit Validation(std::vector<Problem>& problems) : problems_(problems) {}
 
-  /// Adds a problem unless it is so.
+  /// Adds a problem unless `is_so`.
   bool check(bool is_so, const std::string& what, const std::string& where, const std::string& cure) {
     if (!is_so) problems_.push_back({what, where, cure});
     return is_so;
@@ -106,7 +106,7 @@ class Validation {
     }
   }
 
-  /// False where an object names what is not there.
+  /// Checks an object's references. False where it names what is not there.
   bool check_references(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
     const std::string place = place_of("objects", index);
@@ -137,7 +137,7 @@ class Validation {
           "use scales other than 0 and axes that differ");
   }
 
-  /// An object whose references are there.
+  /// Checks an object whose references are there.
   void check_placed(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
     const std::string place = place_of("objects", index);

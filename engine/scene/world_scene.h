@@ -39,14 +39,14 @@ struct Scene {
   Environment environment;
 };
 
-/// A mesh in the world: positions and normals by the transform in double, rounded once; wound so that counter-clockwise
-/// stays outside under a mirroring one. Under no transform positions keep their bits.
+/// A mesh in the world. Positions and normals are transformed in double and rounded once. A mirroring transform
+/// reverses the winding, so that counter-clockwise stays outside. Under the identity positions keep their bits.
 Mesh place(const Mesh& mesh, const dmat4& world_from_object);
 
 /// An object in the world. The scene is valid.
 Object flatten(const promin::Scene& scene, const promin::Object& object);
 
-/// All of them in their order. The scene is valid.
+/// All objects in their order. The scene is valid.
 Scene flatten(const promin::Scene& scene);
 
 /// Number of triangles (degenerate ones included), 1 for an analytic shape, 0 for NotDrawn.
@@ -54,7 +54,7 @@ uint32_t primitive_count(const Shape& shape);
 
 /// Bounds of everything finite; empty if there is nothing finite.
 Bounds bounds_of(const Scene& scene);
-/// As frame_scene and add_default_lights of a Scene.
+/// The same as frame_scene and add_default_lights for a Scene.
 Camera frame_scene(const Scene& scene, float aspect_ratio);
 AddedLights add_default_lights(Scene& scene);
 

@@ -9,14 +9,14 @@
 
 namespace promin {
 
-/// What to throw where a shader's loops were cut (shaders/loop_check.glsl): what they wrote is not all.
+/// The error for loops of a shader that were cut (shaders/loop_check.glsl), so that its output is incomplete.
 inline RunError make_cut_loops_error(const std::string& cure) {
   return RunError(
       {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure});
 }
 
-/// What is done about loops that the driver cuts, the one place for all pictures: they are traced again with one path a
-/// lane, and so are all that follow; where that does not suffice they are refused.
+/// Decides what to do about loops that the driver cuts; it is the one place for all pictures. They are traced again
+/// with one path per lane, and so are all that follow. Where that does not suffice, they are refused.
 class CutLoops {
  public:
   bool takes_many_paths() const { return takes_many_paths_; }
@@ -26,8 +26,8 @@ class CutLoops {
     return options;
   }
 
-  /// Takes note of tiles that were traced while takes_many_paths() was `took_many_paths`. Whether they must be traced
-  /// again; throws RunError where that would be in vain.
+  /// Takes note of tiles that were traced while takes_many_paths() was `took_many_paths`. Returns whether they must be
+  /// traced again; throws RunError where that would be in vain.
   bool must_trace_again(bool has_cut_loops, bool took_many_paths) {
     if (!has_cut_loops) return false;
     if (!took_many_paths) throw make_cut_loops_error("take a smaller depth or another device");

@@ -18,7 +18,7 @@
 namespace promin {
 namespace {
 
-/// A film of one pixel, before its log (shaders/ray_log.glsl).
+/// The head of a film of one pixel; its log follows (shaders/ray_log.glsl).
 struct LoggedFilm {
   layout::Dispatch dispatch{};
   std::array<uvec4, layout::BLOCK_SIZE * layout::BLOCK_SIZE> ray_counts{};
@@ -26,10 +26,10 @@ struct LoggedFilm {
   uvec4 log_count{0};
 };
 
-/// Half of what Vulkan guarantees for a storage buffer.
+/// The log may take half of what Vulkan guarantees for a storage buffer.
 constexpr uint64_t kMostLogBytes = 64U << 20;
 
-/// For one sample of the view, whatever it meets.
+/// The size of the film with the log of one sample of the view, whatever the sample meets.
 uint64_t film_bytes(const DeviceScene& scene, const View& view) {
   const uint64_t most_entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.constants().light_count);
   if (most_entries > kMostLogBytes / sizeof(layout::RayLog)) {
@@ -52,7 +52,7 @@ class LoggingKernel {
     view_constants_.write(std::as_bytes(std::span(&constants, 1)));
   }
 
-  /// Traces one sample of the pixel; they come in their order.
+  /// Traces one sample of the pixel; samples are traced in their order.
   std::vector<layout::RayLog> trace(const TileSample& sample) {
     head_.log_count = uvec4(0);
     film_.write(std::as_bytes(std::span(&head_, 1)));
@@ -64,17 +64,17 @@ class LoggingKernel {
     return log;
   }
 
-  /// Of the queue, in records of the film.
+  /// The place of the queue, in records of the film.
   uint32_t first_queue_record() const {
     return static_cast<uint32_t>((queue_offset_ - offsetof(LoggedFilm, pixel)) / sizeof(uvec4));
   }
 
-  /// Of the samples so far.
+  /// The sum of the samples so far.
   vec3 sum() const { return std::bit_cast<vec3>(std::array{head_.pixel.x, head_.pixel.y, head_.pixel.z}); }
 
  private:
   gpu::Buffer view_constants_;
-  /// Of the queue of paths, behind the log.
+  /// The place of the queue of paths, behind the log.
   uint64_t queue_offset_;
   gpu::Buffer film_;
   LoggedFilm head_;

@@ -7,13 +7,13 @@
 
 namespace promin {
 
-/// SPIR-V of both stages of a picture.
+/// The SPIR-V of both stages of a picture.
 struct PictureShaders {
   std::span<const uint32_t> camera_stage;
   std::span<const uint32_t> mirror_stage;
 };
 
-/// shaders/camera_stage.comp and shaders/mirror_stage.comp.
+/// The SPIR-V of shaders/camera_stage.comp and shaders/mirror_stage.comp.
 PictureShaders picture_shaders();
 
 }  // namespace promin

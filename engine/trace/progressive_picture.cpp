@@ -14,9 +14,9 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kSampleStep = 4;
-/// The coarsest first picture, of the window's pixels on a side.
+/// The least scale of a first picture, on a side of the window.
 constexpr double kMinScale = 1.0 / 16.0;
-/// How near below the affordable it comes.
+/// Each step takes this fraction of the scale that seems affordable.
 constexpr double kScaleStep = 0.98;
 
 uvec2 scale_size(const uvec2& size, double scale) {

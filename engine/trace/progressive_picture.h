@@ -15,7 +15,7 @@ namespace promin {
 
 /// A complete picture in device memory.
 struct ShownPicture {
-  /// Which of the films, below kFilmCount.
+  /// The index of its film, below kFilmCount.
   size_t film = 0;
   uvec2 size{0};
   uint32_t samples_per_pixel = 1;
@@ -32,16 +32,17 @@ class ProgressivePicture {
 
   /// Makes room for a window; the device must be idle. Afterwards film(i) may be another buffer, and nothing is shown.
   void resize(const uvec2& size);
-  /// What a picture can have of the window's pixels: all, if the device's buffers can be large enough.
+  /// The largest size that a picture can have: that of the window, if the device's buffers can be large enough.
   const uvec2& full_size() const { return full_size_; }
   const gpu::Buffer& film(size_t index) const { return films_[index].buffer(); }
 
   /// The view to show from now on, in full size.
   void want(View view);
   const View& wanted() const { return wanted_; }
-  /// Pixels of the first picture of a view for one of the window; none adapts it to the time of a frame.
+  /// Fixes the scale of a view's first picture, in its pixels for one of the window; nullopt adapts it to the time of a
+  /// frame.
   void fix_scale(std::optional<double> scale) { fixed_scale_ = scale; }
-  /// Nothing is refined beyond a view's first picture while paused.
+  /// While paused, nothing is refined beyond a view's first picture.
   void pause(bool is_paused) { is_paused_ = is_paused; }
 
   /// Whether there is nothing to trace.
@@ -51,29 +52,29 @@ class ProgressivePicture {
   const std::optional<ShownPicture>& shown() const { return shown_; }
   /// How many pictures have been shown so far; resize() starts anew.
   uint64_t shown_count() const { return shown_count_; }
-  /// Of the picture under way; 1 where there is none.
+  /// The fraction of the current picture that is traced; 1 where there is none.
   double fraction_done() const { return picture_ ? picture_->fraction_done() : 1.0; }
 
   /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace.
   double record(const vk::raii::CommandBuffer& commands);
-  /// Records taking the ray counts of that.
+  /// Records a copy of the ray counts of what record() recorded, and resets them.
   void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
-  /// What became of the pieces of a record(), once the device has finished them.
+  /// The result of the pieces of a record(), once the device has finished them.
   struct Finished {
     double units = 0.0;
     double time_ms = 0.0;
     bool has_cut_loops = false;
-    /// As takes_many_paths() was when they were recorded.
+    /// The value of takes_many_paths() when they were recorded.
     bool took_many_paths = false;
   };
-  /// Learns from their time, by which the next budget is met. Where the driver cut loops, what is shown is wrong and
-  /// all is traced again with one path a lane; throws RunError where that was done already.
+  /// Learns from their time, so that the next budget is met. Where the driver cut loops, what is shown is wrong, and
+  /// all is traced again with one path per lane; throws RunError where that was done already.
   void take_finished(const Finished& finished);
   bool takes_many_paths() const { return cut_loops_.takes_many_paths(); }
   void set_budget(double budget_ms);
 
-  /// The scene has changed parts that need no other pipeline: all is traced again. The device is idle with respect to
-  /// the films.
+  /// Takes note that the scene has changed parts that need no other pipeline: all is traced again. The device must be
+  /// idle with respect to the films.
   void take_scene_change();
 
   // For callers without frames of their own.
@@ -85,7 +86,7 @@ class ProgressivePicture {
   static constexpr uint32_t kMostSamples = 64;
 
  private:
-  /// What to trace now; none where all is done.
+  /// The view to trace now; nullopt where all is done.
   std::optional<View> next_view() const;
   uvec2 first_size() const;
   void begin(const vk::raii::CommandBuffer& commands, const View& view);
@@ -93,9 +94,9 @@ class ProgressivePicture {
 
   const gpu::Device* device_;
   std::vector<Film> films_;
-  /// Of trace().
+  /// The buffer that trace() takes the counts into.
   std::optional<gpu::Buffer> counters_;
-  /// Of one dispatch; a longer budget takes several.
+  /// The longest time of one dispatch; a longer budget takes several.
   double longest_piece_ms_;
   double budget_ms_;
   Pacer pacer_;
@@ -110,7 +111,7 @@ class ProgressivePicture {
   std::optional<ShownPicture> shown_;
   uint64_t shown_version_ = 0;
   uint64_t shown_count_ = 0;
-  /// Under way, on the film that is not shown.
+  /// The current picture, on the film that is not shown.
   std::optional<TileScheduler> picture_;
   ShownPicture picture_when_done_;
   uint64_t picture_version_ = 0;

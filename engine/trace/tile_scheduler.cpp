@@ -13,7 +13,8 @@
 namespace promin {
 namespace {
 
-/// Where a lane has several it does not wait for its neighbours'; but the device's cores want groups to share.
+/// A lane with several paths does not wait for its neighbours' paths; but there must be enough workgroups for all of
+/// the device's cores.
 uint32_t pick_paths_a_lane(uint32_t blocks, const TileOptions& options) {
   if (options.wanted_groups == 0) return options.most_paths_a_lane;
   return std::clamp(blocks / options.wanted_groups, 1U, options.most_paths_a_lane);

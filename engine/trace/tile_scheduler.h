@@ -16,47 +16,48 @@ struct TileSample {
   layout::Dispatch dispatch{};
   /// Workgroups of shaders/camera_stage.comp (y = parts) and of shaders/mirror_stage.comp (y = 1).
   std::array<uvec2, 2> group_counts{};
-  /// What it takes: blocks of 8x8 pixels.
+  /// The amount of its work, counted in blocks of 8x8 pixels.
   double units = 0.0;
-  /// Most rays that a lane may count in it.
+  /// The largest number of rays that a lane may count in it.
   double most_rays_a_lane = 0.0;
 };
 
 struct TileOptions {
-  /// Pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
+  /// The number of pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
-  /// See trace/share_out.h.
+  /// The largest number of parts that the work of a dispatch is dealt out to (trace/share_out.h).
   uint32_t most_parts = 1;
-  /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
+  /// The mirror stage has at least this many workgroups before a lane takes several paths.
   uint32_t wanted_groups = 0;
-  /// Paths that a lane of the mirror stage takes one after the other, at most. llvmpipe lets a lane's loops turn 65535
-  /// times, all together (shaders/loop_check.glsl).
+  /// The largest number of paths that a lane of the mirror stage takes one after the other. llvmpipe lets a lane's
+  /// loops turn 65535 times, all together (shaders/loop_check.glsl).
   uint32_t most_paths_a_lane = 1;
   /// Where the queue of paths begins, in records of the film.
   uint32_t first_queue_record = 0;
-  /// Fixed number of blocks a piece, for tests of tile independence; 0 follows the units asked for.
+  /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
 
-/// A picture cut into pieces: a range of blocks at a time, and of that a sample at a time. Every cut gives the same
-/// bits. Vulkan-free.
+/// Cuts a picture into pieces: it takes a range of blocks at a time, and of that range a sample at a time. Every cut
+/// gives the same bits. Vulkan-free.
 class TileScheduler {
  public:
-  /// Of `window` of the view's picture.
+  /// Cuts `window` of the view's picture.
   TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,
                 const TileOptions& options = {});
 
-  /// What all pieces share.
+  /// The constants that all pieces share.
   layout::ViewConstants view_constants() const { return make_view_constants(scene_, view_); }
   uint32_t pixel_count() const { return pixel_count_; }
   bool is_done() const { return first_block_ == block_total_; }
   double fraction_done() const;
 
-  /// The next piece, of about `units`; at least kMinBlocks blocks, which keep a device's cores busy. Not when done.
+  /// The next piece, of about `units`, but of at least kMinBlocks blocks, which keep a device's cores busy. Must not be
+  /// called when done.
   TileSample next(double units);
 
   static constexpr uint32_t kMinBlocks = 64;
-  /// Nor more blocks than these: that bounds the queue of paths.
+  /// A piece has at most this many blocks, which bounds the queue of paths.
   static constexpr uint32_t kMaxBlocks = 8192;
 
  private:
@@ -70,7 +71,7 @@ class TileScheduler {
   uint32_t pixel_count_;
   uint32_t block_total_;
   uint32_t first_block_ = 0;
-  /// Of the blocks under way, and of these the next sample.
+  /// The number of blocks in the current range, and the next sample of them.
   uint32_t block_count_ = 0;
   uint32_t sample_ = 0;
 };

@@ -23,7 +23,7 @@ void Pacer::aim(double target_ms) {
 }
 
 void Pacer::learn(double units, double time_ms) {
-  // No faster than fourfold a step: the next tile may be dearer than the last.
+  // The units grow at most fourfold in a step, because the next tile may be dearer than the last.
   const double ideal = units * target_ms_ / std::max(time_ms, 1e-3);
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
@@ -33,7 +33,7 @@ double dispatch_target_ms(const gpu::Device& device) {
 }
 
 uint32_t most_parts_of_dispatch(const gpu::Device& device) {
-  // As many as llvmpipe has threads unless it is told otherwise (Mesa's LP_MAX_THREADS).
+  // This is the number of threads that llvmpipe has unless it is told otherwise (Mesa's LP_MAX_THREADS).
   constexpr uint32_t kMostThreads = 32;
   return device.is_cpu() ? std::min(core_count(), kMostThreads) : 1;
 }

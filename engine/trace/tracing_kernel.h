@@ -12,15 +12,16 @@
 
 namespace promin {
 
-/// How much work the next dispatch takes so that it lasts about the target: drivers kill dispatches of seconds.
+/// Chooses how much work the next dispatch takes so that it lasts about the target, because drivers kill dispatches of
+/// seconds.
 class Pacer {
  public:
   Pacer(double target_ms, double first_units) : target_ms_(target_ms), units_(first_units) {}
 
   double units() const { return units_; }
-  /// Another target from now on; what was learnt stays.
+  /// Sets another target; what was learnt stays.
   void aim(double target_ms);
-  /// The last dispatch covered `units` in `time_ms`.
+  /// Learns that the last dispatch covered `units` in `time_ms`.
   void learn(double units, double time_ms);
 
  private:
@@ -28,23 +29,24 @@ class Pacer {
   double units_;
 };
 
-/// How long a dispatch should take: GPU drivers kill those of seconds; CPU drivers do not, and at the end of each
-/// dispatch their threads wait for the last one.
+/// The time that a dispatch should take. GPU drivers kill dispatches of seconds; CPU drivers do not, and at the end of
+/// each dispatch their threads wait for the last one.
 double dispatch_target_ms(const gpu::Device& device);
 
-/// To how many parts the work of a dispatch is dealt out at most (trace/share_out.h).
+/// The largest number of parts that the work of a dispatch is dealt out to (trace/share_out.h).
 uint32_t most_parts_of_dispatch(const gpu::Device& device);
 
-/// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
+/// The workgroups of each stage of a TracingKernel, across and down; those of a stage that the kernel does not have are
+/// ignored.
 using GroupCounts = std::array<uvec2, 2>;
 
-/// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
+/// A pipeline that traces, or two that run one after the other, timed by the device's clock where it has one.
 class TracingKernel {
  public:
   TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                 std::span<const gpu::SpecializationConstant> constants, std::span<const gpu::BoundBuffer> buffers);
 
-  /// Another pipeline, to run after the first and see what that wrote.
+  /// Adds another pipeline, which runs after the first and sees what that wrote.
   void add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
                  std::span<const gpu::BoundBuffer> buffers);
 
@@ -58,7 +60,7 @@ class TracingKernel {
   /// Runs what `record` records and waits. Returns device milliseconds (waiting time on the host where the queue has no
   /// timestamps).
   double run(const layout::Dispatch& constants, const gpu::Buffer& head, const GroupCounts& group_counts) const;
-  /// The same of all that `record_all` records, which calls `record` as often as it likes.
+  /// Does the same with all that `record_all` records, which calls `record` as often as it likes.
   double run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A point source that shines into a cone: KHR_lights_punctual's square of the clamped slope between the cosines of the
-// inner and outer angle.
+// A point source that shines into a cone. Its strength is that of KHR_lights_punctual: the square of the clamped slope
+// between the cosines of the inner and the outer angle.
 
 LightSample sample_spot(LightRecord light, vec3 position) {
   LightSample result = sample_point(light, position);

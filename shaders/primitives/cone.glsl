@@ -11,7 +11,8 @@ Frustum cone_of(Primitive p) {
   return Frustum(p.a.xyz, p.b.xyz, p.b.w, radius, slope);
 }
 
-// As intersect_frustum; o + t d within 4.1 u (|o - c| + size) of the surface measured, half angles 0.1 to 89.9 degrees.
+// See intersect_frustum. o + t d lies within 4.1 u (|o - c| + size) of the surface, measured for half angles of 0.1 to
+// 89.9 degrees.
 Crossing intersect_cone(Ray ray, Primitive p) { return intersect_frustum(ray, cone_of(p)); }
 
 SurfacePoint cone_surface(Ray ray, Primitive p, Hit hit) { return frustum_surface(ray, cone_of(p), hit); }

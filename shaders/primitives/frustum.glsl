@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What cylinder and cone share: the solid |radial| <= radius + slope * z, |z| <= half height, around an axis through
-// its centre. It is convex, so a ray is inside it in one interval: that of the two cap planes cut with that of the
-// lateral surface. An end that both bound belongs to one of them, never to neither: rims do not leak.
+// Cylinder and cone share the solid |radial| <= radius + slope * z, |z| <= half height, around an axis through its
+// centre. It is convex, so a ray is inside it in one interval: that of the two cap planes cut with that of the lateral
+// surface. An end that both bound belongs to one of them, never to neither, so rims do not leak.
 #ifndef FRUSTUM_GLSL
 #define FRUSTUM_GLSL
 
@@ -14,9 +14,10 @@ struct Frustum {
   float slope;   // change of radius per height; 0 for a cylinder
 };
 
-// Haines et al., Ray Tracing Gems ch. 7, re-centred twice: around the closest approach to the centre, then on the ray
-// near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays; docs/accuracy.md, BK), through
-// apexes and along generators too, and other answers than the exact one come within 0.7 u S of an edge alone (B2).
+// The method is that of Haines et al., Ray Tracing Gems ch. 7, re-centred twice: around the closest approach to the
+// centre, then on the ray near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays;
+// docs/accuracy.md, BK), through apexes and along generators too, and other answers than the exact one occur only
+// within 0.7 u S of an edge (B2).
 Crossing intersect_frustum(Ray ray, Frustum f) {
   Approach near = approach(ray, f.center);
   float scale = power_of_two_inverse(max(f.half_height, f.radius));
@@ -27,7 +28,7 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
   precise vec3 radial_direction = ray.direction - dz * f.axis;
   precise float radial2 = dot3(radial_direction, radial_direction);
 
-  // Cap slab. Across the axis, the planes are met at +-infinity, or nowhere.
+  // The cap slab. A ray across the axis meets its planes at +-infinity, or nowhere.
   float safe_dz = abs(dz) < TWO_POW_MINUS_80 ? (dz < 0.0 ? -TWO_POW_MINUS_80 : TWO_POW_MINUS_80) : dz;
   precise float inverse_dz = 1.0 / safe_dz;
   float entry_z = dz < 0.0 ? half_height : -half_height;
@@ -37,11 +38,11 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
   uint entry_cap = dz < 0.0 ? PART_TOP : PART_BOTTOM;
   uint exit_cap = dz < 0.0 ? PART_BOTTOM : PART_TOP;
 
-  // Solve from the point inside the slab that is nearest to axis and apex, where distance^2 + radius^2 is least:
-  // what rounding does to these two there is then small beside those at the hit, which divide it. Elsewhere the hit
-  // of a ray along a generator or the axis, near an apex, would drown in radii that are large beside its own.
+  // Solve from the point inside the slab that is nearest to axis and apex, where distance^2 + radius^2 is least. There
+  // the rounding of these two is small beside that at the hit, which divides them. Elsewhere the hit of a ray along a
+  // generator or the axis, near an apex, would drown in radii that are large beside its own.
   precise vec3 radial_offset = offset - z * f.axis;
-  precise float widening = f.slope * dz;  // of the solid, per t along the ray
+  precise float widening = f.slope * dz;  // growth of the solid's radius per t along the ray
   precise float spread2 = radial2 + widening * widening;
   precise float inward = -(dot3(radial_offset, radial_direction) + (radius + f.slope * z) * widening);
   precise float t_nearest = spread2 > 0.0 ? inward / spread2 : 0.0;
@@ -52,7 +53,7 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
   precise float base_distance = length3(base_radial);
   precise float base_radius = radius + f.slope * base_z;
 
-  // |radial(t)|^2 - radius(t)^2 = a t^2 + 2 b t + c, t from t_base.
+  // |radial(t)|^2 - radius(t)^2 = a t^2 + 2 b t + c, where t counts from t_base.
   precise float a = radial2 - widening * widening;
   precise float b = dot3(base_radial, radial_direction) - base_radius * widening;
   precise float c = (base_distance - base_radius) * (base_distance + base_radius);
@@ -87,11 +88,11 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
       return NO_CROSSING;
     }
   } else if (!(base_distance <= base_radius)) {
-    return NO_CROSSING;  // along a cylinder's axis, beside it
+    return NO_CROSSING;  // the ray is parallel to a cylinder's axis, beside it
   }
 
-  // From the same base as the side: what rounding does to base_z moves the solid as a whole, and a rim stays in its
-  // place however flat the angle at it.
+  // The caps start from the same base as the side: what rounding does to base_z moves the solid as a whole, and a rim
+  // stays in its place however flat the angle at it.
   precise float cap_entry = (entry_z - base_z) * inverse_dz;
   precise float cap_exit = (-entry_z - base_z) * inverse_dz;
   bool enters_side = side_entry > cap_entry;
@@ -114,8 +115,8 @@ SurfacePoint frustum_surface(Ray ray, Frustum f, Hit hit) {
   vec3 normal;
   if (hit.part == PART_SIDE) {
     vec3 outward = normalize3(radial);
-    // At an apex, and where u S comes to the radius, rounding may leave no radial direction. The axis is as good a
-    // normal as any there, or on a cylinder the way back.
+    // At an apex, and where u S is as large as the radius, rounding may leave no radial direction. There the axis is as
+    // good a normal as any, or on a cylinder the way back along the ray.
     precise vec3 across = cross3(f.axis, outward);
     bool is_lost = dot3(across, across) < 0.5;
     if (is_lost) outward = vec3(0.0);

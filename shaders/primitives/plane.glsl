@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// (P - point) . normal = 0. The point form: n . p = D loses everything far from the origin.
-// |dt n.d| <= 8 u (|q - o| + |t d|); at most 1.7 measured at 1e5, cosines 1...1e-6 (hard case 10).
+// (P - point) . normal = 0. This is the point form: n . p = D loses all accuracy far from the origin. |dt n.d| <= 8 u
+// (|q - o| + |t d|) is the bound, and at most 1.7 was measured at 1e5, cosines 1...1e-6 (hard case 10).
 
 vec3 plane_point(Primitive p) { return p.a.xyz; }
 vec3 plane_normal(Primitive p) { return p.b.xyz; }
@@ -9,14 +9,14 @@ vec3 plane_normal(Primitive p) { return p.b.xyz; }
 Crossing intersect_plane(Ray ray, Primitive p) {
   vec3 normal = plane_normal(p);
   precise float t = dot3(normal, plane_point(p) - ray.origin) / dot3(normal, ray.direction);
-  // A parallel ray brings an infinity or NaN here, and misses.
+  // A parallel ray gives an infinity or NaN here, and misses.
   if (!(t > ray.tmin && t < INFINITY)) return NO_CROSSING;
   return Crossing(t, 0.0, 0.0, PART_SIDE);
 }
 
-// Only the error across the plane needs the lift, and across an axis-aligned plane there is hardly any: by running
+// Only the error across the plane needs the lift, and across an axis-aligned plane there is hardly any. By running
 // error analysis n.(position - point) is off by at most u sum |n_i| (4 |from_point_i| + |position_i|), and rounding the
-// lifted origin adds as much as |position_i| again.
+// lifted origin adds up to |position_i| again.
 SurfacePoint plane_surface(Ray ray, Primitive p, Hit hit) {
   vec3 normal = plane_normal(p);
   precise vec3 along_ray = ray.origin + hit.t * ray.direction;

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// |P - center| = radius. Solved around the ray's closest approach to the centre, with the discriminant as
-// (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) measured (hard cases 1-9).
+// The sphere |P - center| = radius is solved around the ray's closest approach to the centre, with the discriminant as
+// (r - |p|)(r + |p|): |dt||d|cos <= 2.4 u (|o - c| + r) was measured (hard cases 1-9).
 
 vec3 sphere_center(Primitive p) { return p.a.xyz; }
 float sphere_radius(Primitive p) { return p.a.w; }
 
 Crossing intersect_sphere(Ray ray, Primitive p) {
   Approach near = approach(ray, sphere_center(p));
-  // In units of a power of two near the radius nothing overflows or underflows that matters.
+  // In units of a power of two near the radius no number that matters overflows or underflows.
   float scale = power_of_two_inverse(sphere_radius(p));
   precise vec3 offset = near.offset * scale;
   precise float radius = sphere_radius(p) * scale;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: shear the triangle so that the ray runs
-// along an axis, and compare products in 2D. Every triangle sees the same sheared vertex, so none leaks at a shared
-// edge or vertex, as long as nothing is contracted. Measured: another answer than the exact one only within 0.6 u S of
-// an edge (bound 2), |dt||d|cos <= 3.6 u S (bound 8) up to an aspect of 10^6, P(u,v) within 0.7 u S of the plane (bound
-// 8; hard cases 25, 29, 38).
+// The method is Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: shear the triangle so that the
+// ray runs along an axis, and compare products in 2D. Every triangle sees the same sheared vertex, so none leaks at a
+// shared edge or vertex, as long as nothing is contracted. Measured: other answers than the exact one occur only within
+// 0.6 u S of an edge (bound 2), |dt||d|cos <= 3.6 u S (bound 8) up to an aspect of 10^6, P(u,v) lies within 0.7 u S of
+// the plane (bound 8; hard cases 25, 29, 38).
 
 vec3 corner0(Primitive p) { return p.a.xyz; }
 vec3 corner1(Primitive p) { return vec3(p.a.w, p.b.xy); }
@@ -17,14 +17,14 @@ float dot2(vec2 a, vec2 b) {
 
 // A triangle in the plane that the ray pierces at its origin.
 struct ShearedTriangle {
-  bool may_be_met;  // as far as the areas tell; cross_triangle has the last word
-  float least;      // of the areas; negative where one has another sign than the determinant
+  bool may_be_met;  // as far as the areas tell; cross_triangle decides
+  float least;      // the least of the areas; negative where one has another sign than the determinant
   float determinant;
   vec2 a;
   vec2 b;
   vec2 c;
   vec3 areas;   // weights of the corners, not yet divided by their sum
-  vec3 depths;  // of the corners along the ray
+  vec3 depths;  // the corners' coordinates along the ray's axis
 };
 
 ShearedTriangle shear_triangle(Ray ray, Primitive p) {
@@ -35,23 +35,25 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise vec2 b2 = b.xy - ray.shear.xy * b.z;
   precise vec2 c2 = c.xy - ray.shear.xy * c.z;
 
-  // Each is the difference of two rounded products: its sign is that of the exact difference, or it is 0 (an edge
-  // belongs to the triangle). Outside they are of both signs: one of them has another than their sum.
+  // Each area is the difference of two rounded products: its sign is that of the exact difference, or it is 0, as an
+  // edge belongs to the triangle. Outside of the triangle the areas have both signs, so that one of them has another
+  // sign than their sum.
   precise float u = c2.x * b2.y - c2.y * b2.x;
   precise float v = a2.x * c2.y - a2.y * c2.x;
   precise float w = b2.x * a2.y - b2.y * a2.x;
   precise float determinant = u + v + w;
   float least = lesser(lesser(times_sign_of(u, determinant), times_sign_of(v, determinant)),
                        times_sign_of(w, determinant));
-  // Not edge-on, nor an area whose inverse is no longer a float.
+  // The triangle is not seen edge-on, and the inverse of its area is still a float.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
 
-// The weights' point should be the origin of the sheared plane. Of slivers and of triangles seen edge-on the weights
-// are rounding and little else, but only along the triangle: a step along its longest side brings the point back; where
-// that leads out of the triangle, the point is the nearest of the side that it would cross. Without this such a hit may
-// be anywhere on the triangle, and whether it is found would depend on the tree.
+// The point that the weights give should be the origin of the sheared plane. For slivers and for triangles seen edge-on
+// the weights are rounding and little else, but the error lies along the triangle, so a step along its longest side
+// brings the point back. Where that leads out of the triangle, the point becomes the nearest one of the side that it
+// would cross. Without this such a hit may be anywhere on the triangle, and whether it is found would depend on the
+// tree.
 vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   precise vec2 ab = b - a;
   precise vec2 bc = c - b;
@@ -62,7 +64,7 @@ vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   vec2 longest = is_ab ? ab : (is_bc ? bc : ca);
   vec3 step = is_ab ? vec3(-1.0, 1.0, 0.0) : (is_bc ? vec3(0.0, -1.0, 1.0) : vec3(1.0, 0.0, -1.0));
   precise vec2 point = weights.x * a + weights.y * b + weights.z * c;
-  // No less than the determinant, so not 0.
+  // It is no less than the determinant, so not 0.
   float longest_square = is_ab ? squares.x : (is_bc ? squares.y : squares.z);
   precise float shift = dot2(point, longest) / longest_square;
   precise vec3 centered = weights - shift * step;
@@ -77,8 +79,9 @@ vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   return beyond_a ? vec3(0.0, rest, part) : (beyond_b ? vec3(part, 0.0, rest) : vec3(rest, part, 0.0));
 }
 
-// On the line of a triangle seen edge-on, but beyond its corners, all weights may round to 0 or to one sign. Where the
-// corners lie tells, without rounding. Comparisons, as min and max take three instructions each on lavapipe.
+// On the line of a triangle seen edge-on, but beyond its corners, all weights may round to 0 or to one sign. The places
+// of the corners decide, without rounding. The code compares, because min and max take three instructions each on
+// lavapipe.
 bool is_beyond_corners(vec2 a, vec2 b, vec2 c) {
   return (a.x > 0.0 && b.x > 0.0 && c.x > 0.0) || (a.y > 0.0 && b.y > 0.0 && c.y > 0.0) ||
          (a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || (a.y < 0.0 && b.y < 0.0 && c.y < 0.0);
@@ -96,13 +99,15 @@ Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
   return Crossing(t, weights.y, weights.z, PART_SIDE);
 }
 
-// What can be told of a triangle that may be met without where: that there is a hit, or that there is none, or neither.
+// What a glance proves of a triangle that may be met, without computing where: that there is a hit, that there is none,
+// or neither.
 struct Glance {
   bool is_met;
   bool is_missed;
 };
 
-// Far from overflow and underflow, also of what is multiplied for it, on devices that flush denormals too.
+// The range in which nothing overflows or underflows, products of these numbers included, on devices that flush
+// denormals too.
 const float LEAST_SURE = 7.88860905e-31;  // 2^-100
 const float MOST_SURE = 1.26765060e+30;   // 2^100
 
@@ -119,14 +124,14 @@ Glance glance_at(ShearedTriangle sheared, float shear_z, float tmin, float tmax)
   precise float rounding = 64.0 * UNIT_ROUNDOFF *
                            (abs(c.x * b.y) + abs(c.y * b.x) + abs(a.x * c.y) + abs(a.y * c.x) + abs(b.x * a.y) +
                             abs(b.y * a.x));
-  // As all below times the determinant.
+  // The error, and all that follows, is multiplied by the determinant.
   precise float error = rounding * (abs(depths.x) + abs(depths.y) + abs(depths.z));
   precise float sum = sheared.areas.x * depths.x + sheared.areas.y * depths.y + sheared.areas.z * depths.z;
   float area = abs(sheared.determinant);
   precise float t = sum * times_sign_of(shear_z, sheared.determinant);
   precise float after = t - tmin * area;
   precise float before = tmax * area - t;
-  // False of NaNs.
+  // A NaN makes this false.
   bool is_sure = sheared.least > rounding && rounding >= LEAST_SURE && error >= LEAST_SURE && error <= MOST_SURE;
   return Glance(is_sure && after > error && before > error, is_sure && (after < -error || before < -error));
 }
@@ -135,13 +140,13 @@ Crossing intersect_triangle(Ray ray, Primitive p) {
   return cross_triangle(shear_triangle(ray, p), ray.shear.z, ray.tmin);
 }
 
-// P from the corners, not from the ray: the error does not grow with the ray's length.
+// P comes from the corners, not from the ray, so that the error does not grow with the ray's length.
 SurfacePoint triangle_surface(Ray ray, Primitive p, Hit hit) {
   precise vec3 edge1 = corner1(p) - corner0(p);
   precise vec3 edge2 = corner2(p) - corner0(p);
   float size = max(max_abs(edge1), max_abs(edge2));
   precise vec3 position = corner0(p) + (hit.u * edge1 + hit.v * edge2);
-  // Scaled first, so that the product of the smallest admissible edges does not underflow.
+  // The edges are scaled first, so that the product of the smallest admissible ones does not underflow.
   float scale = power_of_two_inverse(size);
   precise vec3 scaled1 = edge1 * scale;
   precise vec3 scaled2 = edge2 * scale;

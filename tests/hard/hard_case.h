@@ -49,7 +49,7 @@ std::span<const HardCase> host_cases();
 std::span<const HardCase> tree_cases();
 std::span<const HardCase> implicit_cases();
 
-/// What the answers to many rays come to against the oracle. Errors in units of u S (docs/accuracy.md).
+/// What the answers to many rays come to against the oracle. Errors are in units of u S (docs/glossary.md).
 struct Tally {
   uint64_t rays = 0;
   /// Of those, compared with the oracle: what all below but rays that slip through is of.

@@ -23,7 +23,7 @@ bool is_hittable(const world::Shape& shape, int32_t primitive);
 /// The primitive is hittable, here and below.
 BoundingSphere bounding_sphere(const world::Shape& shape, int32_t primitive);
 
-/// docs/accuracy.md's S = |o - c| + size, the length that bounds B1, B2 and BK are counted in, times kRoundoff.
+/// u S of docs/glossary.md, the unit of the bounds B1, B2 and BK: S = |o - c| + size, times kRoundoff.
 Real scale_of(const world::Shape& shape, int32_t primitive, const Ray& ray);
 
 /// From a point to the surface. Inside a solid it is negative, so that it is a convex function of

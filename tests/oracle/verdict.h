@@ -4,12 +4,12 @@
 
 #include "oracle/distance.h"
 
-/// Judges the answer of a device to a ray by the exact one, in the units of docs/accuracy.md: u S, where u = 2^-24 and
-/// S is scale_of the primitive. For a plane S grows by |t d|, as in row 10 of the hard cases.
+/// Judges the answer of a device to a ray by the exact one, in units of u S (docs/glossary.md), which is scale_of the
+/// primitive. For a plane S grows by |t d|, as in row 10 of the hard cases.
 namespace promin::oracle {
 
-/// docs/accuracy.md: |dt| |d| cos <= kB1 u S; a hit's point within kBK u S of the surface; another answer than the
-/// exact one only within kB2 u S of where the answer changes.
+/// The bounds of docs/glossary.md: |dt| |d| cos <= kB1 u S; a hit's point is within kBK u S of the surface; another
+/// answer than the exact one occurs only within kB2 u S of where the answer changes.
 inline constexpr Real kB1 = 8;
 inline constexpr Real kB2 = 2;
 inline constexpr Real kBK = 8;

@@ -16,7 +16,7 @@ struct Accuracy {
   uint64_t rays = 0;
   /// Both hit: what K is of.
   uint64_t hits = 0;
-  /// K in units of u S (docs/accuracy.md): of spheres, planes and triangles |dt| |d| cos, as bound B1 has it; of
+  /// K in units of u S (docs/glossary.md): of spheres, planes and triangles |dt| |d| cos, as bound B1 has it; of
   /// cylinders and cones the hit's distance from the surface, as BK does.
   double max_k = 0.0;
   double sum_k2 = 0.0;

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// `count` elements of `components` numbers each, `stride` bytes apart.
+/// Reads `count` elements of `components` numbers each, `stride` bytes apart.
 struct Source {
   const std::byte* data;
   size_t stride;

@@ -66,7 +66,7 @@ std::optional<Bytes> read_uri(const std::string& uri, const std::string& place, 
   return read_file(*file);
 }
 
-/// How many bytes there are; 0 where the file is missing. A URI that leads where it must not is refused.
+/// The number of bytes that a URI names; 0 where the file is missing. A URI that leads where it must not is refused.
 uint64_t size_of_uri(const std::string& uri, const std::string& place, LoadReport& report) {
   if (is_data(uri)) return read_data_uri(uri, place, report).value_or(Bytes{}).size();
   const auto file = find_file(uri, place, false, report);
@@ -80,7 +80,7 @@ std::string say_too_short(uint64_t size, uint64_t length) {
   return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
 }
 
-/// The buffers that attributes or indices of meshes lie in, as far as they are ever read.
+/// Which buffers hold attributes or indices of meshes that are read.
 std::vector<bool> find_needed_buffers(const GltfDocument& document) {
   std::vector<bool> is_needed(elements_of(document.json, "buffers").size(), false);
   const auto need_view = [&](int view) {

@@ -23,7 +23,7 @@ struct Format {
   std::optional<bool> normalized;
 };
 
-/// What the loader reads; "indices" stands for a primitive's indices.
+/// The attributes that the loader reads; "indices" stands for a primitive's indices.
 constexpr Format kFormats[] = {
     {"POSITION", "VEC3", kGltfFloat, {}},
     {"POSITION", "VEC3", kGltfByte, {}},

@@ -13,15 +13,15 @@ namespace promin {
 
 // What a glTF document must hold beyond its schema (schema.h), checked before any reader uses it.
 
-/// Version, required extensions, parts that belong together.
+/// Checks the version, the required extensions, and that parts which belong together are there.
 void check_gltf_asset(const nlohmann::json& document, LoadReport& report);
 
-/// The nodes form trees: no cycles, one parent at most; scenes list roots, once each. Every transform is one: a
-/// rotation of some length, an affine matrix.
+/// Checks that the nodes form trees: there are no cycles, a node has at most one parent, and scenes list roots, once
+/// each. Every transform must be one: a rotation of some length, or an affine matrix.
 void check_gltf_nodes(const nlohmann::json& document, LoadReport& report);
 
-/// Buffer views lie within their buffers' byteLength and accessors within their views; attributes have the formats
-/// and counts that the specification (section 3.7.2.1) and KHR_mesh_quantization allow.
+/// Checks that buffer views lie within their buffers' byteLength and accessors within their views, and that attributes
+/// have the formats and counts that the specification (section 3.7.2.1) and KHR_mesh_quantization allow.
 void check_gltf_accessors(const nlohmann::json& document, LoadReport& report);
 
 /// Whether meshes are read with this attribute. Any other is ignored, and the buffer it lies in may lack its bytes.

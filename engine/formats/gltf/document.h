@@ -74,7 +74,7 @@ struct GltfBuffers {
   GltfBuffers(GltfBuffers&&) = default;
   GltfBuffers& operator=(GltfBuffers&&) = default;
 
-  /// Of each buffer; empty where nothing reads it. Views into `own` and into GltfDocument::glb.
+  /// The bytes of each buffer; empty where nothing reads it. They are views into `own` and into GltfDocument::glb.
   std::vector<std::span<const std::byte>> bytes;
   std::vector<std::vector<std::byte>> own;
 };
@@ -90,7 +90,7 @@ struct GltfDocument {
   /// The scene that is shown, if there are any.
   size_t scene = 0;
   GltfBuffers buffers;
-  /// A GLB file, whose binary chunk is a buffer; nothing of a text file.
+  /// The bytes of a GLB file, whose binary chunk is a buffer; empty for a text file.
   std::vector<std::byte> glb;
 };
 

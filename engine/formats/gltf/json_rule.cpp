@@ -159,7 +159,7 @@ class ValueCheck {
     report_.refuse(quote(got) + " is none of " + std::string(rule_.target), place, "use one of them");
   }
 
-  /// "5126" is not 5126.
+  /// "5126", a string, is not the number 5126.
   void check_choice_type(const json& value, const std::string& place) const {
     const bool is_number_wanted = rule_.target.front() >= '0' && rule_.target.front() <= '9';
     if (is_number_wanted != value.is_number()) expect(false, value, place, is_number_wanted ? "a number" : "a string");

@@ -19,9 +19,9 @@ struct MetallicRoughness {
   double roughness = 1.0;
 };
 
-/// Phong by what the two models share: diffuse base/pi; reflectance at normal incidence as the specular factor; an
-/// exponent whose lobe is as wide as the microfacets' (Blinn's 2/r^4 - 2 around the half vector, a quarter of that
-/// around the reflected ray); a mirror that fades as the surface gets rough.
+/// Phong is fitted by what the two models share: diffuse is base/pi; the specular factor is the reflectance at normal
+/// incidence; the exponent's lobe is as wide as the microfacets' (Blinn's 2/r^4 - 2 around the half vector, a quarter
+/// of that around the reflected ray); the mirror fades as the surface gets rough.
 void shade_as_phong(const MetallicRoughness& pbr, Material& material) {
   constexpr double kDielectricReflectance = 0.04;
   constexpr double kRoughestMirror = 0.3;

@@ -16,7 +16,7 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
-/// Of transforms that are as good as singular, or overflow, where normals may vanish.
+/// Transforms of a smaller determinant are as good as singular, or overflow, and normals may vanish under them.
 constexpr double kLeastDeterminant = 1e-100;
 
 bool is_in_range(const dvec3& p) {
@@ -24,7 +24,8 @@ bool is_in_range(const dvec3& p) {
   return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
 }
 
-/// Whether all vertices are in range in the world: where the corners of their box are, which bounds them, or else each.
+/// Whether all vertices are in range in the world. The corners of their box, which bounds them, mostly tell; otherwise
+/// each vertex is looked at.
 bool is_in_range(const Mesh& mesh, const dmat4& world_from_object) {
   Bounds box;
   for (const vec3& position : mesh.positions) box.extend(position);

@@ -55,7 +55,7 @@ std::vector<int> root_nodes(const GltfDocument& document) {
 
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report) {
   std::vector<PlacedNode> placed;
-  // An own stack, last node first: files may nest deeper than the machine's stack.
+  // The stack is our own, last node first, because files may nest deeper than the machine's stack.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), true});

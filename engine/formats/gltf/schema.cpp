@@ -12,7 +12,7 @@ namespace {
 
 using namespace rules;
 
-/// A length: a size that fp32 arithmetic can square.
+/// The rule for a length: a size that fp32 arithmetic can square.
 constexpr JsonRule length(std::string_view path) {
   return number(path, kMinSize, kMaxCoordinate);
 }

@@ -61,7 +61,8 @@ class MeshBuilder {
       const dvec3 c(text_.positions[corners[triangle.z].position]);
       const dvec3 normal = glm::cross(b - a, c - a);
       const double length = glm::length(normal);
-      // Sharp among smooth ones: corners of its own. A triangle without area is never hit, any normal will do.
+      // A sharp corner among smooth ones gets vertices of its own. A triangle without area is never hit, so any normal
+      // will do.
       for (int i = 0; i < 3; ++i) {
         vertices[i] = add_vertex(corners[triangle[i]].position);
         mesh_.normals.push_back(length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));

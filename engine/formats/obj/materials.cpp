@@ -22,7 +22,8 @@ constexpr std::array<std::string_view, 6> kFactors = {"Ka", "Kd", "Ks", "Ke", "N
 /// A material as its lines have it.
 struct MtlMaterial {
   std::string name;
-  /// By keyword, the last of equal ones; missing numbers are 0, but one alone is all three of a colour.
+  /// The values by keyword, the last of equal ones. Missing numbers are 0, but a single number is all three of a
+  /// colour.
   std::map<std::string, dvec3> numbers = {};
   bool has_maps = false;
 
@@ -38,7 +39,7 @@ bool is_map(std::string_view keyword) {
   return keyword.starts_with("map_") || std::find(kOthers.begin(), kOthers.end(), keyword) != kOthers.end();
 }
 
-/// The files that a mtllib line names: all of it, as names may hold spaces, or else each word.
+/// The files that a mtllib line names: the whole rest of the line, because names may hold spaces, or else each word.
 std::vector<std::filesystem::path> find_library(const std::string& line, LoadReport& report) {
   const std::string place = "mtllib " + line;
   if (const auto file = find_beside_scene(line, place, false, report)) return {*file};
@@ -55,7 +56,7 @@ std::vector<std::filesystem::path> find_library(const std::string& line, LoadRep
 }
 
 std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& file, LoadReport& report) {
-  // What stands before the first material is of none, but it is checked like the rest.
+  // Statements before the first material belong to none, but they are checked like the rest.
   std::vector<MtlMaterial> materials(1);
   TextLines lines(text);
   while (lines.advance()) {

@@ -11,9 +11,9 @@
 
 namespace promin {
 
-/// Materials by name, read from the MTL files that an OBJ's mtllib lines name beside it: Ka, Kd, Ks, Ns and Ke as they
-/// stand, with Ka as Kd where there is none. illum 0 shows Kd alone, 1 has no highlight, 2 has, from 3 on Ks also
-/// weighs the mirror ray. Missing files and what Phong cannot show (maps, transparency) are warned about.
+/// Reads materials by name from the MTL files that an OBJ's mtllib lines name beside it: Ka, Kd, Ks, Ns and Ke as they
+/// stand, with Ka as Kd where there is none. illum 0 shows Kd alone, 1 has no highlight, 2 has one, and from 3 on Ks
+/// also weighs the mirror ray. Missing files and what Phong cannot show (maps, transparency) are warned about.
 std::map<std::string, Material> read_obj_materials(const std::vector<std::string>& libraries, LoadReport& report);
 
 }  // namespace promin

@@ -140,8 +140,8 @@ class ObjParser {
     return is_good;
   }
 
-  /// An index as OBJ has it, from 1, or from -1 backwards from here. Vertices may follow the faces that use them, so
-  /// the upper end is checked last.
+  /// An index as OBJ writes it: from 1 on, or from -1 backwards from the current place. Vertices may follow the faces
+  /// that use them, so the upper end is checked last.
   struct LastIndex {
     uint32_t index = 0;
     std::string place = {};

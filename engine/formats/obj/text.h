@@ -29,7 +29,7 @@ struct ObjFace {
   uint32_t material = kNoObjIndex;
 };
 
-/// What follows an `o` or `g` up to the next, if it has faces.
+/// The faces between an `o` or `g` and the next, if there are any.
 struct ObjGroup {
   std::string name;
   uint32_t first_face = 0;
@@ -39,14 +39,14 @@ struct ObjGroup {
 /// What an OBJ file says, checked: every index is in range, every number finite.
 struct ObjText {
   std::vector<vec3> positions;
-  /// Empty, or one per position: white where the file gives none.
+  /// Empty, or one per position, and white where the file gives none.
   std::vector<vec3> colors;
-  /// As written, not of unit length.
+  /// The normals as written, which are not of unit length.
   std::vector<vec3> normals;
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
   std::vector<ObjGroup> groups;
-  /// Of usemtl, each once.
+  /// The names of usemtl lines, each once.
   std::vector<std::string> material_names;
   /// The rest of each mtllib line.
   std::vector<std::string> libraries;

@@ -17,9 +17,9 @@ class TextLines {
   /// Goes to the next line; false at the end.
   bool advance();
 
-  /// Without its end.
+  /// The current line without its end.
   std::string_view line() const { return line_; }
-  /// "line 12".
+  /// The place of the line for messages: "line 12".
   std::string place() const { return "line " + std::to_string(number_); }
 
  private:

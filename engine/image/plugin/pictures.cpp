@@ -67,7 +67,7 @@ OIIO::ImageSpec make_exr_spec(const ProminPicturesSource& source) {
     spec.channelformats.push_back(type_of(channel.sample));
   }
   spec.attribute("compression", "zip");
-  // Otherwise the writer puts the time of day in, and equal pictures would differ.
+  // Without this the writer puts the time of day in, and equal pictures would differ.
   spec.attribute("DateTime", "");
   for (const ProminPicturesAttribute& attribute : std::span(source.attributes, source.attribute_count)) {
     spec.attribute(attribute.name, attribute.value);
@@ -106,7 +106,7 @@ uint32_t promin_pictures_interface() {
 int promin_pictures_encode(const ProminPicturesSource* source, ProminPicturesSink sink, void* context,
                            ProminPicturesMessage* message) {
   return guard(message, [&] {
-    // In memory first: OpenImageIO's PNG writer does not notice a full disk.
+    // The picture is encoded in memory first, because OpenImageIO's PNG writer does not notice a full disk.
     OIIO::Filesystem::IOVecOutput encoded;
     const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(source->format);
     const bool is_exr = std::string_view(source->format) == "openexr";

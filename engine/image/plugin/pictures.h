@@ -13,10 +13,11 @@
 extern "C" {
 #endif
 
-/// Changes with every change of this file. The engine refuses a plugin of another number before it calls anything else.
+/// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
+/// anything else.
 #define PROMIN_PICTURES_INTERFACE 1
 
-/// What a call came to.
+/// The result of a call.
 enum ProminPicturesStatus {
   PROMIN_PICTURES_DONE = 0,
   /// The message says why, in one line.
@@ -24,7 +25,7 @@ enum ProminPicturesStatus {
   PROMIN_PICTURES_OUT_OF_MEMORY = 2,
 };
 
-/// The caller's; the plugin fills it, cut to fit, where it fails. It ends with a zero.
+/// A buffer of the caller's. Where the call fails, the plugin fills it, cut to fit and ended by a zero.
 struct ProminPicturesMessage {
   char text[1024];
 };
@@ -37,7 +38,7 @@ enum ProminPicturesSample {
 
 struct ProminPicturesChannel {
   const char* name;
-  /// A ProminPicturesSample.
+  /// The value is one of ProminPicturesSample.
   uint32_t sample;
 };
 
@@ -63,7 +64,7 @@ struct ProminPicturesSource {
   const void* pixels;
 };
 
-/// Takes the encoded file, which is the plugin's and gone after the call. Must not throw.
+/// Takes the encoded file, which belongs to the plugin and is gone after the call. Must not throw.
 typedef void (*ProminPicturesSink)(void* context, const void* bytes, size_t byte_count);
 
 /// A picture file that is open for reading.
@@ -77,7 +78,7 @@ struct ProminPicturesInfo {
   int32_t first_rgb_channel;
 };
 
-/// PROMIN_PICTURES_INTERFACE as the plugin was built with.
+/// The PROMIN_PICTURES_INTERFACE that the plugin was built with.
 uint32_t promin_pictures_interface(void);
 
 /// Encodes a whole file and hands it to the sink, once, where it succeeds. Equal sources give equal bytes.
