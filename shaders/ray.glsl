@@ -51,8 +51,8 @@ struct Approach {
   float t_near;
 };
 
-Approach approach(Ray ray, vec3 center) {
-  precise vec3 from_center = ray.origin - center;
+// `from_center` leads from the centre to the ray's origin.
+Approach approach_from(Ray ray, vec3 from_center) {
   precise float t_far = -dot3(from_center, ray.direction) * ray.inverse_length2;
   precise vec3 offset = from_center + t_far * ray.direction;
   precise float t_near = -dot3(offset, ray.direction) * ray.inverse_length2;
@@ -60,9 +60,25 @@ Approach approach(Ray ray, vec3 center) {
   return Approach(corrected, t_far, t_near);
 }
 
-// Picks the nearest valid end of the interval in which a ray is inside a convex shape.
-Crossing nearest_crossing(Ray ray, float entry, uint entry_part, float exit, uint exit_part) {
-  if (!(entry <= exit)) return NO_CROSSING;
-  bool takes_entry = entry > ray.tmin;
-  return Crossing(takes_entry ? entry : exit, 0.0, 0.0, takes_entry ? entry_part : exit_part);
+Approach approach(Ray ray, vec3 center) {
+  precise vec3 from_center = ray.origin - center;
+  return approach_from(ray, from_center);
+}
+
+// The t between which a ray is inside a convex shape, with the part of the surface at either end; nowhere unless
+// entry <= exit.
+struct Inside {
+  float entry;
+  uint entry_part;
+  float exit;
+  uint exit_part;
+};
+#define NOWHERE Inside(INFINITY, PART_SIDE, -INFINITY, PART_SIDE)
+
+// The nearest end that is valid.
+Crossing nearest_crossing(Ray ray, Inside inside) {
+  if (!(inside.entry <= inside.exit)) return NO_CROSSING;
+  bool takes_entry = inside.entry > ray.tmin;
+  return Crossing(takes_entry ? inside.entry : inside.exit, 0.0, 0.0,
+                  takes_entry ? inside.entry_part : inside.exit_part);
 }

@@ -53,8 +53,8 @@ Crossing intersect_box(Ray ray, Primitive p) {
   float unscale = 1.0 / scale;
   precise float t_entry = near.t_far + (near.t_near + entry * unscale);
   precise float t_exit = near.t_far + (near.t_near + exit * unscale);
-  return nearest_crossing(ray, t_entry, face_of(entry_axis, component(signs, entry_axis) < 0.0), t_exit,
-                          face_of(exit_axis, component(signs, exit_axis) > 0.0));
+  return nearest_crossing(ray, Inside(t_entry, face_of(entry_axis, component(signs, entry_axis) < 0.0), t_exit,
+                                      face_of(exit_axis, component(signs, exit_axis) > 0.0)));
 }
 
 SurfacePoint box_surface(Ray ray, Primitive p, Hit hit) {

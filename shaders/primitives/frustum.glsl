@@ -18,8 +18,7 @@ struct Frustum {
 // centre, then on the ray near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays;
 // docs/accuracy.md, BK), through apexes and along generators too, and other answers than the exact one occur only
 // within 0.7 u S of an edge (B2).
-Crossing intersect_frustum(Ray ray, Frustum f) {
-  Approach near = approach(ray, f.center);
+Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   float scale = power_of_two_inverse(max(f.half_height, f.radius));
   precise vec3 offset = near.offset * scale;
   precise float half_height = f.half_height * scale;
@@ -61,7 +60,7 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
   float side_entry = -INFINITY;
   float side_exit = INFINITY;
   if (spread2 > 0.0) {
-    if (a > 0.0 && !(discriminant >= 0.0)) return NO_CROSSING;
+    if (a > 0.0 && !(discriminant >= 0.0)) return NOWHERE;
     precise float root = sqrt(max(discriminant, 0.0));
     precise float q = b < 0.0 ? root - b : -(b + root);
     precise float t0 = c / q;
@@ -85,10 +84,10 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
     } else if (b > 0.0) {
       side_exit = t0;
     } else if (c > 0.0) {
-      return NO_CROSSING;
+      return NOWHERE;
     }
   } else if (!(base_distance <= base_radius)) {
-    return NO_CROSSING;  // the ray is parallel to a cylinder's axis, beside it
+    return NOWHERE;  // the ray is parallel to a cylinder's axis, beside it
   }
 
   // The caps start from the same base as the side: what rounding does to base_z moves the solid as a whole, and a rim
@@ -99,21 +98,29 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
   bool exits_side = side_exit < cap_exit;
   float entry = enters_side ? side_entry : cap_entry;
   float exit = exits_side ? side_exit : cap_exit;
-  if (!(entry <= exit)) return NO_CROSSING;
+  if (!(entry <= exit)) return NOWHERE;
   float unscale = 1.0 / scale;
   precise float t_entry = near.t_far + (near.t_near + (t_base + entry) * unscale);
   precise float t_exit = near.t_far + (near.t_near + (t_base + exit) * unscale);
-  return nearest_crossing(ray, t_entry, enters_side ? PART_SIDE : entry_cap, t_exit,
-                          exits_side ? PART_SIDE : exit_cap);
+  return Inside(t_entry, enters_side ? PART_SIDE : entry_cap, t_exit, exits_side ? PART_SIDE : exit_cap);
 }
 
-SurfacePoint frustum_surface(Ray ray, Frustum f, Hit hit) {
-  precise vec3 from_center = (ray.origin - f.center) + hit.t * ray.direction;
+Crossing intersect_frustum(Ray ray, Frustum f) {
+  return nearest_crossing(ray, inside_frustum(ray, approach(ray, f.center), f));
+}
+
+// A point of the surface, seen from the centre, with its normal.
+struct SideOrCap {
+  vec3 offset;
+  vec3 normal;
+};
+
+SideOrCap on_frustum(Frustum f, vec3 from_center, uint part, vec3 direction) {
   precise float z = dot3(from_center, f.axis);
   precise vec3 radial = from_center - z * f.axis;
-  precise vec3 position;
+  precise vec3 offset;
   vec3 normal;
-  if (hit.part == PART_SIDE) {
+  if (part == PART_SIDE) {
     vec3 outward = normalize3(radial);
     // At an apex, and where u S is as large as the radius, rounding may leave no radial direction. There the axis is as
     // good a normal as any, or on a cylinder the way back along the ray.
@@ -121,15 +128,22 @@ SurfacePoint frustum_surface(Ray ray, Frustum f, Hit hit) {
     bool is_lost = dot3(across, across) < 0.5;
     if (is_lost) outward = vec3(0.0);
     precise vec3 slanted = outward - f.slope * f.axis;
-    normal = normalize3(is_lost && f.slope == 0.0 ? -ray.direction : slanted);
-    position = f.center + (z * f.axis + (f.radius + f.slope * z) * outward);
+    normal = normalize3(is_lost && f.slope == 0.0 ? -direction : slanted);
+    offset = z * f.axis + (f.radius + f.slope * z) * outward;
   } else {
-    normal = hit.part == PART_TOP ? f.axis : -f.axis;
-    precise float cap_z = hit.part == PART_TOP ? f.half_height : -f.half_height;
-    position = f.center + (cap_z * f.axis + radial);
+    normal = part == PART_TOP ? f.axis : -f.axis;
+    precise float cap_z = part == PART_TOP ? f.half_height : -f.half_height;
+    offset = cap_z * f.axis + radial;
   }
+  return SideOrCap(offset, normal);
+}
+
+SurfacePoint frustum_surface(Ray ray, Frustum f, Hit hit) {
+  precise vec3 from_center = (ray.origin - f.center) + hit.t * ray.direction;
+  SideOrCap found = on_frustum(f, from_center, hit.part, ray.direction);
+  precise vec3 position = f.center + found.offset;
   float size = f.half_height + f.radius + abs(f.slope) * f.half_height;
   precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * size);
-  return SurfacePoint(position, normal, lift);
+  return SurfacePoint(position, found.normal, lift);
 }
 #endif
