@@ -66,9 +66,11 @@ SurfacePoint box_surface(Ray ray, Primitive p, Hit hit) {
   uint axis = hit.part / 2u;
   float side = (hit.part & 1u) != 0u ? 1.0 : -1.0;
   vec3 along = vec3(axis == 0u ? 1.0 : 0.0, axis == 1u ? 1.0 : 0.0, axis == 2u ? 1.0 : 0.0);
-  local = mix(local, side * half_size, greaterThan(along, vec3(0.0)));
+  precise vec3 face = side * half_size;
+  precise vec3 outward = side * along;
+  local = mix(local, face, greaterThan(along, vec3(0.0)));
   precise vec3 position = box_center(p) + turned(local, turn, w);
-  vec3 normal = normalize3(turned(side * along, turn, w));
+  vec3 normal = normalize3(turned(outward, turn, w));
   float size = half_size.x + half_size.y + half_size.z;
   precise float lift = UNIT_ROUNDOFF * (8.0 * max_abs(position) + 16.0 * size);
   return SurfacePoint(position, normal, lift);
