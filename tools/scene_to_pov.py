@@ -7,6 +7,8 @@ What POV-Ray cannot say in the same way is refused. Render with:
     povray +Iout.pov +Oout.exr +FE +W1024 +H1024 -A -D
 """
 
+import math
+
 from scene_reader import SceneReader, Unsupported, convert
 
 # POV-Ray multiplies its ambient and emission terms by the pigment too, so no channel of it may be 0.
@@ -35,6 +37,19 @@ def texture(material):
     return f"texture {{ pigment {{ rgb {vector(pigment)} }} finish {{ {finish} }} }}"
 
 
+def _capsule_parts(size):
+    """Both spheres and the frustum of the cone that touches them, without the disks, which are inside."""
+    half, bottom, top = size.get("height", 0.5) / 2, size.get("radiusBottom", 0.25), size.get("radiusTop", 0.25)
+    for y, radius in ((-half, bottom), (half, top)):
+        if radius > 0:
+            yield f"sphere {{ {y:.9g} * y, {radius:.9g} }}"
+    if 2 * half > abs(bottom - top):
+        sine = (bottom - top) / (2 * half)
+        cosine = math.sqrt(1 - sine * sine)
+        low, high = f"{-half + bottom * sine:.9g} * y", f"{half + top * sine:.9g} * y"
+        yield f"cone {{ {low}, {bottom * cosine:.9g}, {high}, {top * cosine:.9g} open }}"
+
+
 class PovWriter(SceneReader):
     def add_triangles(self, triangles, material, world):
         parts = [("vertex_vectors", triangles.positions)]
@@ -57,6 +72,8 @@ class PovWriter(SceneReader):
         elif kind == "box":
             corner = vector(0.5 * length for length in size.get("size", (1, 1, 1)))
             body = f"box {{ -{corner}, {corner}"
+        elif kind == "capsule":
+            body = "union { " + " ".join(_capsule_parts(size))
         else:
             raise Unsupported(f"a shape of KHR_implicit_shapes ({kind})")
         self._add(body, material, world)

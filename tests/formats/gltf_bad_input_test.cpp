@@ -187,6 +187,11 @@ const BadGltf kBadGltf[] = {
        shape(g, 0) = {{"type", "capsule"}, {"capsule", {{"height", -1}}}};
      },
      "-1 is out of range", "extensions.KHR_implicit_shapes.shapes[0].capsule.height"},
+    {"CapsuleWithoutRadii",
+     [](auto& g) {
+       shape(g, 0) = {{"type", "capsule"}, {"capsule", {{"radiusTop", 0}, {"radiusBottom", 0}}}};
+     },
+     "both radii of shape shapes[0] are 0", "extensions.KHR_implicit_shapes.shapes[0].capsule"},
     {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "\"torus\" is none of",
      "extensions.KHR_implicit_shapes.shapes[0].type"},
     // Vertices

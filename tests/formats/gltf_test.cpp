@@ -282,6 +282,20 @@ TEST_F(GltfTest, BoxesStretchAndTurn) {
   EXPECT_EQ(std::get<world::Box>(load(shape_gltf({{"type", "box"}})).objects[0].shape).half_size, vec3(0.5F));
 }
 
+TEST_F(GltfTest, CapsulesScaleAndTurn) {
+  const json shape = {{"type", "capsule"}, {"capsule", {{"height", 4}, {"radiusTop", 1}, {"radiusBottom", 2}}}};
+  const LoadedScene scene =
+      load(shape_gltf(shape, {{"rotation", {0, 0, -0.70710678118654752, 0.70710678118654752}}, {"scale", {3, 3, 3}}}));
+  const auto& capsule = std::get<world::Capsule>(scene.objects[0].shape);
+  expect_near(capsule.axis, {1, 0, 0});
+  EXPECT_FLOAT_EQ(capsule.half_height, 6);
+  EXPECT_FLOAT_EQ(capsule.radius_bottom, 6);
+  EXPECT_FLOAT_EQ(capsule.radius_top, 3);
+  const LoadedScene defaults = load(shape_gltf({{"type", "capsule"}}));
+  const auto& pill = std::get<world::Capsule>(defaults.objects[0].shape);
+  EXPECT_EQ(vec3(pill.half_height, pill.radius_bottom, pill.radius_top), vec3(0.25F));
+}
+
 TEST_F(GltfTest, PlanesTurnTheirNormal) {
   const LoadedScene scene =
       load(shape_gltf({{"type", "plane"}}, {{"translation", {0, 3, 0}}, {"rotation", {0, 0, 1, 0}}}));
@@ -295,7 +309,7 @@ TEST_F(GltfTest, PlanesTurnTheirNormal) {
 TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
   const std::vector<std::pair<json, json>> cases = {
       {{{"type", "box"}}, {{"matrix", {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}},
-      {{{"type", "capsule"}}, {}},
+      {{{"type", "capsule"}}, {{"scale", {1, 2, 1}}}},
       {{{"type", "plane"}, {"plane", {{"sizeX", 1}, {"sizeZ", 1}}}}, {}},
       {{{"type", "sphere"}}, {{"scale", {1, 2, 1}}}},
       {{{"type", "cylinder"}}, {{"scale", {1, 1, 2}}}},

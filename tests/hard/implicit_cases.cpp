@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Boxes, as KHR_implicit_shapes has them.
+// Boxes and capsules, as KHR_implicit_shapes has them.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -150,8 +151,129 @@ void run_along_faces(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{39, "BoxFarAway", run_boxes_far_away}, HardCase{40, "BoxEdges", run_box_edges},
-                            HardCase{41, "AlongBoxFaces", run_along_faces}};
+struct CapsuleForm {
+  const char* name;
+  float half_height;
+  float bottom;
+  float top;
+};
+constexpr CapsuleForm kPill{"pill", 1.0F, 0.5F, 0.5F};
+constexpr CapsuleForm kSkittle{"skittle", 1.0F, 0.7F, 0.25F};
+constexpr CapsuleForm kDrop{"drop", 1.0F, 0.8F, 0.0F};
+/// One sphere all but holds the other: what is left of the cone is flat.
+constexpr CapsuleForm kEgg{"egg", 0.2501F, 1.0F, 0.5F};
+/// The other way round, as far as fp32 goes.
+constexpr CapsuleForm kSphereAndLess{"all but a sphere", 0.25000003F, 0.5F, 1.0F};
+constexpr CapsuleForm kHeld{"sphere in a sphere", 0.2F, 1.0F, 0.5F};
+constexpr CapsuleForm kBall{"no height", 0.0F, 0.5F, 0.5F};
+constexpr CapsuleForm kWire{"wire", 1.0F, 1e-4F, 1e-4F};
+
+/// A capsule and the numbers to aim at it by.
+struct AimedCapsule {
+  world::Capsule capsule;
+  dvec3 axis;
+
+  AimedCapsule(const CapsuleForm& form, const vec3& center, const dvec3& given_axis)
+      : capsule{center, vec3(glm::normalize(given_axis)), form.half_height, form.bottom, form.top},
+        axis(glm::normalize(dvec3(capsule.axis))) {}
+
+  double size() const {
+    return static_cast<double>(capsule.half_height + std::max(capsule.radius_bottom, capsule.radius_top));
+  }
+  double height() const { return 2.0 * static_cast<double>(capsule.half_height); }
+  /// The sine of the angle between a generator and the axis; of a capsule that has a side.
+  double sine() const { return static_cast<double>(capsule.radius_bottom - capsule.radius_top) / height(); }
+  /// In the capsule made a tenth larger.
+  dvec3 random_point(Random& random) const {
+    const double along = random.uniform();
+    const double radius = 1.1 * glm::mix(double{capsule.radius_bottom}, double{capsule.radius_top}, along);
+    return dvec3(capsule.center) + (along - 0.5) * height() * axis +
+           radius * std::cbrt(random.uniform()) * random.direction();
+  }
+  /// On one of the circles where the cone touches the spheres.
+  dvec3 seam_point(bool is_top, const dvec3& radial) const {
+    const double radius = is_top ? capsule.radius_top : capsule.radius_bottom;
+    const double cosine = std::sqrt((1.0 - sine()) * (1.0 + sine()));
+    return dvec3(capsule.center) + (is_top ? 0.5 : -0.5) * height() * axis + radius * (sine() * axis + cosine * radial);
+  }
+};
+
+const std::array<dvec3, 4> kAxes = {dvec3(0.0, 1.0, 0.0), dvec3(-1.0, 0.0, 0.0), dvec3(1.0, 2.0, -3.0),
+                                    dvec3(1e-3, -1e-4, -1.0)};
+
+Tally cast_capsules(Lab& lab, const CapsuleForm& form, const vec3& center, Random& random,
+                    const std::function<Ray(const AimedCapsule&, Random&)>& make_ray, size_t count = kRayCount) {
+  Tally tally;
+  for (const dvec3& axis : kAxes) {
+    const AimedCapsule aimed(form, center, axis);
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < count; ++i) rays.push_back(make_ray(aimed, random));
+    tally.add(lab.cast_and_judge(scene_of({aimed.capsule}), rays));
+  }
+  Lab::credit("capsule", tally);
+  return tally;
+}
+
+void run_capsules_around(Lab& lab, const CapsuleForm& form, std::initializer_list<double> distances, const vec3& center,
+                         Random& random) {
+  for (const double distance : distances) {
+    const Tally tally = cast_capsules(lab, form, center, random, [&](const AimedCapsule& aimed, Random& r) {
+      return ray_towards(dvec3(aimed.capsule.center) + distance * r.direction(), aimed.random_point(r));
+    });
+    expect_bounds(lab, form.name + label(", distance", distance), tally);
+  }
+}
+
+void run_capsules_far_away(Lab& lab) {
+  Random random(42);
+  run_capsules_around(lab, kPill, {3.0, 1e1, 1e2, 1e3, 1e4, 1e5}, vec3(0.0F), random);
+  for (const CapsuleForm& form : {kSkittle, kDrop, kEgg, kSphereAndLess, kHeld, kBall, kWire}) {
+    run_capsules_around(lab, form, {3.0, 1e3}, vec3(0.0F), random);
+  }
+  run_capsules_around(lab, kSkittle, {10.0}, vec3(1e5F, -1e5F, 1e5F), random);
+}
+
+/// At the circles where sphere and cone meet, from wherever they are seen: nothing may pass between them.
+void run_seams(Lab& lab) {
+  Random random(43);
+  for (const CapsuleForm& form : {kPill, kSkittle, kDrop, kEgg, kSphereAndLess}) {
+    const Tally tally = cast_capsules(lab, form, vec3(0.3F, -0.2F, 0.1F), random, [](const AimedCapsule& a, Random& r) {
+      const dvec3 radial = r.perpendicular(a.axis);
+      const dvec3 target = a.seam_point(a.capsule.radius_top > 0.0F && r.uniform() < 0.5, radial);
+      const dvec3 normal = a.sine() * a.axis + std::sqrt((1.0 - a.sine()) * (1.0 + a.sine())) * radial;
+      // At least 0.1 of the way from the silhouette.
+      const dvec3 outward = glm::normalize(r.uniform(0.1, 1.0) * normal + r.uniform() * r.perpendicular(normal));
+      return ray_towards(target + a.size() * std::pow(10.0, r.uniform(0.5, 3.0)) * outward, target);
+    });
+    lab.expect_at_most(std::string("leaks at seams, ") + form.name, 0.0, static_cast<double>(tally.misses));
+    expect_bounds(lab, std::string("seams, ") + form.name, tally);
+  }
+}
+
+/// Along the axis and along generators, through the capsule and beside it.
+void run_along_capsules(Lab& lab) {
+  Random random(44);
+  for (const CapsuleForm& form : {kPill, kSkittle, kDrop}) {
+    for (const bool is_generator : {false, true}) {
+      const Tally tally = cast_capsules(
+          lab, form, vec3(0.0F), random,
+          [&](const AimedCapsule& a, Random& r) {
+            const dvec3 radial = r.perpendicular(a.axis);
+            const double cosine = std::sqrt((1.0 - a.sine()) * (1.0 + a.sine()));
+            const dvec3 along = is_generator ? cosine * a.axis - a.sine() * radial : a.axis;
+            const dvec3 target = is_generator && r.uniform() < 0.5 ? a.seam_point(false, radial) : a.random_point(r);
+            return ray_towards(target - (r.uniform() < 0.5 ? 10.0 : -10.0) * along, target);
+          },
+          kGrazingRayCount);
+      expect_bounds(lab, std::string(is_generator ? "along generators, " : "along the axis, ") + form.name, tally);
+    }
+  }
+}
+
+constexpr std::array kCases{
+    HardCase{39, "BoxFarAway", run_boxes_far_away}, HardCase{40, "BoxEdges", run_box_edges},
+    HardCase{41, "AlongBoxFaces", run_along_faces}, HardCase{42, "CapsuleFarAway", run_capsules_far_away},
+    HardCase{43, "CapsuleSeams", run_seams},        HardCase{44, "AlongCapsules", run_along_capsules}};
 
 }  // namespace
 

@@ -45,6 +45,15 @@ world::Cone random_shape(const vec3& center, Random& random) {
 }
 
 template <>
+world::Capsule random_shape(const vec3& center, Random& random) {
+  const float height = random.uniform() < 0.1 ? 0.0F : random_size(random);
+  const float bottom = random_size(random);
+  // As often a point as radii that are the same.
+  const double kind = random.uniform();
+  return {center, random_axis(random), height, bottom, kind < 0.2 ? 0.0F : kind < 0.4 ? bottom : random_size(random)};
+}
+
+template <>
 world::Box random_shape(const vec3& center, Random& random) {
   const vec3 half_size(random_size(random), random_size(random), random_size(random));
   // As far as orientations go, and every third along the axes of space.

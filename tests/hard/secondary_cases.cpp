@@ -45,6 +45,7 @@ void run_self_hits(Lab& lab) {
                                        world::Cone{center, axis, size, 0.7F * size, 0.0F},
                                        world::Cone{center, axis, size, 0.3F * size, 0.8F * size},
                                        world::Box{center, size * vec3(1.0F, 0.7F, 0.4F), vec3(0.2F, -0.1F, 0.3F)},
+                                       world::Capsule{center, axis, 0.5F * size, 0.5F * size, 0.2F * size},
                                        make_octahedron(center, size)};
     };
     for (const world::Shape& shape : shapes_at(vec3(0.0F))) {

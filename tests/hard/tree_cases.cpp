@@ -38,7 +38,7 @@ world::Scene make_strewn(const dvec3& center, double radius, int count, Random& 
   for (int i = 0; i < count; ++i) {
     const vec3 place(random_point(center, radius, random));
     const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
-    switch (i % 6) {
+    switch (i % 7) {
       case 0:
         shapes.emplace_back(world::Sphere{place, size});
         break;
@@ -50,6 +50,9 @@ world::Scene make_strewn(const dvec3& center, double radius, int count, Random& 
         break;
       case 3:
         shapes.emplace_back(world::Box{place, size * vec3(1.0F, 0.6F, 0.3F), 0.4F * turned_axis(random)});
+        break;
+      case 4:
+        shapes.emplace_back(world::Capsule{place, turned_axis(random), size, 0.6F * size, 0.2F * size});
         break;
       default: {
         Mesh mesh;

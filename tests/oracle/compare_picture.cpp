@@ -28,6 +28,10 @@ struct Curvature {
   Real operator()(const world::Cylinder& c) const { return around(Vector(c.center), Vector(c.axis)); }
   Real operator()(const world::Cone& c) const { return around(Vector(c.center), Vector(c.axis)); }
 
+  Real operator()(const world::Capsule& c) const {
+    return std::min({Real(std::max(c.radius_bottom, c.radius_top)), around(Vector(c.center), Vector(c.axis))});
+  }
+
   Real around(const Vector& center, const Vector& axis) const {
     const Vector v = glm::normalize(axis);
     const bool is_disk = std::abs(glm::dot(normal, v)) > 1 - 1e-15L;

@@ -33,6 +33,9 @@ struct Bound {
   BoundingSphere operator()(const world::Cone& c) const {
     return {Vector(c.center), std::hypot(Real(c.half_height), Real(std::max(c.radius_bottom, c.radius_top)))};
   }
+  BoundingSphere operator()(const world::Capsule& c) const {
+    return {Vector(c.center), Real(c.half_height) + std::max(c.radius_bottom, c.radius_top)};
+  }
   BoundingSphere operator()(const world::Box& b) const { return {Vector(b.center), glm::length(Vector(b.half_size))}; }
   BoundingSphere operator()(const Mesh& mesh) const {
     const Corners corners = corners_of(mesh, primitive);
@@ -113,6 +116,27 @@ struct SignedDistance {
     if (inside <= 0) return inside;
     return std::min({distance_to_segment(q, bottom_rim, top_rim), distance_to_segment(q, Vector(0, -h, 0), bottom_rim),
                      distance_to_segment(q, Vector(0, h, 0), top_rim)});
+  }
+
+  /// In the half plane through the axis and the point: to the sphere, or to the line that touches both, by where along
+  /// that line the point lies.
+  Real operator()(const world::Capsule& c) const {
+    const Vector v = glm::normalize(Vector(c.axis));
+    const Real h = 2 * Real(c.half_height);
+    const Real bottom = c.radius_bottom;
+    const Real top = c.radius_top;
+    const Vector from_bottom = point - Vector(c.center) + h / 2 * v;
+    const Real z = glm::dot(from_bottom, v);
+    const Real radial = glm::length(from_bottom - z * v);
+    const Real to_bottom = std::hypot(radial, z) - bottom;
+    const Real to_top = std::hypot(radial, z - h) - top;
+    if (std::abs(bottom - top) >= h) return bottom > top ? to_bottom : to_top;
+    const Real s = (bottom - top) / h;
+    const Real cosine = std::sqrt((1 - s) * (1 + s));
+    const Real along = z * cosine - radial * s;
+    if (along <= 0) return to_bottom;
+    if (along >= h * cosine) return to_top;
+    return radial * cosine + z * s - bottom;
   }
 
   Real operator()(const world::Box& b) const {

@@ -53,6 +53,21 @@ TEST(Distance, BoxesHaveFacesEdgesAndCorners) {
   EXPECT_NEAR(distance_to_crease(box, {4, 4, 4}), 3, kTolerance);
 }
 
+TEST(Distance, CapsulesAreTheHullOfTwoSpheres) {
+  const world::Capsule pill{{0, 0, 0}, {0, 1, 0}, 2, 1, 1};
+  EXPECT_NEAR(signed_distance(pill, 0, {0, 0, 0}), -1, kTolerance);
+  EXPECT_NEAR(signed_distance(pill, 0, {4, 1, 0}), 3, kTolerance);
+  EXPECT_NEAR(signed_distance(pill, 0, {3, 6, 0}), 4, kTolerance) << "to the upper end, 3 and 4 away";
+  // Radii 3 and 0, 5 apart: the sine is 3/5.
+  const world::Capsule drop{{0, 0, 0}, {0, 1, 0}, 2.5F, 3, 0};
+  EXPECT_NEAR(signed_distance(drop, 0, {0, 2.5L, 0}), 0, kTolerance) << "the point";
+  EXPECT_NEAR(signed_distance(drop, 0, {0, 6.5L, 0}), 4, kTolerance);
+  EXPECT_NEAR(signed_distance(drop, 0, {0, 0, 0}), 2.5L * 0.6L - 3, kTolerance) << "to the cone";
+  EXPECT_NEAR(signed_distance(drop, 0, {0, -7.5L, 0}), 2, kTolerance);
+  const world::Capsule held{{0, 0, 0}, {0, 1, 0}, 0.5F, 3, 1};
+  EXPECT_NEAR(signed_distance(held, 0, {0, 6.5L, 0}), 4, kTolerance) << "of the larger sphere alone";
+}
+
 TEST(Distance, TrianglesHaveFacesEdgesAndCorners) {
   const Mesh mesh = make_triangle();
   EXPECT_NEAR(signed_distance(mesh, 0, {1, 1, -2}), 2, kTolerance);

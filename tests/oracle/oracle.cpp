@@ -106,6 +106,43 @@ class Search {
     if (radius > 0 && glm::dot(p, p) <= radius * radius) offer(near + t, normal);
   }
 
+  /// |P - C| = r of both spheres and n . (P - C) = r of the cone that touches both, each where it is the hull's: n is a
+  /// generator's normal, of which s is the part along the axis, and at a sphere's point that part of its own normal.
+  void intersect(const world::Capsule& capsule) {
+    const Vector v = glm::normalize(Vector(capsule.axis));
+    const Real h = 2 * Real(capsule.half_height);
+    const Real bottom = capsule.radius_bottom;
+    const Real top = capsule.radius_top;
+    const Real s = std::abs(bottom - top) < h ? (bottom - top) / h : (bottom < top ? -kInfinity : kInfinity);
+    const Vector& d = ray_.direction;
+    const Real near = approach(capsule.center);
+    const Vector oc = ray_.origin - Vector(capsule.center) + near * d + h / 2 * v;
+    for (const bool is_top : {false, true}) {
+      const Real r = is_top ? top : bottom;
+      const Vector o = is_top ? oc - h * v : oc;
+      for (const Real t : solve_quadratic(glm::dot(d, d), glm::dot(d, o), glm::dot(o, o) - r * r)) {
+        const Vector p = o + t * d;
+        const Real along = glm::dot(p, v);
+        if (r > 0 && (is_top ? along >= s * r : along <= s * r)) offer(near + t, p);
+      }
+    }
+    if (std::isinf(s)) return;
+    const Real c2 = (1 - s) * (1 + s);
+    const Real dv = glm::dot(d, v);
+    const Real ov = glm::dot(oc, v);
+    // The cone's radius is (r - s m) / cos at the height m over the bottom's centre.
+    const Real w = bottom - s * ov;
+    const Real a = glm::dot(d, d) - dv * dv - s * s * dv * dv / c2;
+    const Real b = glm::dot(d, oc) - dv * ov + s * dv * w / c2;
+    const Real c = glm::dot(oc, oc) - ov * ov - w * w / c2;
+    for (const Real t : solve_quadratic(a, b, c)) {
+      const Real m = ov + t * dv;
+      const Real r = bottom - s * m;
+      if (m < s * bottom || m > h + s * top || r < 0) continue;
+      offer(near + t, oc + t * d - m * v + s * r / c2 * v);
+    }
+  }
+
   /// |(P - C) . A| = h for each axis A, where the other two are within theirs.
   void intersect(const world::Box& box) {
     const Real near = approach(box.center);

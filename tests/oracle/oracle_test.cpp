@@ -73,6 +73,18 @@ TEST(Oracle, Box) {
   EXPECT_NEAR(hit.normal.y, half, 1e-7L);
 }
 
+TEST(Oracle, Capsule) {
+  const world::Capsule pill{{0, 0, 0}, {0, 1, 0}, 2, 1, 1};
+  expect_hit(cast(pill, {5, 1, 0}, {-1, 0, 0}), 4, {1, 0, 0});
+  expect_hit(cast(pill, {0.6L, 9, 0}, {0, -1, 0}), 6.2L, {0.6L, 0.8L, 0});
+  expect_hit(cast(pill, {0, 0, 0}, {0, -1, 0}), 3, {0, -1, 0});
+  EXPECT_FALSE(cast(pill, {0.9L, 2.9L, 5}, {0, 0, -1}).exists());
+  // Radii 3 and 0, 5 apart: the sine is 3/5.
+  const world::Capsule drop{{0, 0, 0}, {0, 1, 0}, 2.5F, 3, 0};
+  expect_hit(cast(drop, {4, 0.5L, 0}, {-1, 0, 0}), 2.5L, {0.8L, 0.6L, 0});
+  expect_hit(cast(drop, {0, -8, 0}, {0, 1, 0}), 2.5L, {0, -1, 0});
+}
+
 TEST(Oracle, PlaneKeepsItsOwnNormal) {
   const world::Plane plane{{0, 1, 0}, {0, 1, 0}};
   expect_hit(cast(plane, {0, 3, 0}, {1, -1, 0}), 2, {0, 1, 0});

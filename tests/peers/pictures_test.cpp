@@ -113,6 +113,10 @@ TEST_F(PeerPictureTest, PovrayBoxes) {
   expect_same_picture(povray(), scenes_ / "box.gltf");
 }
 
+TEST_F(PeerPictureTest, PovrayCapsules) {
+  expect_same_picture(povray(), scenes_ / "capsule.gltf");
+}
+
 TEST_F(PeerPictureTest, PovraySphereflake) {
   expect_same_picture(povray(), make_sphereflake());
 }

@@ -37,6 +37,10 @@ METHODS = {
         "three slabs in the box's frame, from the closest approach to its centre",
         "Kay and Kajiya, Ray Tracing Complex Scenes, SIGGRAPH 1986",
     ),
+    "capsule": (
+        "two spheres and the frustum between the circles where it touches them; first entry, last exit",
+        "as the sphere and the frustum",
+    ),
     "triangle": (
         "shear to the ray's axis, edge functions by compared products, edges belong to the triangle",
         "Woop, Benthin, Wald, Watertight Ray/Triangle Intersection, JCGT 2013",

@@ -55,6 +55,13 @@ class ContentHash {
     add(cone.radius_bottom);
     add(cone.radius_top);
   }
+  void add(const world::Capsule& capsule) {
+    add(capsule.center);
+    add(capsule.axis);
+    add(capsule.half_height);
+    add(capsule.radius_bottom);
+    add(capsule.radius_top);
+  }
   void add(const world::Box& box) {
     add(box.center);
     add(box.half_size);

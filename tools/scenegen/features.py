@@ -111,6 +111,23 @@ def box():
     return g
 
 
+def capsule():
+    """Capsules upright, lying and leaning, of two radii, a pointed one, and one whose lower end nearly holds the other."""
+    g = _stage()
+    pill = g.capsule("pill", 1.0, 0.4, 0.4, _glossy(g, "pill", CORAL))
+    g.node("upright", mesh=pill, translation=(-1.9, 0.9, -0.5))
+    g.node("lying", mesh=pill, translation=(-1.3, 0.3, 1.2), rotation=axis_rotation((1.0, 0.0, -0.4)), scale=0.75)
+    skittle = g.capsule("skittle", 1.1, 0.5, 0.2, _glossy(g, "skittle", TEAL))
+    g.node("skittle", mesh=skittle, translation=(-0.3, 1.05, -0.4))
+    drop = g.capsule("drop", 1.2, 0.4, 0.0, _glossy(g, "drop", AMBER))
+    g.node("pointed", mesh=drop, translation=(0.9, 1.0, -0.2))
+    egg = g.capsule("egg", 0.32, 0.5, 0.2, g.material("egg", SLATE, specular=0.4, shininess=60.0, reflection=0.5))
+    g.node("egg", mesh=egg, translation=(2.0, 0.66, 0.2))
+    g.node("leaning", mesh=skittle, translation=(0.6, 0.45, 1.2), rotation=axis_rotation((0.9, 0.35, 0.3)), scale=0.6)
+    g.camera("camera", (0.5, 2.1, 5.8), (0.05, 0.75, 0.0))
+    return g
+
+
 def triangles_sharp():
     """Meshes without normals: every face is flat."""
     g = _stage()
@@ -399,6 +416,7 @@ SCENES = (
     cylinder,
     cone,
     box,
+    capsule,
     triangles_sharp,
     triangles_smooth,
     strip_and_fan,

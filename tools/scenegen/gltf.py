@@ -136,6 +136,11 @@ class Gltf:
     def box(self, name, size, material):
         return self._shape(name, "box", {"size": size}, meshes.box(*size), material)
 
+    def capsule(self, name, height, radius_bottom, radius_top, material):
+        """`height` is between the centres of the spheres."""
+        parameters = {"height": height, "radiusBottom": radius_bottom, "radiusTop": radius_top}
+        return self._shape(name, "capsule", parameters, meshes.capsule(height, radius_bottom, radius_top, 12), material)
+
     def plane(self, name, material, fallback_size=40.0):
         """The infinite plane y = 0."""
         return self._shape(name, "plane", {}, meshes.rectangle(fallback_size, fallback_size), material)

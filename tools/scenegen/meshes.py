@@ -55,6 +55,36 @@ def frustum(height, radius_bottom, radius_top, sides):
     return Mesh(positions, indices)
 
 
+def capsule(height, radius_bottom, radius_top, sides):
+    """The hull of two spheres around -+height / 2 along Y, in rings of corners between two poles."""
+    sine = (radius_bottom - radius_top) / height
+    touching = math.asin(sine)
+    steps = sides // 4
+    profile = []
+    for y, radius, first, last in (
+        (-height / 2.0, radius_bottom, -math.pi / 2.0, touching),
+        (height / 2.0, radius_top, touching, math.pi / 2.0),
+    ):
+        for i in range(steps + 1):
+            angle = first + (last - first) * i / steps
+            profile.append((radius * math.cos(angle), y + radius * math.sin(angle)))
+    rings = profile[1:-1]
+    positions = [(0.0, profile[0][1], 0.0), (0.0, profile[-1][1], 0.0)]
+    for radius, y in rings:
+        turns = (math.tau * i / sides for i in range(sides))
+        positions += [(radius * math.sin(turn), y, radius * math.cos(turn)) for turn in turns]
+    indices = []
+    for i in range(sides):
+        j = (i + 1) % sides
+        indices += [0, 2 + j, 2 + i]
+        for ring in range(len(rings) - 1):
+            low, high = 2 + ring * sides, 2 + (ring + 1) * sides
+            indices += [low + i, low + j, high + j, low + i, high + j, high + i]
+        last = 2 + (len(rings) - 1) * sides
+        indices += [1, last + i, last + j]
+    return Mesh(positions, indices)
+
+
 def _convex_hull(points):
     """The triangles of a small convex polyhedron; brute force over all triples of corners."""
     indices = []

@@ -31,7 +31,7 @@ class ShapeReader {
     if (type == "cylinder") return read_cylinder();
     if (type == "plane") return read_plane();
     if (type == "box") return read_box();
-    return fall_back("is a " + type + ", which is no analytic shape here");
+    return read_capsule();
   }
 
  private:
@@ -73,14 +73,24 @@ class ShapeReader {
   std::optional<Geometry> read_cylinder() {
     const double top = parameter("radiusTop", 0.25);
     const double bottom = parameter("radiusBottom", 0.25);
-    if (top == 0.0 && bottom == 0.0) {
-      report_.refuse("both radii of shape " + title_ + " are 0", place_ + ".cylinder",
-                     "make radiusTop or radiusBottom positive");
-      return Cone();
-    }
+    if (is_line(top, bottom)) return Cone();
     const double half_height = 0.5 * parameter("height", 0.5);
     if (top == bottom) return check(Cylinder{dvec3(0.0), kAxis, half_height, bottom});
     return check(Cone{dvec3(0.0), kAxis, half_height, bottom, top});
+  }
+
+  std::optional<Geometry> read_capsule() {
+    const double top = parameter("radiusTop", 0.25);
+    const double bottom = parameter("radiusBottom", 0.25);
+    if (is_line(top, bottom)) return Capsule();
+    return check(Capsule{dvec3(0.0), kAxis, 0.5 * parameter("height", 0.5), bottom, top});
+  }
+
+  bool is_line(double top, double bottom) {
+    if (top != 0.0 || bottom != 0.0) return false;
+    report_.refuse("both radii of shape " + title_ + " are 0", place_ + "." + shape_["type"].get<std::string>(),
+                   "make radiusTop or radiusBottom positive");
+    return true;
   }
 
   std::optional<Geometry> read_plane() {

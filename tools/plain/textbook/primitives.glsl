@@ -159,6 +159,42 @@ Crossing intersect_box(Ray ray, Primitive p) {
   return Crossing(float(start + (takes_near ? near : far)), 0.0, 0.0, takes_near ? near_face : far_face);
 }
 
+// Both spheres, and the cone that touches them between the circles where it does.
+Crossing intersect_capsule(Ray ray, Primitive p) {
+  real3 direction = real3(ray.direction);
+  real3 axis = real3(p.b.xyz);
+  real half_height = real(p.b.w);
+  real bottom = real(p.a.w);
+  real top = real(uintBitsToFloat(p.c.x));
+  real3 oc;
+  real start = recentre(ray, p.a.xyz, oc);
+  Crossing nearest = NO_CROSSING;
+  bool has_side = 2.0 * half_height > abs(bottom - top);
+  real s = has_side ? (bottom - top) / (2.0 * half_height) : real(bottom > top ? 1e30 : -1e30);
+  for (int i = 0; i < 4; ++i) {
+    bool is_top = i >= 2;
+    real r = is_top ? top : bottom;
+    real3 o = is_top ? oc - half_height * axis : oc + half_height * axis;
+    real t = solve(dot(direction, direction), dot(direction, o), dot(o, o) - r * r)[i % 2];
+    real along = dot(o + t * direction, axis);
+    keep_nearer(ray, start + t, is_top ? PART_TOP : PART_BOTTOM, r > 0.0 && (is_top ? along >= s * r : along <= s * r),
+                nearest);
+  }
+  if (!has_side) return nearest;
+  real3 o = oc + half_height * axis;
+  real k = 1.0 / (1.0 - s * s);
+  real dv = dot(direction, axis);
+  real ov = dot(o, axis);
+  real w = bottom - s * ov;
+  real2 t = solve(dot(direction, direction) - dv * dv - s * s * dv * dv * k,
+                  dot(direction, o) - dv * ov + s * dv * w * k, dot(o, o) - ov * ov - w * w * k);
+  for (int i = 0; i < 2; ++i) {
+    real m = ov + t[i] * dv;
+    keep_nearer(ray, start + t[i], PART_SIDE, m >= s * bottom && m <= 2.0 * half_height + s * top, nearest);
+  }
+  return nearest;
+}
+
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
   vec3 position = ray.origin + hit.t * ray.direction;
   vec3 from_center = position - p.a.xyz;
@@ -170,6 +206,14 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
     vec3 radial = from_center - dot(from_center, p.b.xyz) * p.b.xyz;
     if (hit.part == PART_SIDE) normal = normalize(radial) - slope * p.b.xyz;
     if (hit.part == PART_BOTTOM) normal = -p.b.xyz;
+  }
+  if (p.c.z == KIND_CAPSULE) {
+    float top = uintBitsToFloat(p.c.x);
+    float s = (p.a.w - top) / (2.0 * p.b.w);
+    vec3 radial = from_center - dot(from_center, p.b.xyz) * p.b.xyz;
+    if (hit.part == PART_SIDE) normal = normalize(radial) + s / sqrt(1.0 - s * s) * p.b.xyz;
+    if (hit.part == PART_BOTTOM) normal = from_center + p.b.w * p.b.xyz;
+    if (hit.part == PART_TOP) normal = from_center - p.b.w * p.b.xyz;
   }
   if (p.c.z == KIND_BOX) normal = ((hit.part & 1u) != 0u ? 1.0 : -1.0) * box_axes(p)[hit.part / 2u];
   return SurfacePoint(position, normalize(normal), 1e-4);
