@@ -92,7 +92,8 @@ void SceneOnDevice::set_materials(std::span<const Material> materials) {
   material_features_ = promin::material_features(materials, shown_materials_);
 }
 
-struct Renderer::Impl {
+// Hidden, although the class around it is not (promin/export.h).
+struct __attribute__((visibility("hidden"))) Renderer::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedRendererOptions& the_options)
       : device(the_device),
         options(the_options),

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
@@ -24,10 +25,10 @@ struct Aovs {
 #include "promin/kinds/aovs.def"
 
   /// Makes all of them so many values, which say that nothing was hit.
-  void resize(size_t pixel_count);
+  PROMIN_EXPORT void resize(size_t pixel_count);
 };
 
 /// Names of the AOVs, in their order.
-std::span<const std::string_view> aov_names();
+PROMIN_EXPORT std::span<const std::string_view> aov_names();
 
 }  // namespace promin

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "promin/export.h"
 #include "promin/progress.h"
 #include "promin/ray.h"
 #include "promin/scene.h"
@@ -30,7 +31,7 @@ struct CasterOptions {
 
 /// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with. Keeps
 /// no reference to the Scene; the Device must outlive it. One Caster serves one thread at a time.
-class Caster {
+class PROMIN_EXPORT Caster {
  public:
   /// Builds the BVH and uploads. Throws UsageError for an unknown builder, InputError for a scene that is not valid
   /// (see validate) and for a BVH file that is bad or not the scene's, RunError where memory does not suffice or a

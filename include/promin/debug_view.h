@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "promin/export.h"
+
 namespace promin {
 
 /// What a picture shows of each camera ray instead of light (docs/shadings.md); kNone shows light.
@@ -16,6 +18,6 @@ enum class DebugView : uint32_t {
 };
 
 /// Names for people, by the value of the DebugView; the first is "full".
-std::span<const std::string_view> debug_view_names();
+PROMIN_EXPORT std::span<const std::string_view> debug_view_names();
 
 }  // namespace promin

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "promin/export.h"
+
 namespace promin::gpu {
 
 /// What `promin devices` prints of a Vulkan device; free of Vulkan types, so that the app needs none.
@@ -28,6 +30,6 @@ struct DeviceInfo {
 
 /// Every Vulkan device that the loader finds, in its order. Empty if there is no driver; throws DeviceError if there
 /// is not even a loader.
-std::vector<DeviceInfo> list_devices();
+PROMIN_EXPORT std::vector<DeviceInfo> list_devices();
 
 }  // namespace promin::gpu

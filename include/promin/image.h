@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
@@ -42,26 +43,27 @@ struct CropPlacement {
 };
 
 /// Whether write_image knows the file's ending: .exr or .png.
-bool is_writable_format(const std::filesystem::path& file);
+PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 
 /// Whether a file of this ending holds channels beside R, G and B: .exr.
-bool has_named_channels(const std::filesystem::path& file);
+PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
 /// picture's display window) or .png (sRGB, 8 bit, clamped, without `channels`; a crop is a picture of its own). Equal
 /// arguments give equal bytes. Atomic: the picture is written to a temporary file beside the target and renamed; on
 /// failure the target is as it was. Throws RunError, also where the plugin that does it is missing.
-void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
-                 const std::optional<CropPlacement>& crop = std::nullopt, std::span<const Channel> channels = {});
+PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
+                               const std::optional<CropPlacement>& crop = std::nullopt,
+                               std::span<const Channel> channels = {});
 
 /// Larger pictures are refused before their pixels are read.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
 /// Reads R, G, B of any format OpenImageIO knows, as fp32 without conversion; of an EXR the data window.
 /// Throws InputError, and RunError where the plugin that does it is missing.
-Image read_image(const std::filesystem::path& file);
+PROMIN_EXPORT Image read_image(const std::filesystem::path& file);
 
 /// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.
-float encode_srgb(float linear);
+PROMIN_EXPORT float encode_srgb(float linear);
 
 }  // namespace promin

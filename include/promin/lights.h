@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
@@ -41,6 +42,6 @@ struct Light {
 };
 
 /// The light of a scene without lights: i_d = i_s = 1.
-Light make_headlight();
+PROMIN_EXPORT Light make_headlight();
 
 }  // namespace promin

@@ -11,6 +11,7 @@
 
 #include "promin/aovs.h"
 #include "promin/explain.h"
+#include "promin/export.h"
 #include "promin/image.h"
 #include "promin/progress.h"
 #include "promin/ray_counts.h"
@@ -51,7 +52,7 @@ struct RendererOptions {
 /// A scene in device memory with the pipeline that its features ask for: pictures, whole or progressively, and single
 /// pixels of them. Keeps no reference to the Scene; the Device must outlive it. One Renderer serves one thread at a
 /// time; several Renderers may share a Device on several threads.
-class Renderer {
+class PROMIN_EXPORT Renderer {
  public:
   /// Builds the BVH, uploads, compiles. Throws UsageError for an unknown builder, InputError for a scene that is not
   /// valid (see validate) and for a BVH file that is bad or not the scene's, RunError where memory does not suffice or

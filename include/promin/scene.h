@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "promin/camera.h"
+#include "promin/export.h"
 #include "promin/lights.h"
 #include "promin/materials.h"
 #include "promin/math.h"
@@ -55,18 +56,19 @@ struct Scene {
   std::vector<std::string> warnings;
 
   /// Adds a geometry and an object that shows it.
-  Object& add(std::string name, Geometry geometry, uint32_t material = 0, const dmat4& world_from_object = dmat4(1.0));
+  PROMIN_EXPORT Object& add(std::string name, Geometry geometry, uint32_t material = 0,
+                            const dmat4& world_from_object = dmat4(1.0));
 };
 
 /// Bounds of everything finite in the world; empty if there is nothing finite.
-Bounds bounds_of(const Scene& scene);
+PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 
 /// Of an object: its geometry's, or 0 where it has none.
-uint32_t primitive_count(const Scene& scene, const Object& object);
+PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
 
 /// A perspective camera that looks down -Z, a little from above, and frames everything finite in the scene.
 /// `aspect_ratio` is width over height of the picture.
-Camera frame_scene(const Scene& scene, float aspect_ratio);
+PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio);
 
 /// What add_default_lights has added.
 struct AddedLights {
@@ -76,7 +78,7 @@ struct AddedLights {
 
 /// Gives a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient light
 /// of kDefaultAmbient where it has none. A scene with lights stays as it is.
-AddedLights add_default_lights(Scene& scene);
+PROMIN_EXPORT AddedLights add_default_lights(Scene& scene);
 inline constexpr float kDefaultAmbient = 0.1F;
 
 }  // namespace promin

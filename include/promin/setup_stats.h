@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "promin/export.h"
+
 namespace promin {
 
 /// Names of the builders of bounding volume hierarchies, the default first.
-std::span<const std::string_view> builder_names();
+PROMIN_EXPORT std::span<const std::string_view> builder_names();
 
 /// A bounding volume hierarchy in figures.
 struct BvhStats {

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
 // The shapes of promin/kinds/primitives.def, each in a header of its own: once as a scene describes it, in its own
@@ -43,6 +44,6 @@ inline constexpr std::string_view kGeometryNames[] = {
 };
 
 /// Number of triangles (degenerate ones included), or 1 for an analytic shape.
-uint32_t primitive_count(const Geometry& geometry);
+PROMIN_EXPORT uint32_t primitive_count(const Geometry& geometry);
 
 }  // namespace promin

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "promin/error.h"
+#include "promin/export.h"
 #include "promin/scene.h"
 
 namespace promin {
@@ -16,10 +17,10 @@ inline constexpr double kMinSize = 1e-22;
 
 /// Everything that is wrong with a scene built in memory, each with its place ("objects[3].material") and its cure;
 /// empty for a valid one. What load_scene returns is valid. Of arrays of vertices the first wrong element is told.
-std::vector<Problem> validate(const Scene& scene);
-std::vector<Problem> validate(std::span<const Light> lights);
-std::vector<Problem> validate(std::span<const Material> materials);
-std::vector<Problem> validate(const Environment& environment);
+PROMIN_EXPORT std::vector<Problem> validate(const Scene& scene);
+PROMIN_EXPORT std::vector<Problem> validate(std::span<const Light> lights);
+PROMIN_EXPORT std::vector<Problem> validate(std::span<const Material> materials);
+PROMIN_EXPORT std::vector<Problem> validate(const Environment& environment);
 
 /// Throws InputError with all that validate() finds, if it finds anything.
 template <class Part>

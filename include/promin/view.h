@@ -7,6 +7,7 @@
 
 #include "promin/camera.h"
 #include "promin/debug_view.h"
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
@@ -45,8 +46,8 @@ struct View {
 };
 
 /// Whether two cameras see the same: names and aspect ratios aside.
-bool shows_same(const Camera& a, const Camera& b);
+PROMIN_EXPORT bool shows_same(const Camera& a, const Camera& b);
 /// Whether two views show the same but for their samples.
-bool shows_same(const View& a, const View& b);
+PROMIN_EXPORT bool shows_same(const View& a, const View& b);
 
 }  // namespace promin
