@@ -11,12 +11,16 @@
 
 namespace promin::gpu {
 
+/// An open Vulkan device with everything that belongs to it. Its functions are those of this header. Several threads
+/// may use one device, each with Renderers and Casters of its own.
 class Device;
 
-/// A device with everything that belongs to it; defined in device/device.h, which brings Vulkan's headers along.
+/// Ends a Device; DeviceHandle calls it.
 struct DeviceDeleter {
+  /// Frees the device and all that belongs to it.
   PROMIN_EXPORT void operator()(Device* device) const;
 };
+/// Owns a Device. Every Renderer and Caster that was made with the device must end before it.
 using DeviceHandle = std::unique_ptr<Device, DeviceDeleter>;
 
 /// Opens the device that `selection` names: an index of list_devices or a part of a name, case ignored; without one a
@@ -24,9 +28,10 @@ using DeviceHandle = std::unique_ptr<Device, DeviceDeleter>;
 /// Throws DeviceError if none is usable or none matches.
 PROMIN_EXPORT DeviceHandle open_device(const std::optional<std::string>& selection = std::nullopt);
 
+/// What list_devices tells of this device. Valid while the device is.
 PROMIN_EXPORT const DeviceInfo& info_of(const Device& device);
 
-/// Why this device was picked, as one sentence for the user.
+/// Why this device was picked, as one sentence for people. Valid while the device is.
 PROMIN_EXPORT const std::string& choice_of(const Device& device);
 
 /// Messages of the validation layers so far (warnings and errors). The layers are on when the environment variable
