@@ -35,8 +35,7 @@ fs::path find_own_file() {
   return is_found && map != nullptr && *map->l_name != '\0' ? map->l_name : kProgram;
 }
 
-/// Where the loader looks for libraries of the program: the folders linked into it, those of the environment, those of
-/// the system.
+/// Where the loader looks for libraries of the program: folders linked into it, of the environment and of the system.
 std::vector<fs::path> list_library_folders() {
   std::vector<fs::path> folders;
   void* program = dlopen(nullptr, RTLD_LAZY);
@@ -68,7 +67,9 @@ std::vector<fs::path> list_folders() {
   }
   // A program elsewhere that holds this code: the package of the static library links the folder into it, and where
   // that did not happen the library knows where it was to be installed.
-  for (const fs::path& folder : list_library_folders()) add(folder);
+  for (const fs::path& folder : list_library_folders()) {
+    if (folder.filename() == "promin") add(folder);
+  }
   add(PROMIN_INSTALLED_PLUGIN_FOLDER);
   return folders;
 }
