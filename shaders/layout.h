@@ -38,7 +38,7 @@ LAYOUT_CONSTANT FEATURE_WORDS = 2u;
 #include "promin/kinds/lights.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
-#include "promin/kinds/features.def"
+#include "features.def"
 
 // What a picture shows: light, or a debug view. The number of the view lies in the second word of features.
 LAYOUT_CONSTANT DEBUG_VIEW_NONE = 0u;

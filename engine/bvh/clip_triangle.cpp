@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/rounding.h"
+
 namespace promin {
 namespace {
 

@@ -10,6 +10,7 @@
 
 #include "bvh/read_node.h"
 #include "core/parallel.h"
+#include "core/rounding.h"
 #include "core/shared_progress.h"
 
 namespace promin {

@@ -15,6 +15,7 @@
 #include "bvh/read_node.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "core/rounding.h"
 #include "core/stopwatch.h"
 #include "device_scene/cut_triangles.h"
 #include "promin/error.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/file.h"
+#include "core/rounding.h"
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
 #include "formats/obj/load_obj.h"

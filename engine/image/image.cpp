@@ -99,6 +99,30 @@ void encode_and_write(const PicturesPlugin& plugin, ProminPicturesSource source,
   if (sink.failure) std::rethrow_exception(sink.failure);
 }
 
+/// Throws UsageError where parts of a picture do not suit each other: the plugin reads by the sizes that it is told.
+void check_picture(const Image& image, const std::optional<CropPlacement>& crop, std::span<const Channel> channels) {
+  const auto check = [](bool is_so, const std::string& what, const char* cure) {
+    if (!is_so) throw UsageError({what, "in the picture to write", cure});
+  };
+  const size_t pixel_count = static_cast<size_t>(image.size.x) * image.size.y;
+  check(pixel_count > 0, "there are no pixels", "give it a width and a height");
+  check(
+      image.pixels.size() == pixel_count,
+      "there are " + std::to_string(image.pixels.size()) + " pixels where its size has " + std::to_string(pixel_count),
+      "give one for each place");
+  for (const Channel& channel : channels) {
+    check(channel.values.size() == pixel_count,
+          "the channel " + channel.name + " has " + std::to_string(channel.values.size()) + " values for " +
+              std::to_string(pixel_count) + " pixels",
+          "give one for each pixel");
+  }
+  if (!crop) return;
+  const auto is_within = [](uint32_t lo, uint32_t size, uint32_t whole) { return lo <= whole && size <= whole - lo; };
+  check(
+      is_within(crop->lo.x, image.size.x, crop->full_size.x) && is_within(crop->lo.y, image.size.y, crop->full_size.y),
+      "the crop reaches beyond the whole picture", "give its place and the size of the whole");
+}
+
 }  // namespace
 
 bool is_writable_format(const fs::path& file) {
@@ -122,6 +146,7 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
   if (format.empty()) {
     throw RunError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
   }
+  check_picture(image, crop, channels);
   const PicturesPlugin& plugin = open_pictures();
   const std::string name = file.filename().string();
   ProminPicturesSource source{};

@@ -6,8 +6,10 @@
 #include <link.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,19 @@ fs::path find_own_file() {
   return is_found && map != nullptr && *map->l_name != '\0' ? map->l_name : kProgram;
 }
 
+/// Where the loader looks for libraries of the program: folders linked into it, of the environment and of the system.
+std::vector<fs::path> list_library_folders() {
+  std::vector<fs::path> folders;
+  void* program = dlopen(nullptr, RTLD_LAZY);
+  Dl_serinfo size{};
+  if (program == nullptr || dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return folders;
+  std::vector<std::max_align_t> memory(size.dls_size / sizeof(std::max_align_t) + 1);
+  auto* info = new (memory.data()) Dl_serinfo(size);
+  if (dlinfo(program, RTLD_DI_SERINFOSIZE, info) != 0 || dlinfo(program, RTLD_DI_SERINFO, info) != 0) return folders;
+  for (unsigned i = 0; i < info->dls_cnt; ++i) folders.emplace_back(info->dls_serpath[i].dls_name);
+  return folders;
+}
+
 std::vector<fs::path> list_folders() {
   if (const char* given = secure_getenv("PROMIN_PLUGINS"); given != nullptr && *given != '\0') return {given};
   std::vector<fs::path> folders;
@@ -51,6 +66,12 @@ std::vector<fs::path> list_folders() {
     // This one lies beside a library.
     add(folder / "promin");
   }
+  // A program elsewhere that holds this code: the package of the static library links the folder into it, and where
+  // that did not happen the library knows where it was to be installed.
+  for (const fs::path& folder : list_library_folders()) {
+    if (folder.filename() == "promin") add(folder);
+  }
+  add(PROMIN_INSTALLED_PLUGIN_FOLDER);
   return folders;
 }
 

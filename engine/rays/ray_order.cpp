@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/rounding.h"
 
 namespace promin {
 namespace {

@@ -69,7 +69,8 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const Primit
 
 }  // namespace
 
-struct Caster::Impl {
+// Hidden, although the class around it is not (promin/export.h).
+struct __attribute__((visibility("hidden"))) Caster::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedCasterOptions& options)
       : device(the_device), spirv(options.spirv.begin(), options.spirv.end()) {
     PackedScene packed = options.bvh ? pack_scene_with(*options.bvh, the_scene)

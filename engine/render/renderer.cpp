@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "core/shared_progress.h"
 #include "core/stopwatch.h"
@@ -37,20 +38,12 @@ PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options)
   return options.repack ? options.repack(std::move(packed)) : std::move(packed);
 }
 
-void check(bool is_so, const char* what, const char* cure) {
-  if (!is_so) throw UsageError({what, "in the view", cure});
+void check(bool is_so, const char* what, const char* where, const char* cure) {
+  if (!is_so) throw UsageError({what, where, cure});
 }
 
 void check_view(const View& view) {
-  check(view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "give it a width and a height");
-  check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
-        "the number of samples a pixel is out of range", "take 1 to 65535");
-  check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "take 0 to 1000");
-  if (!view.crop) return;
-  check(view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y, "the crop is empty",
-        "take a window of pixels with lo < hi");
-  check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop reaches beyond the picture",
-        "stay within its size");
+  if (const std::vector<Problem> problems = validate(view); !problems.empty()) throw UsageError(problems);
 }
 
 }  // namespace
@@ -92,7 +85,8 @@ void SceneOnDevice::set_materials(std::span<const Material> materials) {
   material_features_ = promin::material_features(materials, shown_materials_);
 }
 
-struct Renderer::Impl {
+// Hidden, although the class around it is not (promin/export.h).
+struct __attribute__((visibility("hidden"))) Renderer::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedRendererOptions& the_options)
       : device(the_device),
         options(the_options),
@@ -309,7 +303,7 @@ void Renderer::set_environment(const Environment& environment) {
 
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
   check_view(view);
-  check(pixel.x < view.size.x && pixel.y < view.size.y, "the pixel to explain lies beyond the picture",
+  check(pixel.x < view.size.x && pixel.y < view.size.y, "the pixel to explain lies beyond the picture", "pixel",
         "stay within its size");
   Explanation explanation;
   gpu::translate_vulkan_errors([&] {
@@ -330,6 +324,10 @@ RenderResult Renderer::render(const View& view, const ProgressCallback& progress
 void Renderer::render_progressively(const View& view, double budget_ms,
                                     const std::function<bool(const Image&, const View&)>& on_picture) {
   check_view(view);
+  check(!view.crop, "render_progressively takes no crop", "view.crop", "show the whole picture, or render the crop");
+  check(budget_ms > 0.0 && std::isfinite(budget_ms), "the budget is not positive and finite", "budget_ms",
+        "give a picture some milliseconds");
+  check(static_cast<bool>(on_picture), "there is nobody to take the pictures", "on_picture", "give a function");
   gpu::translate_vulkan_errors([&] { impl_->render_progressively(view, budget_ms, on_picture); });
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/rounding.h"
 #include "layout.h"
 
 namespace promin {
@@ -22,7 +23,7 @@ constexpr auto kSceneFeatures = [] {
 #include "promin/kinds/lights.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) names[BIT] = NAME;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
-#include "promin/kinds/features.def"
+#include "features.def"
   return names;
 }();
 
@@ -35,7 +36,7 @@ constexpr bool are_bits_distinct() {
 #include "promin/kinds/lights.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) ++uses[BIT];
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) ++uses[BIT];
-#include "promin/kinds/features.def"
+#include "features.def"
   for (uint bit = 0; bit < 8; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
   return std::ranges::all_of(uses, [](int count) { return count <= 1; });
 }
@@ -178,7 +179,7 @@ FeatureMask all_features() {
 #include "promin/kinds/lights.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
-#include "promin/kinds/features.def"
+#include "features.def"
   return features;
 }
 

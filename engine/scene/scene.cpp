@@ -3,9 +3,11 @@
 #include "promin/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "promin/error.h"
 #include "promin/view.h"
 #include "scene/framing.h"
 #include "shapes/shapes.h"
@@ -18,6 +20,13 @@ constexpr double kFramePitch = 0.25;
 constexpr double kFrameMargin = 1.05;
 constexpr float kFrameYfov = 0.7F;
 
+/// The geometry of an object that has one. Throws InputError if it is not there.
+const Geometry& geometry_of(const Scene& scene, const Object& object) {
+  if (object.geometry < scene.geometries.size()) return scene.geometries[object.geometry];
+  throw InputError(
+      {"an object names a geometry that is not there", "object " + object.name, "see what validate() tells"});
+}
+
 /// Computes the bounds of an object in the world, without a copy of its mesh.
 struct BoundsInWorld {
   const dmat4& world_from_object;
@@ -27,6 +36,9 @@ struct BoundsInWorld {
     Bounds bounds;
     for (const uvec3& triangle : mesh.triangles) {
       for (int i = 0; i < 3; ++i) {
+        if (triangle[i] >= mesh.positions.size()) {
+          throw InputError({"a triangle names a position that is not there", "in a mesh", "see what validate() tells"});
+        }
         const vec3& p = mesh.positions[triangle[i]];
         bounds.extend(is_moved ? vec3(world_from_object * dvec4(p, 1.0)) : p);
       }
@@ -67,7 +79,7 @@ Bounds frame_of(const Scene& scene) {
   vec3 center(0.0F);
   for (const Object& object : scene.objects) {
     if (object.geometry == Object::kNoGeometry) continue;
-    const auto found = std::visit(CenterOfUnbounded{object.world_from_object}, scene.geometries[object.geometry]);
+    const auto found = std::visit(CenterOfUnbounded{object.world_from_object}, geometry_of(scene, object));
     if (!found) continue;
     center = *found;
     break;
@@ -94,7 +106,7 @@ Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Object& object : scene.objects) {
     if (object.geometry == Object::kNoGeometry) continue;
-    bounds.extend(std::visit(BoundsInWorld{object.world_from_object}, scene.geometries[object.geometry]));
+    bounds.extend(std::visit(BoundsInWorld{object.world_from_object}, geometry_of(scene, object)));
   }
   return bounds;
 }
@@ -105,10 +117,13 @@ uint32_t primitive_count(const Geometry& geometry) {
 }
 
 uint32_t primitive_count(const Scene& scene, const Object& object) {
-  return object.geometry == Object::kNoGeometry ? 0 : primitive_count(scene.geometries[object.geometry]);
+  return object.geometry == Object::kNoGeometry ? 0 : primitive_count(geometry_of(scene, object));
 }
 
 Camera frame_scene(const Scene& scene, float aspect_ratio) {
+  if (!(aspect_ratio > 0.0F && std::isfinite(aspect_ratio))) {
+    throw UsageError({"the aspect ratio is not positive and finite", "in frame_scene", "give width over height"});
+  }
   return frame_bounds(frame_of(scene), aspect_ratio);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/rounding.h"
 #include "scene/limits.h"
 #include "shapes/shapes.h"
 
@@ -15,6 +16,12 @@ namespace {
 constexpr double kLeastVolume = 1e-12;
 /// The most by which the length of a unit vector may be off.
 constexpr float kUnitTolerance = 1e-3F;
+
+/// Their numbers are 0, 1, ...
+constexpr uint32_t kLightKindCount = 0
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) +1
+#include "promin/kinds/lights.def"
+    ;
 
 std::string place_of(const char* array, size_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
@@ -68,6 +75,8 @@ class Validation {
             "use a smaller coordinate");
       check(std::abs(glm::length(light.direction) - 1.0F) <= kUnitTolerance, "the direction is no unit vector",
             place + ".direction", "normalise it");
+      check(static_cast<uint32_t>(light.kind) < kLightKindCount, "the kind is none of LightKind", place + ".kind",
+            "name one that there is");
       check(light.range > 0.0F, "the range is not positive", place + ".range", "use infinity where there is no limit");
       const bool are_angles = light.inner_cone_angle >= 0.0F && light.inner_cone_angle < light.outer_cone_angle &&
                               light.outer_cone_angle <= 1.5707964F;
@@ -83,21 +92,41 @@ class Validation {
 
   void check_cameras(std::span<const Camera> cameras) {
     for (size_t i = 0; i < cameras.size(); ++i) {
-      const Camera& camera = cameras[i];
       const std::string place = place_of("cameras", i);
-      check(is_in_range(dvec3(camera.eye)), "the eye is not finite or beyond 1e15", place + ".eye",
+      check(is_in_range(dvec3(cameras[i].eye)), "the eye is not finite or beyond 1e15", place + ".eye",
             "use a smaller coordinate");
-      const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kUnitTolerance &&
-                            std::abs(glm::length(camera.up) - 1.0F) <= kUnitTolerance &&
-                            std::abs(glm::dot(camera.look, camera.up)) <= kUnitTolerance;
-      check(is_basis, "look and up are not orthonormal", place, "normalise them and make them perpendicular");
-      check(camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range", place + ".yfov",
-            "use an angle in (0, pi)");
-      check(camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive", place + ".ymag",
-            "use a positive number");
-      check(camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye", place + ".near",
-            "use a distance from 0 on");
+      check_camera(cameras[i], place);
     }
+  }
+
+  void check_camera(const Camera& camera, const std::string& place) {
+    const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kUnitTolerance &&
+                          std::abs(glm::length(camera.up) - 1.0F) <= kUnitTolerance &&
+                          std::abs(glm::dot(camera.look, camera.up)) <= kUnitTolerance;
+    check(is_basis, "look and up are not orthonormal", place, "normalise them and make them perpendicular");
+    check(camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range", place + ".yfov",
+          "use an angle in (0, pi)");
+    check(camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive", place + ".ymag",
+          "use a positive number");
+    check(camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye", place + ".near",
+          "use a distance from 0 on");
+  }
+
+  void check_view(const View& view) {
+    // Beyond 1e15 too: a camera that frames a scene of that size stands there.
+    check(is_finite(view.camera.eye), "the eye is not finite", "view.camera.eye", "use finite coordinates");
+    check_camera(view.camera, "view.camera");
+    check(view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "view.size", "give it a width and a height");
+    check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
+          "the number of samples a pixel is out of range", "view.samples_per_pixel", "take 1 to 65535");
+    check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "take 0 to 1000");
+    check(static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(), "the debug view is none of DebugView",
+          "view.mode.debug_view", "name one that there is");
+    if (!view.crop) return;
+    check(view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y, "the crop is empty", "view.crop",
+          "take a window of pixels with lo < hi");
+    check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop reaches beyond the picture",
+          "view.crop", "stay within its size");
   }
 
   void check_geometry(const Scene& scene, size_t index) {
@@ -249,6 +278,12 @@ std::vector<Problem> validate(std::span<const Material> materials) {
 std::vector<Problem> validate(const Environment& environment) {
   std::vector<Problem> problems;
   Validation(problems).check_environment(environment);
+  return problems;
+}
+
+std::vector<Problem> validate(const View& view) {
+  std::vector<Problem> problems;
+  Validation(problems).check_view(view);
   return problems;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rounding.h"
 #include "shapes/shapes.h"
 
 namespace promin {

@@ -7,6 +7,7 @@
 
 #include "promin/shapes.h"
 #include "shapes/placement.h"
+#include "shapes/world_shapes.h"
 
 namespace promin {
 

@@ -8,26 +8,32 @@
 #include <string_view>
 #include <vector>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
 
-/// What each pixel's middle sample shows, that of index samples / 2: with an odd number of samples the pixel's centre.
-/// Row by row, as the image:
-///   depth      distance from the eye (orthographic: from the plane through it); infinite on a miss
-///   normal     geometric normal as Hit::normal, never flipped to the ray; 0 on a miss
-///   object, primitive  as Hit::object and Hit::primitive; kNoId on a miss
+/// Arbitrary output variables: what a picture tells of each pixel beside its colour. They are of the pixel's middle
+/// sample, that of index samples / 2; with an odd number of samples it is the pixel's centre. The values stand row by
+/// row as those of the image:
+///   - depth: distance from the eye, with an orthographic camera from the plane through it; infinite on a miss
+///   - normal: geometric normal as Hit::normal, never flipped to the ray; 0 on a miss
+///   - object, primitive: as Hit::object and Hit::primitive; kNoId on a miss
 struct Aovs {
+  /// What object and primitive are on a miss.
   static constexpr uint32_t kNoId = 0xFFFFFFFF;
 
+  /// @cond
+  // The members, of the table.
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) std::vector<TYPE> FIELD;
 #include "promin/kinds/aovs.def"
+  /// @endcond
 
-  /// Makes all of them so many values, which say that nothing was hit.
-  void resize(size_t pixel_count);
+  /// Gives each of them `pixel_count` values, which say that nothing was hit.
+  PROMIN_EXPORT void resize(size_t pixel_count);
 };
 
-/// Names of the AOVs, in their order.
-std::span<const std::string_view> aov_names();
+/// Names of the AOVs, in the order of the members of Aovs.
+PROMIN_EXPORT std::span<const std::string_view> aov_names();
 
 }  // namespace promin

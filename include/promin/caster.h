@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "promin/export.h"
 #include "promin/progress.h"
 #include "promin/ray.h"
 #include "promin/scene.h"
@@ -19,28 +20,37 @@ namespace gpu {
 class Device;
 }
 
+/// How a Caster is made. The defaults suit most scenes.
 struct CasterOptions {
-  /// How the tree is built: "sah", "median" or "spatial" (builder_names() in promin/setup_stats.h).
+  /// How the tree is built, one of builder_names() (promin/setup_stats.h): "sah" is built fast and is good, "median" is
+  /// the simplest, "spatial" takes longest to build and helps where triangles are long and thin. Hits are the same.
   std::string builder = "sah";
   /// A BVH file to take the tree from instead of building one.
   std::optional<std::filesystem::path> bvh = std::nullopt;
-  /// Of building the tree; false ends the constructor with Cancelled.
+  /// Told how far building the tree is; where it returns false the constructor throws Cancelled.
   ProgressCallback progress = {};
 };
 
-/// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with. Keeps
-/// no reference to the Scene; the Device must outlive it. One Caster serves one thread at a time.
-class Caster {
+/// Rays in, hits out: a scene in device memory and the traversal and intersections that pictures are made with.
+///
+/// Lifetimes: the Device must outlive the Caster; of the Scene it keeps nothing, so the scene may change or end. After
+/// a move the old Caster may only be destroyed or assigned to. Threads: one Caster serves one thread at a time; several
+/// Casters and Renderers may share a Device on several threads. Failures: what a call threw leaves the Caster as usable
+/// as before, unless the device was lost.
+class PROMIN_EXPORT Caster {
  public:
-  /// Builds the BVH and uploads. Throws UsageError for an unknown builder, InputError for a scene that is not valid
-  /// (see validate) and for a BVH file that is bad or not the scene's, RunError where memory does not suffice or a
-  /// device limit is passed, Cancelled.
+  /// Builds the tree, a bounding volume hierarchy, and uploads the scene. Throws UsageError for an unknown builder,
+  /// InputError for a scene that is not valid (see validate) and for a BVH file that is bad or not the scene's,
+  /// RunError where memory does not suffice or a device limit is passed, Cancelled.
   Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options = {});
   ~Caster();
+  /// Takes all that the other has.
   Caster(Caster&&) noexcept;
+  /// Takes all that the other has, and frees its own.
   Caster& operator=(Caster&&) noexcept;
 
-  /// Compiles what casting rays like these takes; otherwise their first cast does. The time is in setup_stats().
+  /// Compiles what casting rays like these takes; otherwise their first cast does. The time is in setup_stats(). Throws
+  /// RunError.
   void prepare(HitQuery query, std::span<const Ray> rays);
 
   /// Answers each ray in the hit at the same place; as many hits as rays, any number. The answers do not depend on how
@@ -51,6 +61,7 @@ class Caster {
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
               const ProgressCallback& progress = {});
 
+  /// What making this and compiling so far has cost. Valid while the Caster is.
   const SetupStats& setup_stats() const;
 
  private:

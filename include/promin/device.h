@@ -7,29 +7,35 @@
 #include <string>
 
 #include "promin/device_info.h"
+#include "promin/export.h"
 
 namespace promin::gpu {
 
+/// An open Vulkan device with everything that belongs to it. Its functions are those of this header. Several threads
+/// may use one device, each with Renderers and Casters of its own.
 class Device;
 
-/// A device with everything that belongs to it; defined in device/device.h, which brings Vulkan's headers along.
+/// Ends a Device; DeviceHandle calls it.
 struct DeviceDeleter {
-  void operator()(Device* device) const;
+  /// Frees the device and all that belongs to it.
+  PROMIN_EXPORT void operator()(Device* device) const;
 };
+/// Owns a Device. Every Renderer and Caster that was made with the device must end before it.
 using DeviceHandle = std::unique_ptr<Device, DeviceDeleter>;
 
 /// Opens the device that `selection` names: an index of list_devices or a part of a name, case ignored; without one a
 /// discrete GPU before an integrated before a virtual one before a CPU.
 /// Throws DeviceError if none is usable or none matches.
-DeviceHandle open_device(const std::optional<std::string>& selection = std::nullopt);
+PROMIN_EXPORT DeviceHandle open_device(const std::optional<std::string>& selection = std::nullopt);
 
-const DeviceInfo& info_of(const Device& device);
+/// What list_devices tells of this device. Valid while the device is.
+PROMIN_EXPORT const DeviceInfo& info_of(const Device& device);
 
-/// Why this device was picked, as one sentence for the user.
-const std::string& choice_of(const Device& device);
+/// Why this device was picked, as one sentence for people. Valid while the device is.
+PROMIN_EXPORT const std::string& choice_of(const Device& device);
 
 /// Messages of the validation layers so far (warnings and errors). The layers are on when the environment variable
 /// PROMIN_VALIDATION is set and not empty: "core", or "sync" for synchronization validation as well.
-uint64_t validation_message_count(const Device& device);
+PROMIN_EXPORT uint64_t validation_message_count(const Device& device);
 
 }  // namespace promin::gpu

@@ -10,53 +10,63 @@
 
 namespace promin {
 
-/// A source at a point that it may light.
+/// A light at a point that it may light.
 struct ExplainedSource {
   /// Index into Scene::lights.
   uint32_t light = 0;
-  /// None where the source adds nothing, seen or not, and where nothing in the scene can throw a shadow.
+  /// There is none where the light adds nothing, seen or not, and where nothing in the scene can throw a shadow.
   std::optional<Ray> shadow_ray;
   /// What the shadow ray met, not always the nearest; as Hit on a miss where it met nothing. Without a normal.
   Hit blocker;
-  /// What it adds to the light that the point sends; 0 where it is blocked.
+  /// What the light adds to the light that the point sends; 0 where it is blocked.
   vec3 contribution{0.0F};
 
+  /// Whether nothing stands between the point and the light.
   bool is_visible() const { return shadow_ray ? blocker.object < 0 : contribution != vec3(0.0F); }
 };
 
-/// A ray of the path: the camera's, or of the mirror at the hit before. As traced: the direction's largest component is
-/// in [1, 2) and t counts in its units.
+/// A ray of the path: the camera's, or that of the mirror at the hit before.
 struct ExplainedRay {
+  /// As traced: the largest component of its direction is in [1, 2), and t is in its units.
   Ray ray;
+  /// What it met. The members from `position` to `material` are of a hit alone.
   Hit hit;
-  /// Of a hit: its point and the bound on that's error, by which secondary rays start off the surface; the unit normal
-  /// that it is shaded with, which faces the ray; and an index into Scene::materials.
+  /// The point that was hit, in the world.
   vec3 position{0.0F};
+  /// A bound on the error of `position`; shadow and mirror rays start so far off the surface.
   float lift = 0.0F;
+  /// The unit normal that the point is shaded with; it faces the ray.
   vec3 shading_normal{0.0F};
+  /// Index into Scene::materials.
   uint32_t material = 0;
-  /// By which all that comes along this ray counts: the product of the mirrors so far.
+  /// Weight of all that comes along this ray: the product of the mirrors so far.
   vec3 weight{1.0F};
-  /// Ambient and emitted light; of a miss the background.
+  /// Ambient and emitted light of the point; on a miss the background.
   vec3 own{0.0F};
-  /// In the scene's order.
+  /// The lights at the point, in the scene's order.
   std::vector<ExplainedSource> sources;
-  /// The path's sum up to here: the ray before's + weight * (own + contributions, in their order), to the bit in fp32.
+  /// The path's sum up to here, to the bit in fp32: that of the ray before + weight * (own + contributions in their
+  /// order).
   vec3 radiance{0.0F};
 };
 
-/// Its rays are one behind the other, with the sources' rays at each; at least one.
+/// The path of one sample.
 struct ExplainedSample {
+  /// The camera's ray and the mirrors' one after the other; at least one.
   std::vector<ExplainedRay> rays;
+  /// Light that the path brings to the sample: the last ray's sum.
   const vec3& radiance() const { return rays.back().radiance; }
 };
 
 /// Where a pixel's colour comes from.
 struct Explanation {
+  /// Coordinates in the whole picture.
   uvec2 pixel{0};
+  /// In the order in which they are summed.
   std::vector<ExplainedSample> samples;
-  /// Of the samples' radiances, in their order; and that over their number, which is what the picture has, to the bit.
+  /// Sum of the samples' radiances, to the bit.
   vec3 sum{0.0F};
+  /// `sum` over the number of samples: what the picture has, to the bit.
   vec3 color{0.0F};
 };
 

@@ -10,25 +10,31 @@
 #include <utility>
 #include <vector>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
 
 /// A linear RGB picture; row 0 is the top.
 struct Image {
+  /// Width and height.
   uvec2 size{0};
+  /// Row by row, size.x * size.y of them.
   std::vector<vec3> pixels;
 
+  /// A pixel, x from the left and y from the top. Coordinates beyond the picture are not checked.
   const vec3& at(uint32_t x, uint32_t y) const { return pixels[static_cast<size_t>(y) * size.x + x]; }
+  /// The same, to change.
   vec3& at(uint32_t x, uint32_t y) { return pixels[static_cast<size_t>(y) * size.x + x]; }
 };
 
-/// A channel of a picture beside R, G and B, a value a pixel: 32-bit floats, or numbers where `is_integer`.
+/// A channel of a picture beside R, G and B, with a value for each pixel.
 struct Channel {
   /// As the EXR names it: "Z", "N.X".
   std::string name;
+  /// Whether the values are integers of 32 bits and not floats.
   bool is_integer = false;
-  /// Of the floats their bits.
+  /// The integers, or the bits of the floats; as many as the picture has pixels.
   std::vector<uint32_t> values;
 };
 
@@ -37,31 +43,36 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Where a crop lies in the whole picture.
 struct CropPlacement {
+  /// The crop's upper left pixel in the whole picture.
   uvec2 lo{0};
+  /// Width and height of the whole picture.
   uvec2 full_size{0};
 };
 
 /// Whether write_image knows the file's ending: .exr or .png.
-bool is_writable_format(const std::filesystem::path& file);
+PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 
 /// Whether a file of this ending holds channels beside R, G and B: .exr.
-bool has_named_channels(const std::filesystem::path& file);
+PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
 /// picture's display window) or .png (sRGB, 8 bit, clamped, without `channels`; a crop is a picture of its own). Equal
 /// arguments give equal bytes. Atomic: the picture is written to a temporary file beside the target and renamed; on
-/// failure the target is as it was. Throws RunError, also where the plugin that does it is missing.
-void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
-                 const std::optional<CropPlacement>& crop = std::nullopt, std::span<const Channel> channels = {});
+/// failure the target is as it was. Any thread may call it. Throws UsageError for a picture without pixels and where
+/// the pixels, a channel's values or the crop do not suit the size; RunError for another ending, where the file cannot
+/// be written, and where libpromin_pictures.so, the plugin that encodes pictures, is missing.
+PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
+                               const std::optional<CropPlacement>& crop = std::nullopt,
+                               std::span<const Channel> channels = {});
 
-/// Larger pictures are refused before their pixels are read.
+/// The most pixels that read_image takes; larger pictures are refused before their pixels are read.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
 /// Reads R, G, B of any format OpenImageIO knows, as fp32 without conversion; of an EXR the data window.
-/// Throws InputError, and RunError where the plugin that does it is missing.
-Image read_image(const std::filesystem::path& file);
+/// Any thread may call it. Throws InputError where the file is no such picture, RunError where the plugin is missing.
+PROMIN_EXPORT Image read_image(const std::filesystem::path& file);
 
 /// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.
-float encode_srgb(float linear);
+PROMIN_EXPORT float encode_srgb(float linear);
 
 }  // namespace promin

@@ -8,18 +8,22 @@
 
 namespace promin {
 
-/// Phong (docs/model.md, "Light"). All factors are linear RGB and not negative; nothing is clamped to 1.
+/// A material of Phong's model (docs/model.md, "Light"). All factors are linear RGB, finite and not negative; nothing
+/// is clamped to 1. The default is a matt light grey.
 struct Material {
+  /// For people; empty where there is none.
   std::string name;
+  /// Weight of Environment::ambient.
   vec3 ambient{0.8F};
-  /// Kd as it multiplies N.L * i_d: a metallic-roughness material's base colour arrives divided by pi.
+  /// Weight of N.L times a light's diffuse power. Of a metallic-roughness material it is the base colour over pi.
   vec3 diffuse{0.8F};
+  /// Weight of the highlight times a light's specular power.
   vec3 specular{0.0F};
-  /// Phong's exponent; <= 0 means no specular term.
+  /// Phong's exponent, finite; <= 0: there is no specular term.
   float shininess = 0.0F;
-  /// kr: weight of the mirror ray.
+  /// Weight of what the mirror ray brings; 0 traces none.
   vec3 reflection{0.0F};
-  /// Added as it is.
+  /// Light that the surface sends by itself; it lights nothing else.
   vec3 emissive{0.0F};
 };
 

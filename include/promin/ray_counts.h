@@ -6,12 +6,18 @@
 
 namespace promin {
 
+/// How many rays a picture took.
 struct RayCounts {
+  /// From the camera.
   uint64_t primary = 0;
+  /// To lights.
   uint64_t shadow = 0;
+  /// From mirrors.
   uint64_t reflection = 0;
+  /// All of them.
   uint64_t total() const { return primary + shadow + reflection; }
 
+  /// Adds those of another picture.
   RayCounts& operator+=(const RayCounts& other) {
     primary += other.primary;
     shadow += other.shadow;

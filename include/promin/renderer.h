@@ -11,6 +11,7 @@
 
 #include "promin/aovs.h"
 #include "promin/explain.h"
+#include "promin/export.h"
 #include "promin/image.h"
 #include "promin/progress.h"
 #include "promin/ray_counts.h"
@@ -24,41 +25,52 @@ namespace gpu {
 class Device;
 }
 
+/// A picture and what it took.
 struct RenderResult {
-  /// Of the crop window's size.
+  /// Of the size of View::crop, or of View::size without one.
   Image image;
   /// Empty unless RendererOptions::with_aovs.
   Aovs aovs;
+  /// Rays of the whole picture.
   RayCounts rays;
   /// Device time of the traversal and shading dispatches alone (timestamps where the device has them, else waiting
   /// time on the host).
   double trace_ms = 0.0;
 };
 
+/// How a Renderer is made. The defaults suit most scenes.
 struct RendererOptions {
-  /// How the tree is built: "sah", "median" or "spatial" (builder_names() in promin/setup_stats.h).
+  /// How the tree is built, one of builder_names() (promin/setup_stats.h): "sah" is built fast and is good, "median" is
+  /// the simplest, "spatial" takes longest to build and helps where triangles are long and thin. Pictures have the same
+  /// bits.
   std::string builder = "sah";
   /// A BVH file to take the tree from instead of building one.
   std::optional<std::filesystem::path> bvh = std::nullopt;
   /// What the first pictures will show: its pipeline is compiled at once, others as they are asked for.
   RenderMode mode = {};
-  /// Bring RenderResult::aovs as well. The image's bits stay the same.
+  /// Whether render() fills RenderResult::aovs. The image's bits stay the same.
   bool with_aovs = false;
-  /// Of building the tree; false ends the constructor with Cancelled.
+  /// Told how far building the tree is; where it returns false the constructor throws Cancelled.
   ProgressCallback progress = {};
 };
 
 /// A scene in device memory with the pipeline that its features ask for: pictures, whole or progressively, and single
-/// pixels of them. Keeps no reference to the Scene; the Device must outlive it. One Renderer serves one thread at a
-/// time; several Renderers may share a Device on several threads.
-class Renderer {
+/// pixels of them. The same scene and view give the same bits on the same device.
+///
+/// Lifetimes: the Device must outlive the Renderer; of the Scene it keeps nothing, so the scene may change or end.
+/// After a move the old Renderer may only be destroyed or assigned to. Threads: one Renderer serves one thread at a
+/// time; several Renderers and Casters may share a Device on several threads. Failures: what a call threw leaves the
+/// Renderer as usable as before, unless the device was lost.
+class PROMIN_EXPORT Renderer {
  public:
-  /// Builds the BVH, uploads, compiles. Throws UsageError for an unknown builder, InputError for a scene that is not
-  /// valid (see validate) and for a BVH file that is bad or not the scene's, RunError where memory does not suffice or
-  /// a device limit is passed, Cancelled.
+  /// Builds the tree, a bounding volume hierarchy, uploads the scene and compiles the pipeline. Throws UsageError for
+  /// an unknown builder, InputError for a scene that is not valid (see validate) and for a BVH file that is bad or not
+  /// the scene's, RunError where memory does not suffice or a device limit is passed, Cancelled.
   Renderer(const gpu::Device& device, const Scene& scene, const RendererOptions& options = {});
   ~Renderer();
+  /// Takes all that the other has.
   Renderer(Renderer&&) noexcept;
+  /// Takes all that the other has, and frees its own.
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Traces one picture, and compiles first where its mode is another than the last one's. `progress` is called after
@@ -67,23 +79,31 @@ class Renderer {
 
   /// Traces the view as a window does: in few pixels at first, as many as `budget_ms` allows, then in all of them, then
   /// with 4, 16 and 64 samples a pixel or until the view has its own number. Each picture that is complete goes to
-  /// `on_picture`, with `samples_per_pixel` in the second argument's view; where that returns false, this returns. The
-  /// whole pictures have the bits of render().
+  /// `on_picture`, with its size and samples in the second argument's view; where that returns false, this returns. The
+  /// pictures of the view's size have the bits that render() gives with as many samples. Throws UsageError for a view
+  /// that breaks the rules of promin/view.h or has a crop, for a budget that is not a positive finite number of
+  /// milliseconds and without `on_picture`; RunError.
   void render_progressively(const View& view, double budget_ms,
                             const std::function<bool(const Image&, const View&)>& on_picture);
 
   /// Traces the pixel at these coordinates of the whole picture as `render` does, and tells each ray and light; it
-  /// shows light whatever debug view the view has. Throws UsageError for a pixel beyond the picture, RunError where
+  /// shows light whatever debug view the view has. Throws UsageError for a view that breaks the rules of promin/view.h
+  /// and for a pixel beyond the picture, RunError where
   /// that would be too much for the device.
   Explanation explain(const View& view, const uvec2& pixel);
 
-  // Changes of the scene that need no tree and upload no geometry. They compile only where the set of features that the
-  // scene uses changes, with the next picture. Numbers of lights and materials in the scene stay what they are: as many
-  // materials as the scene had, any number of lights. Throw InputError as validate() does.
+  // Changes of the scene that build no tree and upload no geometry. The next picture compiles where the set of features
+  // that the scene uses is another than before, and else nothing does.
+
+  /// Replaces all lights, by any number. Throws InputError as validate() finds fault, RunError.
   void set_lights(std::span<const Light> lights);
+  /// Replaces all materials, by as many as the scene had. Throws InputError for another number of them and as
+  /// validate() finds fault, RunError.
   void set_materials(std::span<const Material> materials);
+  /// Replaces ambient light and background. Throws InputError as validate() finds fault.
   void set_environment(const Environment& environment);
 
+  /// What making this has cost. Valid while the Renderer is.
   const SetupStats& setup_stats() const;
   /// What has been done since the constructor began.
   WorkDone work_done() const;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "promin/camera.h"
+#include "promin/export.h"
 #include "promin/lights.h"
 #include "promin/materials.h"
 #include "promin/math.h"
@@ -18,65 +19,82 @@ namespace promin {
 
 /// A geometry in its place, with a material. Its index in Scene::objects is the number that hits and AOVs give.
 struct Object {
+  /// The `geometry` of an object that shows none.
   static constexpr uint32_t kNoGeometry = std::numeric_limits<uint32_t>::max();
 
+  /// For people; empty where there is none.
   std::string name;
   /// Index into Scene::geometries, which several objects may share. kNoGeometry: nothing is drawn, the object only
   /// takes its number (points, lines, something hidden).
   uint32_t geometry = kNoGeometry;
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Affine. A shape must keep its form under it (promin/shapes.h says how); meshes take any that is not singular.
+  /// Affine, not singular; the identity by default. A shape must keep its form under it (promin/shapes.h says how);
+  /// meshes take any that is not singular.
   dmat4 world_from_object{1.0};
 };
 
 /// What there is beside objects and lights.
 struct Environment {
-  /// i_a of docs/model.md.
+  /// Linear RGB, finite and not negative; it lights every point alike, by Material::ambient.
   vec3 ambient{0.0F};
-  /// What a ray brings that leaves the scene.
+  /// Linear RGB, finite and not negative: what a ray brings that leaves the scene. Black by default.
   vec3 background{0.0F};
 };
 
-/// A description of what is to be rendered. It has no tree and nothing of a device: any part may be changed, and what
-/// is made of it (Renderer, Caster) told of the change. load_scene gives one that is valid, validate() checks any
-/// other.
+/// A description of what is to be rendered, in a world whose unit of length is anything. It has no tree and nothing of
+/// a device. Renderer and Caster read it while they are made and keep nothing of it: a later change takes effect by
+/// Renderer::set_lights and its like, or with a new Renderer. load_scene gives a valid scene, validate() checks any
+/// other. As any plain value it may be read by several threads while none changes it.
 struct Scene {
+  /// Where it was read from; empty for a scene made in memory.
   std::filesystem::path file;
+  /// What objects are made of, each once.
   std::vector<Geometry> geometries;
+  /// What is in the scene, in the order that hits and AOVs number.
   std::vector<Object> objects;
   /// Not empty where there are objects with a geometry.
   std::vector<Material> materials;
+  /// Any number, none too: see add_default_lights.
   std::vector<Light> lights;
   /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene.
   std::vector<Camera> cameras;
+  /// Ambient light and background.
   Environment environment;
   /// What the file asks for and the renderer does not model, and what it assumed instead; one sentence each.
   std::vector<std::string> warnings;
 
-  /// Adds a geometry and an object that shows it.
-  Object& add(std::string name, Geometry geometry, uint32_t material = 0, const dmat4& world_from_object = dmat4(1.0));
+  /// Adds a geometry and an object that shows it, with the material of this index. The reference is valid until objects
+  /// are added or removed.
+  PROMIN_EXPORT Object& add(std::string name, Geometry geometry, uint32_t material = 0,
+                            const dmat4& world_from_object = dmat4(1.0));
 };
 
-/// Bounds of everything finite in the world; empty if there is nothing finite.
-Bounds bounds_of(const Scene& scene);
+/// Bounds of everything finite in the world; empty if there is nothing finite. Throws InputError where an object or a
+/// triangle names what is not there.
+PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 
-/// Of an object: its geometry's, or 0 where it has none.
-uint32_t primitive_count(const Scene& scene, const Object& object);
+/// Number of an object's primitives: that of its geometry, or 0 where it has none. Throws InputError where the object
+/// names a geometry that is not there.
+PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
 
 /// A perspective camera that looks down -Z, a little from above, and frames everything finite in the scene.
-/// `aspect_ratio` is width over height of the picture.
-Camera frame_scene(const Scene& scene, float aspect_ratio);
+/// `aspect_ratio` is width over height of the picture. Throws UsageError where that is not a positive finite number,
+/// and InputError as bounds_of() does.
+PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio);
 
 /// What add_default_lights has added.
 struct AddedLights {
+  /// Whether a headlight was added.
   bool has_headlight = false;
+  /// Whether ambient light was added.
   bool has_ambient = false;
 };
 
 /// Gives a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient light
 /// of kDefaultAmbient where it has none. A scene with lights stays as it is.
-AddedLights add_default_lights(Scene& scene);
+PROMIN_EXPORT AddedLights add_default_lights(Scene& scene);
+/// Each component of the ambient light that add_default_lights adds.
 inline constexpr float kDefaultAmbient = 0.1F;
 
 }  // namespace promin

@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
+#include "promin/export.h"
 #include "promin/math.h"
 
-// The shapes of promin/kinds/primitives.def, each in a header of its own: once as a scene describes it, in its own
-// space and in double, and once in namespace `world`, in the fp32 numbers that a device sees.
+// The shapes of promin/kinds/primitives.def, each in a header of its own.
 #define PROMIN_SHAPE_SOURCES
 #include "promin/kinds/primitives.def"
 
@@ -18,6 +18,7 @@ namespace promin {
 
 /// A triangle mesh in its own space. Corners run counter-clockwise seen from outside.
 struct Mesh {
+  /// Any number; none of them is beyond 1e15.
   std::vector<vec3> positions;
   /// Vertex normals of any length but 0; empty (sharp polygons) or one per position.
   std::vector<vec3> normals;
@@ -30,7 +31,7 @@ struct Mesh {
 };
 
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , TYPE
-/// What an object is made of: a mesh or an analytic shape, in its own space.
+/// What an object is made of: a Mesh or an analytic shape, in its own space.
 using Geometry = std::variant<Mesh
 #include "promin/kinds/primitives.def"
                               >;
@@ -43,6 +44,6 @@ inline constexpr std::string_view kGeometryNames[] = {
 };
 
 /// Number of triangles (degenerate ones included), or 1 for an analytic shape.
-uint32_t primitive_count(const Geometry& geometry);
+PROMIN_EXPORT uint32_t primitive_count(const Geometry& geometry);
 
 }  // namespace promin

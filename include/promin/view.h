@@ -7,22 +7,27 @@
 
 #include "promin/camera.h"
 #include "promin/debug_view.h"
+#include "promin/export.h"
 #include "promin/math.h"
 
 namespace promin {
 
-/// A window of pixels, half-open: lo.x <= x < hi.x.
+/// A window of pixels of the whole picture, half-open: lo.x <= x < hi.x. Row 0 is the top.
 struct PixelWindow {
+  /// The first column and row that are in it.
   uvec2 lo{0};
+  /// The first column and row that are beyond it.
   uvec2 hi{0};
 };
 
 /// What of a picture is compiled in: each mode has a pipeline of its own.
 struct RenderMode {
+  /// What is shown; light by default.
   DebugView debug_view = DebugView::kNone;
-  /// Without shadows nothing is between a point and a light.
+  /// Without shadows every light reaches every point that faces it.
   bool has_shadows = true;
 
+  /// Whether both need the same pipeline.
   bool operator==(const RenderMode&) const = default;
 };
 
@@ -31,22 +36,26 @@ inline constexpr uint32_t kMaxSamplesPerPixel = 65535;
 /// The largest number of mirror bounces.
 inline constexpr uint32_t kMaxDepth = 1000;
 
-/// One picture of a scene.
+/// One picture of a scene. What breaks a range that is given here or in promin/camera.h is refused with UsageError.
 struct View {
+  /// Where the picture is taken from; see frame_scene (promin/scene.h).
   Camera camera;
+  /// Width and height of the whole picture in pixels, at least 1. The camera's vertical field of view holds.
   uvec2 size{1280, 720};
-  /// Pixels to trace; the whole picture where empty. A crop has the bits of the same pixels of the whole.
+  /// Pixels to trace, at least one and within the picture; without a crop all. A crop has the bits of the same pixels
+  /// of the whole.
   std::optional<PixelWindow> crop;
-  /// Samples a pixel, at fixed well-distributed points; 1 is the centre. 1...kMaxSamplesPerPixel.
+  /// Samples a pixel, 1...kMaxSamplesPerPixel, at fixed points of a lattice; 1 samples the centre.
   uint32_t samples_per_pixel = 1;
-  /// Mirror bounces; 0 traces no mirror rays. 0...kMaxDepth.
+  /// Mirror bounces, 0...kMaxDepth; 0 traces no mirror rays.
   uint32_t max_depth = 5;
+  /// What is shown; another mode than the last one's is compiled first.
   RenderMode mode;
 };
 
 /// Whether two cameras see the same: names and aspect ratios aside.
-bool shows_same(const Camera& a, const Camera& b);
+PROMIN_EXPORT bool shows_same(const Camera& a, const Camera& b);
 /// Whether two views show the same but for their samples.
-bool shows_same(const View& a, const View& b);
+PROMIN_EXPORT bool shows_same(const View& a, const View& b);
 
 }  // namespace promin

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "core/rounding.h"
 #include "promin/error.h"
 
 namespace promin::app {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <random>
 
+#include "core/rounding.h"
+
 namespace promin {
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // What a program does with promin as a library: a scene in memory, checked, rendered, changed, rendered again, and
-// rays.
+// rays; a picture to the file that the argument names, and a failure caught.
 #include <cstdio>
 #include <vector>
 
@@ -10,7 +10,7 @@
 #include <promin/renderer.h>
 #include <promin/validate.h>
 
-int main() {
+int main(int argument_count, char** arguments) {
   promin::Mesh floor;
   floor.positions = {{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}};
   floor.triangles = {{0, 2, 1}, {0, 3, 2}};
@@ -43,8 +43,22 @@ int main() {
   const std::vector<promin::Ray> rays = {{{0, 5, 0}, 0, {0, -1, 0}}};
   std::vector<promin::Hit> hits(rays.size());
   caster.cast(rays, hits);
-  const bool is_right =
-      !is_rebuilt && before.image.pixels != after.image.pixels && hits[0].object == 1 && hits[0].t == 3.0F;
+
+  // Pictures are the plugin's, which is to be found wherever this program lies.
+  if (argument_count > 1) promin::write_image(arguments[1], after.image);
+  const bool is_written = argument_count < 2 || promin::read_image(arguments[1]).size == view.size;
+
+  // A failure of the library is known here by its type.
+  bool is_caught = false;
+  view.size = {0, 0};
+  try {
+    renderer.render(view);
+  } catch (const promin::UsageError& error) {
+    is_caught = error.problems().size() == 1;
+  }
+
+  const bool is_right = !is_rebuilt && is_written && is_caught && before.image.pixels != after.image.pixels &&
+                        hits[0].object == 1 && hits[0].t == 3.0F;
   std::puts(is_right ? "the library works" : "the library does not do what it says");
   return is_right ? 0 : 1;
 }

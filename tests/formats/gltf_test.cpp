@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "core/rounding.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bvh/builder.h"
+#include "core/rounding.h"
 #include "hard/hard_case.h"
 
 namespace promin::hard {

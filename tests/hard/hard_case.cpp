@@ -17,6 +17,7 @@
 #include "bounce.spv.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "core/rounding.h"
 #include "hard/figures.h"
 #include "promin/caster.h"
 #include "render/caster_access.h"

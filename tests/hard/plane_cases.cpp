@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rounding.h"
 #include "hard/hard_case.h"
 
 namespace promin::hard {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rounding.h"
 #include "hard/bouncer.h"
 #include "hard/hard_case.h"
 #include "hard/self_hits.h"

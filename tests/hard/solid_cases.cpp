@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "core/rounding.h"
 #include "hard/hard_case.h"
 #include "shapes/shapes.h"
 

@@ -140,6 +140,21 @@ TEST_F(ImageTest, UnwritableTargetsAreRefused) {
   EXPECT_EQ(file_count(), 1);
 }
 
+TEST_F(ImageTest, PicturesWhosePartsDoNotSuitAreRefused) {
+  const fs::path file = folder_ / "a.exr";
+  EXPECT_THROW(write_image(file, Image()), UsageError);
+  Image image = make_ramp(4, 3);
+  image.size.y = 4;
+  EXPECT_THROW(write_image(file, image), UsageError);
+  image.size.y = 3;
+  const Channel depth{"Z", false, std::vector<uint32_t>(11)};
+  EXPECT_THROW(write_image(file, image, {}, std::nullopt, {&depth, 1}), UsageError);
+  EXPECT_THROW(write_image(file, image, {}, CropPlacement{{1, 0}, {4, 3}}), UsageError);
+  EXPECT_THROW(write_image(file, image, {}, CropPlacement{{0, 0}, {4, 2}}), UsageError);
+  EXPECT_EQ(file_count(), 0);
+  EXPECT_NO_THROW(write_image(file, image, {}, CropPlacement{{1, 2}, {5, 5}}));
+}
+
 TEST_F(ImageTest, UnreadablePicturesSayWhy) {
   std::ofstream(folder_ / "text.exr") << "not a picture";
   EXPECT_THAT(message_of_reading(folder_ / "none.exr"), HasSubstr("no such picture"));

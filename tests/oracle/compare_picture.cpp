@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <variant>
 
+#include "core/rounding.h"
+
 namespace promin::oracle {
 namespace {
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <variant>
 
+#include "core/rounding.h"
+
 namespace promin::oracle {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <random>
 
+#include "core/rounding.h"
 #include "scene/world_scene.h"
 #include "shapes/shapes.h"
 

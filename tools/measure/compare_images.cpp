@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/rounding.h"
 #include "promin/error.h"
 
 namespace promin {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/rounding.h"
 #include "formats/gltf/accessors.h"
 #include "promin/validate.h"
 #include "scene/world_scene.h"

@@ -6,6 +6,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "core/rounding.h"
 #include "formats/gltf/json_lookup.h"
 
 namespace promin {

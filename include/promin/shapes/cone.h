@@ -6,26 +6,20 @@
 
 namespace promin {
 
-/// A solid cone or frustum closed by its disks. The radius goes linearly from `radius_bottom`, half_height before the
-/// center along the axis, to `radius_top`, as far behind it; at most one of them is 0 (the apex). `axis` has any length
-/// but 0. A transform must keep circles around the axis circles.
+/// A solid cone or frustum closed by its disks. The radius goes linearly from one end of the axis to the other; where
+/// it is 0 there is an apex. A transform must keep circles around the axis circles. Sizes lie between 1e-22 and 1e15 in
+/// the world.
 struct Cone {
+  /// Middle of the axis.
   dvec3 center{0.0};
+  /// From the bottom to the top, of any length but 0.
   dvec3 axis{0.0, 1.0, 0.0};
+  /// Distance of the two ends from the middle.
   double half_height = 0.25;
+  /// Radius at `center` - half_height along the axis; 0 or more, but not both radii are 0.
   double radius_bottom = 0.25;
+  /// Radius at the other end.
   double radius_top = 0.0;
 };
-
-namespace world {
-/// `axis` is a unit vector to fp32 rounding; the disks lie at center -+ axis * half_height.
-struct Cone {
-  vec3 center{0.0F};
-  vec3 axis{0.0F, 1.0F, 0.0F};
-  float half_height = 0.25F;
-  float radius_bottom = 0.25F;
-  float radius_top = 0.0F;
-};
-}  // namespace world
 
 }  // namespace promin

@@ -6,23 +6,17 @@
 
 namespace promin {
 
-/// A solid cylinder closed by two disks. `center` is the middle of the axis segment, `axis` has any length but 0; the
-/// disks lie half_height away along it. A transform must keep circles around the axis circles.
+/// A solid cylinder closed by two disks. A transform must keep circles around the axis circles. Sizes lie between 1e-22
+/// and 1e15 in the world.
 struct Cylinder {
+  /// Middle of the axis.
   dvec3 center{0.0};
+  /// Along the cylinder, of any length but 0.
   dvec3 axis{0.0, 1.0, 0.0};
+  /// Distance of the two disks from the middle.
   double half_height = 0.25;
+  /// Radius of the disks.
   double radius = 0.25;
 };
-
-namespace world {
-/// `axis` is a unit vector to fp32 rounding; the disks lie at center -+ axis * half_height.
-struct Cylinder {
-  vec3 center{0.0F};
-  vec3 axis{0.0F, 1.0F, 0.0F};
-  float half_height = 0.25F;
-  float radius = 0.25F;
-};
-}  // namespace world
 
 }  // namespace promin

@@ -6,18 +6,12 @@
 
 namespace promin {
 
-/// (P - point) . normal = 0, infinite. `normal` has any length but 0. Any transform that leaves a normal will do.
+/// An infinite plane. Any transform that leaves it a normal will do.
 struct Plane {
+  /// Any point of it.
   dvec3 point{0.0};
+  /// At right angles to it, of any length but 0.
   dvec3 normal{0.0, 1.0, 0.0};
 };
-
-namespace world {
-/// `normal` is a unit vector to fp32 rounding.
-struct Plane {
-  vec3 point{0.0F};
-  vec3 normal{0.0F, 1.0F, 0.0F};
-};
-}  // namespace world
 
 }  // namespace promin

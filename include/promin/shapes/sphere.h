@@ -6,17 +6,13 @@
 
 namespace promin {
 
-/// The ball |P - center| <= radius. A transform must scale it alike in all directions.
+/// A solid ball. A transform must scale it alike in all directions. The radius lies between 1e-22 and 1e15 in the
+/// world.
 struct Sphere {
+  /// Its middle.
   dvec3 center{0.0};
+  /// Distance of the surface from the middle.
   double radius = 0.5;
 };
-
-namespace world {
-struct Sphere {
-  vec3 center{0.0F};
-  float radius = 0.5F;
-};
-}  // namespace world
 
 }  // namespace promin

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// What the public headers promise of wrong arguments, of work that is broken off and of changes of a scene.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "promin/caster.h"
+#include "promin/renderer.h"
+#include "promin/validate.h"
+#include "render/renderer_impl.h"
+#include "trace/ray_kernel.h"
+
+namespace promin {
+namespace {
+
+using test::has_same_bits;
+
+/// A mirroring ball on a floor, with a light.
+Scene make_scene() {
+  Mesh floor;
+  floor.positions = {{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}};
+  floor.triangles = {{0, 2, 1}, {0, 3, 2}};
+  Scene scene;
+  scene.materials.resize(2);
+  scene.materials[1].reflection = vec3(0.5F);
+  scene.add("floor", floor);
+  scene.add("ball", Sphere{{0, 1, 0}, 1.0}, 1);
+  scene.lights.resize(1);
+  scene.lights[0].position = {3, 5, 2};
+  return scene;
+}
+
+View make_view(const Scene& scene, uint32_t size = 64) {
+  View view;
+  view.camera = frame_scene(scene, 1.0F);
+  view.size = {size, size};
+  return view;
+}
+
+class LibraryTest : public test::DeviceTest {
+ protected:
+  const Scene scene_ = make_scene();
+  const View view_ = make_view(scene_);
+};
+
+TEST_F(LibraryTest, WrongViewsAreRefusedAndTheRendererStays) {
+  Renderer renderer(device(), scene_);
+  const Image before = renderer.render(view_).image;
+  const auto ignore = [](const Image&, const View&) { return true; };
+  for (const auto& seed : std::vector<std::function<void(View&)>>{
+           [](View& v) { v.size.x = 0; },
+           [](View& v) { v.samples_per_pixel = 0; },
+           [](View& v) { v.max_depth = kMaxDepth + 1; },
+           [](View& v) { v.camera.eye.y = std::numeric_limits<float>::quiet_NaN(); },
+           [](View& v) { v.camera.up = v.camera.look; },
+           [](View& v) { v.mode.debug_view = static_cast<DebugView>(99); },
+           [](View& v) {
+             v.crop = PixelWindow{{0, 0}, {65, 64}};
+           },
+       }) {
+    View view = view_;
+    seed(view);
+    EXPECT_THROW(renderer.render(view), UsageError);
+    EXPECT_THROW(renderer.explain(view, uvec2(0)), UsageError);
+    EXPECT_THROW(renderer.render_progressively(view, 10.0, ignore), UsageError);
+  }
+  EXPECT_THROW(renderer.explain(view_, uvec2(64, 0)), UsageError);
+  for (const double budget_ms : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(renderer.render_progressively(view_, budget_ms, ignore), UsageError);
+  }
+  EXPECT_THROW(renderer.render_progressively(view_, 10.0, {}), UsageError);
+  View cropped = view_;
+  cropped.crop = PixelWindow{{0, 0}, {8, 8}};
+  EXPECT_THROW(renderer.render_progressively(cropped, 10.0, ignore), UsageError);
+  EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
+}
+
+TEST_F(LibraryTest, WrongScenesAndOptionsAreRefused) {
+  Scene broken = scene_;
+  broken.objects[0].material = 7;
+  EXPECT_THROW(Renderer(device(), broken), InputError);
+  EXPECT_THROW(Caster(device(), broken), InputError);
+  EXPECT_THROW(Renderer(device(), scene_, {.builder = "shah"}), UsageError);
+  EXPECT_THROW(Caster(device(), scene_, {.builder = "shah"}), UsageError);
+  EXPECT_THROW(Renderer(device(), scene_, {.bvh = "/nonexistent/f.pbvh"}), InputError);
+  EXPECT_THROW(Caster(device(), scene_, {.bvh = "/nonexistent/f.pbvh"}), InputError);
+  EXPECT_THROW(gpu::open_device("no such device"), DeviceError);
+}
+
+TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
+  Renderer renderer(device(), scene_);
+  const Image before = renderer.render(view_).image;
+  Light light;
+  light.direction = vec3(0);
+  EXPECT_THROW(renderer.set_lights({&light, 1}), InputError);
+  std::vector<Material> materials = scene_.materials;
+  materials[0].diffuse.r = -1.0F;
+  EXPECT_THROW(renderer.set_materials(materials), InputError);
+  EXPECT_THROW(renderer.set_materials(std::vector<Material>(3)), InputError);
+  EXPECT_THROW(renderer.set_environment({.ambient = vec3(-1)}), InputError);
+  EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
+}
+
+TEST_F(LibraryTest, AChangedSceneHasTheBitsOfANewOne) {
+  Renderer renderer(device(), scene_);
+  const Image before = renderer.render(view_).image;
+  Scene changed = scene_;
+  changed.lights.push_back(make_headlight());
+  changed.materials[0].specular = vec3(0.5F);
+  changed.materials[0].shininess = 10.0F;
+  changed.environment = {.ambient = vec3(0.2F), .background = vec3(0, 0, 1)};
+  renderer.set_lights(changed.lights);
+  renderer.set_materials(changed.materials);
+  renderer.set_environment(changed.environment);
+  const Image after = renderer.render(view_).image;
+  EXPECT_FALSE(has_same_bits(after, before));
+  EXPECT_TRUE(has_same_bits(after, Renderer(device(), changed).render(view_).image));
+}
+
+TEST_F(LibraryTest, ABrokenOffConstructorLeavesTheDeviceUsable) {
+  const ProgressCallback stop = [](double) { return false; };
+  EXPECT_THROW(Renderer(device(), scene_, {.progress = stop}), Cancelled);
+  EXPECT_THROW(Caster(device(), scene_, {.progress = stop}), Cancelled);
+  EXPECT_NO_THROW(Renderer(device(), scene_).render(view_));
+}
+
+TEST_F(LibraryTest, ABrokenOffPictureStopsAtTheNextDispatchAndTheRendererStays) {
+  const View view = make_view(scene_, 256);
+  // Little enough a dispatch that there are several.
+  TunedRendererOptions options;
+  options.blocks_per_dispatch = 1;
+  Renderer renderer = make_renderer(device(), scene_, options);
+  int calls = 0;
+  double last = -1.0;
+  const RenderResult whole = renderer.render(view, [&](double fraction) {
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1.0);
+    last = fraction;
+    return ++calls > 0;
+  });
+  ASSERT_GT(calls, 3);
+  EXPECT_EQ(last, 1.0);
+  for (const int wanted : {1, 3}) {
+    calls = 0;
+    EXPECT_THROW(renderer.render(view, [&](double) { return ++calls < wanted; }), Cancelled);
+    EXPECT_EQ(calls, wanted);
+  }
+  const RenderResult again = renderer.render(view);
+  EXPECT_TRUE(has_same_bits(again.image, whole.image));
+  EXPECT_EQ(again.rays.total(), whole.rays.total());
+}
+
+TEST_F(LibraryTest, ProgressivePicturesEndWhereTheyAreToldAndHaveTheBitsOfOthers) {
+  Renderer renderer(device(), scene_);
+  int calls = 0;
+  renderer.render_progressively(view_, 1000.0, [&](const Image&, const View&) { return ++calls < 1; });
+  EXPECT_EQ(calls, 1);
+  View view = view_;
+  view.samples_per_pixel = 4;
+  Image last;
+  View last_view;
+  renderer.render_progressively(view, 1000.0, [&](const Image& image, const View& shown) {
+    last = image;
+    last_view = shown;
+    return true;
+  });
+  EXPECT_EQ(last_view.size, view.size);
+  EXPECT_EQ(last_view.samples_per_pixel, 4U);
+  EXPECT_TRUE(has_same_bits(last, renderer.render(view).image));
+}
+
+TEST_F(LibraryTest, ABrokenOffCastStopsAtTheNextDispatchAndTheCasterStays) {
+  Caster caster(device(), scene_);
+  std::vector<Ray> rays(RayKernel::kMaxRays + 1, Ray{{0, 5, 0}, 0, {0, -1, 0}});
+  std::vector<Hit> hits(rays.size());
+  int calls = 0;
+  EXPECT_THROW(caster.cast(rays, hits, HitQuery::kNearest, [&](double) { return ++calls < 1; }), Cancelled);
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(hits.front().object, 1);
+  EXPECT_EQ(hits.back().object, -1) << "the second dispatch ran";
+  EXPECT_THROW(caster.cast(rays, std::span(hits).first(1)), UsageError);
+  caster.cast(std::span(rays).first(2), std::span(hits).last(2));
+  EXPECT_EQ(hits.back().object, 1);
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "promin/validate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace promin {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Mesh& mesh_of(Scene& scene) {
+  return std::get<Mesh>(scene.geometries[0]);
+}
+
+/// One of everything: a mesh with all that meshes may have, each shape, a spot light, a camera.
+Scene make_valid_scene() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 2}};
+  mesh.colors = {vec4(1), vec4(1), vec4(1)};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.triangle_materials = {0};
+  Scene scene;
+  scene.materials.resize(1);
+  scene.add("mesh", mesh);
+  scene.add("sphere", Sphere{});
+  scene.add("plane", Plane{});
+  scene.add("cylinder", Cylinder{});
+  scene.add("cone", Cone{});
+  scene.objects.push_back({.name = "hidden"});
+  scene.lights.resize(1);
+  scene.lights[0].kind = LightKind::kSpot;
+  scene.cameras.resize(1);
+  return scene;
+}
+
+std::vector<std::string> places_of(const std::vector<Problem>& problems) {
+  std::vector<std::string> places;
+  for (const Problem& problem : problems) {
+    EXPECT_FALSE(problem.what.empty() || problem.cure.empty()) << problem.sentence();
+    places.push_back(problem.where);
+  }
+  return places;
+}
+
+/// Something that breaks a thing that was valid, and the place that is told of it.
+template <class Thing>
+struct Fault {
+  const char* where;
+  std::function<void(Thing&)> seed;
+};
+
+TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
+  const auto scale = [](const dvec3& factors) {
+    return dmat4(dvec4(factors.x, 0, 0, 0), dvec4(0, factors.y, 0, 0), dvec4(0, 0, factors.z, 0), dvec4(0, 0, 0, 1));
+  };
+  const std::vector<Fault<Scene>> faults = {
+      {"materials[0].ambient", [](Scene& s) { s.materials[0].ambient.r = -1; }},
+      {"materials[0].diffuse", [](Scene& s) { s.materials[0].diffuse.g = kNan; }},
+      {"materials[0].specular", [](Scene& s) { s.materials[0].specular.b = kInfinity; }},
+      {"materials[0].reflection", [](Scene& s) { s.materials[0].reflection.r = -0.1F; }},
+      {"materials[0].emissive", [](Scene& s) { s.materials[0].emissive.r = kNan; }},
+      {"materials[0].shininess", [](Scene& s) { s.materials[0].shininess = kInfinity; }},
+      {"lights[0].kind", [](Scene& s) { s.lights[0].kind = static_cast<LightKind>(99); }},
+      {"lights[0].diffuse", [](Scene& s) { s.lights[0].diffuse.r = -1; }},
+      {"lights[0].specular", [](Scene& s) { s.lights[0].specular.r = kNan; }},
+      {"lights[0].position", [](Scene& s) { s.lights[0].position.x = 2e15F; }},
+      {"lights[0].direction", [](Scene& s) { s.lights[0].direction = vec3(0, 0, 2); }},
+      {"lights[0].range", [](Scene& s) { s.lights[0].range = kNan; }},
+      {"lights[0].outer_cone_angle", [](Scene& s) { s.lights[0].inner_cone_angle = 1; }},
+      {"cameras[0].eye", [](Scene& s) { s.cameras[0].eye.x = 2e15F; }},
+      {"cameras[0]", [](Scene& s) { s.cameras[0].up = vec3(0, 0, 1); }},
+      {"cameras[0].yfov", [](Scene& s) { s.cameras[0].yfov = 4; }},
+      {"cameras[0].ymag", [](Scene& s) { s.cameras[0].ymag = 0; }},
+      {"cameras[0].near", [](Scene& s) { s.cameras[0].near = -1; }},
+      {"environment.ambient", [](Scene& s) { s.environment.ambient.r = -1; }},
+      {"environment.background", [](Scene& s) { s.environment.background.r = kNan; }},
+      {"geometries[0].normals[1]", [](Scene& s) { mesh_of(s).normals[1] = vec3(0); }},
+      {"geometries[0].normals", [](Scene& s) { mesh_of(s).normals.pop_back(); }},
+      {"geometries[0].colors[2]", [](Scene& s) { mesh_of(s).colors[2].r = -1; }},
+      {"geometries[0].colors", [](Scene& s) { mesh_of(s).colors.pop_back(); }},
+      {"geometries[0].triangles[0]", [](Scene& s) { mesh_of(s).triangles[0].z = 3; }},
+      {"geometries[0].triangle_materials[0]", [](Scene& s) { mesh_of(s).triangle_materials[0] = 1; }},
+      {"geometries[0].triangle_materials", [](Scene& s) { mesh_of(s).triangle_materials.resize(2); }},
+      {"objects[1].material", [](Scene& s) { s.objects[1].material = 1; }},
+      {"objects[1].geometry", [](Scene& s) { s.objects[1].geometry = 5; }},
+      {"objects[1].world_from_object", [](Scene& s) { s.objects[1].world_from_object[3][0] = kNan; }},
+      {"objects[1].world_from_object", [](Scene& s) { s.objects[1].world_from_object[0][3] = 1; }},
+      {"objects[0].world_from_object",
+       [&](Scene& s) {
+         s.objects[0].world_from_object = scale({1, 1, 0});
+       }},
+      {"objects[1].world_from_object",
+       [&](Scene& s) {
+         s.objects[1].world_from_object = scale({1, 1, 2});
+       }},
+      {"objects[0]", [&](Scene& s) { s.objects[0].world_from_object[3][0] = 2e15; }},
+      {"objects[1]", [&](Scene& s) { std::get<Sphere>(s.geometries[1]).radius = 0; }},
+      {"objects[3]", [&](Scene& s) { std::get<Cylinder>(s.geometries[3]).half_height = 1e16; }},
+  };
+  ASSERT_THAT(places_of(validate(make_valid_scene())), IsEmpty());
+  for (const Fault<Scene>& fault : faults) {
+    Scene scene = make_valid_scene();
+    fault.seed(scene);
+    EXPECT_THAT(places_of(validate(scene)), ElementsAre(fault.where));
+    EXPECT_THROW(throw_if_invalid(scene), InputError) << fault.where;
+  }
+}
+
+TEST(ValidateTest, AVertexOutOfRangeIsTold) {
+  Scene scene = make_valid_scene();
+  mesh_of(scene).positions[1].y = kNan;
+  EXPECT_THAT(places_of(validate(scene)), testing::Contains("geometries[0].positions[1]"));
+}
+
+TEST(ValidateTest, AllProblemsAreToldTogether) {
+  Scene scene = make_valid_scene();
+  scene.materials[0].diffuse.r = -1;
+  scene.objects[1].geometry = 77;
+  EXPECT_THAT(places_of(validate(scene)), ElementsAre("materials[0].diffuse", "objects[1].geometry"));
+  try {
+    throw_if_invalid(scene);
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 2U);
+  }
+}
+
+TEST(ValidateTest, EveryFaultOfAViewIsToldWithItsPlace) {
+  const std::vector<Fault<View>> faults = {
+      {"view.camera.eye", [](View& v) { v.camera.eye.x = kNan; }},
+      {"view.camera", [](View& v) { v.camera.look = vec3(0, 0, -2); }},
+      {"view.camera.yfov", [](View& v) { v.camera.yfov = 0; }},
+      {"view.camera.near", [](View& v) { v.camera.near = kNan; }},
+      {"view.size", [](View& v) { v.size.y = 0; }},
+      {"view.samples_per_pixel", [](View& v) { v.samples_per_pixel = 0; }},
+      {"view.samples_per_pixel", [](View& v) { v.samples_per_pixel = kMaxSamplesPerPixel + 1; }},
+      {"view.max_depth", [](View& v) { v.max_depth = kMaxDepth + 1; }},
+      {"view.mode.debug_view", [](View& v) { v.mode.debug_view = static_cast<DebugView>(99); }},
+      {"view.crop",
+       [](View& v) {
+         v.crop = PixelWindow{{4, 4}, {4, 8}};
+       }},
+      {"view.crop",
+       [](View& v) {
+         v.crop = PixelWindow{{0, 0}, {1281, 8}};
+       }},
+  };
+  ASSERT_THAT(places_of(validate(View())), IsEmpty());
+  for (const Fault<View>& fault : faults) {
+    View view;
+    fault.seed(view);
+    EXPECT_THAT(places_of(validate(view)), ElementsAre(fault.where));
+  }
+}
+
+// What looks at a scene that validate() refuses throws rather than read what is not there.
+TEST(ValidateTest, QuestionsToABrokenSceneThrow) {
+  Scene scene = make_valid_scene();
+  EXPECT_THROW(frame_scene(scene, 0.0F), UsageError);
+  EXPECT_THROW(frame_scene(scene, kNan), UsageError);
+  EXPECT_NO_THROW(frame_scene(scene, 1.0F));
+
+  mesh_of(scene).triangles[0].y = 1000000;
+  EXPECT_THROW(bounds_of(scene), InputError);
+  EXPECT_THROW(frame_scene(scene, 1.0F), InputError);
+  scene.geometries.clear();
+  EXPECT_THROW(bounds_of(scene), InputError);
+  EXPECT_THROW(primitive_count(scene, scene.objects[0]), InputError);
+  EXPECT_EQ(primitive_count(scene, Object()), 0U);
+}
+
+}  // namespace
+}  // namespace promin
