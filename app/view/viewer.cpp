@@ -30,7 +30,7 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       maker_(maker),
       file_(start.file),
       stats_(std::move(stats)),
-      follows_display_(!start.target_ms && !device.is_cpu()),
+      follows_display_(!start.target_ms && device.profile().keeps_up_with_display),
       target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
       control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
       stays_open_(start.stays_open),

@@ -30,7 +30,7 @@ struct ViewerStart {
   SceneChoice choice;
   View view;
   std::optional<std::string> present_mode;
-  /// None: the display's refresh interval on a GPU, kCpuTargetMs on a CPU device.
+  /// None: the display's refresh interval where the device keeps up with it, else kCpuTargetMs.
   std::optional<double> target_ms;
   /// As ProgressivePicture::fix_scale.
   std::optional<double> scale;

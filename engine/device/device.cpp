@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 
+#include "core/parallel.h"
 #include "device/buffer.h"
 #include "device/instance.h"
 #include "promin/device.h"
@@ -76,6 +77,14 @@ std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::Physic
   const std::string name = driver->driverName.data();
   const std::string version = driver->driverInfo.data();
   return version.empty() ? name : name + " " + version;
+}
+
+DeviceTraits traits_of(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
+  const auto driver = driver_properties(device, properties);
+  return {.is_cpu = properties.deviceType == vk::PhysicalDeviceType::eCpu,
+          .driver_id = driver ? static_cast<uint32_t>(driver->driverID) : 0,
+          .core_count = core_count(),
+          .texel_buffer_bytes = properties.limits.maxTexelBufferElements * kTexelBytes};
 }
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::SurfaceKHR surface) {
@@ -205,9 +214,7 @@ Device::Device(const std::optional<std::string>& selection, const Presentation* 
   translate_vulkan_errors([&] {
     const vk::PhysicalDeviceProperties properties = physical_.getProperties();
     limits_ = properties.limits;
-    is_cpu_ = properties.deviceType == vk::PhysicalDeviceType::eCpu;
-    const auto driver = driver_properties(physical_, properties);
-    is_lavapipe_ = driver && driver->driverID == vk::DriverId::eMesaLlvmpipe;
+    profile_ = make_profile(traits_of(physical_, properties));
     memory_ = physical_.getMemoryProperties();
     queue_family_ = *find_family(physical_, *surface_);
     if (const uint32_t bits = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits; bits > 0) {

@@ -12,6 +12,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include "device/pipeline.h"
+#include "device/profile.h"
 #include "promin/device_info.h"
 
 namespace promin::gpu {
@@ -39,13 +40,10 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
   const std::string& choice() const { return choice_; }
-  /// Whether the host's processor does the device's work.
-  bool is_cpu() const { return is_cpu_; }
+  /// What suits it.
+  const DeviceProfile& profile() const { return profile_; }
   /// Whether its shaders compute in double too; promin's own never do.
   bool has_fp64() const { return has_fp64_; }
-  /// Whether it is Mesa's llvmpipe, which compiles large kernels in a fraction of a second where SwiftShader takes
-  /// minutes.
-  bool is_lavapipe() const { return is_lavapipe_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
 
   const vk::raii::Device& handle() const { return device_; }
@@ -97,9 +95,8 @@ class Device {
   vk::raii::CommandBuffer commands_{nullptr};
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
-  bool is_cpu_ = false;
+  DeviceProfile profile_;
   bool has_fp64_ = false;
-  bool is_lavapipe_ = false;
   std::string choice_;
 };
 

@@ -97,7 +97,7 @@ struct Renderer::Impl {
       : device(the_device),
         options(the_options),
         pipelines_before(device.compiled_pipelines().size()),
-        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), TileScheduler::kMinBlocks),
+        pacer(options.target_dispatch_ms.value_or(device.profile().target_dispatch_ms), TileScheduler::kMinBlocks),
         scene(device, the_scene, options, stats) {
     // It belonged to the constructor's caller.
     options.progress = {};

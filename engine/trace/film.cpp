@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "camera_stage.spv.h"
-#include "core/parallel.h"
 #include "device/device.h"
 #include "mirror_stage.spv.h"
 
@@ -40,10 +39,9 @@ Counters lanes_of(std::span<const std::byte> counters) {
 /// Paths of the longest queue that a piece may need.
 constexpr uint32_t kMostQueuedPaths = TileScheduler::kMaxBlocks * kLanes;
 
-/// GPUs trace pixels alone: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes minutes
-/// to compile packets. Steps and logs are of single rays.
+/// Steps and logs are of single rays.
 uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
-  return device.is_lavapipe() && !features.has_any(layout::FEATURE_STEP_COUNTS) ? 4 : 1;
+  return features.has_any(layout::FEATURE_STEP_COUNTS) ? 1 : device.profile().pixel_packet_size;
 }
 
 }  // namespace
@@ -85,14 +83,11 @@ void Film::reserve(uint32_t pixel_count) {
 }
 
 TileOptions Film::piece_options() const {
-  // On a GPU one group waits while others work.
-  constexpr uint32_t kGroupsACore = 8;
-  TileOptions options{.packet_size = packet_size_, .most_parts = most_parts_of_dispatch(*device_)};
-  if (device_->is_cpu()) {
-    options.wanted_groups = kGroupsACore * core_count();
-    options.most_paths_a_lane = 16;
-  }
-  return options;
+  const gpu::DeviceProfile& profile = device_->profile();
+  return {.packet_size = packet_size_,
+          .most_parts = profile.most_parts,
+          .wanted_groups = profile.wanted_groups,
+          .most_paths_a_lane = profile.most_paths_a_lane};
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {

@@ -39,7 +39,7 @@ struct RayKernel::Impl {
       : device(the_device),
         scene(std::move(the_scene)),
         options(the_options),
-        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), kFirstRays) {
+        pacer(options.target_dispatch_ms.value_or(device.profile().target_dispatch_ms), kFirstRays) {
     const Stopwatch compiling;
     const layout::ViewConstants values = make_cast_constants(scene->constants());
     view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
@@ -70,7 +70,7 @@ struct RayKernel::Impl {
 
   bool fetches_texels() const {
     return scene->fetches_texels() && !options.avoids_texels &&
-           RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.limits().maxTexelBufferElements * gpu::kTexelBytes;
+           RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.profile().most_texel_bytes;
   }
 
   void make_buffers(size_t ray_count) {
@@ -99,7 +99,7 @@ struct RayKernel::Impl {
     make_buffers(input.size());
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
-    const uint32_t most_parts = most_parts_of_dispatch(device);
+    const uint32_t most_parts = device.profile().most_parts;
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -111,7 +111,7 @@ struct RayKernel::Impl {
       // Those beyond the last ray do nothing.
       const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
       const double time_ms = kernel->run(dispatch, *hits, {groups});
-      if (device.is_lavapipe()) check_loops();
+      if (device.profile().may_cut_loops) check_loops();
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;

@@ -31,7 +31,7 @@ struct RayKernelOptions {
   uint32_t packet_size = 1;
   /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
   bool avoids_texels = false;
-  /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (trace/tracing_kernel.h).
+  /// A single dispatch is not meant to take longer. Where empty, as suits the device.
   std::optional<double> target_dispatch_ms = std::nullopt;
   /// Fixed number of rays a dispatch, for tests; 0 adapts.
   uint32_t rays_per_dispatch = 0;

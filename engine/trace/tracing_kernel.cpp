@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "device/buffer.h"
 #include "device/device.h"
@@ -26,16 +25,6 @@ void Pacer::learn(double units, double time_ms) {
   // No faster than fourfold a step: the next tile may be dearer than the last.
   const double ideal = units * target_ms_ / std::max(time_ms, 1e-3);
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
-}
-
-double dispatch_target_ms(const gpu::Device& device) {
-  return device.is_cpu() ? 100.0 : 25.0;
-}
-
-uint32_t most_parts_of_dispatch(const gpu::Device& device) {
-  // As many as llvmpipe has threads unless it is told otherwise (Mesa's LP_MAX_THREADS).
-  constexpr uint32_t kMostThreads = 32;
-  return device.is_cpu() ? std::min(core_count(), kMostThreads) : 1;
 }
 
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,

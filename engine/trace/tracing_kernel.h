@@ -28,13 +28,6 @@ class Pacer {
   double units_;
 };
 
-/// How long a dispatch should take: GPU drivers kill those of seconds; CPU drivers do not, and at the end of each
-/// dispatch their threads wait for the last one.
-double dispatch_target_ms(const gpu::Device& device);
-
-/// To how many parts the work of a dispatch is dealt out at most (trace/share_out.h).
-uint32_t most_parts_of_dispatch(const gpu::Device& device);
-
 /// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
 using GroupCounts = std::array<uvec2, 2>;
 
