@@ -193,22 +193,22 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   }
 }
 
-Device::Device(const std::optional<std::string>& selection, const Presentation* presentation)
+Device::Device(const DeviceOptions& options)
     : validation_messages_(std::make_unique<std::atomic<uint64_t>>(0)),
       context_(load_vulkan()),
-      instance_(make_instance(
-          context_, presentation != nullptr ? presentation->instance_extensions : std::vector<const char*>())),
+      instance_(make_instance(context_, options.presentation != nullptr ? options.presentation->instance_extensions
+                                                                        : std::vector<const char*>())),
       messenger_(make_messenger(instance_, validation_messages_.get())) {
-  if (presentation != nullptr) {
-    surface_ = vk::raii::SurfaceKHR(instance_, presentation->make_surface(*instance_));
+  if (options.presentation != nullptr) {
+    surface_ = vk::raii::SurfaceKHR(instance_, options.presentation->make_surface(*instance_));
   }
   auto devices = enumerate(instance_);
   const std::vector<DeviceInfo> infos = describe_all(devices, *surface_);
-  const size_t index = select_device(infos, selection);
+  const size_t index = select_device(infos, options.selection);
   physical_ = std::move(devices[index]);
   info_ = infos[index];
   choice_ = "using " + info_.name + " (" + info_.type + ", " + info_.driver + "), " +
-            (selection           ? "asked for as the device"
+            (options.selection   ? "asked for as the device"
              : infos.size() == 1 ? "the only Vulkan device"
                                  : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
   translate_vulkan_errors([&] {
@@ -224,16 +224,13 @@ Device::Device(const std::optional<std::string>& selection, const Presentation* 
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
     // A layered driver must be told that its extension is known of.
-    std::vector<const char*> extensions;
     if (has_device_extension(physical_, "VK_KHR_portability_subset")) {
-      extensions.push_back("VK_KHR_portability_subset");
+      enabled_extensions_.push_back("VK_KHR_portability_subset");
     }
-    if (presentation != nullptr) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    // For measurements against double alone (tools/reporting): nothing else needs an optional feature.
-    has_fp64_ = physical_.getFeatures().shaderFloat64 == VK_TRUE;
-    vk::PhysicalDeviceFeatures features;
-    features.shaderFloat64 = has_fp64_ ? VK_TRUE : VK_FALSE;
-    device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions, &features));
+    if (options.presentation != nullptr) enabled_extensions_.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    enabled_features_ = pick_features(physical_.getFeatures(), options.features, info_.name);
+    device_ =
+        vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_, &enabled_features_));
     queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));
@@ -286,7 +283,11 @@ void DeviceDeleter::operator()(Device* device) const {
 }
 
 DeviceHandle open_device(const std::optional<std::string>& selection) {
-  return DeviceHandle(new Device(selection));
+  return open_device(DeviceOptions{.selection = selection});
+}
+
+DeviceHandle open_device(const DeviceOptions& options) {
+  return DeviceHandle(new Device(options));
 }
 
 const DeviceInfo& info_of(const Device& device) {
