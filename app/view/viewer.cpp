@@ -297,10 +297,10 @@ void Viewer::record_tracing(Frame& frame) {
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
     frame.on_finished = [this, view](const FinishedFrame& finished) {
-      // It is traced again, and taken then.
-      if (finished.has_cut_loops && finished.takes_many_paths) {
+      // It is not whole. Where it is traced again, it is taken then.
+      if (finished.has_cut_loops) {
         screenshot_.drop();
-        wants_screenshot_ = true;
+        wants_screenshot_ = finished.takes_many_paths;
         return;
       }
       stats_.view = view;
