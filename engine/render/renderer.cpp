@@ -238,7 +238,7 @@ struct Renderer::Impl {
   TunedRendererOptions options;
   size_t pipelines_before;
   Pacer pacer;
-  CutLoops cut_loops;
+  CutLoops cut_loops = CutLoops::of_pictures();
   SetupStats stats;
   SceneOnDevice scene;
   std::optional<Film> film;

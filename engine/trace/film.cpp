@@ -161,20 +161,18 @@ uint32_t Film::max_capacity() const {
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
                                   uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
                                   const PictureShaders& shaders, bool avoids_texels) {
-  const std::array constants{
-      gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
-      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features.words()[0]},
-      gpu::SpecializationConstant{layout::CONSTANT_MORE_FEATURES, features.words()[1]},
-      gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
-      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() && !avoids_texels ? 1U : 0U}};
+  const std::vector<gpu::SpecializationConstant> constants =
+      traversal_constants(features, scene.stack_size(), scene.fetches_texels() && !avoids_texels);
+  std::vector<gpu::SpecializationConstant> camera_constants = constants;
+  camera_constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});
   std::vector<gpu::BoundBuffer> buffers = scene.geometry();
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
   buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &view});
   buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
-  TracingKernel kernel(device, shaders.camera_stage, constants, buffers);
+  TracingKernel kernel(device, shaders.camera_stage, camera_constants, buffers);
   if (features.has_any(layout::FEATURE_MIRRORS)) {
     // Mirror rays go everywhere: each is traced alone.
-    kernel.add_stage(shaders.mirror_stage, std::span(constants).subspan(1), buffers);
+    kernel.add_stage(shaders.mirror_stage, constants, buffers);
   }
   return kernel;
 }

@@ -45,13 +45,10 @@ struct RayKernel::Impl {
     view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
     view_constants->write(std::as_bytes(std::span(&values, 1)));
     make_buffers(1);
-    const std::array constants{
-        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features.words()[0]},
-        gpu::SpecializationConstant{layout::CONSTANT_MORE_FEATURES, options.features.words()[1]},
-        gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
-        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, fetches_texels() ? 1U : 0U},
-        gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, options.packet_size},
-        gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
+    std::vector<gpu::SpecializationConstant> constants =
+        traversal_constants(options.features, scene->stack_size(), fetches_texels());
+    constants.push_back({layout::CONSTANT_PACKET_SIZE, options.packet_size});
+    constants.push_back({layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U});
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &*view_constants});
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
@@ -89,10 +86,11 @@ struct RayKernel::Impl {
     for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);
   }
 
-  void check_loops() const {
+  bool were_loops_cut() const {
+    if (!device.profile().may_cut_loops) return false;
     layout::Dispatch head;
     hits->read(std::as_writable_bytes(std::span(&head, 1)));
-    if (head.outcome.x != 0) throw make_cut_loops_error("take another device");
+    return head.outcome.x != 0;
   }
 
   double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
@@ -111,7 +109,7 @@ struct RayKernel::Impl {
       // Those beyond the last ray do nothing.
       const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
       const double time_ms = kernel->run(dispatch, *hits, {groups});
-      if (device.profile().may_cut_loops) check_loops();
+      CutLoops::of_rays().check(were_loops_cut());
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;

@@ -9,6 +9,7 @@
 
 #include "device/pipeline.h"
 #include "layout.h"
+#include "scene/features.h"
 
 namespace promin {
 
@@ -30,6 +31,10 @@ class Pacer {
 
 /// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
 using GroupCounts = std::array<uvec2, 2>;
+
+/// What every pipeline that traces is specialised to.
+std::vector<gpu::SpecializationConstant> traversal_constants(FeatureMask features, uint32_t stack_size,
+                                                             bool fetches_texels);
 
 /// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
 class TracingKernel {
