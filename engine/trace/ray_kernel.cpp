@@ -48,7 +48,7 @@ struct RayKernel::Impl {
     std::vector<gpu::SpecializationConstant> constants =
         traversal_constants(options.features, scene->stack_size(), fetches_texels());
     constants.push_back({layout::CONSTANT_PACKET_SIZE, options.packet_size});
-    constants.push_back({layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U});
+    constants.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, options.query == HitQuery::kAny ? 1U : 0U});
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &*view_constants});
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
