@@ -27,7 +27,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "shading.glsl"
 #include "path.glsl"
 #include "camera.glsl"
-#include "share_out.glsl"
+#include "group_rows.glsl"
 #include "loop_check.glsl"
 
 uvec3 ray_count = uvec3(0u);
@@ -50,7 +50,7 @@ uvec4 normal_and_depth(Ray ray, Hit hit) {
 
 // Of the packet's pixels those in the window, with their camera rays. False where there is none.
 bool begin_packet() {
-  uint place = PACKET_SIZE * (shared_out_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
+  uint place = PACKET_SIZE * (group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
   uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);
   uvec2 corner = BLOCK_SIZE * uvec2(block % blocks_per_row(), block / blocks_per_row());
   bool is_any_inside = false;

@@ -16,6 +16,6 @@
 #include "family.glsl"
 #include "node_boxes.glsl"
 #include "traversal.glsl"
-#include "share_out.glsl"
+#include "group_rows.glsl"
 #include "loop_check.glsl"
 #include "cast.glsl"

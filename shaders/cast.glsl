@@ -23,7 +23,7 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
 }
 
 void main() {
-  uint first = first_ray() + PACKET_SIZE * (shared_out_group() * LANES + gl_LocalInvocationIndex);
+  uint first = first_ray() + PACKET_SIZE * (group_number() * LANES + gl_LocalInvocationIndex);
   if (first >= end_ray()) return;
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];

@@ -17,7 +17,7 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
   // On a GPU one group waits while others work.
   constexpr uint32_t kGroupsACore = 8;
   profile.target_dispatch_ms = 100.0;
-  profile.most_parts = std::min(traits.core_count, kMostThreads);
+  profile.most_group_rows = std::min(traits.core_count, kMostThreads);
   profile.wanted_groups = kGroupsACore * traits.core_count;
   profile.most_paths_a_lane = 16;
   profile.compiles_packets_fast = false;

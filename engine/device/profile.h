@@ -27,11 +27,11 @@ struct DeviceProfile {
   /// buffer word by word, a texel at once.
   uint64_t most_texel_bytes = 0;
 
-  // How work is cut into dispatches and dealt out in them.
+  // How work is cut into dispatches and spread over the workgroups of each.
   /// How long a dispatch should take. At the end of each the threads of a CPU driver wait for the last one.
   double target_dispatch_ms = 25.0;
-  /// To how many parts the work of a dispatch is dealt out at most (trace/share_out.h).
-  uint32_t most_parts = 1;
+  /// In how many rows the workgroups of a dispatch come at most (trace/group_rows.h).
+  uint32_t most_group_rows = 1;
   /// Whether the driver may end loops that turn too often (trace/cut_loops.h): whoever traces then looks whether it
   /// did.
   bool may_cut_loops = false;

@@ -85,7 +85,7 @@ void Film::reserve(uint32_t pixel_count) {
 TileOptions Film::piece_options() const {
   const gpu::DeviceProfile& profile = device_->profile();
   return {.packet_size = packet_size_,
-          .most_parts = profile.most_parts,
+          .most_group_rows = profile.most_group_rows,
           .wanted_groups = profile.wanted_groups,
           .most_paths_a_lane = profile.most_paths_a_lane};
 }

@@ -13,7 +13,7 @@
 #include "device/device.h"
 #include "device_scene/device_scene.h"
 #include "trace/cut_loops.h"
-#include "trace/share_out.h"
+#include "trace/group_rows.h"
 #include "trace/tracing_kernel.h"
 
 namespace promin {
@@ -97,7 +97,7 @@ struct RayKernel::Impl {
     make_buffers(input.size());
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
-    const uint32_t most_parts = device.profile().most_parts;
+    const uint32_t most_group_rows = device.profile().most_group_rows;
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -107,7 +107,7 @@ struct RayKernel::Impl {
       const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
       const layout::Dispatch dispatch = make_cast_dispatch(scene->constants(), first, first + count);
       // Those beyond the last ray do nothing.
-      const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
+      const uvec2 groups = arrange_in_rows(divide_up(count, group_rays), most_group_rows);
       const double time_ms = kernel->run(dispatch, *hits, {groups});
       CutLoops::of_rays().check(were_loops_cut());
       pacer.learn(count, time_ms);

@@ -23,7 +23,7 @@ std::span<const uint32_t> cast_spirv();
 
 struct RayKernelOptions {
   /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; its workgroups take
-  /// the shares that shaders/share_out.glsl gives them.
+  /// the work that shaders/group_rows.glsl gives them.
   std::span<const uint32_t> spirv = cast_spirv();
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;

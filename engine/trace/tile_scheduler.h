@@ -14,7 +14,7 @@ namespace promin {
 /// A sample of each pixel of some blocks: one dispatch of each stage of a picture.
 struct TileSample {
   layout::Dispatch dispatch{};
-  /// Workgroups of shaders/camera_stage.comp (y = parts) and of shaders/mirror_stage.comp (y = 1).
+  /// Workgroups of shaders/camera_stage.comp (y = rows) and of shaders/mirror_stage.comp (y = 1).
   std::array<uvec2, 2> group_counts{};
   /// What it takes: blocks of 8x8 pixels.
   double units = 0.0;
@@ -25,8 +25,8 @@ struct TileSample {
 struct TileOptions {
   /// Pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
-  /// See trace/share_out.h.
-  uint32_t most_parts = 1;
+  /// See trace/group_rows.h.
+  uint32_t most_group_rows = 1;
   /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
   uint32_t wanted_groups = 0;
   /// Paths that a lane of the mirror stage takes one after the other, at most. llvmpipe lets a lane's loops turn 65535

@@ -27,7 +27,7 @@ DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 
 void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
   EXPECT_EQ(profile.target_dispatch_ms, 25.0);
-  EXPECT_EQ(profile.most_parts, 1U);
+  EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
   EXPECT_TRUE(profile.compiles_packets_fast);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
@@ -45,7 +45,7 @@ void expect_gpu(const DeviceProfile& profile) {
 void expect_cpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
   EXPECT_EQ(profile.target_dispatch_ms, 100.0);
-  EXPECT_EQ(profile.most_parts, 8U);
+  EXPECT_EQ(profile.most_group_rows, 8U);
   EXPECT_EQ(profile.wanted_groups, 64U);
   EXPECT_EQ(profile.most_paths_a_lane, 16U);
   EXPECT_TRUE(profile.sorts_rays);
@@ -84,11 +84,11 @@ TEST(ProfileTest, OtherCpuDevicesTakeNoPackets) {
   expect_cpu_without_packets(profile_of(true, 0));
 }
 
-TEST(ProfileTest, WorkIsDealtOutToAsManyThreadsAsTheDriverHas) {
-  EXPECT_EQ(profile_of(true, kLlvmpipe, 1).most_parts, 1U);
-  EXPECT_EQ(profile_of(true, kLlvmpipe, 64).most_parts, 32U);
+TEST(ProfileTest, ThereAreAsManyRowsOfGroupsAsTheDriverHasThreads) {
+  EXPECT_EQ(profile_of(true, kLlvmpipe, 1).most_group_rows, 1U);
+  EXPECT_EQ(profile_of(true, kLlvmpipe, 64).most_group_rows, 32U);
   EXPECT_EQ(profile_of(true, kLlvmpipe, 64).wanted_groups, 512U);
-  EXPECT_EQ(profile_of(false, kNvidia, 64).most_parts, 1U);
+  EXPECT_EQ(profile_of(false, kNvidia, 64).most_group_rows, 1U);
 }
 
 TEST(ProfileTest, DevicesWithoutTexelBuffersReadStorageBuffers) {
