@@ -38,7 +38,7 @@ bool is_lit[PACKET_SIZE];  // it shows a surface
 Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
 vec3 seen[PACKET_SIZE];  // from the hit, so far
-vec3 shares[PACKET_SIZE];
+vec3 contributions[PACKET_SIZE];
 
 // Bits of the normal, as wound or outward, and of the distance from the ray's origin; infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
@@ -99,31 +99,31 @@ void arrive() {
   }
 }
 
-// One source's shares, and a packet of the shadow rays that they need.
+// One source's contributions, and a packet of the shadow rays that they need.
 void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    shares[i] = vec3(0.0);
+    contributions[i] = vec3(0.0);
     packet[i].tmax = -1.0;
     if (!is_lit[i]) continue;
     // Copies of points and rays, here and elsewhere: glslang 12 fails over packets made of points made of packets.
     ShadingPoint point = points[i];
     LightSample sampled = sample_light(light, point.position);
-    shares[i] = unshadowed_share(point, -paths[i].direction, light, sampled);
-    if (!has(FEATURE_SHADOWS) || !(max_abs(shares[i]) > 0.0)) continue;
+    contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
+    if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
     Ray ray = shadow_ray(point, light, sampled);
     packet[i] = ray;
     ++ray_count.y;
   }
 }
 
-void add_shares(uint source) {
+void add_contributions(uint source) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     if (!is_lit[i]) continue;
     begin_source_log(source);
     if (packet[i].tmax >= 0.0) log_shadow_ray(packet[i], found[i]);
-    vec3 share = found[i].primitive == NO_PRIMITIVE ? shares[i] : vec3(0.0);
-    end_source_log(share);
-    precise vec3 sum = seen[i] + share;
+    vec3 contribution = found[i].primitive == NO_PRIMITIVE ? contributions[i] : vec3(0.0);
+    end_source_log(contribution);
+    precise vec3 sum = seen[i] + contribution;
     seen[i] = sum;
   }
 }
@@ -151,7 +151,7 @@ void trace_pixels() {
   for (;;) {
     trace_packet(!is_first_turn);
     if (!is_first_turn) {
-      add_shares(source);
+      add_contributions(source);
       ++source;
     }
     // A loop, which CPU drivers leave out where no lane is in it; both sides of a branch they execute.

@@ -208,8 +208,9 @@ struct Renderer::Impl {
       const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
       const uint32_t rows = band.hi.y - band.lo.y;
       const double done = static_cast<double>(y - window.lo.y) / result.image.size.y;
-      const double share = static_cast<double>(rows) / result.image.size.y;
-      trace_band(band, view, result, [&](double fraction) { return !progress || progress(done + share * fraction); });
+      const double fraction_of_band = static_cast<double>(rows) / result.image.size.y;
+      trace_band(band, view, result,
+                 [&](double fraction) { return !progress || progress(done + fraction_of_band * fraction); });
       read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width, view.samples_per_pixel,
                 result);
     }
