@@ -8,10 +8,10 @@ layout(constant_id = CONSTANT_MORE_FEATURES) const uint MORE_FEATURES = 0xFFFFFF
 // The number of entries that the traversal stack needs is one for each node above the deepest, and is known when the
 // tree is built.
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
-// The number of rays that an invocation traces together (traversal.glsl).
+// Rays that an invocation traces together (packet.glsl).
 layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
-// 1 where all of the kernel's rays ask for any hit.
-layout(constant_id = CONSTANT_ANY_HIT) const uint ANY_HIT = 0u;
+// All of the kernel's rays ask for any hit.
+layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 
 // This is 1 where the pipeline has the feature FEATURE_*, else 0. It is a constant.
 #define FEATURE_BIT(FEATURE) ((((FEATURE) < 32u ? FEATURES : MORE_FEATURES) >> ((FEATURE) & 31u)) & 1u)
@@ -48,25 +48,6 @@ layout(std430, set = 0, binding = BINDING_PRIMITIVES) readonly buffer Primitives
 layout(set = 0, binding = BINDING_NODE_TEXELS) uniform usamplerBuffer node_texels;
 layout(set = 0, binding = BINDING_PRIMITIVE_TEXELS) uniform usamplerBuffer primitive_texels;
 
-// A node without its children, which traversal reads separately.
-struct NodeBoxes {
-  uvec4 frame;
-  uvec4 lo;
-  uvec4 hi;
-};
-
-NodeBoxes load_boxes(uint index) {
-  if (FETCHES_TEXELS == 0u) return NodeBoxes(nodes[index].frame, nodes[index].lo, nodes[index].hi);
-  int first = int(NODE_TEXELS * index);
-  return NodeBoxes(texelFetch(node_texels, first), texelFetch(node_texels, first + 1),
-                   texelFetch(node_texels, first + 2));
-}
-
-uvec4 load_children(uint index) {
-  if (FETCHES_TEXELS == 0u) return nodes[index].children;
-  return texelFetch(node_texels, int(NODE_TEXELS * index + 3u));
-}
-
 Primitive load_primitive(uint index) {
   if (FETCHES_TEXELS == 0u) return primitives[index];
   int first = int(PRIMITIVE_TEXELS * index);
@@ -85,16 +66,7 @@ uint order_of(Primitive p) { return p.c.y; }
 uint object_hash_of(Primitive p) { return p.c.w & 0xFFFFu; }
 uint primitive_hash_of(Primitive p) { return p.c.w >> 16; }
 
-// These name the words of a node.
-vec3 origin_of(NodeBoxes node) { return uintBitsToFloat(node.frame.xyz); }
-vec3 steps_of(NodeBoxes node) {
-  return uintBitsToFloat(((uvec3(node.frame.w) >> uvec3(0u, 8u, 16u)) & 0xFFu) << 23);
-}
-uint child_count_of(NodeBoxes node) { return node.frame.w >> 24; }
-uvec3 low_planes_of(NodeBoxes node) { return node.lo.xyz; }
-uvec3 high_planes_of(NodeBoxes node) { return uvec3(node.lo.w, node.hi.xy); }
-
-// These name the bits of a child's word.
+// What the words of a child are.
 bool is_inner(uint child) { return (child & CHILD_IS_LEAF) == 0u; }
 uint first_of_leaf(uint child) { return child & CHILD_FIRST_MASK; }
 uint count_of_leaf(uint child) { return ((child >> CHILD_COUNT_SHIFT) & CHILD_COUNT_MASK) + 1u; }

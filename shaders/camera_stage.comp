@@ -15,6 +15,10 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "ray.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
+#include "packet.glsl"
+#include "packet_triangles.glsl"
+#include "family.glsl"
+#include "node_boxes.glsl"
 #include "traversal.glsl"
 #include "debug_views.glsl"
 #include "ray_log.glsl"
@@ -23,7 +27,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "shading.glsl"
 #include "path.glsl"
 #include "camera.glsl"
-#include "share_out.glsl"
+#include "group_rows.glsl"
 #include "loop_check.glsl"
 
 uvec3 ray_count = uvec3(0u);
@@ -33,8 +37,8 @@ bool is_inside[PACKET_SIZE];
 bool is_lit[PACKET_SIZE];  // the pixel shows a surface
 Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
-vec3 seen[PACKET_SIZE];  // light that the hit sends, summed so far
-vec3 shares[PACKET_SIZE];
+vec3 seen[PACKET_SIZE];  // from the hit, so far
+vec3 contributions[PACKET_SIZE];
 
 // The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
@@ -46,7 +50,7 @@ uvec4 normal_and_depth(Ray ray, Hit hit) {
 
 // Prepares those pixels of the packet that lie in the window, with their camera rays. False where none does.
 bool begin_packet() {
-  uint place = PACKET_SIZE * (shared_out_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
+  uint place = PACKET_SIZE * (group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
   uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);
   uvec2 corner = BLOCK_SIZE * uvec2(block % blocks_per_row(), block / blocks_per_row());
   bool is_any_inside = false;
@@ -96,32 +100,32 @@ void arrive() {
   }
 }
 
-// Computes the shares of one source, and makes a packet of the shadow rays that they need.
+// One source's contributions, and a packet of the shadow rays that they need.
 void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    shares[i] = vec3(0.0);
+    contributions[i] = vec3(0.0);
     packet[i].tmax = -1.0;
     if (!is_lit[i]) continue;
     // Points and rays are copied, here and elsewhere, because glslang 12 fails over packets made of points made of
     // packets.
     ShadingPoint point = points[i];
     LightSample sampled = sample_light(light, point.position);
-    shares[i] = unshadowed_share(point, -paths[i].direction, light, sampled);
-    if (!has(FEATURE_SHADOWS) || !(max_abs(shares[i]) > 0.0)) continue;
+    contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
+    if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
     Ray ray = shadow_ray(point, light, sampled);
     packet[i] = ray;
     ++ray_count.y;
   }
 }
 
-void add_shares(uint source) {
+void add_contributions(uint source) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     if (!is_lit[i]) continue;
     begin_source_log(source);
     if (packet[i].tmax >= 0.0) log_shadow_ray(packet[i], found[i]);
-    vec3 share = found[i].primitive == NO_PRIMITIVE ? shares[i] : vec3(0.0);
-    end_source_log(share);
-    precise vec3 sum = seen[i] + share;
+    vec3 contribution = found[i].primitive == NO_PRIMITIVE ? contributions[i] : vec3(0.0);
+    end_source_log(contribution);
+    precise vec3 sum = seen[i] + contribution;
     seen[i] = sum;
   }
 }
@@ -149,7 +153,7 @@ void trace_pixels() {
   for (;;) {
     trace_packet(!is_first_turn);
     if (!is_first_turn) {
-      add_shares(source);
+      add_contributions(source);
       ++source;
     }
     // This is a loop because CPU drivers leave a loop out where no lane is in it, but execute both sides of a branch.

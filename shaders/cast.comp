@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Answers rays: the nearest hit, or with ANY_HIT whether there is one.
+// Answers rays: the nearest hit, or where ALL_ASK_FOR_ANY whether there is one.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -11,7 +11,11 @@
 #include "ray.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
+#include "packet.glsl"
+#include "packet_triangles.glsl"
+#include "family.glsl"
+#include "node_boxes.glsl"
 #include "traversal.glsl"
-#include "share_out.glsl"
+#include "group_rows.glsl"
 #include "loop_check.glsl"
 #include "cast.glsl"

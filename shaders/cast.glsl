@@ -13,8 +13,8 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
   HitRecord miss = HitRecord(uvec4(floatBitsToUint(INFINITY), NO_ORDER, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   if (hit.primitive == NO_PRIMITIVE) return miss;
-  // A ray that asks for any hit is not told where the hit is.
-  if (ANY_HIT != 0u) return HitRecord(uvec4(0u, hit.order, 0u, 0u), uvec4(0u, 0u, 0u, steps));
+  // Who asks for any hit is not told where.
+  if (ALL_ASK_FOR_ANY != 0u) return HitRecord(uvec4(0u, hit.order, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   precise float t = hit.t * units_of(request);
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
   vec3 normal = surface_point(ray, load_primitive(hit.primitive), hit).normal;
@@ -23,7 +23,7 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
 }
 
 void main() {
-  uint first = first_ray() + PACKET_SIZE * (shared_out_group() * LANES + gl_LocalInvocationIndex);
+  uint first = first_ray() + PACKET_SIZE * (group_number() * LANES + gl_LocalInvocationIndex);
   if (first >= end_ray()) return;
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];
@@ -38,11 +38,11 @@ void main() {
     packet[i].tmax = packet[i].tmax < farthest ? packet[i].tmax : farthest;
   }
   step_counts = uvec2(0u);
-  trace_packet(ANY_HIT != 0u);
+  trace_packet(ALL_ASK_FOR_ANY != 0u);
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     HitRecord record = record_of(requests[i], packet[i], found[i]);
-    // Words that nobody reads are not stored, because a CPU driver stores word by word and lane by lane.
-    if (ANY_HIT != 0u && !has(FEATURE_STEP_COUNTS)) {
+    // A CPU driver stores word by word and lane by lane.
+    if (ALL_ASK_FOR_ANY != 0u && !has(FEATURE_STEP_COUNTS)) {
       hits[indices[i]].a.xy = record.a.xy;
     } else {
       hits[indices[i]] = record;

@@ -51,8 +51,8 @@ vec3 steps_color(Hit hit, vec4 normal_and_depth) {
   uint steps = step_counts.x + step_counts.y;
   precise float place = float(min(steps, HEAT_STEPS)) * (4.0 / float(HEAT_STEPS));
   uint below = min(uint(place), 3u);
-  precise float share = place - float(below);
-  precise vec3 color = (1.0 - share) * colors[below] + share * colors[below + 1u];
+  precise float fraction = place - float(below);
+  precise vec3 color = (1.0 - fraction) * colors[below] + fraction * colors[below + 1u];
   return color;
 }
 

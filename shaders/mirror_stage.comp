@@ -16,6 +16,10 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "ray.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
+#include "packet.glsl"
+#include "packet_triangles.glsl"
+#include "family.glsl"
+#include "node_boxes.glsl"
 #include "traversal.glsl"
 #include "ray_log.glsl"
 #include "secondary.glsl"
@@ -31,9 +35,9 @@ uint bounces;
 ShadingPoint point;  // the point that the path has reached
 vec3 seen;           // light that the point sends, summed so far
 uint source;         // the next one to look at; source_count() after the last
-vec3 share;          // what the source of the shadow ray adds where nothing blocks it
-Ray ray;             // the ray to trace next
-bool is_to_source;   // the ray is a shadow ray
+vec3 contribution;   // of the source that the shadow ray goes to
+Ray ray;             // to trace next
+bool is_to_source;   // it is a shadow ray
 
 void follow_path() {
   ray = make_ray(path.origin, path.direction, 0.0, INFINITY);
@@ -57,7 +61,7 @@ bool arrive(Hit hit) {
   return !is_miss;
 }
 
-void add_share(vec3 unblocked) {
+void add_contribution(vec3 unblocked) {
   end_source_log(unblocked);
   precise vec3 sum = seen + unblocked;
   seen = sum;
@@ -70,14 +74,14 @@ bool aim_at_source() {
     begin_source_log(source);
     LightRecord light = load_light(VIEW.first_index.y + source);
     LightSample sampled = sample_light(light, point.position);
-    share = unshadowed_share(point, -path.direction, light, sampled);
-    if (has(FEATURE_SHADOWS) && max_abs(share) > 0.0) {
+    contribution = unshadowed_contribution(point, -path.direction, light, sampled);
+    if (has(FEATURE_SHADOWS) && max_abs(contribution) > 0.0) {
       ray = shadow_ray(point, light, sampled);
       is_to_source = true;
       ++ray_count.y;
       return true;
     }
-    add_share(share);
+    add_contribution(contribution);
   }
   return false;
 }
@@ -104,7 +108,7 @@ void main() {
     bool is_on_surface = true;
     if (is_to_source) {
       log_shadow_ray(ray, hit);
-      add_share(hit.primitive == NO_PRIMITIVE ? share : vec3(0.0));
+      add_contribution(hit.primitive == NO_PRIMITIVE ? contribution : vec3(0.0));
     } else {
       is_on_surface = arrive(hit);
     }

@@ -102,24 +102,24 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
   return point;
 }
 
-// What a source adds to the point's light where nothing blocks it.
-vec3 unshadowed_share(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
+// What a source adds where nothing is between.
+vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
   vec3 to_light = normalize3(sampled.direction);
   precise float cosine = dot3(point.normal, to_light);
   if (!(cosine > 0.0 && sampled.strength > 0.0)) return vec3(0.0);
 
-  precise vec3 share = point.material.diffuse.xyz * point.color * light.diffuse.xyz * cosine;
+  precise vec3 contribution = point.material.diffuse.xyz * point.color * light.diffuse.xyz * cosine;
   if (has(FEATURE_SPECULAR) && point.material.specular.w > 0.0) {
     precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
     precise float highlight = dot3(mirrored, to_eye);
     if (highlight > 0.0) {
-      // Unit vectors give at most 1; anything beyond is rounding.
-      share += point.material.specular.xyz * light.specular.xyz *
+      // 1 is the most that unit vectors give; beyond it is rounding.
+      contribution += point.material.specular.xyz * light.specular.xyz *
                power(min(highlight, 1.0), point.material.specular.w);
     }
   }
-  share *= sampled.strength;
-  return share;
+  contribution *= sampled.strength;
+  return contribution;
 }
 
 Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {

@@ -25,8 +25,8 @@ FrameQueue::FrameQueue(const gpu::Device& device, Swapchain& swapchain)
       swapchain_(&swapchain),
       pool_(device.handle(),
             vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family())),
-      most_in_flight_(device.is_cpu() ? 1 : frames_.size()),
-      presents_late_(device.is_cpu()) {
+      most_in_flight_(std::min<size_t>(device.profile().most_frames_in_flight, frames_.size())),
+      presents_late_(device.profile().presents_late) {
   const vk::CommandBufferAllocateInfo allocation(*pool_, vk::CommandBufferLevel::ePrimary, 1);
   for (Frame& frame : frames_) {
     frame.commands = std::move(vk::raii::CommandBuffers(device.handle(), allocation).front());

@@ -63,8 +63,7 @@ struct Frame {
 /// Frames on their way to the window. Nothing here waits, but for finish().
 class FrameQueue {
  public:
-  /// Two frames are in flight on a GPU. On a CPU device one is: nothing would run beside it, and the next would only
-  /// show an older camera.
+  /// As many frames are in flight as suits the device.
   FrameQueue(const gpu::Device& device, Swapchain& swapchain);
 
   /// Says that a frame is wanted: its time counts from here on, or from the end of the frame before. Asking again has
@@ -93,7 +92,7 @@ class FrameQueue {
   std::array<Frame, 2> frames_;
   size_t most_in_flight_;
   size_t next_ = 0;
-  /// Whether presenting would wait for the device: then a frame is presented when it has finished.
+  /// See DeviceProfile.
   bool presents_late_;
   /// When the next frame was first asked for; none where it has not been.
   std::optional<double> asked_time_;

@@ -116,7 +116,7 @@ void view(const WindowOptions& options) {
   const std::string title = "promin - " + start.file.filename().string();
   Window window(start.view.size, title);
   const gpu::Presentation presentation = window.presentation();
-  const gpu::Device device(tracing.device, &presentation);
+  const gpu::Device device({.selection = tracing.device, .presentation = &presentation});
   stats.device = device.info();
   console.detail(device.choice());
   ScenePreparer maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));

@@ -30,7 +30,7 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       maker_(maker),
       file_(start.file),
       stats_(std::move(stats)),
-      follows_display_(!start.target_ms && !device.is_cpu()),
+      follows_display_(!start.target_ms && device.profile().keeps_up_with_display),
       target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
       control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
       stays_open_(start.stays_open),
@@ -298,10 +298,10 @@ void Viewer::record_tracing(Frame& frame) {
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
     frame.on_finished = [this, view](const FinishedFrame& finished) {
-      // The picture is traced again, and the screenshot is taken then.
-      if (finished.has_cut_loops && finished.takes_many_paths) {
+      // It is not whole. Where it is traced again, it is taken then.
+      if (finished.has_cut_loops) {
         screenshot_.drop();
-        wants_screenshot_ = true;
+        wants_screenshot_ = finished.takes_many_paths;
         return;
       }
       stats_.view = view;

@@ -30,7 +30,7 @@ struct ViewerStart {
   SceneChoice choice;
   View view;
   std::optional<std::string> present_mode;
-  /// nullopt stands for the display's refresh interval on a GPU and kCpuTargetMs on a CPU device.
+  /// None: the display's refresh interval where the device keeps up with it, else kCpuTargetMs.
   std::optional<double> target_ms;
   /// The scale, as ProgressivePicture::fix_scale takes it.
   std::optional<double> scale;

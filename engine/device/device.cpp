@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 
+#include "core/parallel.h"
 #include "device/buffer.h"
 #include "device/instance.h"
 #include "promin/device.h"
@@ -76,6 +77,14 @@ std::string driver_text(const vk::raii::PhysicalDevice& device, const vk::Physic
   const std::string name = driver->driverName.data();
   const std::string version = driver->driverInfo.data();
   return version.empty() ? name : name + " " + version;
+}
+
+DeviceTraits traits_of(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties) {
+  const auto driver = driver_properties(device, properties);
+  return {.is_cpu = properties.deviceType == vk::PhysicalDeviceType::eCpu,
+          .driver_id = driver ? static_cast<uint32_t>(driver->driverID) : 0,
+          .core_count = core_count(),
+          .texel_buffer_bytes = properties.limits.maxTexelBufferElements * kTexelBytes};
 }
 
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::SurfaceKHR surface) {
@@ -184,30 +193,28 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   }
 }
 
-Device::Device(const std::optional<std::string>& selection, const Presentation* presentation)
+Device::Device(const DeviceOptions& options)
     : validation_messages_(std::make_unique<std::atomic<uint64_t>>(0)),
       context_(load_vulkan()),
-      instance_(make_instance(
-          context_, presentation != nullptr ? presentation->instance_extensions : std::vector<const char*>())),
+      instance_(make_instance(context_, options.presentation != nullptr ? options.presentation->instance_extensions
+                                                                        : std::vector<const char*>())),
       messenger_(make_messenger(instance_, validation_messages_.get())) {
-  if (presentation != nullptr) {
-    surface_ = vk::raii::SurfaceKHR(instance_, presentation->make_surface(*instance_));
+  if (options.presentation != nullptr) {
+    surface_ = vk::raii::SurfaceKHR(instance_, options.presentation->make_surface(*instance_));
   }
   auto devices = enumerate(instance_);
   const std::vector<DeviceInfo> infos = describe_all(devices, *surface_);
-  const size_t index = select_device(infos, selection);
+  const size_t index = select_device(infos, options.selection);
   physical_ = std::move(devices[index]);
   info_ = infos[index];
   choice_ = "using " + info_.name + " (" + info_.type + ", " + info_.driver + "), " +
-            (selection           ? "asked for as the device"
+            (options.selection   ? "asked for as the device"
              : infos.size() == 1 ? "the only Vulkan device"
                                  : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
   translate_vulkan_errors([&] {
     const vk::PhysicalDeviceProperties properties = physical_.getProperties();
     limits_ = properties.limits;
-    is_cpu_ = properties.deviceType == vk::PhysicalDeviceType::eCpu;
-    const auto driver = driver_properties(physical_, properties);
-    is_lavapipe_ = driver && driver->driverID == vk::DriverId::eMesaLlvmpipe;
+    profile_ = make_profile(traits_of(physical_, properties));
     memory_ = physical_.getMemoryProperties();
     queue_family_ = *find_family(physical_, *surface_);
     if (const uint32_t bits = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits; bits > 0) {
@@ -217,16 +224,13 @@ Device::Device(const std::optional<std::string>& selection, const Presentation* 
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
     // A layered driver must be told that its extension is known of.
-    std::vector<const char*> extensions;
     if (has_device_extension(physical_, "VK_KHR_portability_subset")) {
-      extensions.push_back("VK_KHR_portability_subset");
+      enabled_extensions_.push_back("VK_KHR_portability_subset");
     }
-    if (presentation != nullptr) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    // For measurements against double alone (tools/reporting): nothing else needs an optional feature.
-    has_fp64_ = physical_.getFeatures().shaderFloat64 == VK_TRUE;
-    vk::PhysicalDeviceFeatures features;
-    features.shaderFloat64 = has_fp64_ ? VK_TRUE : VK_FALSE;
-    device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, extensions, &features));
+    if (options.presentation != nullptr) enabled_extensions_.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    enabled_features_ = pick_features(physical_.getFeatures(), options.features, info_.name);
+    device_ =
+        vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_, &enabled_features_));
     queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));
@@ -279,7 +283,11 @@ void DeviceDeleter::operator()(Device* device) const {
 }
 
 DeviceHandle open_device(const std::optional<std::string>& selection) {
-  return DeviceHandle(new Device(selection));
+  return open_device(DeviceOptions{.selection = selection});
+}
+
+DeviceHandle open_device(const DeviceOptions& options) {
+  return DeviceHandle(new Device(options));
 }
 
 const DeviceInfo& info_of(const Device& device) {

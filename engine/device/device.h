@@ -11,7 +11,10 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "device/optional_features.h"
 #include "device/pipeline.h"
+#include "device/profile.h"
+#include "promin/device.h"
 #include "promin/device_info.h"
 
 namespace promin::gpu {
@@ -23,29 +26,37 @@ struct Presentation {
   std::function<VkSurfaceKHR(VkInstance)> make_surface;
 };
 
+struct DeviceOptions {
+  /// See open_device (promin/device.h).
+  std::optional<std::string> selection = std::nullopt;
+  /// Where not null, a device that can present to its surface.
+  const Presentation* presentation = nullptr;
+  /// Optional features to enable; no other is.
+  std::vector<FeatureRequest> features = {};
+};
+
 /// Runs `work` and turns Vulkan's exceptions into RunError sentences that name the call and the result.
 void translate_vulkan_errors(const std::function<void()>& work);
 
 /// A Vulkan instance and one logical device with one queue that computes; for a window it draws and presents as well.
-/// Needs nothing beyond Vulkan 1.1's required minima. Several threads may use a device, each its own buffers and
-/// pipelines.
+/// Needs nothing beyond Vulkan 1.1's required minima, and enables nothing beyond them that is not asked for. Several
+/// threads may use a device, each its own buffers and pipelines.
 class Device {
  public:
-  /// See open_device (promin/device.h); with `presentation` of the devices that can present to its surface. Throws
-  /// DeviceError.
-  explicit Device(const std::optional<std::string>& selection, const Presentation* presentation = nullptr);
+  /// Throws DeviceError.
+  explicit Device(const DeviceOptions& options);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const { return info_; }
   const std::string& choice() const { return choice_; }
-  /// Whether the host's processor does the device's work.
-  bool is_cpu() const { return is_cpu_; }
-  /// Whether its shaders compute in double too; promin's own never do.
-  bool has_fp64() const { return has_fp64_; }
-  /// Whether it is Mesa's llvmpipe, which compiles large kernels in a fraction of a second where SwiftShader takes
-  /// minutes.
-  bool is_lavapipe() const { return is_lavapipe_; }
+  /// What suits it.
+  const DeviceProfile& profile() const { return profile_; }
+  /// Whether a feature that was asked for is there.
+  bool has_enabled(OptionalFeature feature) const { return has_feature(enabled_features_, feature); }
+  const vk::PhysicalDeviceFeatures& enabled_features() const { return enabled_features_; }
+  /// Names of the device's extensions that are on.
+  const std::vector<const char*>& enabled_extensions() const { return enabled_extensions_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
 
   const vk::raii::Device& handle() const { return device_; }
@@ -97,10 +108,13 @@ class Device {
   vk::raii::CommandBuffer commands_{nullptr};
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
-  bool is_cpu_ = false;
-  bool has_fp64_ = false;
-  bool is_lavapipe_ = false;
+  DeviceProfile profile_;
+  vk::PhysicalDeviceFeatures enabled_features_;
+  std::vector<const char*> enabled_extensions_;
   std::string choice_;
 };
+
+/// As open_device of promin/device.h.
+DeviceHandle open_device(const DeviceOptions& options);
 
 }  // namespace promin::gpu

@@ -121,7 +121,7 @@ void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
   shading_texels_ = std::move(texels);
   shading_.emplace(std::move(buffer));
   fetches_texels_ = std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_->size_bytes()}) <=
-                    device_->limits().maxTexelBufferElements * gpu::kTexelBytes;
+                    device_->profile().most_texel_bytes;
 }
 
 void DeviceScene::write_tail() {

@@ -44,7 +44,7 @@ class DeviceScene {
 
   /// The buffers that traversal reads: nodes and primitives, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> geometry() const;
-  /// Whether the device's texel buffers hold all of it: CONSTANT_FETCHES_TEXELS.
+  /// Whether all of it is read as texels (DeviceProfile::most_texel_bytes): CONSTANT_FETCHES_TEXELS.
   bool fetches_texels() const { return fetches_texels_; }
   /// The buffers that shading reads, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> shading() const;

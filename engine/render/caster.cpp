@@ -26,10 +26,6 @@ namespace {
 using layout::HitRecord;
 using layout::RayRecord;
 
-/// The number of rays that a lane of lavapipe traces together where they run side by side. 4 was measured to be the
-/// best of 1...8 (docs/performance_log.md).
-constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
-
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
   // max_abs_component is not used, because its calls of std::fmax took a seventh of the time of `promin cast`.
@@ -88,13 +84,13 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
   }
 
-  /// GPUs take rays as they come, because their lanes have few registers and hide latency. Among CPU devices
-  /// SwiftShader takes minutes to compile packets.
   enum class Order { kAsGiven, kInPackets, kSorted };
   Order order_of(std::span<const Ray> rays) const {
-    if (!device.is_cpu()) return Order::kAsGiven;
-    if (!are_side_by_side(rays, cube)) return Order::kSorted;
-    return device.is_lavapipe() ? Order::kInPackets : Order::kAsGiven;
+    const bool takes_packets = device.profile().ray_packet_size > 1;
+    const bool sorts_rays = device.profile().sorts_rays;
+    if (!takes_packets && !sorts_rays) return Order::kAsGiven;
+    if (are_side_by_side(rays, cube)) return takes_packets ? Order::kInPackets : Order::kAsGiven;
+    return sorts_rays ? Order::kSorted : Order::kAsGiven;
   }
 
   /// Empty where the rays are traced as they come.
@@ -111,7 +107,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
       RayKernelOptions options;
       options.features = features;
       options.query = query;
-      options.packet_size = is_packet ? kPacketSize : 1;
+      options.packet_size = is_packet ? device.profile().ray_packet_size : 1;
       if (!spirv.empty()) options.spirv = spirv;
       kernel.emplace(device, scene, options);
       stats.pipeline_ms += kernel->pipeline_ms();

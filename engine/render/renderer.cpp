@@ -91,7 +91,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       : device(the_device),
         options(the_options),
         pipelines_before(device.compiled_pipelines().size()),
-        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), TileScheduler::kMinBlocks),
+        pacer(options.target_dispatch_ms.value_or(device.profile().target_dispatch_ms), TileScheduler::kMinBlocks),
         scene(device, the_scene, options, stats) {
     // The callback belonged to the constructor's caller.
     options.progress = {};
@@ -202,8 +202,9 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
       const uint32_t rows = band.hi.y - band.lo.y;
       const double done = static_cast<double>(y - window.lo.y) / result.image.size.y;
-      const double share = static_cast<double>(rows) / result.image.size.y;
-      trace_band(band, view, result, [&](double fraction) { return !progress || progress(done + share * fraction); });
+      const double fraction_of_band = static_cast<double>(rows) / result.image.size.y;
+      trace_band(band, view, result,
+                 [&](double fraction) { return !progress || progress(done + fraction_of_band * fraction); });
       read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width, view.samples_per_pixel,
                 result);
     }
@@ -232,7 +233,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   TunedRendererOptions options;
   size_t pipelines_before;
   Pacer pacer;
-  CutLoops cut_loops;
+  CutLoops cut_loops = CutLoops::of_pictures();
   SetupStats stats;
   SceneOnDevice scene;
   std::optional<Film> film;

@@ -3,22 +3,23 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "promin/error.h"
 #include "trace/tile_scheduler.h"
 
 namespace promin {
 
-/// The error for loops of a shader that were cut (shaders/loop_check.glsl), so that its output is incomplete.
-inline RunError make_cut_loops_error(const std::string& cure) {
-  return RunError(
-      {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure});
-}
-
-/// Decides what to do about loops that the driver cuts; it is the one place for all pictures. They are traced again
-/// with one path per lane, and so are all that follow. Where that does not suffice, they are refused.
+/// What is done about loops that the driver cuts (shaders/loop_check.glsl), the one place for all that traces: what a
+/// shader wrote then is not all. Pictures are traced again with one path a lane, and so are all that follow; where that
+/// does not suffice, or there is no such way, they are refused.
 class CutLoops {
  public:
+  static CutLoops of_pictures() { return {true, "take a smaller depth or another device"}; }
+  /// Of pixels that are explained: a lane takes one path anyway.
+  static CutLoops of_pixels() { return {false, "take a smaller depth"}; }
+  static CutLoops of_rays() { return {false, "take another device"}; }
+
   bool takes_many_paths() const { return takes_many_paths_; }
 
   TileOptions limit(TileOptions options) const {
@@ -30,13 +31,26 @@ class CutLoops {
   /// traced again; throws RunError where that would be in vain.
   bool must_trace_again(bool has_cut_loops, bool took_many_paths) {
     if (!has_cut_loops) return false;
-    if (!took_many_paths) throw make_cut_loops_error("take a smaller depth or another device");
+    if (!took_many_paths) refuse();
     takes_many_paths_ = false;
     return true;
   }
 
+  /// The same of what is not traced with many paths: throws RunError if its loops were cut.
+  void check(bool has_cut_loops) const {
+    if (has_cut_loops) refuse();
+  }
+
  private:
-  bool takes_many_paths_ = true;
+  CutLoops(bool takes_many_paths, std::string cure) : takes_many_paths_(takes_many_paths), cure_(std::move(cure)) {}
+
+  [[noreturn]] void refuse() const {
+    throw RunError(
+        {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure_});
+  }
+
+  bool takes_many_paths_;
+  std::string cure_;
 };
 
 }  // namespace promin

@@ -58,7 +58,7 @@ class LoggingKernel {
     film_.write(std::as_bytes(std::span(&head_, 1)));
     kernel_.run(sample.dispatch, film_, sample.group_counts);
     film_.read(std::as_writable_bytes(std::span(&head_, 1)));
-    if (were_loops_cut(std::as_bytes(std::span(head_.ray_counts)))) throw make_cut_loops_error("take a smaller depth");
+    CutLoops::of_pixels().check(were_loops_cut(std::as_bytes(std::span(head_.ray_counts))));
     std::vector<layout::RayLog> log(head_.log_count.x);
     film_.read(std::as_writable_bytes(std::span(log)), sizeof(LoggedFilm));
     return log;

@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "camera_stage.spv.h"
-#include "core/parallel.h"
 #include "device/device.h"
 #include "mirror_stage.spv.h"
 
@@ -40,10 +39,9 @@ Counters lanes_of(std::span<const std::byte> counters) {
 /// Paths of the longest queue that a piece may need.
 constexpr uint32_t kMostQueuedPaths = TileScheduler::kMaxBlocks * kLanes;
 
-/// GPUs trace pixels alone: their lanes have few registers and hide latency. Of CPU devices SwiftShader takes minutes
-/// to compile packets. Steps and logs are of single rays.
+/// Steps and logs are of single rays.
 uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
-  return device.is_lavapipe() && !features.has_any(layout::FEATURE_STEP_COUNTS) ? 4 : 1;
+  return features.has_any(layout::FEATURE_STEP_COUNTS) ? 1 : device.profile().pixel_packet_size;
 }
 
 }  // namespace
@@ -85,14 +83,11 @@ void Film::reserve(uint32_t pixel_count) {
 }
 
 TileOptions Film::piece_options() const {
-  // On a GPU one group waits while others work.
-  constexpr uint32_t kGroupsACore = 8;
-  TileOptions options{.packet_size = packet_size_, .most_parts = most_parts_of_dispatch(*device_)};
-  if (device_->is_cpu()) {
-    options.wanted_groups = kGroupsACore * core_count();
-    options.most_paths_a_lane = 16;
-  }
-  return options;
+  const gpu::DeviceProfile& profile = device_->profile();
+  return {.packet_size = packet_size_,
+          .most_group_rows = profile.most_group_rows,
+          .wanted_groups = profile.wanted_groups,
+          .most_paths_a_lane = profile.most_paths_a_lane};
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
@@ -166,20 +161,18 @@ uint32_t Film::max_capacity() const {
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
                                   uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
                                   const PictureShaders& shaders, bool avoids_texels) {
-  const std::array constants{
-      gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, packet_size},
-      gpu::SpecializationConstant{layout::CONSTANT_FEATURES, features.words()[0]},
-      gpu::SpecializationConstant{layout::CONSTANT_MORE_FEATURES, features.words()[1]},
-      gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene.stack_size()},
-      gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, scene.fetches_texels() && !avoids_texels ? 1U : 0U}};
+  const std::vector<gpu::SpecializationConstant> constants =
+      traversal_constants(features, scene.stack_size(), scene.fetches_texels() && !avoids_texels);
+  std::vector<gpu::SpecializationConstant> camera_constants = constants;
+  camera_constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});
   std::vector<gpu::BoundBuffer> buffers = scene.geometry();
   for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
   buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &view});
   buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
-  TracingKernel kernel(device, shaders.camera_stage, constants, buffers);
+  TracingKernel kernel(device, shaders.camera_stage, camera_constants, buffers);
   if (features.has_any(layout::FEATURE_MIRRORS)) {
     // Mirror rays go everywhere: each is traced alone.
-    kernel.add_stage(shaders.mirror_stage, std::span(constants).subspan(1), buffers);
+    kernel.add_stage(shaders.mirror_stage, constants, buffers);
   }
   return kernel;
 }

@@ -32,7 +32,7 @@ double count_blocks(const uvec2& size) {
 ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
                                        FeatureMask features, double budget_ms)
     : device_(&device),
-      longest_piece_ms_(dispatch_target_ms(device)),
+      longest_piece_ms_(device.profile().target_dispatch_ms),
       budget_ms_(budget_ms),
       pacer_(budget_ms, TileScheduler::kMinBlocks) {
   films_.reserve(kFilmCount);

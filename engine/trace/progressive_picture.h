@@ -101,7 +101,7 @@ class ProgressivePicture {
   double budget_ms_;
   Pacer pacer_;
   bool is_warm_ = false;
-  CutLoops cut_loops_;
+  CutLoops cut_loops_ = CutLoops::of_pictures();
   uvec2 full_size_{1};
   std::optional<double> fixed_scale_;
   bool is_paused_ = false;

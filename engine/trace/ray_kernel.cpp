@@ -13,7 +13,7 @@
 #include "device/device.h"
 #include "device_scene/device_scene.h"
 #include "trace/cut_loops.h"
-#include "trace/share_out.h"
+#include "trace/group_rows.h"
 #include "trace/tracing_kernel.h"
 
 namespace promin {
@@ -39,19 +39,16 @@ struct RayKernel::Impl {
       : device(the_device),
         scene(std::move(the_scene)),
         options(the_options),
-        pacer(options.target_dispatch_ms.value_or(dispatch_target_ms(device)), kFirstRays) {
+        pacer(options.target_dispatch_ms.value_or(device.profile().target_dispatch_ms), kFirstRays) {
     const Stopwatch compiling;
     const layout::ViewConstants values = make_cast_constants(scene->constants());
     view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
     view_constants->write(std::as_bytes(std::span(&values, 1)));
     make_buffers(1);
-    const std::array constants{
-        gpu::SpecializationConstant{layout::CONSTANT_FEATURES, options.features.words()[0]},
-        gpu::SpecializationConstant{layout::CONSTANT_MORE_FEATURES, options.features.words()[1]},
-        gpu::SpecializationConstant{layout::CONSTANT_STACK_SIZE, scene->stack_size()},
-        gpu::SpecializationConstant{layout::CONSTANT_FETCHES_TEXELS, fetches_texels() ? 1U : 0U},
-        gpu::SpecializationConstant{layout::CONSTANT_PACKET_SIZE, options.packet_size},
-        gpu::SpecializationConstant{layout::CONSTANT_ANY_HIT, options.query == HitQuery::kAny ? 1U : 0U}};
+    std::vector<gpu::SpecializationConstant> constants =
+        traversal_constants(options.features, scene->stack_size(), fetches_texels());
+    constants.push_back({layout::CONSTANT_PACKET_SIZE, options.packet_size});
+    constants.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, options.query == HitQuery::kAny ? 1U : 0U});
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &*view_constants});
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
@@ -70,7 +67,7 @@ struct RayKernel::Impl {
 
   bool fetches_texels() const {
     return scene->fetches_texels() && !options.avoids_texels &&
-           RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.limits().maxTexelBufferElements * gpu::kTexelBytes;
+           RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.profile().most_texel_bytes;
   }
 
   void make_buffers(size_t ray_count) {
@@ -89,17 +86,18 @@ struct RayKernel::Impl {
     for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);
   }
 
-  void check_loops() const {
+  bool were_loops_cut() const {
+    if (!device.profile().may_cut_loops) return false;
     layout::Dispatch head;
     hits->read(std::as_writable_bytes(std::span(&head, 1)));
-    if (head.outcome.x != 0) throw make_cut_loops_error("take another device");
+    return head.outcome.x != 0;
   }
 
   double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
     make_buffers(input.size());
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
-    const uint32_t most_parts = most_parts_of_dispatch(device);
+    const uint32_t most_group_rows = device.profile().most_group_rows;
     const auto end = static_cast<uint32_t>(input.size());
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
@@ -109,9 +107,9 @@ struct RayKernel::Impl {
       const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
       const layout::Dispatch dispatch = make_cast_dispatch(scene->constants(), first, first + count);
       // Those beyond the last ray do nothing.
-      const uvec2 groups = share_out(divide_up(count, group_rays), most_parts);
+      const uvec2 groups = arrange_in_rows(divide_up(count, group_rays), most_group_rows);
       const double time_ms = kernel->run(dispatch, *hits, {groups});
-      if (device.is_lavapipe()) check_loops();
+      CutLoops::of_rays().check(were_loops_cut());
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;

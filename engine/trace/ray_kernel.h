@@ -23,7 +23,7 @@ std::span<const uint32_t> cast_spirv();
 
 struct RayKernelOptions {
   /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; its workgroups take
-  /// the shares that shaders/share_out.glsl gives them.
+  /// the work that shaders/group_rows.glsl gives them.
   std::span<const uint32_t> spirv = cast_spirv();
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;
@@ -31,7 +31,7 @@ struct RayKernelOptions {
   uint32_t packet_size = 1;
   /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
   bool avoids_texels = false;
-  /// A single dispatch is not meant to take longer. Where empty, dispatch_target_ms (trace/tracing_kernel.h).
+  /// A single dispatch is not meant to take longer. Where empty, as suits the device.
   std::optional<double> target_dispatch_ms = std::nullopt;
   /// Fixed number of rays a dispatch, for tests; 0 adapts.
   uint32_t rays_per_dispatch = 0;

@@ -8,7 +8,7 @@
 
 #include "core/divide_up.h"
 #include "device_scene/sampling.h"
-#include "trace/share_out.h"
+#include "trace/group_rows.h"
 
 namespace promin {
 namespace {
@@ -53,7 +53,7 @@ TileSample TileScheduler::next(double units) {
                                        .most_paths_a_lane = paths_a_lane,
                                        .first_queue_record = options_.first_queue_record,
                                        .lattice_generator = lattice_generator_});
-  piece.group_counts = {share_out(divide_up(block_count_, options_.packet_size), options_.most_parts),
+  piece.group_counts = {arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows),
                         uvec2(divide_up(block_count_, paths_a_lane), 1)};
   piece.units = block_count_;
   piece.most_rays_a_lane = (1.0 + view_.max_depth) * (1.0 + scene_.light_count) * piece.units;

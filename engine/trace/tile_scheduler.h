@@ -14,7 +14,7 @@ namespace promin {
 /// A sample of each pixel of some blocks: one dispatch of each stage of a picture.
 struct TileSample {
   layout::Dispatch dispatch{};
-  /// Workgroups of shaders/camera_stage.comp (y = parts) and of shaders/mirror_stage.comp (y = 1).
+  /// Workgroups of shaders/camera_stage.comp (y = rows) and of shaders/mirror_stage.comp (y = 1).
   std::array<uvec2, 2> group_counts{};
   /// The amount of its work, counted in blocks of 8x8 pixels.
   double units = 0.0;
@@ -25,9 +25,9 @@ struct TileSample {
 struct TileOptions {
   /// The number of pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
-  /// The largest number of parts that the work of a dispatch is dealt out to (trace/share_out.h).
-  uint32_t most_parts = 1;
-  /// The mirror stage has at least this many workgroups before a lane takes several paths.
+  /// See trace/group_rows.h.
+  uint32_t most_group_rows = 1;
+  /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
   uint32_t wanted_groups = 0;
   /// The largest number of paths that a lane of the mirror stage takes one after the other. llvmpipe lets a lane's
   /// loops turn 65535 times, all together (shaders/loop_check.glsl).

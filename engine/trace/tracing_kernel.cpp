@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "device/buffer.h"
 #include "device/device.h"
@@ -28,14 +27,12 @@ void Pacer::learn(double units, double time_ms) {
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
 
-double dispatch_target_ms(const gpu::Device& device) {
-  return device.is_cpu() ? 100.0 : 25.0;
-}
-
-uint32_t most_parts_of_dispatch(const gpu::Device& device) {
-  // This is the number of threads that llvmpipe has unless it is told otherwise (Mesa's LP_MAX_THREADS).
-  constexpr uint32_t kMostThreads = 32;
-  return device.is_cpu() ? std::min(core_count(), kMostThreads) : 1;
+std::vector<gpu::SpecializationConstant> traversal_constants(FeatureMask features, uint32_t stack_size,
+                                                             bool fetches_texels) {
+  return {{layout::CONSTANT_FEATURES, features.words()[0]},
+          {layout::CONSTANT_MORE_FEATURES, features.words()[1]},
+          {layout::CONSTANT_STACK_SIZE, stack_size},
+          {layout::CONSTANT_FETCHES_TEXELS, fetches_texels ? 1U : 0U}};
 }
 
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,

@@ -9,6 +9,7 @@
 
 #include "device/pipeline.h"
 #include "layout.h"
+#include "scene/features.h"
 
 namespace promin {
 
@@ -29,18 +30,14 @@ class Pacer {
   double units_;
 };
 
-/// The time that a dispatch should take. GPU drivers kill dispatches of seconds; CPU drivers do not, and at the end of
-/// each dispatch their threads wait for the last one.
-double dispatch_target_ms(const gpu::Device& device);
-
-/// The largest number of parts that the work of a dispatch is dealt out to (trace/share_out.h).
-uint32_t most_parts_of_dispatch(const gpu::Device& device);
-
-/// The workgroups of each stage of a TracingKernel, across and down; those of a stage that the kernel does not have are
-/// ignored.
+/// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
 using GroupCounts = std::array<uvec2, 2>;
 
-/// A pipeline that traces, or two that run one after the other, timed by the device's clock where it has one.
+/// What every pipeline that traces is specialised to.
+std::vector<gpu::SpecializationConstant> traversal_constants(FeatureMask features, uint32_t stack_size,
+                                                             bool fetches_texels);
+
+/// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
 class TracingKernel {
  public:
   TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,

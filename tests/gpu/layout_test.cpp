@@ -96,7 +96,7 @@ TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
   const std::map<std::string, uint32_t> expected = {
       {"FEATURES", layout::CONSTANT_FEATURES},       {"MORE_FEATURES", layout::CONSTANT_MORE_FEATURES},
       {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},   {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
-      {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE}, {"ANY_HIT", layout::CONSTANT_ANY_HIT}};
+      {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE}, {"ALL_ASK_FOR_ANY", layout::CONSTANT_ALL_ASK_FOR_ANY}};
   EXPECT_EQ(test::SpirvModule(k_camera_stage_spirv).spec_ids, expected);
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
 }

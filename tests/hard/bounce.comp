@@ -17,12 +17,16 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "ray.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
+#include "packet.glsl"
+#include "packet_triangles.glsl"
+#include "family.glsl"
+#include "node_boxes.glsl"
 #include "traversal.glsl"
 #include "secondary.glsl"
-#include "share_out.glsl"
+#include "group_rows.glsl"
 
 void main() {
-  uint index = first_ray() + shared_out_group() * BLOCK_SIZE * BLOCK_SIZE + gl_LocalInvocationIndex;
+  uint index = first_ray() + group_number() * BLOCK_SIZE * BLOCK_SIZE + gl_LocalInvocationIndex;
   if (index >= end_ray()) return;
   RayRecord request = load_ray(index);
   Ray ray = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,

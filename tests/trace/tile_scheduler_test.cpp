@@ -39,7 +39,7 @@ TEST(TileScheduler, CoverEverySampleOnceAndInOrder) {
 
 TEST(TileScheduler, GroupsOfEachStageSufficeForAllPixels) {
   for (const double units : {1.0, 100.0, 1050.0, 1e9}) {
-    TileScheduler pieces = cut({.packet_size = 4, .most_parts = 16, .wanted_groups = 16, .most_paths_a_lane = 16});
+    TileScheduler pieces = cut({.packet_size = 4, .most_group_rows = 16, .wanted_groups = 16, .most_paths_a_lane = 16});
     while (!pieces.is_done()) {
       const TileSample piece = pieces.next(units);
       const uint32_t blocks = piece.dispatch.range.y - piece.dispatch.range.x;

@@ -210,7 +210,7 @@ class BoxBench {
     Random random(6);
     std::vector<Boxes> nodes;
     for (size_t i = 0; i < kNodes; ++i) nodes.push_back(make_boxes(4.0 * random.direction(), random));
-    const size_t count = device_.is_cpu() ? size_t{1} << 14 : RayKernel::kMaxRays;
+    const size_t count = device_.profile().measured_rays;
     const std::vector<layout::RayRecord> requests = make_requests(make_chords(count, random));
     std::vector<layout::HitRecord> records(count);
     std::vector<RayKernel> kernels;

@@ -35,7 +35,7 @@ std::vector<Method> methods_for(const gpu::Device& device) {
       {"textbook", "quadratic of the textbook", "Möller and Trumbore", k_textbook_tests_spirv},
       {"recentred", "the same from the closest approach", "Möller and Trumbore from the closest approach",
        k_recentred_tests_spirv}};
-  if (device.has_fp64()) {
+  if (device.has_enabled(gpu::OptionalFeature::kFloat64)) {
     methods.push_back(
         {"fp64", "quadratic of the textbook in double", "Möller and Trumbore in double", k_fp64_tests_spirv});
   }

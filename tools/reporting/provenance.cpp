@@ -113,7 +113,7 @@ Json describe_run(const Session& session) {
           {"device_type", info.type},
           {"driver", info.driver},
           {"api_version", info.api_version},
-          {"has_fp64", session.device().has_fp64()},
+          {"has_fp64", session.device().has_enabled(gpu::OptionalFeature::kFloat64)},
           {"times_are", session.device().timestamp_period_ns() > 0.0 ? "device timestamps" : "the host's waiting"},
           {"cpu", cpu_model()},
           {"threads", std::thread::hardware_concurrency()},

@@ -6,14 +6,25 @@
 
 #include <cstdio>
 
+#include "device/device.h"
 #include "measure/meshes.h"
 #include "reporting/scene_names.h"
 #include "view_setup.h"
 
 namespace promin::report {
 
+namespace {
+
+/// With double where the device has it, as one of the methods computes in it; without, that method is left out.
+gpu::DeviceHandle open_device(const std::optional<std::string>& selection) {
+  return gpu::open_device(gpu::DeviceOptions{
+      .selection = selection, .features = {{.feature = gpu::OptionalFeature::kFloat64, .is_needed = false}}});
+}
+
+}  // namespace
+
 Session::Session(const ReportOptions& options)
-    : options_(options), names_(name_scenes(options.scenes)), device_(gpu::open_device(options.device)) {}
+    : options_(options), names_(name_scenes(options.scenes)), device_(open_device(options.device)) {}
 
 void Session::say(const std::string& text) const {
   std::fputs(fmt::format("promin-report: {}\n", text).c_str(), stderr);

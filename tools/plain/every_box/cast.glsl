@@ -4,17 +4,17 @@
 // instead of a hit is which of the last node's children it meets, a bit each, in the place of u; t counts all that it
 // meets.
 
-uint children_of(uint met) {
-  if (met == NO_FAMILY) return 0u;
-  uint others = (met >> 6) & 3u;
+uint children_of(uint family) {
+  if (family == NO_FAMILY) return 0u;
+  uint others = (family >> FAMILY_OTHERS_SHIFT) & FAMILY_PLACE_MASK;
   if (others == 3u) return 15u;
-  uint children = 1u << (met & 3u);
-  if (others >= 1u) children |= 1u << ((met >> 2) & 3u);
-  if (others >= 2u) children |= 1u << ((met >> 4) & 3u);
+  uint children = 1u << (family & FAMILY_PLACE_MASK);
+  if (others >= 1u) children |= 1u << ((family >> FAMILY_SECOND_SHIFT) & FAMILY_PLACE_MASK);
+  if (others >= 2u) children |= 1u << ((family >> FAMILY_THIRD_SHIFT) & FAMILY_PLACE_MASK);
   return children;
 }
 
-void test_every_box(bool any_hit) {
+void test_every_box(bool asks_for_any) {
   shifts[0] = 0.0;
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
   octant = packet[0].inverse_direction;

@@ -3,16 +3,19 @@
 // cast.glsl without a tree: each ray is tested against every primitive, so that nothing but the tests takes time and
 // no box hides what they answer. For a scene of one kind of primitive.
 
-void test_every_primitive(bool any_hit) {
+void test_every_primitive(bool asks_for_any) {
   shifts[0] = 0.0;
   found[0] = Hit(packet[0].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
-  if (has(FEATURE_PLANES)) intersect_unbounded(any_hit);
+  if (has(FEATURE_PLANES)) intersect_unbounded(asks_for_any);
   if (TREE_KIND_COUNT == 0u) return;
-  leaf_next = 0u;
-  leaf_end = first_plane();
-  INTERSECT_RUN(KIND_TRIANGLE, FEATURE_TRIANGLES, intersect_triangle, any_hit)
-  intersect_solids(any_hit);
+  leaf = Leaf(0u, first_plane(), false);
+  while (is_next_in_leaf(KIND_TRIANGLE, FEATURE_TRIANGLES)) {
+    Primitive p = load_primitive(leaf.next);
+    keep_nearest(0u, intersect_triangle(packet[0], p), leaf.next, order_of(p), asks_for_any);
+    ++leaf.next;
+  }
+  intersect_solids(asks_for_any);
 }
 
 #define trace_packet test_every_primitive

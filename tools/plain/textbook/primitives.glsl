@@ -37,8 +37,6 @@ real recentre(Ray ray, vec3 center, out real3 origin) {
 #endif
 }
 
-#define OTHER_TRIANGLES
-
 // Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 Crossing intersect_triangle(Ray ray, Primitive p) {
   real3 direction = real3(ray.direction);

@@ -1,17 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin's traversal over nodes whose boxes are fp32 planes as they are instead of bytes: two of layout.h's nodes stand
+// node_boxes.glsl for nodes whose boxes are fp32 planes as they are instead of bytes: two of layout.h's nodes stand
 // for one (tools/reporting/full_boxes.h). Of the first, frame = lower x of the four children, lo = lower y, hi = lower
 // z, children = upper x; of the second upper y, upper z, the children as they were, and how many there are.
 
-#define OTHER_BOXES
-uint meet_children(uint index);
-#define load_children load_full_children
-uvec4 load_full_children(uint index) {
-  if (FETCHES_TEXELS == 0u) return nodes[2u * index + 1u].hi;
-  return texelFetch(node_texels, int(8u * index + 6u));
+uvec4 load_children(uint node) {
+  if (FETCHES_TEXELS == 0u) return nodes[2u * node + 1u].hi;
+  return texelFetch(node_texels, int(8u * node + 6u));
 }
-#include "shaders/traversal.glsl"
 
 vec4 load_planes(uint index, uint place) {
   if (FETCHES_TEXELS != 0u) return uintBitsToFloat(texelFetch(node_texels, int(8u * index + place)));
@@ -38,13 +34,13 @@ vec4 slab(vec4 planes, float origin, float inverse) {
   return t;
 }
 
-uint meet_children(uint index) {
-  vec4 lo_x = load_planes(index, 0u);
-  vec4 lo_y = load_planes(index, 1u);
-  vec4 lo_z = load_planes(index, 2u);
-  vec4 hi_x = load_planes(index, 3u);
-  vec4 hi_y = load_planes(index, 4u);
-  vec4 hi_z = load_planes(index, 5u);
+uint meet_children(uint node) {
+  vec4 lo_x = load_planes(node, 0u);
+  vec4 lo_y = load_planes(node, 1u);
+  vec4 lo_z = load_planes(node, 2u);
+  vec4 hi_x = load_planes(node, 3u);
+  vec4 hi_y = load_planes(node, 4u);
+  vec4 hi_z = load_planes(node, 5u);
   bvec3 is_backward = lessThan(octant, vec3(0.0));
   vec4 near_x = is_backward.x ? hi_x : lo_x;
   vec4 near_y = is_backward.y ? hi_y : lo_y;
@@ -54,18 +50,18 @@ uint meet_children(uint index) {
   vec4 far_z = is_backward.z ? lo_z : hi_z;
 
   uvec4 met = NONE_MET;
-  [[unroll]] for (uint ray = 0u; ray < PACKET_SIZE; ++ray) {
-    vec3 inverse = packet[ray].inverse_direction;
-    vec3 near_origin = packet[ray].near_origin;
-    vec3 far_origin = packet[ray].far_origin;
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    vec3 inverse = packet[slot].inverse_direction;
+    vec3 near_origin = packet[slot].near_origin;
+    vec3 far_origin = packet[slot].far_origin;
     vec4 entry = greater(
         slab(near_x, near_origin.x, inverse.x),
         greater(slab(near_y, near_origin.y, inverse.y),
-                greater(slab(near_z, near_origin.z, inverse.z), vec4(packet[ray].tmin))));
+                greater(slab(near_z, near_origin.z, inverse.z), vec4(packet[slot].tmin))));
     vec4 exit = lesser(slab(far_x, far_origin.x, inverse.x),
                        lesser(slab(far_y, far_origin.y, inverse.y), slab(far_z, far_origin.z, inverse.z)));
-    met = add_met(met, lessThanEqual(entry, lesser(exit, vec4(limits[ray]))), entry);
+    met = add_met(met, lessThanEqual(entry, lesser(exit, vec4(limits[slot]))), entry);
   }
 
-  return family_of(index, load_child_count(index), met);
+  return family_of(node, load_child_count(node), met);
 }

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/profile.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
+#include <array>
+
+namespace promin::gpu {
+namespace {
+
+/// What is different on any CPU device, be its driver known or not.
+void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
+  // Threads that Mesa's CPU driver has unless it is told otherwise (LP_MAX_THREADS).
+  constexpr uint32_t kMostThreads = 32;
+  // On a GPU one group waits while others work.
+  constexpr uint32_t kGroupsACore = 8;
+  profile.target_dispatch_ms = 100.0;
+  profile.most_group_rows = std::min(traits.core_count, kMostThreads);
+  profile.wanted_groups = kGroupsACore * traits.core_count;
+  profile.most_paths_a_lane = 16;
+  profile.compiles_packets_fast = false;
+  profile.sorts_rays = true;
+  profile.most_frames_in_flight = 1;
+  profile.presents_late = true;
+  profile.keeps_up_with_display = false;
+  profile.measured_rays = 1U << 14;
+}
+
+/// Packets of 4 are measured best of 1...8 (docs/performance.md).
+void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
+  profile.compiles_packets_fast = true;
+  profile.pixel_packet_size = 4;
+  profile.ray_packet_size = 4;
+  profile.may_cut_loops = true;
+}
+
+/// What is different with one driver.
+struct DriverRow {
+  VkDriverId driver;
+  void (*suit)(DeviceProfile&, const DeviceTraits&);
+};
+
+/// The one place that knows drivers. Forms of traversal that suit a driver, or a processor under it, are chosen here
+/// too: a field of DeviceProfile, where need be one of DeviceTraits, and a row. SwiftShader has none: it is
+/// treated as any CPU device, of which it is the one that takes minutes to compile packets.
+constexpr std::array kDrivers{DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, suit_lavapipe}};
+
+}  // namespace
+
+DeviceProfile make_profile(const DeviceTraits& traits) {
+  DeviceProfile profile;
+  profile.most_texel_bytes = traits.texel_buffer_bytes;
+  if (traits.is_cpu) suit_cpu(profile, traits);
+  for (const DriverRow& row : kDrivers) {
+    if (static_cast<uint32_t>(row.driver) == traits.driver_id) row.suit(profile, traits);
+  }
+  return profile;
+}
+
+}  // namespace promin::gpu

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A packet against triangles. Kernels to compare with bring a file of this name with these two functions (tools/plain).
+
+// Few of a packet's rays meet a triangle whose box they meet: first whether they may, then where, one after the other.
+void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
+  ShearedTriangle sheared[PACKET_SIZE];
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    sheared[slot] = shear_triangle(packet[slot], p);
+    sheared[slot].may_be_met = sheared[slot].may_be_met && limits[slot] >= 0.0;
+  }
+  bool may_another_be_met;
+  do {
+    uint next = 0u;
+    ShearedTriangle of_next = sheared[0];
+    float shear_z = packet[0].shear.z;
+    float tmin = packet[0].tmin;
+    [[unroll]] for (uint slot = 1u; slot < PACKET_SIZE; ++slot) {
+      if (of_next.may_be_met || !sheared[slot].may_be_met) continue;
+      next = slot;
+      of_next = sheared[slot];
+      shear_z = packet[slot].shear.z;
+      tmin = packet[slot].tmin;
+    }
+    Crossing crossing = cross_triangle(of_next, shear_z, tmin);
+    may_another_be_met = false;
+    [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+      if (slot == next) {
+        keep_nearest(slot, crossing, index, order_of(p), asks_for_any);
+        sheared[slot].may_be_met = false;
+      }
+      may_another_be_met = may_another_be_met || sheared[slot].may_be_met;
+    }
+  } while (may_another_be_met);
+}
+
+// The same where ALL_ASK_FOR_ANY: most rays are told by a glance. Whether one is not, and the triangle needs a second
+// look, by intersect_packet_with_triangle.
+bool glance_at_triangle(Primitive p, uint index) {
+  bool needs_second_look = false;
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    ShearedTriangle sheared = shear_triangle(packet[slot], p);
+    Glance glance = glance_at(sheared, packet[slot].shear.z, packet[slot].tmin, limits[slot]);
+    bool may_be_met = sheared.may_be_met && limits[slot] >= 0.0;
+    // The limit of a ray that has moved along itself is not told to the last bit.
+    bool is_met = may_be_met && glance.is_met && shifts[slot] == 0.0;
+    needs_second_look = needs_second_look || (may_be_met && !is_met && !glance.is_missed);
+    if (is_met) {
+      found[slot].primitive = index;
+      found[slot].order = order_of(p);
+      limits[slot] = -1.0;
+    }
+  }
+  return needs_second_look;
+}

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/profile.h"
+
+#include <gtest/gtest.h>
+
+#include "rays/ray_tiles.h"
+
+namespace promin::gpu {
+namespace {
+
+// Of VkDriverId, as Vulkan's registry has them.
+constexpr uint32_t kNvidia = 4;
+constexpr uint32_t kIntel = 6;
+constexpr uint32_t kSwiftShader = 10;
+constexpr uint32_t kLlvmpipe = 13;
+constexpr uint32_t kNotInTheRegistry = 4711;
+
+constexpr uint64_t kTexelBytes = uint64_t{1} << 31;
+
+DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 8) {
+  return make_profile(
+      {.is_cpu = is_cpu, .driver_id = driver_id, .core_count = core_count, .texel_buffer_bytes = kTexelBytes});
+}
+
+/// What a GPU is given, be it discrete or integrated.
+void expect_gpu(const DeviceProfile& profile) {
+  EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
+  EXPECT_EQ(profile.target_dispatch_ms, 25.0);
+  EXPECT_EQ(profile.most_group_rows, 1U);
+  EXPECT_FALSE(profile.may_cut_loops);
+  EXPECT_TRUE(profile.compiles_packets_fast);
+  EXPECT_EQ(profile.pixel_packet_size, 1U);
+  EXPECT_EQ(profile.wanted_groups, 0U);
+  EXPECT_EQ(profile.most_paths_a_lane, 1U);
+  EXPECT_EQ(profile.ray_packet_size, 1U);
+  EXPECT_FALSE(profile.sorts_rays);
+  EXPECT_EQ(profile.most_frames_in_flight, 2U);
+  EXPECT_FALSE(profile.presents_late);
+  EXPECT_TRUE(profile.keeps_up_with_display);
+  EXPECT_EQ(profile.measured_rays, 1U << 20);
+}
+
+/// What any CPU device with 8 cores is given, but for what is lavapipe's own.
+void expect_cpu(const DeviceProfile& profile) {
+  EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
+  EXPECT_EQ(profile.target_dispatch_ms, 100.0);
+  EXPECT_EQ(profile.most_group_rows, 8U);
+  EXPECT_EQ(profile.wanted_groups, 64U);
+  EXPECT_EQ(profile.most_paths_a_lane, 16U);
+  EXPECT_TRUE(profile.sorts_rays);
+  EXPECT_EQ(profile.most_frames_in_flight, 1U);
+  EXPECT_TRUE(profile.presents_late);
+  EXPECT_FALSE(profile.keeps_up_with_display);
+  EXPECT_EQ(profile.measured_rays, 1U << 14);
+}
+
+void expect_cpu_without_packets(const DeviceProfile& profile) {
+  expect_cpu(profile);
+  EXPECT_FALSE(profile.may_cut_loops);
+  EXPECT_FALSE(profile.compiles_packets_fast);
+  EXPECT_EQ(profile.pixel_packet_size, 1U);
+  EXPECT_EQ(profile.ray_packet_size, 1U);
+}
+
+TEST(ProfileTest, GpusTakePixelsAndRaysAsTheyCome) {
+  expect_gpu(profile_of(false, kNvidia));
+  expect_gpu(profile_of(false, kIntel));
+  expect_gpu(profile_of(false, 0));
+}
+
+TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
+  const DeviceProfile profile = profile_of(true, kLlvmpipe);
+  expect_cpu(profile);
+  EXPECT_TRUE(profile.may_cut_loops);
+  EXPECT_TRUE(profile.compiles_packets_fast);
+  EXPECT_EQ(profile.pixel_packet_size, 4U);
+  EXPECT_EQ(profile.ray_packet_size, RayTiler::kPacketSize);
+}
+
+TEST(ProfileTest, OtherCpuDevicesTakeNoPackets) {
+  expect_cpu_without_packets(profile_of(true, kSwiftShader));
+  expect_cpu_without_packets(profile_of(true, kNotInTheRegistry));
+  expect_cpu_without_packets(profile_of(true, 0));
+}
+
+TEST(ProfileTest, ThereAreAsManyRowsOfGroupsAsTheDriverHasThreads) {
+  EXPECT_EQ(profile_of(true, kLlvmpipe, 1).most_group_rows, 1U);
+  EXPECT_EQ(profile_of(true, kLlvmpipe, 64).most_group_rows, 32U);
+  EXPECT_EQ(profile_of(true, kLlvmpipe, 64).wanted_groups, 512U);
+  EXPECT_EQ(profile_of(false, kNvidia, 64).most_group_rows, 1U);
+}
+
+TEST(ProfileTest, DevicesWithoutTexelBuffersReadStorageBuffers) {
+  EXPECT_EQ(make_profile({.is_cpu = true, .driver_id = kLlvmpipe}).most_texel_bytes, 0U);
+}
+
+}  // namespace
+}  // namespace promin::gpu

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// packet_triangles.glsl without glances: the textbook's triangle is met or not.
+
+void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    keep_nearest(slot, intersect_triangle(packet[slot], p), index, order_of(p), asks_for_any);
+  }
+}
+
+bool glance_at_triangle(Primitive p, uint index) {
+  intersect_packet_with_triangle(p, index, true);
+  return false;
+}
