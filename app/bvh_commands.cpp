@@ -150,7 +150,7 @@ void verify(const BvhOptions& options) {
   }
   if (console.is_quiet()) return;
   fmt::print("{} nodes, {} references to {} primitives, no fault: {}\n", packed.tree().nodes.size(),
-             packed.references.size(), packed.solid_count, options.file.string());
+             packed.references.size(), packed.bounded_count, options.file.string());
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ uint lattice_generator() { return dispatch.sampling.y; }
 uint blocks_per_row() { return dispatch.sampling.z; }
 bool is_orthographic() { return dispatch.sampling.w != 0u; }
 
-uint first_plane() { return dispatch.counts.x; }
-uint end_plane() { return dispatch.counts.x + dispatch.counts.y; }
+uint first_unbounded() { return dispatch.counts.x; }
+uint end_unbounded() { return dispatch.counts.x + dispatch.counts.y; }
 uint light_count() { return dispatch.counts.z; }
 uint loop_check_turns() { return dispatch.counts.w; }

@@ -92,7 +92,7 @@ void intersect_leaf(bool asks_for_any) {
 
 // What has no box lies behind the tree's primitives.
 void intersect_unbounded(bool asks_for_any) {
-  for (uint index = first_plane(); index < end_plane(); ++index) {
+  for (uint index = first_unbounded(); index < end_unbounded(); ++index) {
     Primitive p = load_primitive(index);
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (kind_of(p) == NUMBER) intersect_packet_with_##PREFIX(p, index, asks_for_any);

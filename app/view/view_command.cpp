@@ -75,15 +75,15 @@ void check_window_options(const WindowOptions& options) {
 }
 
 /// Waits for the picture while the window answers; nullopt where the user closes the window.
-std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, ScenePreparer& maker) {
+std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, ScenePreparer& preparer) {
   constexpr double kWait = 0.02;
-  while (!maker.is_ready()) {
-    window.set_title(title + " (" + maker.describe() + ")");
+  while (!preparer.is_ready()) {
+    window.set_title(title + " (" + preparer.describe() + ")");
     window.wait(kWait);
     if (window.wants_to_close()) return std::nullopt;
   }
   window.set_title(title);
-  return maker.take();
+  return preparer.take();
 }
 
 void view(const WindowOptions& options) {
@@ -119,13 +119,13 @@ void view(const WindowOptions& options) {
   const gpu::Device device({.selection = tracing.device, .presentation = &presentation});
   stats.device = device.info();
   console.detail(device.choice());
-  ScenePreparer maker(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
+  ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
   // This takes longest and comes last, because without a window it would be in vain.
-  maker.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
-  std::optional<ReadyPicture> picture = await_first_picture(window, title, maker);
+  preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
+  std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);
   if (!picture) return;
   gpu::translate_vulkan_errors(
-      [&] { Viewer(window, device, console, maker, std::move(*picture), std::move(start), stats).run(); });
+      [&] { Viewer(window, device, console, preparer, std::move(*picture), std::move(start), stats).run(); });
   check_validation(device, stats);
 }
 

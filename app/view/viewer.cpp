@@ -22,12 +22,12 @@ constexpr double kLeastTraceShare = 0.5;
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& maker,
+Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& preparer,
                ReadyPicture picture, ViewerStart start, RunStats stats)
     : window_(window),
       device_(device),
       console_(console),
-      maker_(maker),
+      preparer_(preparer),
       file_(start.file),
       stats_(std::move(stats)),
       follows_display_(!start.target_ms && device.profile().keeps_up_with_display),
@@ -95,7 +95,7 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     }
     if (!fit_window() || !has_work()) {
       const bool is_at_rest =
-          frames_.is_idle() && !maker_.is_busy() && !asker_.is_busy() && !screenshot_.is_busy() && !is_replaying();
+          frames_.is_idle() && !preparer_.is_busy() && !query_.is_busy() && !screenshot_.is_busy() && !is_replaying();
       window_.wait(is_at_rest ? kLongWait : kShortWait);
       // The rest lasts until the event that ends it.
       keep_camera();
@@ -157,16 +157,16 @@ void Viewer::update_screenshot() {
 void Viewer::update_picture() {
   // Both must be idle: a frame in flight traces the picture that would go, and a question uses the lights that would
   // change.
-  if (maker_.is_ready() && frames_.is_idle() && !asker_.is_busy()) {
+  if (preparer_.is_ready() && frames_.is_idle() && !query_.is_busy()) {
     try {
-      show_picture(std::move(*maker_.take()));
+      show_picture(std::move(*preparer_.take()));
     } catch (const std::exception& error) {
       // Whatever the error is, lack of memory included, the old picture stays.
       report_failure(error.what());
     }
   }
   const PictureRequest request{switches_.scene, asked_mode(), swapchain_.size()};
-  if (maker_.update(scene_, request, Window::now())) draw_again();
+  if (preparer_.update(scene_, request, Window::now())) draw_again();
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
@@ -193,12 +193,12 @@ void Viewer::show_picture(ReadyPicture ready) {
 
 void Viewer::update_answers() {
   try {
-    if (std::optional<PixelText> answer = asker_.take_text()) {
+    if (std::optional<PixelText> answer = query_.take_text()) {
       explanation_ = std::move(*answer);
       console_.detail(explanation_.text);
       draw_again();
     }
-    if (const std::optional<std::optional<dvec3>> middle = asker_.take_middle()) {
+    if (const std::optional<std::optional<dvec3>> middle = query_.take_middle()) {
       const Bounds bounds = bounds_of(*scene_->scene);
       const std::optional<dvec3> center =
           *middle || bounds.is_empty() ? *middle : std::optional(dvec3(bounds.center()));
@@ -206,18 +206,18 @@ void Viewer::update_answers() {
       draw_again();
     }
   } catch (const std::exception& error) {
-    wants_orbit_ = wants_orbit_ && asker_.is_looking_for_middle();
+    wants_orbit_ = wants_orbit_ && query_.is_looking_for_middle();
     report_failure(error.what());
   }
 }
 
 bool Viewer::awaits_mode() const {
-  return mode_ != asked_mode() && maker_.will_show(asked_mode());
+  return mode_ != asked_mode() && preparer_.will_show(asked_mode());
 }
 
 std::string Viewer::describe_awaited() const {
-  if (maker_.is_busy()) return maker_.describe();
-  return asker_.is_busy() ? "tracing a pixel" : "";
+  if (preparer_.is_busy()) return preparer_.describe();
+  return query_.is_busy() ? "tracing a pixel" : "";
 }
 
 bool Viewer::fit_window() {
@@ -269,7 +269,7 @@ void Viewer::take_finished(const FinishedFrame& finished) {
 
 bool Viewer::has_work() const {
   // The ready picture is taken in when the last frame is done, so no new frame may begin.
-  if (maker_.is_ready()) return false;
+  if (preparer_.is_ready()) return false;
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
   return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
 }

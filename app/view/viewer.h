@@ -48,8 +48,8 @@ struct ViewerStart {
 class Viewer {
  public:
   /// Throws RunError, vk::SystemError.
-  Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& maker, ReadyPicture picture,
-         ViewerStart start, RunStats stats);
+  Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& preparer,
+         ReadyPicture picture, ViewerStart start, RunStats stats);
   ~Viewer();
 
   /// SIGINT, SIGTERM and SIGHUP end it as the user does, and the program when what was recorded is written. Throws
@@ -107,7 +107,7 @@ class Viewer {
   Window& window_;
   const gpu::Device& device_;
   const Console& console_;
-  ScenePreparer& maker_;
+  ScenePreparer& preparer_;
   std::filesystem::path file_;
   RunStats stats_;
   /// Whether the target is the refresh interval of the display that the window is on.
@@ -118,7 +118,7 @@ class Viewer {
   /// The mode of the picture.
   RenderMode mode_;
   Switches switches_;
-  PixelQuery asker_;
+  PixelQuery query_;
   /// Whether an orbit begins when its center is found.
   bool wants_orbit_ = false;
   CameraControl control_;

@@ -17,7 +17,7 @@ void Viewer::handle_input() {
   for (const dvec2& place : window_.take_clicks()) {
     const dvec2 full_size(picture_->full_size());
     const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
-    asker_.ask_why(scene_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+    query_.ask_why(scene_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
   }
   if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
   if (window_.take_activity()) draw_again();
@@ -40,7 +40,7 @@ void Viewer::handle_press(Press press) {
       return;
     case Press::kOrbit:
       wants_orbit_ = !wants_orbit_ && !control_.is_orbiting();
-      if (wants_orbit_) return asker_.ask_middle(scene_, control_.camera());
+      if (wants_orbit_) return query_.ask_middle(scene_, control_.camera());
       return control_.fly();
     case Press::kBookmark:
       bookmarks_.push_back(control_.camera());

@@ -280,8 +280,8 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   TreeCheck(tree_, file).run();
 }
 
-void BvhFile::check_scene(uint64_t geometry_hash, size_t solid_count) const {
-  if (geometry_hash != tree_.geometry_hash || solid_count != tree_.primitive_count) {
+void BvhFile::check_scene(uint64_t geometry_hash, size_t bounded_count) const {
+  if (geometry_hash != tree_.geometry_hash || bounded_count != tree_.primitive_count) {
     refuse(file_, "the BVH file is stale: it was built over other geometry than the scene's");
   }
 }

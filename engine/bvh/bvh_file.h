@@ -23,7 +23,7 @@ class BvhFile {
   size_t size_bytes() const { return mapped_.bytes().size(); }
 
   /// Throws InputError unless the tree was built over this geometry (PackedScene).
-  void check_scene(uint64_t geometry_hash, size_t solid_count) const;
+  void check_scene(uint64_t geometry_hash, size_t bounded_count) const;
 
  private:
   std::filesystem::path file_;

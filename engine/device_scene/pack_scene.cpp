@@ -67,7 +67,7 @@ uint32_t hashes_of(size_t object, uint32_t primitive) {
 
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
 struct Collected {
-  UnsetVector<Primitive> solids;
+  UnsetVector<Primitive> bounded;
   UnsetVector<SurfaceRecord> solid_surfaces;
   UnsetVector<Bounds> boxes;
   std::vector<Primitive> unbounded;
@@ -97,7 +97,7 @@ class Collector {
     size_t count = 0;
     for (const world::Object& object : scene.objects) count += world::primitive_count(object.shape);
     check_count(scene, count);
-    result_.solids.reserve(count);
+    result_.bounded.reserve(count);
     result_.solid_surfaces.reserve(count);
     result_.boxes.reserve(count);
     for (const world::Object& object : scene.objects) {
@@ -159,9 +159,9 @@ class Collector {
   void add_whole(const Mesh& mesh, uint32_t flags) {
     const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
     result_.degenerate_count += degenerate.size();
-    const size_t first = result_.solids.size();
+    const size_t first = result_.bounded.size();
     const size_t count = mesh.triangles.size() - degenerate.size();
-    result_.solids.resize(first + count);
+    result_.bounded.resize(first + count);
     result_.solid_surfaces.resize(first + count);
     result_.boxes.resize(first + count);
     for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
@@ -178,7 +178,7 @@ class Collector {
         Primitive primitive = pack(whole);
         primitive.c.y = result_.order + triangle;
         primitive.c.w = hashes_of(object_, triangle);
-        result_.solids[place] = primitive;
+        result_.bounded[place] = primitive;
         result_.solid_surfaces[place] = {
             uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0), material_of(mesh, triangle) | flags)};
         result_.boxes[place] = bounds_of(whole);
@@ -239,10 +239,10 @@ class Collector {
   }
 
   void add_solid(Primitive primitive, uint32_t number, const Bounds& box, const uvec4& surface) {
-    check_count(scene_, result_.solids.size() + 1);
+    check_count(scene_, result_.bounded.size() + 1);
     primitive.c.y = result_.order++;
     primitive.c.w = hashes_of(object_, number);
-    result_.solids.push_back(primitive);
+    result_.bounded.push_back(primitive);
     result_.solid_surfaces.push_back({surface});
     result_.boxes.push_back(box);
   }
@@ -279,9 +279,9 @@ Bounds clip(const Primitive& p, const Bounds& window) {
 }
 
 /// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
-UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> solids) {
+UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> bounded) {
   UnsetVector<uint32_t> references = bvh.references;
-  const auto is_before = [&](uint32_t a, uint32_t b) { return solids[a].c.z < solids[b].c.z; };
+  const auto is_before = [&](uint32_t a, uint32_t b) { return bounded[a].c.z < bounded[b].c.z; };
   for_each_chunk(bvh.nodes.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
     for (const BvhNode& node : std::span(bvh.nodes).subspan(begin, end - begin)) {
       if (node.count == 0) continue;
@@ -301,10 +301,10 @@ vec4 center_and_radius(const Bounds& box) {
 }
 
 /// A hash of the geometry, without what tells which object a primitive belongs to.
-uint64_t hash_geometry(std::span<const Primitive> solids) {
+uint64_t hash_geometry(std::span<const Primitive> bounded) {
   Hash64 hash;
-  hash.add(solids.size());
-  for (const Primitive& p : solids) {
+  hash.add(bounded.size());
+  for (const Primitive& p : bounded) {
     const std::array words = {p.a, p.b};
     hash.add(std::as_bytes(std::span(words)));
     hash.add(p.c.x | uint64_t{p.c.z} << 32);
@@ -313,9 +313,9 @@ uint64_t hash_geometry(std::span<const Primitive> solids) {
 }
 
 /// The value of TreeView::kinds.
-uint32_t kinds_of(std::span<const Primitive> solids) {
+uint32_t kinds_of(std::span<const Primitive> bounded) {
   uint32_t kinds = 0;
-  for (const Primitive& p : solids) kinds |= 1U << p.c.z;
+  for (const Primitive& p : bounded) kinds |= 1U << p.c.z;
   return kinds;
 }
 
@@ -325,15 +325,15 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.features = geometry_features(scene.objects);
   packed.shown_materials = find_shown_materials(scene.objects, scene.materials.size());
   packed.degenerate_count = collected.degenerate_count;
-  packed.solid_count = static_cast<uint32_t>(collected.solids.size());
-  packed.kinds = kinds_of(collected.solids);
+  packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
+  packed.kinds = kinds_of(collected.bounded);
   const std::span<const uint32_t> references = packed.references;
   UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
   surfaces.resize(references.size());
   packed.primitives.resize(references.size());
   for_each_chunk(references.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      packed.primitives[i] = collected.solids[references[i]];
+      packed.primitives[i] = collected.bounded[references[i]];
       surfaces[i] = collected.solid_surfaces[references[i]];
     }
   });
@@ -353,7 +353,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
 
 TreeView PackedScene::tree() const {
   if (file) return file->tree();
-  return {nodes, references, solid_count, stack_size, kinds, geometry_hash, bvh};
+  return {nodes, references, bounded_count, stack_size, kinds, geometry_hash, bvh};
 }
 
 uint64_t PackedSurfaces::size_bytes() const {
@@ -392,7 +392,7 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
   const Bvh bvh =
       build_bvh(builder,
                 {collected.boxes,
-                 [&](uint32_t primitive, const Bounds& window) { return clip(collected.solids[primitive], window); }},
+                 [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
                 options);
   check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
                 "; take the builder sah");
@@ -404,8 +404,8 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
   packed.nodes = std::move(tree.nodes);
   packed.stack_size = tree.stack_size;
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
-  packed.references = sort_leaves_by_kind(bvh, collected.solids);
-  packed.geometry_hash = hash_geometry(collected.solids);
+  packed.references = sort_leaves_by_kind(bvh, collected.bounded);
+  packed.geometry_hash = hash_geometry(collected.bounded);
   pack_contents(packed, scene, collected);
   return packed;
 }
@@ -416,8 +416,8 @@ PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::
   const Stopwatch reading;
   PackedScene packed;
   packed.file = std::make_shared<const BvhFile>(bvh_file);
-  packed.geometry_hash = hash_geometry(collected.solids);
-  packed.file->check_scene(packed.geometry_hash, collected.solids.size());
+  packed.geometry_hash = hash_geometry(collected.bounded);
+  packed.file->check_scene(packed.geometry_hash, collected.bounded.size());
   packed.bvh_ms = reading.ms();
   const TreeView& tree = packed.file->tree();
   packed.bvh = tree.stats;

@@ -57,7 +57,7 @@ struct PackedScene {
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
   /// The number of primitives that the tree is built over: all but the unbounded ones and degenerate triangles.
-  uint32_t solid_count = 0;
+  uint32_t bounded_count = 0;
   /// See TreeView::kinds.
   uint32_t kinds = 0;
   uint64_t geometry_hash = 0;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "promin/scene.h"
-#include "shapes/world_shapes.h"
 
 // A scene on its way to the device: all in world space, in the fp32 numbers that the device sees. What is exact about a
 // picture or a hit is exact about these numbers.

@@ -7,7 +7,6 @@
 
 #include "promin/shapes.h"
 #include "shapes/placement.h"
-#include "shapes/world_shapes.h"
 
 namespace promin {
 

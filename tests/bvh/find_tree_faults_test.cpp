@@ -30,16 +30,16 @@ world::Scene scene_of(std::vector<world::Object> objects) {
 /// A packed scene with another tree in the place of its own: what a builder that splits primitives would make.
 PackedScene with_tree(const world::Scene& scene, const Bvh& bvh) {
   PackedScene packed = pack_scene(scene, "median");
-  std::vector<layout::Primitive> solids(packed.solid_count);
+  std::vector<layout::Primitive> bounded(packed.bounded_count);
   for (size_t slot = 0; slot < packed.references.size(); ++slot) {
-    solids[packed.references[slot]] = packed.primitives[slot];
+    bounded[packed.references[slot]] = packed.primitives[slot];
   }
   PackedTree tree = pack_tree(bvh);
   packed.nodes = std::move(tree.nodes);
   packed.stack_size = tree.stack_size;
   packed.references = bvh.references;
   packed.primitives.clear();
-  for (const uint32_t reference : bvh.references) packed.primitives.push_back(solids[reference]);
+  for (const uint32_t reference : bvh.references) packed.primitives.push_back(bounded[reference]);
   return packed;
 }
 
@@ -117,7 +117,7 @@ TEST(FindTreeFaults, TheFirstIsNamedWhateverTheThreads) {
                                                          told = fraction;
                                                          return true;
                                                        }});
-  EXPECT_EQ(by_one.count, packed.solid_count);
+  EXPECT_EQ(by_one.count, packed.bounded_count);
   EXPECT_EQ(by_many.count, by_one.count);
   EXPECT_EQ(by_many.first, by_one.first);
   EXPECT_EQ(by_one.first, "primitive 0 of object 1 reaches out of the box of its leaf or of a node above it");

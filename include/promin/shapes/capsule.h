@@ -6,24 +6,34 @@
 
 namespace promin {
 
-/// The convex hull of two spheres whose centres lie half_height before and behind the center along the axis; where one
-/// sphere holds the other, that sphere. `axis` has any length but 0; half_height may be 0, and one of the radii, which
-/// makes that end a point. A transform must keep spheres spheres.
+/// The convex hull of two spheres; where one holds the other, that sphere. A transform must keep spheres spheres. Sizes
+/// lie between 1e-22 and 1e15 in the world.
 struct Capsule {
+  /// Halfway between the centers of the spheres.
   dvec3 center{0.0};
+  /// From the bottom to the top, of any length but 0.
   dvec3 axis{0.0, 1.0, 0.0};
+  /// Distance of the spheres' centers from the middle; it may be 0.
   double half_height = 0.25;
+  /// Radius of the sphere at `center` - half_height along the axis; 0 makes a point, but not both radii are 0.
   double radius_bottom = 0.25;
+  /// Radius of the other sphere.
   double radius_top = 0.25;
 };
 
 namespace world {
-/// `axis` is a unit vector to fp32 rounding; the spheres are around center -+ axis * half_height.
+/// A capsule in the world, in the fp32 numbers that a device sees: bounds on errors are about these. The spheres are
+/// around center -+ axis * half_height.
 struct Capsule {
+  /// Halfway between the centers of the spheres.
   vec3 center{0.0F};
+  /// A unit vector to fp32 rounding.
   vec3 axis{0.0F, 1.0F, 0.0F};
+  /// Distance of the spheres' centers from the middle.
   float half_height = 0.25F;
+  /// Radius of the sphere at center - axis * half_height.
   float radius_bottom = 0.25F;
+  /// Radius of the other sphere.
   float radius_top = 0.25F;
 };
 }  // namespace world

@@ -22,4 +22,21 @@ struct Cone {
   double radius_top = 0.0;
 };
 
+namespace world {
+/// A cone in the world, in the fp32 numbers that a device sees: bounds on errors are about these. The disks lie at
+/// center -+ axis * half_height.
+struct Cone {
+  /// Middle of the axis.
+  vec3 center{0.0F};
+  /// A unit vector to fp32 rounding.
+  vec3 axis{0.0F, 1.0F, 0.0F};
+  /// Distance of the two ends from the middle.
+  float half_height = 0.25F;
+  /// Radius at center - axis * half_height.
+  float radius_bottom = 0.25F;
+  /// Radius at the other end.
+  float radius_top = 0.0F;
+};
+}  // namespace world
+
 }  // namespace promin

@@ -19,4 +19,19 @@ struct Cylinder {
   double radius = 0.25;
 };
 
+namespace world {
+/// A cylinder in the world, in the fp32 numbers that a device sees: bounds on errors are about these. The disks lie at
+/// center -+ axis * half_height.
+struct Cylinder {
+  /// Middle of the axis.
+  vec3 center{0.0F};
+  /// A unit vector to fp32 rounding.
+  vec3 axis{0.0F, 1.0F, 0.0F};
+  /// Distance of the two disks from the middle.
+  float half_height = 0.25F;
+  /// Radius of both.
+  float radius = 0.25F;
+};
+}  // namespace world
+
 }  // namespace promin

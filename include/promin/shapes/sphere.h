@@ -15,4 +15,14 @@ struct Sphere {
   double radius = 0.5;
 };
 
+namespace world {
+/// A sphere in the world, in the fp32 numbers that a device sees: bounds on errors are about these.
+struct Sphere {
+  /// Its middle.
+  vec3 center{0.0F};
+  /// Distance of the surface from the middle.
+  float radius = 0.5F;
+};
+}  // namespace world
+
 }  // namespace promin

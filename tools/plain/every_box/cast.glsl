@@ -21,7 +21,7 @@ void test_every_box(bool asks_for_any) {
   uint children = 0u;
   uint count = 0u;
   // A scene of boxes has as many nodes as its first plane's index says (tools/reporting/box_section.cpp).
-  for (uint i = 0u; i < first_plane(); ++i) {
+  for (uint i = 0u; i < first_unbounded(); ++i) {
     children = children_of(meet_children(i));
     count += uint(bitCount(children));
   }
