@@ -51,18 +51,13 @@ struct Approach {
   float t_near;
 };
 
-// `from_center` leads from the centre to the ray's origin.
-Approach approach_from(Ray ray, vec3 from_center) {
+Approach approach(Ray ray, vec3 center) {
+  precise vec3 from_center = ray.origin - center;
   precise float t_far = -dot3(from_center, ray.direction) * ray.inverse_length2;
   precise vec3 offset = from_center + t_far * ray.direction;
   precise float t_near = -dot3(offset, ray.direction) * ray.inverse_length2;
   precise vec3 corrected = offset + t_near * ray.direction;
   return Approach(corrected, t_far, t_near);
-}
-
-Approach approach(Ray ray, vec3 center) {
-  precise vec3 from_center = ray.origin - center;
-  return approach_from(ray, from_center);
 }
 
 // The t between which a ray is inside a convex shape, with the part of the surface at either end; nowhere unless
@@ -75,10 +70,13 @@ struct Inside {
 };
 #define NOWHERE Inside(INFINITY, PART_SIDE, -INFINITY, PART_SIDE)
 
-// The nearest end that is valid.
+// The nearest end that is valid, of the interval in which a ray is inside.
+Crossing nearest_crossing(Ray ray, float entry, uint entry_part, float exit, uint exit_part) {
+  if (!(entry <= exit)) return NO_CROSSING;
+  bool takes_entry = entry > ray.tmin;
+  return Crossing(takes_entry ? entry : exit, 0.0, 0.0, takes_entry ? entry_part : exit_part);
+}
+
 Crossing nearest_crossing(Ray ray, Inside inside) {
-  if (!(inside.entry <= inside.exit)) return NO_CROSSING;
-  bool takes_entry = inside.entry > ray.tmin;
-  return Crossing(takes_entry ? inside.entry : inside.exit, 0.0, 0.0,
-                  takes_entry ? inside.entry_part : inside.exit_part);
+  return nearest_crossing(ray, inside.entry, inside.entry_part, inside.exit, inside.exit_part);
 }

@@ -49,10 +49,22 @@ Inside hull_of(Inside a, Inside b) {
                 takes_exit ? b.exit : a.exit, takes_exit ? b.exit_part : a.exit_part);
 }
 
+// The approach to a point that lies `from_point` before the ray's origin.
+Approach approach_from(Ray ray, vec3 from_point) {
+  ray.origin = from_point;
+  return approach(ray, vec3(0.0));
+}
+
 Inside inside_end(Ray ray, vec3 from_center, float radius, uint part) {
   if (!(radius > 0.0)) return NOWHERE;
-  Inside inside = inside_sphere(ray, approach_from(ray, from_center), radius);
-  return Inside(inside.entry, part, inside.exit, part);
+  Approach near = approach_from(ray, from_center);
+  float scale = power_of_two_inverse(radius);
+  float chord2 = chord_square(ray, near, radius, scale);
+  if (!(chord2 >= 0.0)) return NOWHERE;
+  precise float half_chord = sqrt(chord2) * (1.0 / scale);
+  precise float entry = near.t_far + (near.t_near - half_chord);
+  precise float exit = near.t_far + (near.t_near + half_chord);
+  return Inside(entry, part, exit, part);
 }
 
 // The centres of the parts are never rounded in the world, but seen from the ray's origin: a capsule far from the

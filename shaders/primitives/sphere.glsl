@@ -6,23 +6,25 @@
 vec3 sphere_center(Primitive p) { return p.a.xyz; }
 float sphere_radius(Primitive p) { return p.a.w; }
 
-// Where a ray is inside the sphere around the point that it approaches.
-Inside inside_sphere(Ray ray, Approach near, float given_radius) {
-  // In units of a power of two near the radius nothing overflows or underflows that matters.
-  float scale = power_of_two_inverse(given_radius);
+// The square of half the chord in units of `scale`, a power of two near 1 / radius: so nothing overflows or underflows
+// that matters. Negative where there is no chord.
+float chord_square(Ray ray, Approach near, float given_radius, float scale) {
   precise vec3 offset = near.offset * scale;
   precise float radius = given_radius * scale;
   precise float distance = length3(offset);
   precise float chord2 = (radius - distance) * (radius + distance) * ray.inverse_length2;
-  if (!(chord2 >= 0.0)) return NOWHERE;
-  precise float half_chord = sqrt(chord2) * (1.0 / scale);
-  precise float entry = near.t_far + (near.t_near - half_chord);
-  precise float exit = near.t_far + (near.t_near + half_chord);
-  return Inside(entry, PART_SIDE, exit, PART_SIDE);
+  return chord2;
 }
 
 Crossing intersect_sphere(Ray ray, Primitive p) {
-  return nearest_crossing(ray, inside_sphere(ray, approach(ray, sphere_center(p)), sphere_radius(p)));
+  Approach near = approach(ray, sphere_center(p));
+  float scale = power_of_two_inverse(sphere_radius(p));
+  float chord2 = chord_square(ray, near, sphere_radius(p), scale);
+  if (!(chord2 >= 0.0)) return NO_CROSSING;
+  precise float half_chord = sqrt(chord2) * (1.0 / scale);
+  precise float entry = near.t_far + (near.t_near - half_chord);
+  precise float exit = near.t_far + (near.t_near + half_chord);
+  return nearest_crossing(ray, entry, PART_SIDE, exit, PART_SIDE);
 }
 
 SurfacePoint sphere_surface(Ray ray, Primitive p, Hit hit) {
