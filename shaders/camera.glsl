@@ -16,7 +16,7 @@ uvec2 pixel_in_block(uint lane) {
 vec2 lattice_point(uint index) {
   uint count = samples_per_pixel();
   uint row = (lattice_generator() * (index + 1u)) % (count + 1u) - 1u;
-  precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * VIEW.film_center.z;
+  precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * CAMERA.film_center.z;
   return point;
 }
 
@@ -24,12 +24,12 @@ vec2 lattice_point(uint index) {
 // t > near is what lies beyond the near plane. D is not normalised.
 Ray camera_ray(uvec2 window_pixel, uint sample_index) {
   vec2 corner = vec2(window_corner() + window_pixel);
-  precise vec2 from_center = (corner - VIEW.film_center.xy) + lattice_point(sample_index);
-  precise vec3 on_film = from_center.x * VIEW.right.xyz - from_center.y * VIEW.up.xyz;
+  precise vec2 from_center = (corner - CAMERA.film_center.xy) + lattice_point(sample_index);
+  precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;
   if (!is_orthographic()) {
-    precise vec3 direction = VIEW.look.xyz + on_film;
-    return make_ray(VIEW.eye.xyz, direction, VIEW.eye.w, INFINITY);
+    precise vec3 direction = CAMERA.look.xyz + on_film;
+    return make_ray(CAMERA.eye.xyz, direction, CAMERA.eye.w, INFINITY);
   }
-  precise vec3 origin = VIEW.eye.xyz + on_film;
-  return make_ray(origin, VIEW.look.xyz, VIEW.eye.w, INFINITY);
+  precise vec3 origin = CAMERA.eye.xyz + on_film;
+  return make_ray(origin, CAMERA.look.xyz, CAMERA.eye.w, INFINITY);
 }

@@ -86,7 +86,7 @@ void arrive() {
     Ray ray = packet[i];
     put_record(paths[i], ray, found[i]);
     if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
-      seen[i] = debug_color(found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
+      seen[i] = debug_color(ray, found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
       continue;
     }
     begin_path_log(ray, found[i], 0u, paths[i].weight);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // Debug views: what pictures show instead of light (docs/shadings.md), which is the hit of a camera ray or the cost of
-// finding it. Each view of promin/kinds/debug_views.def has a function *_color here. It takes the hit and
-// `normal_and_depth`, which are those of the AOVs, and is called on a miss as well.
+// finding it. Each view of promin/kinds/debug_views.def has a function *_color here. It takes the camera ray,
+// its hit and `normal_and_depth`, which are those of the AOVs, and is called on a miss as well.
 
 const uint DEBUG_VIEW = (MORE_FEATURES >> DEBUG_VIEW_SHIFT) & DEBUG_VIEW_MASK;
 
@@ -15,27 +15,27 @@ vec3 color_of_hash(uint hash) {
 
 bool is_miss(Hit hit) { return hit.primitive == NO_PRIMITIVE; }
 
-vec3 normals_color(Hit hit, vec4 normal_and_depth) {
+vec3 normals_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   if (is_miss(hit)) return vec3(0.0);
   precise vec3 color = 0.5 + 0.5 * normal_and_depth.xyz;
   return color;
 }
 
-vec3 uv_color(Hit hit, vec4 normal_and_depth) {
+vec3 uv_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   if (is_miss(hit)) return vec3(0.0);
   precise vec3 weights = vec3(hit.u, hit.v, 1.0 - hit.u - hit.v);
   return weights;
 }
 
-vec3 object_color(Hit hit, vec4 normal_and_depth) {
+vec3 object_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   return is_miss(hit) ? vec3(0.0) : color_of_hash(object_hash_of(load_primitive(hit.primitive)));
 }
 
-vec3 primitive_color(Hit hit, vec4 normal_and_depth) {
+vec3 primitive_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   return is_miss(hit) ? vec3(0.0) : color_of_hash(primitive_hash_of(load_primitive(hit.primitive)));
 }
 
-vec3 depth_color(Hit hit, vec4 normal_and_depth) {
+vec3 depth_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   if (is_miss(hit)) return vec3(0.0);
   float size = VIEW.tree_bounds.w > 0.0 ? VIEW.tree_bounds.w : 1.0;
   precise float nearness = size / (size + normal_and_depth.w);
@@ -45,7 +45,7 @@ vec3 depth_color(Hit hit, vec4 normal_and_depth) {
 
 // A heat map from black over violet, red and orange to white. The five colours are a quarter of the perceived lightness
 // (L*) apart.
-vec3 steps_color(Hit hit, vec4 normal_and_depth) {
+vec3 steps_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   const vec3 colors[5] =
       vec3[](vec3(0.0), vec3(0.1, 0.0, 0.317), vec3(0.7, 0.04, 0.09), vec3(1.0, 0.375, 0.03), vec3(1.0));
   uint steps = step_counts.x + step_counts.y;
@@ -56,9 +56,9 @@ vec3 steps_color(Hit hit, vec4 normal_and_depth) {
   return color;
 }
 
-vec3 debug_color(Hit hit, vec4 normal_and_depth) {
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
-  if (DEBUG_VIEW == NUMBER) return PREFIX##_color(hit, normal_and_depth);
+vec3 debug_color(Ray ray, Hit hit, vec4 normal_and_depth) {
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
+  if (DEBUG_VIEW == NUMBER) return PREFIX##_color(ray, hit, normal_and_depth);
 #include "promin/kinds/debug_views.def"
   return vec3(0.0);
 }

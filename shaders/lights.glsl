@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights as a surface point sees them. Each kind of promin/kinds/lights.def has a function sample_*.
 
-// A source as a surface point sees it: the shadow ray's direction (not normalised) and its tmax, and a factor to the
-// source's powers.
+// A source as a surface point sees it. The shadow ray's direction is as long as the way to where t = 1, so a source
+// with a place has it there and tmax 1; one at infinity has tmax INFINITY and a direction of any length. Strength is a
+// factor to the source's powers.
 struct LightSample {
   vec3 direction;
   float tmax;
@@ -14,8 +15,10 @@ struct LightSample {
 #include "promin/kinds/lights.def"
 
 LightSample sample_light(LightRecord light, vec3 position) {
-#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  if (has(FEATURE_##FEATURE) && (LIGHT_KIND_COUNT == 1u || light.kind.x == NUMBER)) return sample_##PREFIX(light, position);
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)            \
+  if (has(FEATURE_##FEATURE) && (LIGHT_KIND_COUNT == 1u || light.kind.x == NUMBER)) { \
+    return sample_##PREFIX(light, position);                                          \
+  }
 #include "promin/kinds/lights.def"
   // The pipeline was specialised to none of this kind, so the light adds nothing.
   return LightSample(vec3(0.0), 0.0, 0.0);

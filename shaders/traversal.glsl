@@ -187,17 +187,19 @@ void descend_from_nearby(bool asks_for_any) {
   }
 }
 
-// Fills `found` from `packet`: with the nearest hits, or with `asks_for_any` some hits; where there is none, `primitive` is
-// NO_PRIMITIVE. Where ALL_ASK_FOR_ANY only that and `order` are told.
+// Fills `found` from `packet`: with the nearest hits, or with `asks_for_any` some hits; where there is none,
+// `primitive` is NO_PRIMITIVE. Where ALL_ASK_FOR_ANY only that and `order` are told.
 void trace_packet(bool asks_for_any) {
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
     shifts[slot] = 0.0;
     found[slot] = Hit(packet[slot].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
     limits[slot] = packet[slot].tmin < packet[slot].tmax ? packet[slot].tmax : -1.0;
   }
+  bool has_unbounded = false;
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  if (has(FEATURE_##FEATURE)) intersect_unbounded(asks_for_any);
+  has_unbounded = has_unbounded || has(FEATURE_##FEATURE);
 #include "promin/kinds/primitives.def"
+  if (has_unbounded) intersect_unbounded(asks_for_any);
   if (TREE_KIND_COUNT == 0u) return;
   descend_from_nearby(asks_for_any);
 }

@@ -201,7 +201,10 @@ class SceneReader:
 
     def _add_light(self, light, world):
         classic = self._extension(light, "PROMIN_lights_phong")
-        if classic is None or classic.get("attenuation", "none") != "none" or light["type"] == "spot":
+        if classic is None or classic.get("attenuation", "none") != "none" or light["type"] not in (
+            "point",
+            "directional",
+        ):
             raise Unsupported("light sources with falloff or a cone")
         color = [c * light.get("intensity", 1) for c in light.get("color", (1, 1, 1))]
         if classic.get("diffuseColor", color) != classic.get("specularColor", color):
@@ -209,7 +212,7 @@ class SceneReader:
         color = classic.get("diffuseColor", color)
         if light["type"] == "point":
             self.add_point_light(transform(world, (0, 0, 0)), color)
-        else:
+        elif light["type"] == "directional":
             self.add_directional_light(unit(transform(world, (0, 0, 1), 0.0)), color)
 
     def _add_node(self, index, parent):

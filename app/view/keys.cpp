@@ -13,10 +13,16 @@ constexpr Press camera(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstCamera) + number - 1);
 }
 
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ", " HELP
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ", " HELP
 constexpr const char* kDebugViewHelp = "light"
 #include "promin/kinds/debug_views.def"
     ;
+
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) +1
+static_assert(GLFW_KEY_F1
+#include "promin/kinds/debug_views.def"
+                  < GLFW_KEY_F12,
+              "a debug view would have the key of the screenshot: give the later ones other keys");
 
 constexpr Press debug_view(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstDebugView) + number);
@@ -50,7 +56,7 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
     KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
 // F1 shows light, F2 the first debug view, and so on; F12 is the screenshot's.
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   KeyBinding{GLFW_KEY_F1 + static_cast<int>(NUMBER), "", "", {}, debug_view(NUMBER)},
 #include "promin/kinds/debug_views.def"
     KeyBinding{GLFW_KEY_P, "P", "pause refining, or a replay", {}, Press::kPause},

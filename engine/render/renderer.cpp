@@ -179,12 +179,17 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
 
   /// Reads a pixel's AOVs from its two records (shaders/film.glsl).
   void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, size_t at, Aovs& aovs) const {
-    aovs.normal[at] = vec3_of(normal_and_depth);
-    aovs.depth[at] = std::bit_cast<float>(normal_and_depth.w);
-    if (pixel.w == layout::NO_ORDER) return;
-    const PrimitiveId id = primitive_of_order(scene.numbers(), pixel.w);
-    aovs.object[at] = id.object;
-    aovs.primitive[at] = id.primitive;
+    PrimitiveId id{Aovs::kNoId, Aovs::kNoId};
+    if (pixel.w != layout::NO_ORDER) id = primitive_of_order(scene.numbers(), pixel.w);
+    // Members have the names of the table, so an AOV that nothing is read into does not compile.
+    const struct {
+      float depth;
+      vec3 normal;
+      uint32_t object;
+      uint32_t primitive;
+    } told{std::bit_cast<float>(normal_and_depth.w), vec3_of(normal_and_depth), id.object, id.primitive};
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) aovs.FIELD[at] = told.FIELD;
+#include "promin/kinds/aovs.def"
   }
 
   RenderResult render(const View& view, const ProgressCallback& progress) {

@@ -8,6 +8,7 @@
 
 #include "core/rounding.h"
 #include "layout.h"
+#include "scene/light_kinds.h"
 
 namespace promin {
 namespace {
@@ -40,7 +41,7 @@ constexpr bool are_bits_distinct() {
   for (uint bit = 0; bit < 8; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
   return std::ranges::all_of(uses, [](int count) { return count <= 1; });
 }
-static_assert(are_bits_distinct());
+static_assert(are_bits_distinct(), "two rows of the tables, or one and the debug view, have the same bit of features");
 
 /// Leaves are sorted by kind and traversed in the order of the table.
 constexpr bool do_kinds_ascend() {
@@ -82,8 +83,7 @@ FeatureMask feature_of(LightKind kind) {
 }
 
 bool falls_off(const Light& light) {
-  const bool has_place = light.kind == LightKind::kPoint || light.kind == LightKind::kSpot;
-  return has_place && light.attenuation == Attenuation::kInverseSquare;
+  return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
 }
 
 }  // namespace
@@ -164,7 +164,7 @@ FeatureMask features_of(DebugView view) {
   switch (view) {
     case DebugView::kNone:
       break;
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   case DebugView::ENUMERATOR:                                                    \
     features |= FEATURE_##REQUEST;                                               \
     break;

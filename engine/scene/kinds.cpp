@@ -11,13 +11,13 @@ namespace promin {
 std::span<const std::string_view> debug_view_names() {
   static constexpr std::array kNames = {
       std::string_view("full"),
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) std::string_view(NAME),
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) std::string_view(NAME),
 #include "promin/kinds/debug_views.def"
   };
   return kNames;
 }
 
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) +1
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) +1
 static_assert(0
 #include "promin/kinds/debug_views.def"
                   < 256,

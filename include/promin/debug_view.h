@@ -16,7 +16,7 @@ enum class DebugView : uint32_t {
   /// Light: the picture as it is meant.
   kNone = 0,
 /// @cond
-#define PROMIN_DEBUG_VIEW(VIEW, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ENUMERATOR = NUMBER,
+#define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ENUMERATOR = NUMBER,
 #include "promin/kinds/debug_views.def"
   /// @endcond
 };

@@ -3,5 +3,5 @@
 // A source at infinity behind the camera, whichever way the camera looks.
 
 LightSample sample_headlight(LightRecord light, vec3 position) {
-  return LightSample(-VIEW.look.xyz, INFINITY, 1.0);
+  return LightSample(-CAMERA.look.xyz, INFINITY, 1.0);
 }

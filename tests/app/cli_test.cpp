@@ -162,10 +162,12 @@ TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {
   options_.environment["MESA_SHADER_CACHE_DIR"] = "cache";
   options_.environment["MESA_DISK_CACHE_MULTI_FILE"] = "true";
   fs::create_directory(folder() / "cache");
-  const auto count_kernels_after = [&](const char* corners) {
+  const auto count_kernels_after = [&](const char* corners, const OptionValues& camera = {}) {
     // Triangles and a headlight alone: the smallest kernel there is.
     write("triangle.obj", std::string(corners) + "f 1 2 3\n");
-    EXPECT_EQ(run({"render", "triangle.obj", "--size", "64", "64", "-o", "a.exr", "--quiet"}).exit_code, 0);
+    OptionValues words = {"render", "triangle.obj", "--size", "64", "64", "-o", "a.exr", "--quiet"};
+    words.insert(words.end(), camera.begin(), camera.end());
+    EXPECT_EQ(run(words).exit_code, 0);
     size_t count = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder() / "cache")) count += entry.is_regular_file();
     return count;
@@ -173,6 +175,10 @@ TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {
   const size_t before = count_kernels_after("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
   if (before == 0) GTEST_SKIP() << "the driver is not Mesa's";
   EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n"), before);
+  EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n", {"--eye", "3", "9", "9", "--look", "-1", "-3", "-4"}),
+            before);
+  EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n", {"--eye", "1", "5", "2", "--look", "3", "1", "2"}),
+            before);
 }
 
 TEST_F(CliTest, AFullStandardOutputIsAFailure) {

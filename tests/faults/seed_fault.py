@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the shaders with a fault in them, for tests of the tests: what removes robustness must make a test fail.
 
-seed_fault.py FAULT SHADERS INCLUDE KERNELS GLSLANG OUT: copies the folder SHADERS and the .comp file KERNELS into OUT, puts the
-fault in, and compiles cast.comp and KERNELS to OUT/*.spv, with the tables in INCLUDE. A fault whose place is gone is an error."""
+seed_fault.py FAULT SHADERS INCLUDE KERNELS GLSLANG OUT: copies the folder SHADERS and the .comp file KERNELS into OUT,
+puts the fault in, and compiles cast.comp and KERNELS to OUT/*.spv, with the tables in INCLUDE. A fault whose place is
+gone is an error."""
 
 import pathlib
 import re
@@ -64,7 +65,8 @@ def main():
         (folder / file).write_text(text)
     for source in (folder / "cast.comp", folder / kernel.name):
         spirv = out / (source.stem + ".spv")
-        subprocess.run([glslang, "--quiet", "-V", "--target-env", "vulkan1.1", "-I" + str(include), "-o", spirv, source], check=True)
+        options = ["--quiet", "-V", "--target-env", "vulkan1.1", "-I" + str(include)]
+        subprocess.run([glslang, *options, "-o", spirv, source], check=True)
 
 
 main()

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "oracle/distance.h"
+#include "scene/light_kinds.h"
 
 namespace promin::oracle {
 namespace {
@@ -92,7 +93,7 @@ struct Illumination {
 
 Illumination illuminate(const Light& light, const Vector& position) {
   const Vector axis = glm::normalize(Vector(light.direction));
-  if (light.kind == LightKind::kDirectional) return {-axis};
+  if (!has_place(light.kind)) return {-axis};
   const Vector offset = Vector(light.position) - position;
   const Real distance = glm::length(offset);
   Illumination result{offset / distance};
@@ -113,7 +114,7 @@ Illumination illuminate(const Light& light, const Vector& position) {
 
 bool is_in_shadow(const world::Scene& scene, const SurfacePoint& point, const Light& light, const Vector& to_light) {
   const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
-  if (light.kind == LightKind::kDirectional) return is_occluded(scene, {origin, to_light});
+  if (!has_place(light.kind)) return is_occluded(scene, {origin, to_light});
   return is_occluded(scene, {origin, Vector(light.position) - origin, 0, 1});
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "scene/light_kinds.h"
+
 namespace promin::measure {
 namespace {
 
@@ -53,16 +55,17 @@ RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, co
   Light light;
   light.position = camera.eye + size * (camera.up + glm::cross(camera.look, camera.up));
   if (!scene.lights.empty()) light = scene.lights.front();
+  if (light.kind == LightKind::kHeadlight) light.direction = camera.look;
   RaySet set{"shadow", HitQuery::kAny, {}};
   for (size_t i = 0; i < hits.size(); ++i) {
     if (hits[i].object < 0) continue;
     const Ray& ray = camera_rays.rays[i];
     const vec3 facing = glm::dot(hits[i].normal, ray.direction) > 0.0F ? -hits[i].normal : hits[i].normal;
     const vec3 origin = ray.origin + hits[i].t * ray.direction + kShadowOffset * size * facing;
-    if (light.kind == LightKind::kDirectional) {
-      set.rays.push_back({origin, 0.0F, -light.direction, kInfinity});
-    } else {
+    if (has_place(light.kind)) {
       set.rays.push_back({origin, 0.0F, light.position - origin, 1.0F});
+    } else {
+      set.rays.push_back({origin, 0.0F, -light.direction, kInfinity});
     }
   }
   return set;

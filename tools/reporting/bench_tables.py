@@ -78,7 +78,9 @@ def tables(reports, growth):
         f"{p['cpu']}, {p['threads']} threads; {p['date']}, commit {p['commit']}; {peers[0] if peers else 'no Embree'}. "
         f"Medians with quartiles of {runs}.\n"
     )
-    yield "Rays; ratios are promin's time over that of Embree in the same turn, targets of promin's rate over Embree's:\n"
+    yield (
+        "Rays; ratios are promin's time over that of Embree in the same turn, targets of promin's rate over Embree's:\n"
+    )
     rates = [
         ("rate over Embree's", lambda _, r: number(1 / _ratio_of(r)) if _ratio_of(r) else "–"),
         ("target", _rate_target),

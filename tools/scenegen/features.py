@@ -112,7 +112,7 @@ def box():
 
 
 def capsule():
-    """Capsules upright, lying and leaning, of two radii, a pointed one, and one whose lower end nearly holds the other."""
+    """Capsules upright, lying and leaning, of two radii, a pointed one, one whose lower end nearly holds the other."""
     g = _stage()
     pill = g.capsule("pill", 1.0, 0.4, 0.4, _glossy(g, "pill", CORAL))
     g.node("upright", mesh=pill, translation=(-1.9, 0.9, -0.5))

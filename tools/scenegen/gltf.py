@@ -111,7 +111,9 @@ class Gltf:
         return self._append("meshes", {"name": name, "primitives": [self._primitive(mesh, material, mode)]})
 
     def _shape(self, name, kind, parameters, fallback, material):
-        numbers = {key: shortest(value) if isinstance(value, float) else _numbers(value) for key, value in parameters.items()}
+        numbers = {
+            key: shortest(value) if isinstance(value, float) else _numbers(value) for key, value in parameters.items()
+        }
         shape = {"type": kind, kind: numbers}
         index = self._append_to_extension("KHR_implicit_shapes", "shapes", shape)
         self._extensions.add("PROMIN_mesh_primitive_implicit_shape")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <stdexcept>
 
 #include "formats/gltf/json_lookup.h"
 #include "promin/validate.h"
@@ -13,9 +14,12 @@ namespace {
 
 using nlohmann::json;
 
+/// The kind of a type that the schema takes. A type that the schema has and this has not is an error of the program.
 LightKind kind_of(const std::string& type) {
   if (type == "directional") return LightKind::kDirectional;
-  return type == "spot" ? LightKind::kSpot : LightKind::kPoint;
+  if (type == "point") return LightKind::kPoint;
+  if (type == "spot") return LightKind::kSpot;
+  throw std::logic_error("a light of type \"" + type + "\" has no kind");
 }
 
 void read_cone(const json& source, const std::string& place, Light& light, LoadReport& report) {

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "promin/lights.h"
+
+namespace promin {
+
+/// Whether a light of the kind stands somewhere in the world. The others shine from infinity, all along one direction.
+constexpr bool has_place(LightKind kind) {
+  switch (kind) {
+    case LightKind::kPoint:
+    case LightKind::kSpot:
+      return true;
+    case LightKind::kDirectional:
+    case LightKind::kHeadlight:
+      break;
+  }
+  return false;
+}
+
+}  // namespace promin
