@@ -14,6 +14,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -152,8 +153,8 @@ def check_page(folder):
     expect((folder / "frames.png").stat().st_size > 10_000, "there is no picture of the main plot")
     for section in SectionReader(page).sections:
         said = section.get("p", "") + section.get("li", "")
-        # Beside other renderers, where none is installed.
-        is_gap = "Not measured" in said and "svg" not in section and "table" not in section
+        # Beside other renderers, where none is installed: its tables have promin's own figures alone.
+        is_gap = "Not measured" in said and "svg" not in section
         expect(is_gap or any(map(str.isdigit, said)), f"a section's text has no figure: {section}"[:300])
 
 
@@ -472,8 +473,7 @@ def tells_gaps(folder):
     )
     done, frames = measure_flip()
     expect([row.get("flip") for row in frames["rows"]] == [0.25, 0.5] and not frames["gaps"], f"{done}, {frames}")
-    (module / "__init__.py").unlink()
-    module.rmdir()
+    shutil.rmtree(module)
     (folder / "sitecustomize.py").write_text(
         "import importlib.util as u\nfind = u.find_spec\n"
         "u.find_spec = lambda name, *a: None if name == 'flip_evaluator' else find(name, *a)\n",

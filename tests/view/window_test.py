@@ -148,7 +148,8 @@ def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
         middle = session.find_middle(reset)
         viewer.press("o")
         wait_for(lambda: viewer.hold("d", 0.05) or look_of(session.print_command()) != look_of(reset), "orbit")
-        eye, look = eye_of(session.print_command()), look_of(session.print_command())
+        orbited = session.print_command()
+        eye, look = eye_of(orbited), look_of(orbited)
         way = [float(m) - float(e) for m, e in zip(middle, eye)]
         ahead = sum(w * float(l) for w, l in zip(way, look))
         beside = math.dist(way, [ahead * float(l) for l in look])

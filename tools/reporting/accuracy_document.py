@@ -122,9 +122,9 @@ def primitives_section(runs):
         + table(["primitive", "method", "source"], methods)
         + "\n\nOver all rays of the hard cases below with one kind of primitive, which aim at edges and silhouettes far"
         + " more often than a picture does. Of all rays leaks are counted; the oracle judges so many, and misclassified"
-        + " are counted of these. Cylinders, cones and frustums are held to BK: where a ray meets a rim, the exact hit"
-        + " may be on the side and the device's on the cap or the other way round, each at another angle, and K of t may"
-        + " pass 8.\n\n"
+        + " are counted of these. Boxes, capsules, cylinders, cones and frustums are held to BK: where a ray meets a rim"
+        + " or an edge, the exact hit may be on one part and the device's on another, each at another angle, and K of t"
+        + " may pass 8.\n\n"
         + table(header, rows)
     )
 
