@@ -111,7 +111,7 @@ void show_switches(const Scene& scene, Switches& switches) {
   choose_debug_view(switches.debug_view);
   choose_scale(switches.scale);
   choose_builder(switches.scene);
-  if (ImGui::TreeNode("sources")) {
+  if (ImGui::TreeNode("lights")) {
     choose_lights(scene, switches.scene.lights_off);
     ImGui::TreePop();
   }
