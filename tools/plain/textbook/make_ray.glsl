@@ -6,7 +6,11 @@
 bool is_far_away(Ray ray) { return false; }
 float distance_to_tree(Ray ray) { return 0.0; }
 float shift_to_tree(Ray ray) { return 0.0; }
-Ray moved_along(Ray ray, float shift) { return ray; }
+Ray moved_along(Ray ray, float shift) {
+  // A copy, because glslang 15 fails over the parameter as the result.
+  Ray moved = ray;
+  return moved;
+}
 float shifted_tmin(float tmin, float shift) { return tmin; }
 
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
