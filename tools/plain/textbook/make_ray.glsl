@@ -5,13 +5,16 @@
 // Rays start where they start.
 bool is_far_away(Ray ray) { return false; }
 float distance_to_tree(Ray ray) { return 0.0; }
-float shift_to_tree(Ray ray) { return 0.0; }
-Ray moved_along(Ray ray, float shift) {
-  // A copy, because glslang 15 fails over the parameter as the result.
-  Ray moved = ray;
-  return moved;
+float shift_to_tree(Ray ray) {
+  // A variable here and below, because versions 12 and 15 of glslang die over some results without.
+  float shift = 0.0;
+  return shift;
 }
-float shifted_tmin(float tmin, float shift) { return tmin; }
+Ray moved_along(Ray ray, float shift) { return ray; }
+float shifted_tmin(float tmin, float shift) {
+  float shifted = tmin;
+  return shifted;
+}
 
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
