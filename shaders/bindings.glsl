@@ -10,6 +10,11 @@ layout(constant_id = CONSTANT_MORE_FEATURES) const uint MORE_FEATURES = 0xFFFFFF
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
 // Rays that an invocation traces together (packet.glsl).
 layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
+// Forms of traversal that suit a driver (DeviceProfile); none changes a bit of a hit. How many steps from node to node
+// all lanes take together before those that are at leaves look into them; 0: each steps on until it is at one.
+layout(constant_id = CONSTANT_STEPS_TOGETHER) const uint STEPS_TOGETHER = 0u;
+// Whether solids wait until no lane can go on without them.
+layout(constant_id = CONSTANT_WAITS_WITH_SOLIDS) const uint WAITS_WITH_SOLIDS = 0u;
 // All of the kernel's rays ask for any hit.
 layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 

@@ -4,13 +4,22 @@
 // What a ray hits depends neither on the packet nor on the tree.
 // `asks_for_any`: the packet's rays ask for any hit. Where ALL_ASK_FOR_ANY it is true and the compiler knows.
 
+// Whether the solids of a leaf wait until no lane can go on without them. Where all primitives are solids none do.
+const uint SOLIDS_WAIT = WAITS_WITH_SOLIDS * FEATURE_BIT(FEATURE_TRIANGLES) * uint(TREE_KIND_COUNT > 1u);
+
 // What is left of the leaf at hand. By enter_leaf, and by what intersects its primitives.
 struct Leaf {
   uint next;
   uint end;
-  bool needs_second_look;  // the triangle just before `next`
+  bool needs_second_look;  // the triangle just before `next`; where ALL_ASK_FOR_ANY
+  bool has_solids_next;    // `next` is one, and all behind it; where SOLIDS_WAIT
 };
 Leaf leaf;
+
+// Whether the lane waits with what CPU drivers would otherwise execute for all lanes after each leaf of one.
+bool waits() {
+  return (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) || (SOLIDS_WAIT != 0u && leaf.has_solids_next);
+}
 
 // Where in the tree the packet is. By take_child and enter_family.
 struct Descent {
@@ -18,13 +27,25 @@ struct Descent {
   uint stack_top;
 };
 Descent descent;
-uint stack[STACK_SIZE];  // the families of the nodes above
+uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one that is not kept
 
 // Instead of a child; they have CHILD_IS_LEAF.
 const uint DONE = 0xFFFFFFFFu;
 const uint IN_LEAF = 0xFFFFFFFEu;  // the one that was entered
 
-// The next child that is left, or DONE.
+// The next child that is left, or DONE. Only where `takes`; else nothing changes.
+uint take_child_where(bool takes) {
+  bool has_child = takes && descent.family != NO_FAMILY;
+  uint node = has_child ? node_of_family(descent.family) : 0u;
+  uint child = next_of_family(descent.family, load_children(node));
+  uint left = without_next(descent.family);
+  bool pops = has_child && left == NO_FAMILY && descent.stack_top > 0u;
+  descent.stack_top -= pops ? 1u : 0u;
+  uint above = stack[descent.stack_top];
+  descent.family = has_child ? (pops ? above : left) : descent.family;
+  return has_child ? child : DONE;
+}
+
 uint take_child() {
   if (descent.family == NO_FAMILY) return DONE;
   uint child = next_of_family(descent.family, load_children(node_of_family(descent.family)));
@@ -36,13 +57,23 @@ uint take_child() {
   return child;
 }
 
+// The old family is stored whether or not it is kept: of a store under a condition LLVM makes a branch for each lane,
+// which no processor foresees.
 void enter_family(uint met) {
-  if (met == NO_FAMILY) return;
-  if (descent.family != NO_FAMILY) {
-    stack[descent.stack_top] = descent.family;
-    ++descent.stack_top;
-  }
-  descent.family = met;
+  bool enters = met != NO_FAMILY;
+  stack[descent.stack_top] = descent.family;
+  descent.stack_top += enters && descent.family != NO_FAMILY ? 1u : 0u;
+  descent.family = enters ? met : descent.family;
+}
+
+// A step from a node to the next child. Lanes that are at no node take part and stay where they are.
+uint step_together(uint current) {
+  bool steps = is_inner(current);
+  count_steps(steps ? 1u : 0u, 0u);
+  uint met = meet_children(steps ? current : 0u);
+  enter_family(steps ? met : NO_FAMILY);
+  uint child = take_child_where(steps);
+  return steps ? child : current;
 }
 
 // All of the packet's rays against a primitive, a function for each kind but triangles (packet_triangles.glsl).
@@ -74,8 +105,8 @@ void intersect_solids(bool asks_for_any) {
 #include "promin/kinds/primitives.def"
 }
 
-// What is left of a leaf, up to a triangle that needs a second look. That waits until no lane has another triangle to
-// glance at, as CPU drivers would execute it after every one.
+// What is left of a leaf, up to what waits: a triangle that needs a second look, until no lane has another triangle to
+// glance at, and solids.
 void intersect_leaf(bool asks_for_any) {
   while (!leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE, FEATURE_TRIANGLES)) {
     Primitive p = load_primitive(leaf.next);
@@ -87,7 +118,11 @@ void intersect_leaf(bool asks_for_any) {
     ++leaf.next;
   }
   if (leaf.needs_second_look) return;
-  intersect_solids(asks_for_any);
+  if (SOLIDS_WAIT != 0u) {
+    leaf.has_solids_next = leaf.next < leaf.end;
+  } else {
+    intersect_solids(asks_for_any);
+  }
 }
 
 // What has no box lies behind the tree's primitives.
@@ -104,26 +139,38 @@ void intersect_unbounded(bool asks_for_any) {
 void descend(bool asks_for_any) {
   descent = Descent(NO_FAMILY, 0u);
   leaf.needs_second_look = false;
+  leaf.has_solids_next = false;
   uint current = any_takes_part() ? 0u : DONE;
   // Loops rather than branches around the parts: CPU drivers execute both sides of a branch under a mask, but leave a
   // loop as soon as no lane is in it.
   for (;;) {
-    while (current != DONE && !leaf.needs_second_look) {
-      while (is_inner(current)) {
-        count_steps(1u, 0u);
-        enter_family(meet_children(current));
-        current = take_child();
+    while (current != DONE && !waits()) {
+      if (STEPS_TOGETHER == 0u) {
+        while (is_inner(current)) {
+          count_steps(1u, 0u);
+          enter_family(meet_children(current));
+          current = take_child();
+        }
+      } else {
+        for (uint i = 0u; i < STEPS_TOGETHER; ++i) current = step_together(current);
+        if (is_inner(current)) continue;
       }
       if (current == DONE) break;
       if (current != IN_LEAF) enter_leaf(current);
       intersect_leaf(asks_for_any);
       current = IN_LEAF;
-      if (leaf.needs_second_look) break;
+      if (waits()) break;
       current = asks_for_any && !any_takes_part() ? DONE : take_child();
     }
-    if (ALL_ASK_FOR_ANY == 0u || !leaf.needs_second_look) break;
-    intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
-    leaf.needs_second_look = false;
+    if ((ALL_ASK_FOR_ANY == 0u && SOLIDS_WAIT == 0u) || !waits()) break;
+    if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
+      intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
+      leaf.needs_second_look = false;
+    }
+    if (SOLIDS_WAIT != 0u && leaf.has_solids_next) {
+      intersect_solids(asks_for_any);
+      leaf.has_solids_next = false;
+    }
   }
 }
 

@@ -12,10 +12,21 @@ struct DeviceTraits {
   bool is_cpu = false;
   /// VkDriverId; 0 where the driver does not tell.
   uint32_t driver_id = 0;
+  /// VkPhysicalDeviceProperties::driverVersion, which each driver encodes in its own way.
+  uint32_t driver_version = 0;
   /// Of the host.
   uint32_t core_count = 1;
   /// Most that a texel buffer holds.
   uint64_t texel_buffer_bytes = 0;
+};
+
+/// How shaders/traversal.glsl goes through trees. No form changes a bit of a hit.
+struct TraversalForm {
+  /// Steps from node to node that all lanes take together before those at leaves look into them; 0: each lane steps on
+  /// until it is at a leaf.
+  uint32_t steps_together = 0;
+  /// Whether solids in the leaves of a tree that has triangles too wait until no lane can go on without them.
+  bool waits_with_solids = false;
 };
 
 /// What suits a device: every decision that depends on its kind or on its driver. None of them changes a bit of a
@@ -26,6 +37,9 @@ struct DeviceProfile {
   /// As texels where no buffer has more bytes, else from storage buffers. A CPU driver gathers a load from a storage
   /// buffer word by word, a texel at once.
   uint64_t most_texel_bytes = 0;
+
+  // How trees are traversed.
+  TraversalForm traversal;
 
   // How work is cut into dispatches and spread over the workgroups of each.
   /// How long a dispatch should take. At the end of each the threads of a CPU driver wait for the last one.

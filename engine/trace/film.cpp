@@ -161,8 +161,8 @@ uint32_t Film::max_capacity() const {
 TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
                                   uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
                                   const PictureShaders& shaders, bool avoids_texels) {
-  const std::vector<gpu::SpecializationConstant> constants =
-      traversal_constants(features, scene.stack_size(), scene.fetches_texels() && !avoids_texels);
+  const std::vector<gpu::SpecializationConstant> constants = traversal_constants(
+      device.profile().traversal, features, scene.stack_size(), scene.fetches_texels() && !avoids_texels);
   std::vector<gpu::SpecializationConstant> camera_constants = constants;
   camera_constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});
   std::vector<gpu::BoundBuffer> buffers = scene.geometry();

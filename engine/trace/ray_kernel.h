@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "device/profile.h"
 #include "device_scene/device_scene.h"
 #include "layout.h"
 #include "promin/ray.h"
@@ -31,6 +32,8 @@ struct RayKernelOptions {
   uint32_t packet_size = 1;
   /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
   bool avoids_texels = false;
+  /// Where empty, as suits the device.
+  std::optional<gpu::TraversalForm> traversal = std::nullopt;
   /// A single dispatch is not meant to take longer. Where empty, as suits the device.
   std::optional<double> target_dispatch_ms = std::nullopt;
   /// Fixed number of rays a dispatch, for tests; 0 adapts.

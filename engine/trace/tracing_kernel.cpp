@@ -27,12 +27,14 @@ void Pacer::learn(double units, double time_ms) {
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
 
-std::vector<gpu::SpecializationConstant> traversal_constants(FeatureMask features, uint32_t stack_size,
-                                                             bool fetches_texels) {
+std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,
+                                                             uint32_t stack_size, bool fetches_texels) {
   return {{layout::CONSTANT_FEATURES, features.words()[0]},
           {layout::CONSTANT_MORE_FEATURES, features.words()[1]},
           {layout::CONSTANT_STACK_SIZE, stack_size},
-          {layout::CONSTANT_FETCHES_TEXELS, fetches_texels ? 1U : 0U}};
+          {layout::CONSTANT_FETCHES_TEXELS, fetches_texels ? 1U : 0U},
+          {layout::CONSTANT_STEPS_TOGETHER, form.steps_together},
+          {layout::CONSTANT_WAITS_WITH_SOLIDS, form.waits_with_solids ? 1U : 0U}};
 }
 
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/pipeline.h"
+#include "device/profile.h"
 #include "layout.h"
 #include "scene/features.h"
 
@@ -34,8 +35,8 @@ class Pacer {
 using GroupCounts = std::array<uvec2, 2>;
 
 /// What every pipeline that traces is specialised to.
-std::vector<gpu::SpecializationConstant> traversal_constants(FeatureMask features, uint32_t stack_size,
-                                                             bool fetches_texels);
+std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,
+                                                             uint32_t stack_size, bool fetches_texels);
 
 /// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
 class TracingKernel {

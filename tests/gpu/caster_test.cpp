@@ -135,6 +135,35 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
   }
 }
 
+// What suits one driver runs on another too, so all forms are held on each.
+TEST_F(CasterTest, EveryFormOfTraversalGivesTheSameBits) {
+  const world::Scene scene = test::make_scene_of_everything();
+  const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), pack_scene(scene, "sah"));
+  std::vector<layout::RayRecord> rays;
+  for (const Ray& ray : test::make_rays(1001)) {
+    rays.push_back({vec4(ray.origin, ray.tmin), vec4(ray.direction, ray.tmax)});
+  }
+  for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
+    for (const uint32_t packet_size : {1U, 4U}) {
+      std::vector<layout::HitRecord> expected;
+      for (const gpu::TraversalForm form :
+           {gpu::TraversalForm{0, false}, gpu::TraversalForm{0, true}, gpu::TraversalForm{1, false},
+            gpu::TraversalForm{1, true}, gpu::TraversalForm{2, true}}) {
+        RayKernelOptions options;
+        options.features = features_of(scene) | layout::FEATURE_STEP_COUNTS;
+        options.query = query;
+        options.packet_size = packet_size;
+        options.traversal = form;
+        std::vector<layout::HitRecord> records(rays.size());
+        RayKernel(device(), device_scene, options).run(rays, records);
+        if (expected.empty()) expected = records;
+        EXPECT_EQ(std::memcmp(records.data(), expected.data(), records.size() * sizeof(layout::HitRecord)), 0)
+            << form.steps_together << " steps together, solids " << (form.waits_with_solids ? "wait" : "do not wait");
+      }
+    }
+  }
+}
+
 TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
   RayKernelOptions options;
   // Of no other test here.

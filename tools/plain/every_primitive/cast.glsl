@@ -9,7 +9,7 @@ void test_every_primitive(bool asks_for_any) {
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
   if (has(FEATURE_PLANES)) intersect_unbounded(asks_for_any);
   if (TREE_KIND_COUNT == 0u) return;
-  leaf = Leaf(0u, first_unbounded(), false);
+  leaf = Leaf(0u, first_unbounded(), false, false);
   while (is_next_in_leaf(KIND_TRIANGLE, FEATURE_TRIANGLES)) {
     Primitive p = load_primitive(leaf.next);
     keep_nearest(0u, intersect_triangle(packet[0], p), leaf.next, order_of(p), asks_for_any);

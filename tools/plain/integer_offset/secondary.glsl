@@ -10,7 +10,8 @@
 float step_floats(float x, float along) {
   int steps = int(256.0 * along);
   float moved = intBitsToFloat(floatBitsToInt(x) + (x < 0.0 ? -steps : steps));
-  return abs(x) < 1.0 / 32.0 ? x + along / 65536.0 : moved;
+  precise float near = x + along / 65536.0;
+  return abs(x) < 1.0 / 32.0 ? near : moved;
 }
 
 vec3 lift_off(vec3 position, vec3 geometric_normal, float lift) {
