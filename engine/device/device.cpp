@@ -83,7 +83,7 @@ DeviceTraits traits_of(const vk::raii::PhysicalDevice& device, const vk::Physica
   const auto driver = driver_properties(device, properties);
   return {.is_cpu = properties.deviceType == vk::PhysicalDeviceType::eCpu,
           .driver_id = driver ? static_cast<uint32_t>(driver->driverID) : 0,
-          .driver_version = properties.driverVersion,
+          .driver_info = driver ? std::string(driver->driverInfo) : std::string(),
           .core_count = core_count(),
           .texel_buffer_bytes = properties.limits.maxTexelBufferElements * kTexelBytes};
 }

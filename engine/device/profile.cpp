@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <string_view>
 
 namespace promin::gpu {
 namespace {
@@ -42,19 +44,30 @@ void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/)
   profile.traversal = {.steps_together = 1, .waits_with_solids = true};
 }
 
-/// What is different with one driver, from a version on.
+/// The first number of the version in what Mesa's drivers tell of themselves; 0 in what others tell. Lavapipe's
+/// driverVersion is 1 whatever its version.
+uint32_t mesa_version(std::string_view driver_info) {
+  constexpr std::string_view kName = "Mesa ";
+  uint32_t version = 0;
+  if (driver_info.starts_with(kName)) {
+    driver_info.remove_prefix(kName.size());
+    std::from_chars(driver_info.data(), driver_info.data() + driver_info.size(), version);
+  }
+  return version;
+}
+
+/// What is different with one driver, from a version of Mesa on.
 struct DriverRow {
   VkDriverId driver;
-  uint32_t first_version;
+  uint32_t first_mesa_version;
   void (*suit)(DeviceProfile&, const DeviceTraits&);
 };
 
 /// The one place that knows drivers. Forms of traversal that suit a driver, or a processor under it, are chosen here
 /// too: a field of DeviceProfile, where need be one of DeviceTraits, and a row. SwiftShader has none: it is
 /// treated as any CPU device, of which it is the one that takes minutes to compile packets.
-constexpr std::array kDrivers{
-    DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, 0, suit_lavapipe},
-    DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, VK_MAKE_API_VERSION(0, 25, 0, 0), suit_newer_lavapipe}};
+constexpr std::array kDrivers{DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, 0, suit_lavapipe},
+                              DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, 25, suit_newer_lavapipe}};
 
 }  // namespace
 
@@ -64,7 +77,7 @@ DeviceProfile make_profile(const DeviceTraits& traits) {
   if (traits.is_cpu) suit_cpu(profile, traits);
   for (const DriverRow& row : kDrivers) {
     const bool is_it = static_cast<uint32_t>(row.driver) == traits.driver_id;
-    if (is_it && traits.driver_version >= row.first_version) row.suit(profile, traits);
+    if (is_it && mesa_version(traits.driver_info) >= row.first_mesa_version) row.suit(profile, traits);
   }
   return profile;
 }

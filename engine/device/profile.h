@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace promin::gpu {
 
@@ -12,8 +13,9 @@ struct DeviceTraits {
   bool is_cpu = false;
   /// VkDriverId; 0 where the driver does not tell.
   uint32_t driver_id = 0;
-  /// VkPhysicalDeviceProperties::driverVersion, which each driver encodes in its own way.
-  uint32_t driver_version = 0;
+  /// VkPhysicalDeviceDriverProperties::driverInfo, in the driver's own words; Mesa's begin with "Mesa " and the
+  /// version.
+  std::string driver_info = {};
   /// Of the host.
   uint32_t core_count = 1;
   /// Most that a texel buffer holds.

@@ -18,17 +18,12 @@ constexpr uint32_t kNotInTheRegistry = 4711;
 
 constexpr uint64_t kTexelBytes = uint64_t{1} << 31;
 
-DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 8, uint32_t driver_version = 0) {
+DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 8, const char* driver_info = "") {
   return make_profile({.is_cpu = is_cpu,
                        .driver_id = driver_id,
-                       .driver_version = driver_version,
+                       .driver_info = driver_info,
                        .core_count = core_count,
                        .texel_buffer_bytes = kTexelBytes});
-}
-
-/// As Mesa encodes its versions.
-constexpr uint32_t mesa(uint32_t major, uint32_t minor, uint32_t patch) {
-  return (major << 22) | (minor << 12) | patch;
 }
 
 /// What a GPU is given, be it discrete or integrated.
@@ -89,18 +84,17 @@ TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
 }
 
 TEST(ProfileTest, NewerLavapipesLookIntoLeavesAfterEachStep) {
-  for (const uint32_t older : {0U, 1U, mesa(22, 3, 6), mesa(24, 3, 4)}) {
+  for (const char* older : {"", "Mesa", "Mesa 22.3.6 (LLVM 15.0.6)", "Mesa 24.3.4", "LLVM 25.0.0"}) {
     EXPECT_EQ(profile_of(true, kLlvmpipe, 8, older).traversal.steps_together, 0U);
   }
-  for (const uint32_t newer : {mesa(25, 0, 0), mesa(25, 0, 7), mesa(26, 1, 0)}) {
+  for (const char* newer : {"Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)", "Mesa 25.1.0-devel", "Mesa 101.0"}) {
     const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, newer);
     EXPECT_EQ(profile.traversal.steps_together, 1U);
     EXPECT_TRUE(profile.traversal.waits_with_solids);
     EXPECT_EQ(profile.pixel_packet_size, 4U);
   }
-  // Versions of other drivers are encoded otherwise.
-  EXPECT_EQ(profile_of(true, kSwiftShader, 8, mesa(25, 0, 7)).traversal.steps_together, 0U);
-  expect_gpu(profile_of(false, kNvidia, 8, mesa(550, 0, 0)));
+  EXPECT_EQ(profile_of(true, kSwiftShader, 8, "Mesa 25.0.7").traversal.steps_together, 0U);
+  expect_gpu(profile_of(false, kNvidia, 8, "550.163.01"));
 }
 
 TEST(ProfileTest, OtherCpuDevicesTakeNoPackets) {
