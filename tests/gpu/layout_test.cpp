@@ -93,10 +93,14 @@ INSTANTIATE_TEST_SUITE_P(Structs, LayoutTest, testing::ValuesIn(kLayouts),
                          [](const auto& param_info) { return std::string(param_info.param.name); });
 
 TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
-  const std::map<std::string, uint32_t> expected = {
-      {"FEATURES", layout::CONSTANT_FEATURES},       {"MORE_FEATURES", layout::CONSTANT_MORE_FEATURES},
-      {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},   {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
-      {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE}, {"ALL_ASK_FOR_ANY", layout::CONSTANT_ALL_ASK_FOR_ANY}};
+  const std::map<std::string, uint32_t> expected = {{"FEATURES", layout::CONSTANT_FEATURES},
+                                                    {"MORE_FEATURES", layout::CONSTANT_MORE_FEATURES},
+                                                    {"STACK_SIZE", layout::CONSTANT_STACK_SIZE},
+                                                    {"FETCHES_TEXELS", layout::CONSTANT_FETCHES_TEXELS},
+                                                    {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE},
+                                                    {"ALL_ASK_FOR_ANY", layout::CONSTANT_ALL_ASK_FOR_ANY},
+                                                    {"STEPS_TOGETHER", layout::CONSTANT_STEPS_TOGETHER},
+                                                    {"WAITS_WITH_SOLIDS", layout::CONSTANT_WAITS_WITH_SOLIDS}};
   EXPECT_EQ(test::SpirvModule(k_camera_stage_spirv).spec_ids, expected);
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
 }
