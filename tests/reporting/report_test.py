@@ -503,6 +503,7 @@ def tells_gaps(folder):
     (folder / "povray").unlink()
     done = run_python("peers.py", folder, "--programs", BIN, "--side", "16", "--level", "1", environment=fake)
     found = read_report(file)["peers"]
+    expect(found["rows"], f"a peer that is there was not measured: {found}, {done.stderr}")
     row = found["rows"][0]
     expect(
         row["peer"] == "Tachyon 0.5" and row["peer_ms"] == [2500.0], f"a peer that is measured: {row}, {done.stderr}"
