@@ -33,7 +33,7 @@ uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one that i
 const uint DONE = 0xFFFFFFFFu;
 const uint IN_LEAF = 0xFFFFFFFEu;  // the one that was entered
 
-// The next child that is left, or DONE. Only where `takes`; else nothing changes.
+// take_child without a branch, where `takes`; elsewhere it changes nothing.
 uint take_child_where(bool takes) {
   bool has_child = takes && descent.family != NO_FAMILY;
   uint node = has_child ? node_of_family(descent.family) : 0u;
@@ -46,6 +46,7 @@ uint take_child_where(bool takes) {
   return has_child ? child : DONE;
 }
 
+// The next child that is left, or DONE.
 uint take_child() {
   if (descent.family == NO_FAMILY) return DONE;
   uint child = next_of_family(descent.family, load_children(node_of_family(descent.family)));

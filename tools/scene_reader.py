@@ -201,10 +201,7 @@ class SceneReader:
 
     def _add_light(self, light, world):
         classic = self._extension(light, "PROMIN_lights_phong")
-        if classic is None or classic.get("attenuation", "none") != "none" or light["type"] not in (
-            "point",
-            "directional",
-        ):
+        if classic is None or classic.get("attenuation", "none") != "none" or light["type"] == "spot":
             raise Unsupported("light sources with falloff or a cone")
         color = [c * light.get("intensity", 1) for c in light.get("color", (1, 1, 1))]
         if classic.get("diffuseColor", color) != classic.get("specularColor", color):
@@ -214,6 +211,8 @@ class SceneReader:
             self.add_point_light(transform(world, (0, 0, 0)), color)
         elif light["type"] == "directional":
             self.add_directional_light(unit(transform(world, (0, 0, 1), 0.0)), color)
+        else:
+            raise Unsupported(f"light sources of type {light['type']}")
 
     def _add_node(self, index, parent):
         node = self.gltf["nodes"][index]

@@ -38,8 +38,8 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.may_cut_loops = true;
 }
 
-/// Lanes look into their leaves after each step: pictures take 0.8 to 0.9 of the time with lavapipe 25.0.7, where
-/// 22.3.6 takes 1.0 to 1.4 (docs/performance.md). Versions between were not measured.
+/// Lanes look into their leaves after each step: pictures take 0.78 to 0.94 of the time with lavapipe 25.0.7, where
+/// 22.3.6 takes 0.96 to 1.4 (docs/performance_log.md). Versions between were not measured.
 void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.traversal = {.steps_together = 1, .waits_with_solids = true};
 }
@@ -75,9 +75,10 @@ DeviceProfile make_profile(const DeviceTraits& traits) {
   DeviceProfile profile;
   profile.most_texel_bytes = traits.texel_buffer_bytes;
   if (traits.is_cpu) suit_cpu(profile, traits);
+  const uint32_t mesa = mesa_version(traits.driver_info);
   for (const DriverRow& row : kDrivers) {
-    const bool is_it = static_cast<uint32_t>(row.driver) == traits.driver_id;
-    if (is_it && mesa_version(traits.driver_info) >= row.first_mesa_version) row.suit(profile, traits);
+    const bool is_it = static_cast<uint32_t>(row.driver) == traits.driver_id && mesa >= row.first_mesa_version;
+    if (is_it) row.suit(profile, traits);
   }
   return profile;
 }

@@ -129,9 +129,9 @@ def headers_stand_alone(installed):
         for name in list_file.read_text().replace("\\\n", " ").split()[2:]:
             file = pathlib.Path(name)
             is_ours = file.is_relative_to(include / "promin")
-            # The standard library brings headers of the system's from many places: Debian 13 has the kernel's in
-            # /usr/lib/linux/uapi.
-            if not is_ours and not file.is_relative_to("/usr"):
+            # Debian 13 has the kernel's headers, which the standard library brings along, in /usr/lib/linux/uapi.
+            is_systems = r"/(c\+\+|gcc|clang|glm)/|^/usr/include/(?!vulkan|nlohmann)|^/usr/lib/linux/uapi/"
+            if not is_ours and not re.search(is_systems, str(file)):
                 faults.append(f"{header} includes {file}")
             elif re.search(r"vulkan|nlohmann|OpenImageIO|GLFW|imgui", name):
                 faults.append(f"{header} includes {file}")

@@ -154,6 +154,14 @@ def _ray_sentence(row):
     )
 
 
+def _own_sentence(row):
+    """What is told of promin where there is no peer."""
+    return (
+        f"promin traces {number(row['promin_mrays_per_s'])} million {row['rays']} rays a second "
+        f"({html.escape(row['scene'])})."
+    )
+
+
 def _build_sentence(row):
     return (
         f"To have {html.escape(row['scene'])} on the device takes promin {row['time_ratio']['median']:.2f} times as "
@@ -190,6 +198,8 @@ def peers(report):
         panels = [plots.ratio_panel("peers", "promin's time over the peer's", names, ratios, x_log=True)]
     gaps, runs = gap_text(rates["gaps"] + pictures["gaps"]), report["provenance"]["runs"]
     text = [f"The same scene in the same run, in {runs} turns, on the same cores. {gaps}" if sentences else gaps]
+    if not sentences and rates["rows"]:
+        text.append(" ".join(_own_sentence(r) for r in rates["rows"]))
     if sentences:
         text.append("<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>")
     kinds = (
