@@ -21,23 +21,22 @@ layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 // This is 1 where the pipeline has the feature FEATURE_*, else 0. It is a constant.
 #define FEATURE_BIT(FEATURE) ((((FEATURE) < 32u ? FEATURES : MORE_FEATURES) >> ((FEATURE) & 31u)) & 1u)
 
-bool has(uint feature) { return FEATURE_BIT(feature) != 0u; }
+// A macro, so that what hangs on it is known before functions are put into one another (engine/device/spirv.h).
+#define has(FEATURE) (FEATURE_BIT(FEATURE) != 0u)
 
-// The number of kinds of primitive in the tree, and the number of kinds of lights.
+// The numbers of kinds of primitive in the tree and behind it, and the number of kinds of lights.
 const uint TREE_KIND_COUNT = 0u
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
+#include "promin/kinds/primitives.def"
+    ;
+const uint UNBOUNDED_KIND_COUNT = 0u
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/primitives.def"
     ;
 const uint LIGHT_KIND_COUNT = 0u
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/lights.def"
     ;
-
-// Whether a primitive of the tree is of this kind. Where the scene has no other kind, the answer needs no test.
-bool is_kind(uint kind, uint wanted, uint feature) {
-  if (!has(feature)) return false;
-  return TREE_KIND_COUNT == 1u || kind == wanted;
-}
 
 // VIEW is what a view's dispatches share, and CAMERA the same for what tells of the camera. A dispatch has one
 // workgroup in z, so both are element 0. But where a branch hangs on uniforms alone, lavapipe makes constants of them

@@ -17,7 +17,7 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
   if (has(FEATURE_##FEATURE) && kind_of(p) == NUMBER) return PREFIX##_surface(ray, p, hit);
 #include "promin/kinds/primitives.def"
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  if (is_kind(kind_of(p), NUMBER, FEATURE_##FEATURE)) return PREFIX##_surface(ray, p, hit);
+  if (has(FEATURE_##FEATURE) && (TREE_KIND_COUNT == 1u || kind_of(p) == NUMBER)) return PREFIX##_surface(ray, p, hit);
 #include "promin/kinds/primitives.def"
   // The pipeline was specialised to none of this kind, so that nothing of it has been hit.
   return SurfacePoint(vec3(0.0), vec3(0.0), 0.0);

@@ -92,14 +92,15 @@ void enter_leaf(uint child) {
   count_steps(0u, leaf.end - leaf.next);
 }
 
-bool is_next_in_leaf(uint kind, uint feature) {
-  return leaf.next < leaf.end && is_kind(load_primitive_kind(leaf.next), kind, feature);
+// Whether a primitive of this kind comes next. Where the tree has no other kind, the answer needs no fetch.
+bool is_next_in_leaf(uint kind) {
+  return leaf.next < leaf.end && (TREE_KIND_COUNT == 1u || load_primitive_kind(leaf.next) == kind);
 }
 
 // The closed shapes that come next, kind by kind: leaves hold them sorted so.
 void intersect_solids(bool asks_for_any) {
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                    \
-  while (is_next_in_leaf(NUMBER, FEATURE_##FEATURE)) {                                  \
+  while (has(FEATURE_##FEATURE) && is_next_in_leaf(NUMBER)) {                           \
     intersect_packet_with_##PREFIX(load_primitive(leaf.next), leaf.next, asks_for_any); \
     ++leaf.next;                                                                        \
   }
@@ -109,7 +110,7 @@ void intersect_solids(bool asks_for_any) {
 // What is left of a leaf, up to what waits: a triangle that needs a second look, until no lane has another triangle to
 // glance at, and solids.
 void intersect_leaf(bool asks_for_any) {
-  while (!leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE, FEATURE_TRIANGLES)) {
+  while (has(FEATURE_TRIANGLES) && !leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE)) {
     Primitive p = load_primitive(leaf.next);
     if (ALL_ASK_FOR_ANY != 0u) {
       leaf.needs_second_look = glance_at_triangle(p, leaf.next);
@@ -243,11 +244,7 @@ void trace_packet(bool asks_for_any) {
     found[slot] = Hit(packet[slot].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
     limits[slot] = packet[slot].tmin < packet[slot].tmax ? packet[slot].tmax : -1.0;
   }
-  bool has_unbounded = false;
-#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  has_unbounded = has_unbounded || has(FEATURE_##FEATURE);
-#include "promin/kinds/primitives.def"
-  if (has_unbounded) intersect_unbounded(asks_for_any);
+  if (UNBOUNDED_KIND_COUNT > 0u) intersect_unbounded(asks_for_any);
   if (TREE_KIND_COUNT == 0u) return;
   descend_from_nearby(asks_for_any);
 }

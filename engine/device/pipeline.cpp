@@ -11,20 +11,6 @@
 
 namespace promin::gpu {
 
-bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
-  constexpr size_t kHeaderWords = 5;
-  constexpr uint32_t kOpDecorate = 71;
-  constexpr uint32_t kSpecId = 1;
-  for (size_t i = kHeaderWords; i < spirv.size();) {
-    const uint32_t opcode = spirv[i] & 0xFFFFU;
-    const uint32_t length = spirv[i] >> 16;
-    if (length == 0) return false;
-    if (opcode == kOpDecorate && length >= 4 && spirv[i + 2] == kSpecId && spirv[i + 3] == id) return true;
-    i += length;
-  }
-  return false;
-}
-
 const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                                                std::span<const SpecializationConstant> constants,
                                                std::span<const vk::DescriptorSetLayoutBinding> bindings) {
@@ -51,7 +37,9 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
   }
   const vk::SpecializationInfo specialization(static_cast<uint32_t>(entries.size()), entries.data(),
                                               values.size() * sizeof(uint32_t), values.data());
-  const vk::raii::ShaderModule module(device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+  const std::vector<uint32_t> live = remove_dead_code(spirv, constants);
+  const vk::raii::ShaderModule module(device,
+                                      vk::ShaderModuleCreateInfo({}, live.size() * sizeof(uint32_t), live.data()));
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                 &specialization);
   CompiledPipeline made;

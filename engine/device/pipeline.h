@@ -10,18 +10,13 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "device/spirv.h"
 #include "promin/math.h"
 
 namespace promin::gpu {
 
 class Buffer;
 class Device;
-
-/// A specialisation constant: `id` is a CONSTANT_* of shaders/layout.h.
-struct SpecializationConstant {
-  uint32_t id = 0;
-  uint32_t value = 0;
-};
 
 /// A buffer at a binding (BINDING_* of shaders/layout.h).
 struct BoundBuffer {
@@ -31,9 +26,6 @@ struct BoundBuffer {
   /// Of a texel buffer, its view.
   const vk::raii::BufferView* view = nullptr;
 };
-
-/// Whether a SPIR-V module declares a specialisation constant with this SpecId.
-bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 
 /// A compiled compute shader with entry point "main" and one descriptor set, apart from what is bound to it.
 struct CompiledPipeline {

@@ -14,16 +14,20 @@
 #include "camera_stage.spv.h"
 #include "cast.spv.h"
 #include "core/file.h"
+#include "device/spirv.h"
 #include "gpu/spirv_module.h"
 #include "mirror_stage.spv.h"
 
 namespace promin {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::Each;
+using testing::Gt;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Lt;
 using testing::Not;
 
 struct Layout {
@@ -112,6 +116,11 @@ TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   const test::SpirvModule module(GetParam().spirv);
   EXPECT_GE(module.float_operation_count, GetParam().least_float_operation_count);
   EXPECT_THAT(module.contractible, IsEmpty());
+  // Nor does it lose that where the scene lacks features.
+  const gpu::SpecializationConstant constants[] = {{layout::CONSTANT_FEATURES, 1}, {layout::CONSTANT_MORE_FEATURES, 0}};
+  const test::SpirvModule left(gpu::remove_dead_code(GetParam().spirv, constants));
+  EXPECT_THAT(left.contractible, IsEmpty());
+  EXPECT_THAT(left.float_operation_count, AllOf(Gt(50U), Lt(module.float_operation_count)));
 }
 
 // The test above can fail: a lavapipe that does not contract by itself would give the same pictures without `precise`.

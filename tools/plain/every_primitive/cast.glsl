@@ -7,10 +7,10 @@ void test_every_primitive(bool asks_for_any) {
   shifts[0] = 0.0;
   found[0] = Hit(packet[0].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   limits[0] = packet[0].tmin < packet[0].tmax ? packet[0].tmax : -1.0;
-  if (has(FEATURE_PLANES)) intersect_unbounded(asks_for_any);
+  if (UNBOUNDED_KIND_COUNT > 0u) intersect_unbounded(asks_for_any);
   if (TREE_KIND_COUNT == 0u) return;
   leaf = Leaf(0u, first_unbounded(), false, false);
-  while (is_next_in_leaf(KIND_TRIANGLE, FEATURE_TRIANGLES)) {
+  while (has(FEATURE_TRIANGLES) && is_next_in_leaf(KIND_TRIANGLE)) {
     Primitive p = load_primitive(leaf.next);
     keep_nearest(0u, intersect_triangle(packet[0], p), leaf.next, order_of(p), asks_for_any);
     ++leaf.next;

@@ -1,0 +1,474 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/spirv.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+
+#define SPV_ENABLE_UTILITY_CODE
+#include <spirv/unified1/spirv.hpp11>
+
+namespace promin::gpu {
+namespace {
+
+using spv::Op;
+
+constexpr size_t kHeaderWords = 5;
+constexpr size_t kIdBoundWord = 3;
+
+/// Of one instruction, the first with its opcode and length.
+using Words = std::span<const uint32_t>;
+
+Op op_of(Words instruction) {
+  return static_cast<Op>(instruction[0] & spv::OpCodeMask);
+}
+
+uint32_t word(Op op, uint32_t length) {
+  return static_cast<uint32_t>(op) | length << spv::WordCountShift;
+}
+
+/// Calls `visit` with each instruction until it returns false.
+void visit_instructions(std::span<const uint32_t> spirv, const std::function<bool(Words)>& visit) {
+  for (size_t i = kHeaderWords; i < spirv.size();) {
+    const size_t length = spirv[i] >> spv::WordCountShift;
+    if (length == 0 || length > spirv.size() - i) throw std::logic_error("these words are no SPIR-V module");
+    if (!visit(spirv.subspan(i, length))) return;
+    i += length;
+  }
+}
+
+/// The instruction's own id, if it has one.
+std::optional<uint32_t> result_of(Words instruction) {
+  bool has_result = false;
+  bool has_type = false;
+  spv::HasResultAndType(op_of(instruction), &has_result, &has_type);
+  if (!has_result) return std::nullopt;
+  return instruction[has_type ? 2 : 1];
+}
+
+/// From its OpLabel to its terminator.
+struct Block {
+  std::vector<Words> instructions;
+  bool is_live = true;
+
+  uint32_t label() const { return instructions.front()[1]; }
+  Words terminator() const { return instructions.back(); }
+  /// The OpLoopMerge of a loop's first block, else empty.
+  Words loop_merge() const {
+    if (instructions.size() < 2) return {};
+    const Words before = instructions[instructions.size() - 2];
+    return op_of(before) == Op::OpLoopMerge ? before : Words();
+  }
+  bool begins_with_phi() const { return op_of(instructions[1]) == Op::OpPhi; }
+};
+
+struct Function {
+  /// OpFunction and its parameters.
+  std::vector<Words> head;
+  std::vector<Block> blocks;
+  bool is_live = false;
+
+  uint32_t id() const { return head.front()[2]; }
+};
+
+/// What is known of ids whose values are bools (0 and 1) or integers of 32 bits.
+class KnownValues {
+ public:
+  KnownValues(uint32_t id_bound, std::span<const SpecializationConstant> constants)
+      : constants_(constants.begin(), constants.end()), values_(id_bound), spec_ids_(id_bound), is_scalar_(id_bound) {}
+
+  std::optional<uint32_t> of(uint32_t id) const { return values_.at(id); }
+
+  /// Of an instruction before the first function.
+  void learn_constant(Words instruction) {
+    switch (op_of(instruction)) {
+      case Op::OpDecorate:
+        if (instruction[2] == static_cast<uint32_t>(spv::Decoration::SpecId))
+          spec_ids_.at(instruction[1]) = instruction[3];
+        break;
+      case Op::OpTypeBool:
+        is_scalar_.at(instruction[1]) = true;
+        break;
+      case Op::OpTypeInt:
+        is_scalar_.at(instruction[1]) = instruction[2] == 32;
+        break;
+      case Op::OpConstantTrue:
+      case Op::OpSpecConstantTrue:
+        learn(instruction, 1);
+        break;
+      case Op::OpConstantFalse:
+      case Op::OpSpecConstantFalse:
+        learn(instruction, 0);
+        break;
+      case Op::OpConstant:
+      case Op::OpSpecConstant:
+        learn(instruction, instruction[3]);
+        break;
+      case Op::OpSpecConstantOp:
+        learn(instruction, evaluate(static_cast<Op>(instruction[3]), instruction.subspan(4)));
+        break;
+      default:
+        break;
+    }
+  }
+
+  /// Of an instruction in a function, but for OpPhi.
+  void learn_result(Words instruction) {
+    if (instruction.size() > 3 && result_of(instruction)) {
+      learn(instruction, evaluate(op_of(instruction), instruction.subspan(3)));
+    }
+  }
+
+  void learn(Words instruction, std::optional<uint32_t> value) {
+    if (!is_scalar_.at(instruction[1])) return;
+    const uint32_t id = instruction[2];
+    if (const auto spec_id = spec_ids_.at(id)) {
+      const auto has_id = [&](const SpecializationConstant& constant) { return constant.id == *spec_id; };
+      const auto chosen = std::ranges::find_if(constants_, has_id);
+      if (chosen != constants_.end()) value = chosen->value;
+    }
+    values_.at(id) = value;
+  }
+
+ private:
+  /// The value of an operation, if it is one of those that conditions are made of and enough is known.
+  std::optional<uint32_t> evaluate(Op op, Words operands) const {
+    const auto operand = [&](size_t i) {
+      return i < operands.size() && operands[i] < values_.size() ? values_[operands[i]] : std::nullopt;
+    };
+    if (op == Op::OpSelect) {
+      const auto condition = operand(0);
+      return condition ? operand(*condition != 0 ? 1 : 2) : std::nullopt;
+    }
+    const auto a = operand(0);
+    const auto b = operand(1);
+    if (op == Op::OpLogicalNot && a) return *a ^ 1U;
+    if (op == Op::OpLogicalAnd && (a == 0U || b == 0U)) return 0;
+    if (op == Op::OpLogicalOr && (a == 1U || b == 1U)) return 1;
+    if (!a || !b) return std::nullopt;
+    switch (op) {
+      case Op::OpLogicalAnd:
+      case Op::OpBitwiseAnd:
+        return *a & *b;
+      case Op::OpLogicalOr:
+      case Op::OpBitwiseOr:
+        return *a | *b;
+      case Op::OpIAdd:
+        return *a + *b;
+      case Op::OpISub:
+        return *a - *b;
+      case Op::OpIMul:
+        return *a * *b;
+      // By more than 31 is undefined.
+      case Op::OpShiftRightLogical:
+        return *b < 32 ? std::optional(*a >> *b) : std::nullopt;
+      case Op::OpShiftLeftLogical:
+        return *b < 32 ? std::optional(*a << *b) : std::nullopt;
+      case Op::OpIEqual:
+      case Op::OpLogicalEqual:
+        return *a == *b;
+      case Op::OpINotEqual:
+      case Op::OpLogicalNotEqual:
+        return *a != *b;
+      case Op::OpULessThan:
+        return *a < *b;
+      case Op::OpULessThanEqual:
+        return *a <= *b;
+      case Op::OpUGreaterThan:
+        return *a > *b;
+      case Op::OpUGreaterThanEqual:
+        return *a >= *b;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  std::vector<SpecializationConstant> constants_;
+  std::vector<std::optional<uint32_t>> values_;
+  std::vector<std::optional<uint32_t>> spec_ids_;
+  /// By types' ids.
+  std::vector<bool> is_scalar_;
+};
+
+struct Module {
+  explicit Module(std::span<const uint32_t> spirv) {
+    visit_instructions(spirv, [&](Words instruction) {
+      add(instruction);
+      return true;
+    });
+  }
+
+  /// What comes before the first function.
+  std::vector<Words> head;
+  std::vector<Function> functions;
+
+ private:
+  void add(Words instruction) {
+    const Op op = op_of(instruction);
+    if (op == Op::OpFunction) functions.emplace_back();
+    if (functions.empty()) {
+      head.push_back(instruction);
+    } else if (op == Op::OpFunction || op == Op::OpFunctionParameter) {
+      functions.back().head.push_back(instruction);
+    } else if (op != Op::OpFunctionEnd) {
+      if (op == Op::OpLabel) functions.back().blocks.emplace_back();
+      if (functions.back().blocks.empty()) throw std::logic_error("a SPIR-V function begins without a label");
+      functions.back().blocks.back().instructions.push_back(instruction);
+    }
+  }
+};
+
+/// Finds what a function cannot reach, and writes what is left of it.
+class FunctionPruner {
+ public:
+  FunctionPruner(Function& function, KnownValues& values) : function_(function), values_(values) {
+    for (Block& block : function_.blocks) {
+      block_of_.emplace_back(block.label(), &block);
+      has_loop_with_phi_ = has_loop_with_phi_ || (!block.loop_merge().empty() && block.begins_with_phi());
+    }
+    std::ranges::sort(block_of_);
+    // Each round knows more values, as fewer blocks lead to others, and fewer blocks are live, as more is known. None
+    // takes for dead what is not.
+    if (has_loop_with_phi_) return;
+    size_t before = function_.blocks.size();
+    for (size_t now = mark_live_blocks(); now != before; now = mark_live_blocks()) before = now;
+  }
+
+  std::vector<uint32_t> called_functions() const {
+    std::vector<uint32_t> called;
+    for (const Block& block : function_.blocks) {
+      for (const Words instruction : block.instructions) {
+        if (block.is_live && op_of(instruction) == Op::OpFunctionCall) called.push_back(instruction[3]);
+      }
+    }
+    return called;
+  }
+
+  void write(std::vector<uint32_t>& out) const {
+    for (const Words instruction : function_.head) append(out, instruction);
+    for (const Block& block : function_.blocks) {
+      if (block.is_live) {
+        write_live(block, out);
+      } else {
+        write_dead(block, out);
+      }
+    }
+    out.push_back(word(Op::OpFunctionEnd, 1));
+  }
+
+ private:
+  static void append(std::vector<uint32_t>& out, Words words) { out.insert(out.end(), words.begin(), words.end()); }
+
+  Block& block_of(uint32_t label) const {
+    const auto found = std::ranges::lower_bound(block_of_, label, {}, &std::pair<uint32_t, Block*>::first);
+    if (found == block_of_.end() || found->first != label) throw std::logic_error("a SPIR-V branch leads nowhere");
+    return *found->second;
+  }
+
+  /// The only block that a conditional branch leads to, if that is known.
+  std::optional<uint32_t> known_target(const Block& block) const {
+    const Words terminator = block.terminator();
+    if (has_loop_with_phi_ || op_of(terminator) != Op::OpBranchConditional) return std::nullopt;
+    const auto condition = values_.of(terminator[1]);
+    if (!condition) return std::nullopt;
+    return terminator[*condition != 0 ? 2 : 3];
+  }
+
+  std::vector<uint32_t> successors(const Block& block) const {
+    const Words terminator = block.terminator();
+    if (const auto target = known_target(block)) return {*target};
+    switch (op_of(terminator)) {
+      case Op::OpBranch:
+        return {terminator[1]};
+      case Op::OpBranchConditional:
+        return {terminator[2], terminator[3]};
+      case Op::OpSwitch: {
+        std::vector<uint32_t> targets = {terminator[2]};
+        // Pairs of a literal of 32 bits and a label.
+        for (size_t i = 4; i < terminator.size(); i += 2) targets.push_back(terminator[i]);
+        return targets;
+      }
+      default:
+        return {};
+    }
+  }
+
+  bool leads_to(const Block& from, uint32_t label) const {
+    return from.is_live && std::ranges::count(successors(from), label) > 0;
+  }
+
+  /// Where every value with which the block may be entered is known, and it is one.
+  std::optional<uint32_t> phi_value(Words phi, uint32_t label) const {
+    std::optional<uint32_t> common;
+    for (size_t i = 3; i + 1 < phi.size(); i += 2) {
+      if (!leads_to(block_of(phi[i + 1]), label)) continue;
+      const auto value = values_.of(phi[i]);
+      if (!value || (common && *common != *value)) return std::nullopt;
+      common = value;
+    }
+    return common;
+  }
+
+  /// Blocks come before those that they dominate, so a value is learnt before it is used, but for those of phis.
+  size_t mark_live_blocks() {
+    for (const Block& block : function_.blocks) {
+      for (const Words instruction : block.instructions) {
+        if (op_of(instruction) == Op::OpPhi) {
+          values_.learn(instruction, phi_value(instruction, block.label()));
+        } else {
+          values_.learn_result(instruction);
+        }
+      }
+    }
+    for (Block& block : function_.blocks) block.is_live = false;
+    std::vector<Block*> open = {&function_.blocks.front()};
+    size_t count = 0;
+    while (!open.empty()) {
+      Block& block = *open.back();
+      open.pop_back();
+      if (block.is_live) continue;
+      block.is_live = true;
+      ++count;
+      for (const uint32_t label : successors(block)) open.push_back(&block_of(label));
+    }
+    return count;
+  }
+
+  void write_live(const Block& block, std::vector<uint32_t>& out) const {
+    const auto target = known_target(block);
+    for (const Words instruction : block.instructions) {
+      switch (op_of(instruction)) {
+        case Op::OpPhi:
+          write_phi(instruction, block.label(), out);
+          break;
+        case Op::OpSelectionMerge:
+          if (!target) append(out, instruction);
+          break;
+        case Op::OpBranchConditional:
+          if (target) {
+            out.insert(out.end(), {word(Op::OpBranch, 2), *target});
+          } else {
+            append(out, instruction);
+          }
+          break;
+        default:
+          append(out, instruction);
+      }
+    }
+  }
+
+  void write_phi(Words phi, uint32_t label, std::vector<uint32_t>& out) const {
+    const size_t first = out.size();
+    out.insert(out.end(), phi.begin(), phi.begin() + 3);
+    for (size_t i = 3; i + 1 < phi.size(); i += 2) {
+      if (leads_to(block_of(phi[i + 1]), label)) append(out, phi.subspan(i, 2));
+    }
+    out[first] = word(Op::OpPhi, static_cast<uint32_t>(out.size() - first));
+  }
+
+  /// Where a live block names it as the end of its selection or loop, or as where its loop continues, it must be there.
+  void write_dead(const Block& block, std::vector<uint32_t>& out) const {
+    bool is_merge = false;
+    std::optional<uint32_t> loop;
+    for (const Block& other : function_.blocks) {
+      if (!other.is_live || other.instructions.size() < 2) continue;
+      const Words before = other.instructions[other.instructions.size() - 2];
+      const bool has_merge =
+          op_of(before) == Op::OpLoopMerge || (op_of(before) == Op::OpSelectionMerge && !known_target(other));
+      if (has_merge && before[1] == block.label()) is_merge = true;
+      if (op_of(before) == Op::OpLoopMerge && before[2] == block.label()) loop = other.label();
+    }
+    if (!is_merge && !loop) return;
+    append(out, block.instructions.front());
+    if (loop) {
+      out.insert(out.end(), {word(Op::OpBranch, 2), *loop});
+    } else {
+      out.push_back(word(Op::OpUnreachable, 1));
+    }
+  }
+
+  Function& function_;
+  KnownValues& values_;
+  /// Sorted by label.
+  std::vector<std::pair<uint32_t, Block*>> block_of_;
+  bool has_loop_with_phi_ = false;
+};
+
+/// Marks those that the entry points reach, and returns what is left of them.
+std::vector<uint32_t> prune_functions(Module& module, KnownValues& values) {
+  std::vector<uint32_t> open;
+  for (const Words instruction : module.head) {
+    if (op_of(instruction) == Op::OpEntryPoint) open.push_back(instruction[2]);
+  }
+  std::vector<std::pair<const Function*, std::vector<uint32_t>>> written;
+  while (!open.empty()) {
+    const uint32_t id = open.back();
+    open.pop_back();
+    const auto found = std::ranges::find(module.functions, id, &Function::id);
+    if (found == module.functions.end()) throw std::logic_error("a SPIR-V module calls a function that it lacks");
+    if (found->is_live) continue;
+    found->is_live = true;
+    const FunctionPruner pruner(*found, values);
+    for (const uint32_t called : pruner.called_functions()) open.push_back(called);
+    pruner.write(written.emplace_back(&*found, std::vector<uint32_t>()).second);
+  }
+  // In their old order.
+  std::ranges::sort(written, {}, [](const auto& entry) { return entry.first; });
+  std::vector<uint32_t> words;
+  for (const auto& [function, left] : written) words.insert(words.end(), left.begin(), left.end());
+  return words;
+}
+
+/// Ids that functions of the module define, but not what is left of them.
+std::vector<bool> find_dead_ids(const Module& module, uint32_t id_bound, const std::vector<uint32_t>& functions) {
+  std::vector<bool> is_dead(id_bound);
+  const auto set = [&](Words instruction, bool value) {
+    if (const auto id = result_of(instruction)) is_dead.at(*id) = value;
+  };
+  for (const Function& function : module.functions) {
+    for (const Words instruction : function.head) set(instruction, true);
+    for (const Block& block : function.blocks) {
+      for (const Words instruction : block.instructions) set(instruction, true);
+    }
+  }
+  for (size_t i = 0; i < functions.size(); i += functions[i] >> spv::WordCountShift) {
+    set(Words(functions).subspan(i, functions[i] >> spv::WordCountShift), false);
+  }
+  return is_dead;
+}
+
+}  // namespace
+
+bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
+  bool is_found = false;
+  visit_instructions(spirv, [&](Words instruction) {
+    is_found = op_of(instruction) == Op::OpDecorate &&
+               instruction[2] == static_cast<uint32_t>(spv::Decoration::SpecId) && instruction[3] == id;
+    return !is_found;
+  });
+  return is_found;
+}
+
+std::vector<uint32_t> remove_dead_code(std::span<const uint32_t> spirv,
+                                       std::span<const SpecializationConstant> constants) {
+  if (spirv.size() < kHeaderWords) throw std::logic_error("these words are no SPIR-V module");
+  Module module(spirv);
+  const uint32_t id_bound = spirv[kIdBoundWord];
+  KnownValues values(id_bound, constants);
+  for (const Words instruction : module.head) values.learn_constant(instruction);
+  const std::vector<uint32_t> functions = prune_functions(module, values);
+  const std::vector<bool> is_dead = find_dead_ids(module, id_bound, functions);
+
+  std::vector<uint32_t> left(spirv.begin(), spirv.begin() + kHeaderWords);
+  for (const Words instruction : module.head) {
+    const bool is_about_id = op_of(instruction) == Op::OpName || op_of(instruction) == Op::OpDecorate;
+    if (is_about_id && is_dead.at(instruction[1])) continue;
+    left.insert(left.end(), instruction.begin(), instruction.end());
+  }
+  left.insert(left.end(), functions.begin(), functions.end());
+  return left;
+}
+
+}  // namespace promin::gpu

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/spirv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "branches.spv.h"
+#include "camera_stage.spv.h"
+#include "cast.spv.h"
+#include "core/file.h"
+#include "device/branches.h"
+#include "layout.h"
+#include "mirror_stage.spv.h"
+#include "support/process.h"
+
+namespace promin::gpu {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Not;
+
+/// What spirv-val finds wrong with a module; empty if nothing.
+std::string find_faults(std::span<const uint32_t> spirv) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("promin_spirv_test_" + std::to_string(getpid()) + ".spv");
+  write_file(file, {std::as_bytes(spirv)});
+  Process validator(PROMIN_SPIRV_VAL, {"--target-env", "vulkan1.1", file.string()}, {});
+  const ProcessResult result = validator.wait();
+  std::filesystem::remove(file);
+  return result.exit_code == 0 ? "" : "spirv-val: " + result.out + result.err;
+}
+
+/// The names that a module gives to ids, but for members. glslang names functions with their parameters' types after
+/// a parenthesis.
+std::set<std::string> names_in(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kOpName = 5;
+  std::set<std::string> names;
+  for (size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
+    if ((spirv[i] & 0xFFFF) != kOpName) continue;
+    const std::string name = reinterpret_cast<const char*>(&spirv[i + 2]);
+    names.insert(name.substr(0, name.find('(')));
+  }
+  return names;
+}
+
+std::set<std::string> names_left(std::span<const uint32_t> spirv,
+                                 const std::vector<SpecializationConstant>& constants) {
+  return names_in(remove_dead_code(spirv, constants));
+}
+
+TEST(RemoveDeadCodeTest, WhatIsLeftIsValid) {
+  for (const test::BranchConstants& constants : test::all_branch_constants()) {
+    EXPECT_EQ(find_faults(remove_dead_code(k_branches_spirv, constants.list())), "")
+        << constants.first << ' ' << constants.second << ' ' << constants.third;
+  }
+}
+
+TEST(RemoveDeadCodeTest, FunctionsThatAreCalledNowhereGo) {
+  EXPECT_THAT(names_left(k_branches_spirv, test::BranchConstants{.first = 1, .second = 1}.list()),
+              AllOf(Contains("with_first"), Contains("with_second"), Not(Contains("without_first"))));
+  EXPECT_THAT(
+      names_left(k_branches_spirv, test::BranchConstants{.first = 0, .second = 0}.list()),
+      AllOf(Contains("without_first"), Contains("is_odd"), Not(Contains("with_first")), Not(Contains("with_second"))));
+}
+
+TEST(RemoveDeadCodeTest, ConstantsThatAreNotGivenHaveTheirDefaults) {
+  EXPECT_EQ(remove_dead_code(k_branches_spirv, {}), remove_dead_code(k_branches_spirv, test::BranchConstants().list()));
+}
+
+TEST(RemoveDeadCodeTest, WhatIsNoModuleIsRefused) {
+  // Cut within its second instruction.
+  EXPECT_THROW(remove_dead_code(std::span(k_branches_spirv).first(9), {}), std::logic_error);
+  EXPECT_THROW(remove_dead_code(std::vector<uint32_t>(4), {}), std::logic_error);
+  EXPECT_THROW(remove_dead_code(std::vector<uint32_t>(40), {}), std::logic_error);
+}
+
+struct Kernel {
+  const char* name;
+  std::span<const uint32_t> spirv;
+};
+const Kernel kKernels[] = {
+    {"Cast", k_cast_spirv}, {"CameraStage", k_camera_stage_spirv}, {"MirrorStage", k_mirror_stage_spirv}};
+
+std::vector<SpecializationConstant> constants_of(uint64_t features, uint32_t packet_size, uint32_t any) {
+  return {{layout::CONSTANT_FEATURES, static_cast<uint32_t>(features)},
+          {layout::CONSTANT_MORE_FEATURES, static_cast<uint32_t>(features >> 32)},
+          {layout::CONSTANT_PACKET_SIZE, packet_size},
+          {layout::CONSTANT_ALL_ASK_FOR_ANY, any},
+          {layout::CONSTANT_STEPS_TOGETHER, any},
+          {layout::CONSTANT_WAITS_WITH_SOLIDS, any}};
+}
+
+class KernelTest : public testing::TestWithParam<Kernel> {};
+
+TEST_P(KernelTest, WhatIsLeftIsValidWithoutAndWithEachFeature) {
+  std::vector<uint64_t> masks = {0, ~uint64_t{0}};
+  for (int bit = 0; bit < 64; ++bit) {
+    masks.insert(masks.end(), {uint64_t{1} << bit, ~(uint64_t{1} << bit)});
+  }
+  std::set<std::vector<uint32_t>> modules;
+  for (size_t i = 0; i < masks.size(); ++i) {
+    modules.insert(remove_dead_code(GetParam().spirv, constants_of(masks[i], i % 2 == 0 ? 1 : 8, i / 2 % 2)));
+  }
+  EXPECT_GE(modules.size(), 20U);
+  for (const std::vector<uint32_t>& module : modules) EXPECT_EQ(find_faults(module), "");
+}
+
+// What a scene has not, its kernels have not: no kind of primitive but those of the scene.
+TEST_P(KernelTest, OnlyTheScenesPrimitivesAreLeft) {
+#define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) {BIT, "intersect_packet_with_" #PREFIX},
+  const std::vector<std::pair<uint32_t, std::string>> kinds = {
+#include "promin/kinds/primitives.def"
+  };
+  for (const auto& [bit, function] : kinds) {
+    const std::set<std::string> left = names_left(GetParam().spirv, constants_of(uint64_t{1} << bit, 1, 0));
+    for (const auto& [other_bit, other_function] : kinds) {
+      EXPECT_EQ(left.contains(other_function), bit == other_bit) << function << ", " << other_function;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shaders, KernelTest, testing::ValuesIn(kKernels),
+                         [](const auto& param_info) { return std::string(param_info.param.name); });
+
+}  // namespace
+}  // namespace promin::gpu
