@@ -19,9 +19,6 @@ class App;
 
 namespace promin::app {
 
-/// Longest side of a picture, in pixels.
-inline constexpr uint32_t kMaxSide = 32768;
-
 /// The user's choices that replace parts of the chosen camera. Directions need not be unit vectors.
 struct PoseOptions {
   std::optional<dvec3> eye;

@@ -23,6 +23,9 @@ struct PackedPart {
 struct PrimitiveNumbers {
   /// The number of each object's first primitive; then the number of all primitives.
   std::vector<uint32_t> first_order;
+  /// Whether each object is a mesh whose second and third corners were exchanged on the way to the world
+  /// (world::Object::is_rewound).
+  std::vector<bool> is_rewound;
   /// The parts of all triangles that are in more than one, by their order.
   std::vector<PackedPart> parts;
 };
@@ -34,7 +37,8 @@ struct PrimitiveId {
 };
 PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order);
 
-/// Converts the weights of a packed part to those of the whole triangle.
+/// Converts the weights of a packed part's second and third corner to those of the whole triangle's, as it is in its
+/// object.
 vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights);
 
 }  // namespace promin

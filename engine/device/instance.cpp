@@ -79,6 +79,8 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<c
   if (mode == "sync") info.pNext = &features;
   try {
     return {context, info};
+  } catch (const vk::IncompatibleDriverError&) {
+    throw NoDriverError();
   } catch (const vk::SystemError& error) {
     throw DeviceError({std::string("Vulkan does not start (") + error.what() + ")", "on this machine",
                        "install a Vulkan 1.1 driver such as mesa-vulkan-drivers"});

@@ -47,7 +47,6 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)))),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
-      materials_(pack_materials(shading.materials)),
       // The size grows in steps, so that scenes of about the same depth share pipelines.
       stack_size_((packed.stack_size + 7) / 8 * 8) {
   const Placed surfaces = place(packed.surfaces.surfaces, 0);
@@ -60,28 +59,20 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
   constants_.environment = shading.environment;
-  pack(shading.lights);
-  take_shading_buffer(make_shading_buffer());
+  std::vector<layout::MaterialRecord> materials = pack_materials(shading.materials);
+  PackedLights lights = pack_lights(shading.lights);
+  take_shading_buffer(make_shading_buffer(place(lights.records, place(materials, head_bytes_).end()).end()));
   for (const Placed& placed : {surfaces, normals, colors}) write(*shading_, placed);
-  write_tail();
+  write_tail(std::move(materials), std::move(lights));
   uploads_.geometry = nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_;
 }
 
 void DeviceScene::set_materials(std::span<const Material> materials) {
-  materials_ = pack_materials(materials);
-  write_tail();
+  write_tail(pack_materials(materials), lights_);
 }
 
 void DeviceScene::set_lights(std::span<const Light> lights) {
-  pack(lights);
-  write_tail();
-}
-
-void DeviceScene::pack(std::span<const Light> lights) {
-  PackedLights packed = pack_lights(lights);
-  lights_ = std::move(packed.records);
-  light_numbers_ = std::move(packed.numbers);
-  constants_.light_count = static_cast<uint32_t>(lights_.size());
+  write_tail(materials_, pack_lights(lights));
 }
 
 void DeviceScene::set_environment(const Environment& environment) {
@@ -89,7 +80,7 @@ void DeviceScene::set_environment(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail = std::as_bytes(std::span(materials_)).size() + std::as_bytes(std::span(lights_)).size();
+  const uint64_t tail = std::as_bytes(std::span(materials_)).size() + std::as_bytes(std::span(lights_.records)).size();
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail;
 }
 
@@ -106,14 +97,10 @@ std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
           {layout::BINDING_SHADING_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &shading_texels_}};
 }
 
-uint64_t DeviceScene::end_of_tail() const {
-  return place(lights_, place(materials_, head_bytes_).end()).end();
-}
-
-gpu::Buffer DeviceScene::make_shading_buffer() const {
+gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
   // The buffer has room for some more lights, so that switching them on needs no other buffer.
   constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
-  return {*device_, end_of_tail() + kSpareBytes, kStorageOrTexels};
+  return {*device_, tail_end + kSpareBytes, kStorageOrTexels};
 }
 
 void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
@@ -124,19 +111,22 @@ void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
                     device_->profile().most_texel_bytes;
 }
 
-void DeviceScene::write_tail() {
-  if (shading_->size_bytes() < end_of_tail()) {
-    gpu::Buffer larger = make_shading_buffer();
+void DeviceScene::write_tail(std::vector<layout::MaterialRecord> materials, PackedLights lights) {
+  const Placed placed_materials = place(materials, head_bytes_);
+  const Placed placed_lights = place(lights.records, placed_materials.end());
+  if (shading_->size_bytes() < placed_lights.end()) {
+    gpu::Buffer larger = make_shading_buffer(placed_lights.end());
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  const Placed materials = place(materials_, head_bytes_);
-  const Placed lights = place(lights_, materials.end());
-  constants_.first_index.x = materials.first_index;
-  constants_.first_index.y = lights.first_index;
-  write(*shading_, materials);
-  write(*shading_, lights);
-  uploads_.shading += materials.bytes.size() + lights.bytes.size();
+  write(*shading_, placed_materials);
+  write(*shading_, placed_lights);
+  uploads_.shading += placed_materials.bytes.size() + placed_lights.bytes.size();
+  constants_.first_index.x = placed_materials.first_index;
+  constants_.first_index.y = placed_lights.first_index;
+  constants_.light_count = static_cast<uint32_t>(lights.records.size());
+  materials_ = std::move(materials);
+  lights_ = std::move(lights);
 }
 
 std::shared_ptr<DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed,

@@ -37,7 +37,7 @@ class DeviceScene {
   /// What the scene contributes to the constants of pictures and casts.
   const SceneConstants& constants() const { return constants_; }
   /// The index in Scene::lights of each light on the device.
-  const std::vector<uint32_t>& light_numbers() const { return light_numbers_; }
+  const std::vector<uint32_t>& light_numbers() const { return lights_.numbers; }
   uint32_t stack_size() const { return stack_size_; }
   /// The size of all that the scene holds in device memory.
   uint64_t size_bytes() const;
@@ -58,12 +58,11 @@ class DeviceScene {
   const Uploads& uploads() const { return uploads_; }
 
  private:
-  uint64_t end_of_tail() const;
-  gpu::Buffer make_shading_buffer() const;
+  gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
-  /// Copies materials and lights behind the surfaces, into a larger buffer where they need one.
-  void write_tail();
-  void pack(std::span<const Light> lights);
+  /// Copies materials and lights behind the surfaces, into a larger buffer where they need one. Where that cannot be
+  /// made nothing changes.
+  void write_tail(std::vector<layout::MaterialRecord> materials, PackedLights lights);
 
   const gpu::Device* device_;
   gpu::Buffer nodes_;
@@ -75,8 +74,7 @@ class DeviceScene {
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};
   std::vector<layout::MaterialRecord> materials_;
-  std::vector<layout::LightRecord> lights_;
-  std::vector<uint32_t> light_numbers_;
+  PackedLights lights_;
   SceneConstants constants_;
   uint32_t stack_size_;
   bool fetches_texels_ = false;

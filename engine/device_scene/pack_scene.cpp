@@ -68,7 +68,7 @@ uint32_t hashes_of(size_t object, uint32_t primitive) {
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
 struct Collected {
   UnsetVector<Primitive> bounded;
-  UnsetVector<SurfaceRecord> solid_surfaces;
+  UnsetVector<SurfaceRecord> bounded_surfaces;
   UnsetVector<Bounds> boxes;
   std::vector<Primitive> unbounded;
   std::vector<SurfaceRecord> unbounded_surfaces;
@@ -98,12 +98,13 @@ class Collector {
     for (const world::Object& object : scene.objects) count += world::primitive_count(object.shape);
     check_count(scene, count);
     result_.bounded.reserve(count);
-    result_.solid_surfaces.reserve(count);
+    result_.bounded_surfaces.reserve(count);
     result_.boxes.reserve(count);
     for (const world::Object& object : scene.objects) {
       object_ = static_cast<size_t>(&object - scene.objects.data());
       material_ = object.material;
       result_.numbers.first_order.push_back(result_.order);
+      result_.numbers.is_rewound.push_back(object.is_rewound);
       std::visit([this](const auto& shape) { add(shape); }, object.shape);
     }
     result_.numbers.first_order.push_back(result_.order);
@@ -114,9 +115,9 @@ class Collector {
  private:
   void add(const world::NotDrawn&) {}
 
-#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                          \
-  void add(const world::TYPE& shape) {                                                        \
-    add_solid(pack_with_kind(shape), 0, promin::bounds_of(shape), uvec4(0, 0, 0, material_)); \
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                            \
+  void add(const world::TYPE& shape) {                                                          \
+    add_bounded(pack_with_kind(shape), 0, promin::bounds_of(shape), uvec4(0, 0, 0, material_)); \
   }
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   void add(const world::TYPE& shape) {                                   \
@@ -162,7 +163,7 @@ class Collector {
     const size_t first = result_.bounded.size();
     const size_t count = mesh.triangles.size() - degenerate.size();
     result_.bounded.resize(first + count);
-    result_.solid_surfaces.resize(first + count);
+    result_.bounded_surfaces.resize(first + count);
     result_.boxes.resize(first + count);
     for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
       auto skipped = std::lower_bound(degenerate.begin(), degenerate.end(), begin);
@@ -179,7 +180,7 @@ class Collector {
         primitive.c.y = result_.order + triangle;
         primitive.c.w = hashes_of(object_, triangle);
         result_.bounded[place] = primitive;
-        result_.solid_surfaces[place] = {
+        result_.bounded_surfaces[place] = {
             uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0), material_of(mesh, triangle) | flags)};
         result_.boxes[place] = bounds_of(whole);
       }
@@ -204,7 +205,7 @@ class Collector {
           vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
         }
         if (parts_.size() > 1) add_part(part, &part == parts_.data());
-        add_solid(pack(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
+        add_bounded(pack(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
       }
     }
   }
@@ -238,12 +239,12 @@ class Collector {
     parts.push_back(packed);
   }
 
-  void add_solid(Primitive primitive, uint32_t number, const Bounds& box, const uvec4& surface) {
+  void add_bounded(Primitive primitive, uint32_t number, const Bounds& box, const uvec4& surface) {
     check_count(scene_, result_.bounded.size() + 1);
     primitive.c.y = result_.order++;
     primitive.c.w = hashes_of(object_, number);
     result_.bounded.push_back(primitive);
-    result_.solid_surfaces.push_back({surface});
+    result_.bounded_surfaces.push_back({surface});
     result_.boxes.push_back(box);
   }
 
@@ -263,11 +264,14 @@ MaterialRecord pack(const Material& m) {
           vec4(m.emissive, 0.0F)};
 }
 
+/// The least difference of the cosines of a spot's angles for which fp32 still tells points between them apart.
+constexpr double kLeastFalloffWidth = 1e-5;
+
 LightRecord pack(const Light& light) {
   const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
   const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
   return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
-          vec4(light.diffuse, static_cast<float>(1.0 / std::max(0.001, cos_inner - cos_outer))),
+          vec4(light.diffuse, static_cast<float>(1.0 / std::max(kLeastFalloffWidth, cos_inner - cos_outer))),
           vec4(light.specular, 0.0F),
           uvec4(light.kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
 }
@@ -334,7 +338,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   for_each_chunk(references.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       packed.primitives[i] = collected.bounded[references[i]];
-      surfaces[i] = collected.solid_surfaces[references[i]];
+      surfaces[i] = collected.bounded_surfaces[references[i]];
     }
   });
   packed.unbounded_count = static_cast<uint32_t>(collected.unbounded.size());

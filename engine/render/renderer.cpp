@@ -114,9 +114,15 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     film_features = features;
   }
 
-  /// Is called after a part of the scene has changed.
+  /// Is called after a part of the scene has changed. A film that cannot be bound to it is made anew when it is needed.
   void take_change() {
-    if (film) film->bind_scene();
+    if (!film) return;
+    try {
+      film->bind_scene();
+    } catch (...) {
+      film.reset();
+      throw;
+    }
   }
 
   /// Traces one band: `window` of the picture, on a film of its size.

@@ -14,8 +14,12 @@ namespace {
 
 /// A transform whose determinant is less, relative to its columns' lengths, flattens what it moves.
 constexpr double kLeastVolume = 1e-12;
-/// The most by which the length of a unit vector may be off.
-constexpr float kUnitTolerance = 1e-3F;
+/// The most by which the length of a light's direction may be off. A spot's cosines are taken with it as it is.
+constexpr float kDirectionTolerance = 1e-5F;
+/// The most by which the lengths and the product of a camera's look and up may be off.
+constexpr float kBasisTolerance = 1e-3F;
+/// Powers and colours beyond this are refused, because their products overflow in fp32.
+constexpr float kMaxPower = 1e15F;
 
 /// Their numbers are 0, 1, ...
 constexpr uint32_t kLightKindCount = 0
@@ -28,7 +32,8 @@ std::string place_of(const char* array, size_t index) {
 }
 
 bool is_color(const vec3& color) {
-  return is_finite(color) && color.r >= 0.0F && color.g >= 0.0F && color.b >= 0.0F;
+  const auto is_power = [](float value) { return value >= 0.0F && value <= kMaxPower; };
+  return is_power(color.r) && is_power(color.g) && is_power(color.b);
 }
 
 bool is_in_range(const dvec3& p) {
@@ -48,7 +53,8 @@ class Validation {
   }
 
   void check_color(const vec3& color, const std::string& where) {
-    check(is_color(color), "a colour or factor is negative or not finite", where, "use finite numbers from 0 on");
+    check(is_color(color), "a colour or factor is negative, beyond 1e15 or not a number", where,
+          "use numbers from 0 to 1e15");
   }
 
   void check_materials(std::span<const Material> materials) {
@@ -73,10 +79,12 @@ class Validation {
       check_color(light.specular, place + ".specular");
       check(is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15", place + ".position",
             "use a smaller coordinate");
-      check(std::abs(glm::length(light.direction) - 1.0F) <= kUnitTolerance, "the direction is no unit vector",
+      check(std::abs(glm::length(light.direction) - 1.0F) <= kDirectionTolerance, "the direction is no unit vector",
             place + ".direction", "normalise it");
       check(static_cast<uint32_t>(light.kind) < kLightKindCount, "the kind is none of LightKind", place + ".kind",
             "name one that there is");
+      check(light.attenuation == Attenuation::kNone || light.attenuation == Attenuation::kInverseSquare,
+            "the attenuation is none of Attenuation", place + ".attenuation", "name one that there is");
       check(light.range > 0.0F, "the range is not positive", place + ".range", "use infinity where there is no limit");
       const bool are_angles = light.inner_cone_angle >= 0.0F && light.inner_cone_angle < light.outer_cone_angle &&
                               light.outer_cone_angle <= 1.5707964F;
@@ -100,10 +108,12 @@ class Validation {
   }
 
   void check_camera(const Camera& camera, const std::string& place) {
-    const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kUnitTolerance &&
-                          std::abs(glm::length(camera.up) - 1.0F) <= kUnitTolerance &&
-                          std::abs(glm::dot(camera.look, camera.up)) <= kUnitTolerance;
+    const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kBasisTolerance &&
+                          std::abs(glm::length(camera.up) - 1.0F) <= kBasisTolerance &&
+                          std::abs(glm::dot(camera.look, camera.up)) <= kBasisTolerance;
     check(is_basis, "look and up are not orthonormal", place, "normalise them and make them perpendicular");
+    check(camera.projection == Projection::kPerspective || camera.projection == Projection::kOrthographic,
+          "the projection is none of Projection", place + ".projection", "name one that there is");
     check(camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range", place + ".yfov",
           "use an angle in (0, pi)");
     check(camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive", place + ".ymag",
@@ -117,6 +127,8 @@ class Validation {
     check(is_finite(view.camera.eye), "the eye is not finite", "view.camera.eye", "use finite coordinates");
     check_camera(view.camera, "view.camera");
     check(view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "view.size", "give it a width and a height");
+    check(std::max(view.size.x, view.size.y) <= kMaxSide, "a side of the picture is too long", "view.size",
+          "take at most 32768 pixels a side");
     check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
           "the number of samples a pixel is out of range", "view.samples_per_pixel", "take 1 to 65535");
     check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "take 0 to 1000");
@@ -226,7 +238,7 @@ class Validation {
         "leave the normals out, or give each a direction");
     check_each(
         mesh.colors, [](const vec4& c) { return is_color(vec3(c)) && std::isfinite(c.a); },
-        "a vertex colour is negative or not finite", place + ".colors", "use finite numbers from 0 on");
+        "a vertex colour is negative, beyond 1e15 or not a number", place + ".colors", "use numbers from 0 to 1e15");
     check_each(
         mesh.triangles, [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
         "a corner is out of range of the positions", place + ".triangles", "use indices of positions");

@@ -74,7 +74,9 @@ Mesh place(const Mesh& mesh, const dmat4& world_from_object) {
 Object flatten(const promin::Scene& scene, const promin::Object& object) {
   Object result{object.name, NotDrawn{}, object.material};
   if (object.geometry == promin::Object::kNoGeometry) return result;
-  result.shape = std::visit(ShapeInWorld{object.world_from_object}, scene.geometries[object.geometry]);
+  const Geometry& geometry = scene.geometries[object.geometry];
+  result.shape = std::visit(ShapeInWorld{object.world_from_object}, geometry);
+  result.is_rewound = std::holds_alternative<Mesh>(geometry) && Placement(object.world_from_object).is_mirroring();
   return result;
 }
 

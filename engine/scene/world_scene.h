@@ -28,6 +28,8 @@ struct Object {
   Shape shape;
   /// Index into Scene::materials.
   uint32_t material = 0;
+  /// Whether it is a mesh whose triangles have their second and third corners exchanged (place).
+  bool is_rewound = false;
 };
 
 struct Scene {

@@ -25,7 +25,8 @@ using DeviceHandle = std::unique_ptr<Device, DeviceDeleter>;
 
 /// Opens the device that `selection` names: an index of list_devices or a part of a name, case ignored; without one a
 /// discrete GPU before an integrated before a virtual one before a CPU.
-/// Throws DeviceError if none is usable or none matches.
+/// Throws DeviceError if none is usable or none matches, RunError if it fails, and UsageError if PROMIN_VALIDATION
+/// (validation_message_count) is none of its words.
 PROMIN_EXPORT DeviceHandle open_device(const std::optional<std::string>& selection = std::nullopt);
 
 /// What list_devices tells of this device. Valid while the device is.

@@ -31,6 +31,8 @@ struct RenderMode {
   bool operator==(const RenderMode&) const = default;
 };
 
+/// The longest side of a picture in pixels.
+inline constexpr uint32_t kMaxSide = 32768;
 /// The largest number of samples a pixel.
 inline constexpr uint32_t kMaxSamplesPerPixel = 65535;
 /// The largest number of mirror bounces.
@@ -40,7 +42,7 @@ inline constexpr uint32_t kMaxDepth = 1000;
 struct View {
   /// Where the picture is taken from; see frame_scene (promin/scene.h).
   Camera camera;
-  /// Width and height of the whole picture in pixels, at least 1. The camera's vertical field of view holds.
+  /// Width and height of the whole picture in pixels, 1...kMaxSide. The camera's vertical field of view holds.
   uvec2 size{1280, 720};
   /// Pixels to trace, at least one and within the picture; without a crop all. A crop has the bits of the same pixels
   /// of the whole.

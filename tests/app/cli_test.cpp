@@ -189,8 +189,8 @@ TEST_F(CliTest, AFullStandardOutputIsAFailure) {
 TEST_F(CliTest, WithoutADeviceOnlyInfoWorks) {
   options_.environment = {{"VK_ICD_FILENAMES", "/nonexistent.json"}, {"VK_DRIVER_FILES", "/nonexistent.json"}};
   write("old.exr", "old");
-  expect_failure(run({"render", "square.gltf", "-o", "old.exr"}), 4, ";");
-  expect_failure(run({"devices"}), 4, ";");
+  expect_failure(run({"render", "square.gltf", "-o", "old.exr"}), 4, "no Vulkan device");
+  expect_failure(run({"devices"}), 4, "no Vulkan device");
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
 

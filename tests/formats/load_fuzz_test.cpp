@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <random>
 
+#include "promin/validate.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 
@@ -83,7 +84,9 @@ class LoadFuzzTest : public SceneFolder {
       const std::string mutant = mutate(bytes, random);
       write(name, mutant);
       try {
-        world::flatten(load_scene(folder_ / scene));
+        const Scene loaded = load_scene(folder_ / scene);
+        world::flatten(loaded);
+        ASSERT_EQ(validate(loaded).size(), 0U) << "mutant " << i << " loads and is not valid";
       } catch (const InputError& error) {
         ++refused;
         ASSERT_NE(std::string(error.what()), "");
@@ -134,7 +137,9 @@ TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
         ++total;
         write("a.gltf", mutant.dump());
         try {
-          world::flatten(load_scene(folder_ / "a.gltf"));
+          const Scene loaded = load_scene(folder_ / "a.gltf");
+          world::flatten(loaded);
+          ASSERT_EQ(validate(loaded).size(), 0U) << pointer << " = " << value;
         } catch (const InputError&) {
           ++refused;
         }

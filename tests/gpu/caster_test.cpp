@@ -470,7 +470,7 @@ TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
 }
 
 TEST(PrimitiveOfOrder, FindsTheObject) {
-  const PrimitiveNumbers numbers{{0, 0, 2, 3, 3, 5}, {}};
+  const PrimitiveNumbers numbers{.first_order = {0, 0, 2, 3, 3, 5}, .is_rewound = {}, .parts = {}};
   const auto id = [&](uint32_t order) {
     const PrimitiveId found = primitive_of_order(numbers, order);
     return std::pair(found.object, found.primitive);

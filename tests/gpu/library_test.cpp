@@ -5,7 +5,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <limits>
 #include <vector>
 
@@ -106,6 +108,73 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   EXPECT_THROW(renderer.set_materials(std::vector<Material>(3)), InputError);
   EXPECT_THROW(renderer.set_environment({.ambient = vec3(-1)}), InputError);
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
+}
+
+// A change that there is no memory for is refused while the scene is still as it was. Lavapipe from Mesa 24.3 on has
+// its memory in a file, whose size can be limited; other drivers take the change.
+TEST_F(LibraryTest, AChangeThatFailsChangesNothing) {
+  Renderer renderer(device(), scene_);
+  const Image before = renderer.render(view_).image;
+  // What passes the limit fails rather than ends the program, as in promin's programs.
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit small{1 << 16, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  bool is_refused = false;
+  try {
+    renderer.set_lights(std::vector<Light>(10'000));
+  } catch (const RunError&) {
+    is_refused = true;
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  if (is_refused) {
+    EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
+  }
+  renderer.set_lights(scene_.lights);
+  EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
+}
+
+// A mesh that is mirrored is wound the other way on the device; its corners are told as the mesh has them.
+TEST_F(LibraryTest, WeightsAreThoseOfTheMeshsOwnCorners) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const Ray near_second{.origin = {0.9F, 0.05F, 1}, .direction = {0, 0, -1}};
+  const Ray mirrored_near_second{.origin = {-0.9F, 0.05F, 1}, .direction = {0, 0, -1}};
+  for (const char* builder : {"sah", "spatial"}) {
+    for (const double side : {1.0, -1.0}) {
+      Scene scene;
+      scene.materials.resize(1);
+      scene.add("before", Sphere{{0, 0, -9}, 1.0});
+      scene.add("mesh", mesh);
+      scene.objects.back().world_from_object[0][0] = side;
+      Hit hit;
+      Caster(device(), scene, {.builder = builder})
+          .cast({side > 0 ? &near_second : &mirrored_near_second, 1}, {&hit, 1});
+      EXPECT_NEAR(hit.u, 0.9F, 1e-6F) << builder << side;
+      EXPECT_NEAR(hit.v, 0.05F, 1e-6F) << builder << side;
+      EXPECT_EQ(hit.normal, vec3(0, 0, 1));
+    }
+  }
+}
+
+TEST_F(LibraryTest, ANarrowSpotHasItsWholePowerInItsMiddle) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.add("wall", Sphere{{0, 0, -10}, 5.0});
+  scene.lights.resize(1);
+  scene.lights[0].kind = LightKind::kSpot;
+  View view;
+  view.camera.yfov = 1e-4F;
+  view.size = uvec2(1);
+  std::vector<vec3> colors;
+  for (const float angle : {0.5F, 0.05F, 0.02F, 0.01F}) {
+    scene.lights[0].outer_cone_angle = angle;
+    colors.push_back(Renderer(device(), scene).render(view).image.pixels[0]);
+    EXPECT_NEAR(colors.back().r, colors.front().r, 0.01F * colors.front().r) << angle;
+  }
+  EXPECT_GT(colors.front().r, 0.1F);
 }
 
 TEST_F(LibraryTest, AChangedSceneHasTheBitsOfANewOne) {

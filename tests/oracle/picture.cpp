@@ -105,7 +105,7 @@ Illumination illuminate(const Light& light, const Vector& position) {
   if (light.kind == LightKind::kSpot) {
     // The same, "Inner and Outer Cone Angles".
     const Real outer = std::cos(Real(light.outer_cone_angle));
-    const Real width = std::max(0.001L, std::cos(Real(light.inner_cone_angle)) - outer);
+    const Real width = std::max(1e-5L, std::cos(Real(light.inner_cone_angle)) - outer);
     const Real ramp = std::clamp((-glm::dot(result.to_light, axis) - outer) / width, Real(0), Real(1));
     result.strength *= ramp * ramp;
   }

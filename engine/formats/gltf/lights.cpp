@@ -26,12 +26,13 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   const json spot = source.value("spot", json::object());
   const double inner = spot.value("innerConeAngle", 0.0);
   const double outer = spot.value("outerConeAngle", std::numbers::pi / 4.0);
-  if (!(inner < outer)) {
+  light.inner_cone_angle = static_cast<float>(inner);
+  light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
+  // Both as they are given and as the light has them.
+  if (!(inner < outer && light.inner_cone_angle < light.outer_cone_angle)) {
     report.refuse("the spot's inner cone angle is not less than its outer", place + ".spot",
                   "make innerConeAngle less than outerConeAngle");
   }
-  light.inner_cone_angle = static_cast<float>(inner);
-  light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
 }
 
 /// Candela and lux are powers as they stand; a directional light has no distance to fall off with.
