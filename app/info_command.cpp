@@ -11,6 +11,7 @@
 
 #include "console.h"
 #include "device_scene/pack_scene.h"
+#include "device_scene/pack_shading.h"
 #include "promin/load_scene.h"
 #include "rows.h"
 #include "scene/features.h"

@@ -10,6 +10,7 @@
 #include "device/buffer.h"
 #include "device/pipeline.h"
 #include "device_scene/pack_scene.h"
+#include "device_scene/pack_shading.h"
 #include "device_scene/scene_constants.h"
 
 namespace promin {

@@ -3,11 +3,6 @@
 #include "device_scene/pack_scene.h"
 
 #include <algorithm>
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <cstring>
-#include <initializer_list>
 #include <string>
 
 #include "bvh/clip_triangle.h"
@@ -17,7 +12,7 @@
 #include "core/parallel.h"
 #include "core/rounding.h"
 #include "core/stopwatch.h"
-#include "device_scene/cut_triangles.h"
+#include "device_scene/collect_primitives.h"
 #include "promin/error.h"
 #include "scene/features.h"
 #include "shapes/shapes.h"
@@ -29,252 +24,6 @@ using namespace layout;
 
 /// The number of triangles or references that a thread takes at a time.
 constexpr size_t kChunkSize = 16384;
-
-uint32_t bits_of(float value) {
-  return std::bit_cast<uint32_t>(value);
-}
-
-/// Packs corners as corner0, corner1 and corner2 of shaders/primitives/triangle.glsl and triangle_corners read them.
-Primitive pack(const TrianglePart& part) {
-  const auto& [a, b, c] = part;
-  return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),
-          uvec4(bits_of(c.position.z), 0, KIND_TRIANGLE, 0)};
-}
-
-template <class Shape>
-Primitive pack_with_kind(const Shape& shape) {
-  Primitive primitive = promin::pack(shape);
-  primitive.c.z = KindOf<Shape>::value;
-  return primitive;
-}
-
-Bounds bounds_of(const TrianglePart& part) {
-  Bounds bounds;
-  for (const PartCorner& corner : part) bounds.extend(corner.position);
-  return bounds;
-}
-
-uint32_t hash_of(std::initializer_list<uint64_t> words) {
-  Hash64 hash;
-  for (const uint64_t word : words) hash.add(word);
-  return static_cast<uint32_t>(hash.value() >> 48);
-}
-
-/// The value of Primitive::c.w.
-uint32_t hashes_of(size_t object, uint32_t primitive) {
-  return hash_of({object}) | hash_of({object, primitive}) << 16;
-}
-
-/// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
-struct Collected {
-  UnsetVector<Primitive> bounded;
-  UnsetVector<SurfaceRecord> bounded_surfaces;
-  UnsetVector<Bounds> boxes;
-  std::vector<Primitive> unbounded;
-  std::vector<SurfaceRecord> unbounded_surfaces;
-  std::vector<vec4> normals;
-  std::vector<vec4> colors;
-  PrimitiveNumbers numbers;
-  uint32_t order = 0;
-  uint64_t degenerate_count = 0;
-};
-
-/// Throws RunError for "`who` `count` `what`" beyond `most`.
-void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
-                   const char* cure = "") {
-  if (count <= most) return;
-  throw RunError({who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
-                  "promin holds at most " + std::to_string(most) + cure});
-}
-
-void check_count(const world::Scene& scene, size_t count) {
-  check_at_most(CHILD_FIRST_MASK, count, scene, "the scene has", "primitives");
-}
-
-class Collector {
- public:
-  explicit Collector(const world::Scene& scene) : scene_(scene), cut_triangles_(scene) {
-    size_t count = 0;
-    for (const world::Object& object : scene.objects) count += world::primitive_count(object.shape);
-    check_count(scene, count);
-    result_.bounded.reserve(count);
-    result_.bounded_surfaces.reserve(count);
-    result_.boxes.reserve(count);
-    for (const world::Object& object : scene.objects) {
-      object_ = static_cast<size_t>(&object - scene.objects.data());
-      material_ = object.material;
-      result_.numbers.first_order.push_back(result_.order);
-      result_.numbers.is_rewound.push_back(object.is_rewound);
-      std::visit([this](const auto& shape) { add(shape); }, object.shape);
-    }
-    result_.numbers.first_order.push_back(result_.order);
-  }
-
-  Collected take() { return std::move(result_); }
-
- private:
-  void add(const world::NotDrawn&) {}
-
-#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                            \
-  void add(const world::TYPE& shape) {                                                          \
-    add_bounded(pack_with_kind(shape), 0, promin::bounds_of(shape), uvec4(0, 0, 0, material_)); \
-  }
-#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  void add(const world::TYPE& shape) {                                   \
-    add_unbounded(pack_with_kind(shape));                                \
-  }
-#include "promin/kinds/primitives.def"
-
-  void add_unbounded(Primitive primitive) {
-    primitive.c.y = result_.order++;
-    primitive.c.w = hashes_of(object_, 0);
-    result_.unbounded.push_back(primitive);
-    result_.unbounded_surfaces.push_back({uvec4(0, 0, 0, material_)});
-  }
-
-  void add(const Mesh& mesh) {
-    first_vertex_ = static_cast<uint32_t>(std::max(result_.normals.size(), result_.colors.size()));
-    uint32_t flags = 0;
-    if (!mesh.normals.empty()) {
-      flags |= SURFACE_IS_SMOOTH;
-      result_.normals.resize(first_vertex_);
-      for (const vec3& n : mesh.normals) result_.normals.emplace_back(n, 0.0F);
-    }
-    if (!mesh.colors.empty()) {
-      flags |= SURFACE_IS_COLORED;
-      result_.colors.resize(first_vertex_);
-      result_.colors.insert(result_.colors.end(), mesh.colors.begin(), mesh.colors.end());
-    }
-    if (cut_triangles_.cut_any()) {
-      add_cut(mesh, flags);
-    } else {
-      add_whole(mesh, flags);
-    }
-  }
-
-  uint32_t material_of(const Mesh& mesh, uint32_t triangle) const {
-    return mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[triangle];
-  }
-
-  /// Adds the triangles of a mesh, none of which is in parts: the place of each is known beforehand.
-  void add_whole(const Mesh& mesh, uint32_t flags) {
-    const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
-    result_.degenerate_count += degenerate.size();
-    const size_t first = result_.bounded.size();
-    const size_t count = mesh.triangles.size() - degenerate.size();
-    result_.bounded.resize(first + count);
-    result_.bounded_surfaces.resize(first + count);
-    result_.boxes.resize(first + count);
-    for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
-      auto skipped = std::lower_bound(degenerate.begin(), degenerate.end(), begin);
-      for (size_t i = begin; i < end; ++i) {
-        if (skipped != degenerate.end() && *skipped == i) {
-          ++skipped;
-          continue;
-        }
-        const auto triangle = static_cast<uint32_t>(i);
-        const uvec3& corners = mesh.triangles[i];
-        const TrianglePart whole = whole_triangle(mesh, triangle);
-        const size_t place = first + i - static_cast<size_t>(skipped - degenerate.begin());
-        Primitive primitive = pack(whole);
-        primitive.c.y = result_.order + triangle;
-        primitive.c.w = hashes_of(object_, triangle);
-        result_.bounded[place] = primitive;
-        result_.bounded_surfaces[place] = {
-            uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0), material_of(mesh, triangle) | flags)};
-        result_.boxes[place] = bounds_of(whole);
-      }
-    });
-    result_.order += static_cast<uint32_t>(mesh.triangles.size());
-  }
-
-  /// Adds the triangles of a mesh, some of which may be in parts.
-  void add_cut(const Mesh& mesh, uint32_t flags) {
-    auto skipped = cut_triangles_.degenerate_triangles(object_).begin();
-    result_.degenerate_count += cut_triangles_.degenerate_triangles(object_).size();
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-      if (skipped != cut_triangles_.degenerate_triangles(object_).end() && *skipped == i) {
-        ++skipped;
-        ++result_.order;
-        continue;
-      }
-      cut_triangles_.cut(mesh, i, parts_);
-      for (const TrianglePart& part : parts_) {
-        uvec3 vertices(0);
-        for (int corner = 0; corner < 3 && flags != 0; ++corner) {
-          vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
-        }
-        if (parts_.size() > 1) add_part(part, &part == parts_.data());
-        add_bounded(pack(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
-      }
-    }
-  }
-
-  /// The index of the vertex at a part's corner, counted from the mesh's first. Where a triangle was cut, the mesh has
-  /// no such vertex, so it is added with interpolated values.
-  uint32_t vertex_of(const Mesh& mesh, const uvec3& corners, const PartCorner& corner) {
-    if (corner.weights == dvec2(0, 0)) return corners.x;
-    if (corner.weights == dvec2(1, 0)) return corners.y;
-    if (corner.weights == dvec2(0, 1)) return corners.z;
-    const auto mix = [&](const auto& values) {
-      const auto& [u, v] = std::pair(static_cast<float>(corner.weights.x), static_cast<float>(corner.weights.y));
-      return (1.0F - u - v) * values[corners.x] + u * values[corners.y] + v * values[corners.z];
-    };
-    const size_t vertex = std::max(result_.normals.size(), result_.colors.size());
-    if (!mesh.normals.empty()) {
-      result_.normals.resize(vertex);
-      result_.normals.emplace_back(mix(mesh.normals), 0.0F);
-    }
-    if (!mesh.colors.empty()) {
-      result_.colors.resize(vertex);
-      result_.colors.push_back(mix(mesh.colors));
-    }
-    return static_cast<uint32_t>(vertex) - first_vertex_;
-  }
-
-  void add_part(const TrianglePart& part, bool is_first) {
-    std::vector<PackedPart>& parts = result_.numbers.parts;
-    PackedPart packed{result_.order, (parts.empty() ? 0 : parts.back().further_parts) + (is_first ? 0U : 1U), {}};
-    for (size_t corner = 0; corner < 3; ++corner) packed.weights[corner] = vec2(part[corner].weights);
-    parts.push_back(packed);
-  }
-
-  void add_bounded(Primitive primitive, uint32_t number, const Bounds& box, const uvec4& surface) {
-    check_count(scene_, result_.bounded.size() + 1);
-    primitive.c.y = result_.order++;
-    primitive.c.w = hashes_of(object_, number);
-    result_.bounded.push_back(primitive);
-    result_.bounded_surfaces.push_back({surface});
-    result_.boxes.push_back(box);
-  }
-
-  const world::Scene& scene_;
-  CutTriangles cut_triangles_;
-  Collected result_;
-  size_t object_ = 0;
-  uint32_t material_ = 0;
-  /// The first vertex of the current mesh.
-  uint32_t first_vertex_ = 0;
-  /// The parts of the current triangle.
-  std::vector<TrianglePart> parts_;
-};
-
-MaterialRecord pack(const Material& m) {
-  return {vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F),
-          vec4(m.emissive, 0.0F)};
-}
-
-/// The least difference of the cosines of a spot's angles for which fp32 still tells points between them apart.
-constexpr double kLeastFalloffWidth = 1e-5;
-
-LightRecord pack(const Light& light) {
-  const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
-  const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
-  return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
-          vec4(light.diffuse, static_cast<float>(1.0 / std::max(kLeastFalloffWidth, cos_inner - cos_outer))),
-          vec4(light.specular, 0.0F),
-          uvec4(light.kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
-}
 
 /// Clips a primitive for builders that split primitives: triangles exactly, other shapes by their boxes.
 Bounds clip(const Primitive& p, const Bounds& window) {
@@ -373,24 +122,8 @@ TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& o
   return find_tree_faults(packed.tree(), packed.primitives, packed.numbers, options);
 }
 
-std::vector<MaterialRecord> pack_materials(std::span<const Material> materials) {
-  std::vector<MaterialRecord> records;
-  for (const Material& material : materials) records.push_back(pack(material));
-  return records;
-}
-
-PackedLights pack_lights(std::span<const Light> lights) {
-  PackedLights packed;
-  for (uint32_t i = 0; i < lights.size(); ++i) {
-    if (!lights[i].is_on) continue;
-    packed.records.push_back(pack(lights[i]));
-    packed.numbers.push_back(i);
-  }
-  return packed;
-}
-
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options) {
-  Collected collected = Collector(scene).take();
+  Collected collected = collect_primitives(scene);
 
   const Stopwatch building;
   const Bvh bvh =
@@ -415,7 +148,7 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
 }
 
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene) {
-  Collected collected = Collector(scene).take();
+  Collected collected = collect_primitives(scene);
 
   const Stopwatch reading;
   PackedScene packed;

@@ -18,8 +18,8 @@
 #include "layout.h"
 #include "scene/world_scene.h"
 
-// What a scene becomes on the device, in the layout of shaders/layout.h: geometry and surfaces together, as both follow
-// the order of the tree's leaves; materials and lights each alone, as they change alone. Vulkan-free.
+// What a scene's geometry becomes on the device, in the layout of shaders/layout.h, with its surfaces, as both follow
+// the order of the tree's leaves. Vulkan-free.
 namespace promin {
 
 /// What shading needs of the primitives, in leaf order: material numbers and vertices.
@@ -83,15 +83,5 @@ PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::
 
 /// Applies find_tree_faults to the scene's own tree.
 TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});
-
-std::vector<layout::MaterialRecord> pack_materials(std::span<const Material> materials);
-
-/// The lights that are on.
-struct PackedLights {
-  std::vector<layout::LightRecord> records;
-  /// The index in Scene::lights of each record's light.
-  std::vector<uint32_t> numbers;
-};
-PackedLights pack_lights(std::span<const Light> lights);
 
 }  // namespace promin

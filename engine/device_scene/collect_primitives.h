@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bvh/primitive_numbers.h"
+#include "core/unset_vector.h"
+#include "layout.h"
+#include "promin/math.h"
+#include "scene/world_scene.h"
+
+namespace promin {
+
+/// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
+struct Collected {
+  /// All but the unbounded ones and degenerate triangles; surfaces and boxes go with them.
+  UnsetVector<layout::Primitive> bounded;
+  UnsetVector<layout::SurfaceRecord> bounded_surfaces;
+  UnsetVector<Bounds> boxes;
+  std::vector<layout::Primitive> unbounded;
+  std::vector<layout::SurfaceRecord> unbounded_surfaces;
+  /// See PackedSurfaces.
+  std::vector<vec4> normals;
+  std::vector<vec4> colors;
+  PrimitiveNumbers numbers;
+  /// The number of all primitives so far.
+  uint32_t order = 0;
+  uint64_t degenerate_count = 0;
+};
+
+/// Collects a checked scene's primitives. Throws RunError where there are more than the layout can hold.
+Collected collect_primitives(const world::Scene& scene);
+
+/// Throws RunError for "`who` `count` `what`" beyond `most`.
+void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
+                   const char* cure = "");
+
+}  // namespace promin
