@@ -67,7 +67,7 @@ FrameRange read_frames(const OptionValues& words) {
   return range;
 }
 
-/// Reads numbers between commas.
+/// Reads numbers between commas, each once and in ascending order.
 std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
   std::istringstream list(words.text() + ",");
@@ -80,6 +80,8 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
     }
     numbers.push_back(value);
   }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }
 

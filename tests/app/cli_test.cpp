@@ -301,6 +301,13 @@ TEST_F(CliTest, StatsHoldWhatTheInterfacePromises) {
   EXPECT_NEAR(stats.at("mrays_per_s").get<double>(), rays / runs[1] / 1e3, 1e-6 * rays / runs[1]);
 }
 
+TEST_F(CliTest, StatsCountTheLightsThatAreOn) {
+  const ProcessResult result =
+      run({"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "--stats", "s.json", "--lights-off", "0,0,0"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json::parse(read("s.json")).at("scene").at("lights"), 0);
+}
+
 TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {
   const OptionValues arguments = {"square.gltf", "--size", "150", "100", "-s", "2"};
   options_.environment["LP_NUM_THREADS"] = "1";

@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/App.hpp>
 #include <cmath>
 
+#include "arguments.h"
 #include "core/rounding.h"
 #include "promin/error.h"
 
@@ -133,6 +135,15 @@ TEST(ViewSetupTest, ACropLiesWithinThePicture) {
   EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
   options.crop = PixelWindow{{0, 0}, {64, 33}};
   EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+}
+
+TEST(ViewSetupTest, LightsToLeaveOutAreNamedOnce) {
+  CLI::App program;
+  OptionTable table(program);
+  ViewOptions options;
+  add_view_options(table, options);
+  program.parse("--lights-off 2,0,2,0");
+  EXPECT_EQ(options.lights_off, (std::vector<uint32_t>{0, 2}));
 }
 
 TEST(LightUpTest, OnlyASceneWithoutLightsIsLitUp) {
