@@ -85,6 +85,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "inf", "0"}, "--eye takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"}, "parallel"},
       {{"render", "square.gltf", "-o", "a.exr", "--builder", "none"}, "--builder takes "},
+      {{"render", "square.gltf", "-o", "a.exr", "--device", ""},
+       "--device takes a part of a device's name or its index"},
       {{"render", "square.gltf", "-o", "a.exr", "--features", "few"}, "--features takes scene or all, not \"few\""},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
