@@ -38,7 +38,7 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   const char* end = selection.data() + selection.size();
   const auto [rest, error] = std::from_chars(selection.data(), end, index);
   if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
-    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "there are " + list_cameras(scene)});
+    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "choose one of: " + list_cameras(scene)});
   }
   return scene.cameras[index];
 }

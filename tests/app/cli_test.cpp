@@ -76,7 +76,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}, "--crop is empty"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop reaches beyond"},
-      {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "there are 0 (main), 1 (side)"},
+      {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "choose one of: 0 (main), 1 (side)"},
       {{"render", "square.gltf", "-o", "a.exr", "--camera", "2"}, "no camera \"2\", square.gltf"},
       {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "no cameras to choose from"},
       {{"render", "square.gltf", "-o", "a.exr", "--fov", "180"}, "--fov takes a number"},
