@@ -92,6 +92,29 @@ TEST(ViewSetupTest, AnOrthonormalPoseIsUsedAsItIs) {
   EXPECT_EQ(camera.near, 0.25F);
 }
 
+TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
+  Scene scene = make_scene();
+  scene.cameras[0].projection = Projection::kOrthographic;
+  ViewOptions options;
+  const auto say_and_view = [&] {
+    testing::internal::CaptureStderr();
+    const View view = make_view(scene, options, Console(Verbosity::kNormal));
+    return std::pair(testing::internal::GetCapturedStderr(), view.camera.projection);
+  };
+  EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kOrthographic));
+  options.pose.fov_deg = 40.0;
+  const std::string note = "promin: note: the camera is orthographic; --fov makes it a perspective one\n";
+  EXPECT_EQ(say_and_view(), std::pair(note, Projection::kPerspective));
+  options.camera = "side";
+  EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
+
+  // A camera of the user's own takes nothing of the scene's.
+  options.camera = "main";
+  options.pose.eye = dvec3(0.0);
+  options.pose.look = dvec3(0.0, 0.0, -1.0);
+  EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
+}
+
 TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
   ViewOptions options;
   options.pose.look = dvec3(3e14, 0.0, -4e14);
