@@ -149,7 +149,9 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
       });
     } catch (const RunError& error) {
       if (name.empty()) throw;
-      throw RunError({name + ": " + error.what(), "", ""});
+      std::vector<Problem> problems = error.problems();
+      problems.front().what = name + ": " + problems.front().what;
+      throw RunError(problems);
     }
   }
 }

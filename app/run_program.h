@@ -6,6 +6,7 @@
 #include <string>
 
 #include "arguments.h"
+#include "promin/error.h"
 
 namespace promin::app {
 
@@ -15,5 +16,8 @@ namespace promin::app {
 /// failure too.
 int run_program(const std::string& name, const std::string& help,
                 std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv);
+
+/// What the error says, with this command line's options for the settings of the library that it speaks of.
+std::string message_of(const Error& error);
 
 }  // namespace promin::app
