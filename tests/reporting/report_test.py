@@ -284,7 +284,7 @@ def check_front_text(report):
     expect(not faults_of(claim), f"at odds: {claim}")
     text = front_text.front_sentence(claim)
     expect("methods textbook takes 0.65 of its time" in text.replace("Methods", "methods"), f"no figures: {text}")
-    expect("rounding alone takes" in text and "leak between its triangles" in text, f"no reasons: {text}")
+    expect("rounding alone takes" in text and "rays leak by its test of the " in text, f"no reasons: {text}")
     claim["ahead"][0]["gives_up"][0]["figure"] = 0
     expect(faults_of(claim), "not noticed: a reason without a figure")
     other["frames"]["errors"] = [row for row in other["frames"]["errors"] if row["method"] == "promin"]
