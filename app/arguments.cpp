@@ -55,7 +55,10 @@ void refuse_leftovers(const CLI::App& program) {
   if (option != leftovers.end()) {
     throw UsageError({"unknown option " + option->substr(0, option->find('=')), kWhere, cure});
   }
-  const std::string what = &command == &program ? "unknown command " : "unexpected argument ";
+  // A program without commands is one itself.
+  const bool lacks_command =
+      &command == &program && !program.get_subcommands([](const CLI::App*) { return true; }).empty();
+  const std::string what = lacks_command ? "unknown command " : "unexpected argument ";
   throw UsageError({what + leftovers.front(), kWhere, cure});
 }
 

@@ -149,7 +149,9 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
       });
     } catch (const RunError& error) {
       if (name.empty()) throw;
-      throw RunError({name + ": " + error.what(), "", ""});
+      std::vector<Problem> problems = error.problems();
+      problems.front().what = name + ": " + problems.front().what;
+      throw RunError(problems);
     }
   }
 }
@@ -199,7 +201,8 @@ void render(const RenderOptions& options) {
   light_up(scene, console);
   check_lights(scene, options.view.lights_off);
   switch_lights(scene.lights, options.view.lights_off);
-  stats.light_count = scene.lights.size() - options.view.lights_off.size();
+  const auto is_on = [](const Light& light) { return light.is_on; };
+  stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));
 
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   std::future<void> pictures;

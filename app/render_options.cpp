@@ -67,7 +67,7 @@ FrameRange read_frames(const OptionValues& words) {
   return range;
 }
 
-/// Reads numbers between commas.
+/// Reads numbers between commas, each once and in ascending order.
 std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
   std::istringstream list(words.text() + ",");
@@ -80,6 +80,8 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
     }
     numbers.push_back(value);
   }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }
 
@@ -110,7 +112,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(debug_view_names(), ", ")),
             [&](const OptionValues& w) { view.debug_view = read_debug_view(w); });
   table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
-  table.add("--lights-off", "INDICES", "Sources to leave out, by their numbers from 0 with commas between",
+  table.add("--lights-off", "INDICES", "Lights to leave out, by their numbers from 0 with commas between",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const OptionValues& w) { view.camera = w.text(); });

@@ -18,24 +18,47 @@ namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4 };
 
-/// Names the options of this command line in a message of the library, which knows none.
-std::string name_options(std::string message) {
-  constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
-      {"asked for as the device", "asked for by --device"},
-      {"take a smaller depth or another device", "lower --max-depth or take another device"},
-      {"take a smaller depth", "lower --max-depth"},
-      {"with so many bounces", "with its --max-depth"},
-      {"or another device", "or another --device"},
-      {"try another device", "try another --device"},
-      {"take the builder sah", "take --builder sah"},
-  };
-  for (const auto& [words, with_option] : kOptions) {
-    const size_t at = message.find(words);
-    if (at == std::string::npos || message.find(with_option) != std::string::npos) continue;
-    message.replace(at, words.size(), with_option);
-    break;
+/// How a command line says what the library, which knows no options, says of a setting.
+struct Wording {
+  Setting setting;
+  std::string_view words;
+  std::string_view with_option;
+};
+
+constexpr Wording kWordings[] = {{Setting::kDepth, "take a smaller depth", "lower --max-depth"},
+                                 {Setting::kDevice, "asked for as the device", "asked for by --device"},
+                                 {Setting::kDevice, "another device", "another --device"},
+                                 {Setting::kBuilder, "the builder", "--builder"}};
+
+std::string_view option_of(Setting setting) {
+  switch (setting) {
+    case Setting::kNone:
+      return "";
+    case Setting::kDepth:
+      return "--max-depth";
+    case Setting::kDevice:
+      return "--device";
+    case Setting::kBuilder:
+      return "--builder";
   }
-  return message;
+  return "";
+}
+
+/// Names the option of the problem's setting. Where none of the words above is met, it follows the cure, so that it is
+/// named whatever words the library takes.
+void name_option(Problem& problem) {
+  if (problem.setting == Setting::kNone) return;
+  bool is_named = false;
+  for (const Wording& wording : kWordings) {
+    if (wording.setting != problem.setting) continue;
+    for (std::string* text : {&problem.where, &problem.cure}) {
+      const size_t at = text->find(wording.words);
+      if (at == std::string::npos) continue;
+      text->replace(at, wording.words.size(), wording.with_option);
+      is_named = true;
+    }
+  }
+  if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
 }
 
 void run_command(const std::string& name, const std::string& help,
@@ -55,11 +78,17 @@ void run_command(const std::string& name, const std::string& help,
 
 }  // namespace
 
+std::string message_of(const Error& error) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems) name_option(problem);
+  return Error(problems).what();
+}
+
 int run_program(const std::string& name, const std::string& help,
                 std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv) {
   const auto report = [&](ExitCode code, const std::string& message) {
     std::fflush(stdout);
-    std::fputs(fmt::format("{}: error: {}\n", name, name_options(message)).c_str(), stderr);
+    std::fputs(fmt::format("{}: error: {}\n", name, message).c_str(), stderr);
     return code;
   };
   // At the file size limit (ulimit -f) this signal would end the program before it can say so and remove its temporary
@@ -72,13 +101,13 @@ int run_program(const std::string& name, const std::string& help,
     }
     return kDone;
   } catch (const UsageError& error) {
-    return report(kWrongUsage, error.what());
+    return report(kWrongUsage, message_of(error));
   } catch (const InputError& error) {
-    return report(kBadInput, error.what());
+    return report(kBadInput, message_of(error));
   } catch (const DeviceError& error) {
-    return report(kNoDevice, error.what());
+    return report(kNoDevice, message_of(error));
   } catch (const Error& error) {
-    return report(kRunFailed, error.what());
+    return report(kRunFailed, message_of(error));
   } catch (const std::bad_alloc&) {
     return report(kRunFailed, fmt::format("out of memory, in {}; use a smaller picture or scene", name));
   } catch (const std::exception& error) {

@@ -6,13 +6,18 @@
 #include <string>
 
 #include "arguments.h"
+#include "promin/error.h"
 
 namespace promin::app {
 
 /// The main() of a program of commands: reads the command line, runs the command and returns the exit code. A failure
-/// is one line on the standard error stream, "NAME: error: WHAT, WHERE; what to do". SIGXFSZ is ignored from here on,
-/// so that a file that would pass the file size limit is such a failure too.
+/// is one line on the standard error stream, "NAME: error: WHAT, WHERE; what to do", and an indented one for each
+/// further problem. SIGXFSZ is ignored from here on, so that a file that would pass the file size limit is such a
+/// failure too.
 int run_program(const std::string& name, const std::string& help,
                 std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv);
+
+/// What the error says, with this command line's options for the settings of the library that it speaks of.
+std::string message_of(const Error& error);
 
 }  // namespace promin::app

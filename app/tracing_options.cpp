@@ -19,9 +19,16 @@ void add_scene_argument(OptionTable& table, TracingOptions& options) {
                      [&](const OptionValues& w) { options.scene = w.text(); });
 }
 
-void add_tracing_options(OptionTable& table, TracingOptions& options) {
+void add_device_option(OptionTable& table, std::optional<std::string>& device) {
   table.add("--device", "NAME|INDEX", "Vulkan device by a part of its name or its index in `promin devices`",
-            [&](const OptionValues& w) { options.device = w.text(); });
+            [&](const OptionValues& w) {
+              if (w.text().empty()) w.refuse("--device takes a part of a device's name or its index, not \"\"");
+              device = w.text();
+            });
+}
+
+void add_tracing_options(OptionTable& table, TracingOptions& options) {
+  add_device_option(table, options.device);
   table.add("--builder", "NAME",
             fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),
             [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });

@@ -33,6 +33,9 @@ struct TracingOptions {
 /// Add the row of SCENE, which comes first on the command line, and those of the other options. `options` must outlive
 /// the parsing.
 void add_scene_argument(OptionTable& table, TracingOptions& options);
+/// The device to open. An empty name is refused: it is a part of any.
+void add_device_option(OptionTable& table, std::optional<std::string>& device);
+
 void add_tracing_options(OptionTable& table, TracingOptions& options);
 /// Adds the rows of commands that end and then report what tracing cost.
 void add_measuring_options(OptionTable& table, TracingOptions& options);

@@ -38,7 +38,7 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   const char* end = selection.data() + selection.size();
   const auto [rest, error] = std::from_chars(selection.data(), end, index);
   if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
-    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "there are " + list_cameras(scene)});
+    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "choose one of: " + list_cameras(scene)});
   }
   return scene.cameras[index];
 }
@@ -54,7 +54,7 @@ Camera choose_camera(const Scene& scene, const ViewOptions& options, const Conso
                                          : kDefaultAspectRatio);
 }
 
-void apply_pose(Camera& camera, const PoseOptions& pose) {
+void apply_pose(Camera& camera, const PoseOptions& pose, const Console& console) {
   if (pose.eye) camera.eye = vec3(*pose.eye);
   if (pose.look || pose.up) {
     const dvec3 default_up = pose.look ? dvec3(0.0, 1.0, 0.0) : dvec3(camera.up);
@@ -65,6 +65,10 @@ void apply_pose(Camera& camera, const PoseOptions& pose) {
     camera.up = posed.up;
   }
   if (pose.fov_deg) {
+    // With eye and look it is a camera of the user's own.
+    if (camera.projection == Projection::kOrthographic && !(pose.eye && pose.look)) {
+      console.note("the camera is orthographic; --fov makes it a perspective one");
+    }
     camera.projection = Projection::kPerspective;
     camera.yfov = static_cast<float>(glm::radians(*pose.fov_deg));
   }
@@ -88,7 +92,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   View view;
   view.camera = choose_camera(scene, options, console);
   view.size = choose_size(options, view.camera, scene);
-  apply_pose(view.camera, options.pose);
+  apply_pose(view.camera, options.pose, console);
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
     throw UsageError({fmt::format("--crop reaches beyond the picture of {}x{}", view.size.x, view.size.y),

@@ -9,7 +9,8 @@
 
 namespace promin::app {
 
-/// The view that the options ask of this scene. A scene without a camera gets one that frames it, and a note says so.
+/// The view that the options ask of this scene. A scene without a camera gets one that frames it, and an orthographic
+/// camera with a field of view becomes a perspective one; a note says so.
 /// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 

@@ -67,7 +67,7 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
   if (size_bytes > most_bytes) {
     throw RunError({"the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB",
                     "on a device that allows " + std::to_string(most_bytes >> 20) + " MiB",
-                    "use a smaller scene or another device"});
+                    "use a smaller scene or another device", Setting::kDevice});
   }
   buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, size_bytes, usage));
   const vk::MemoryRequirements requirements = buffer_.getMemoryRequirements();

@@ -37,7 +37,7 @@ vk::PhysicalDeviceFeatures pick_features(const vk::PhysicalDeviceFeatures& offer
       picked.*row.member = VK_TRUE;
     } else if (request.is_needed) {
       throw DeviceError({"device " + device + " lacks Vulkan's optional feature " + row.name,
-                         "needed for what is asked of it", "choose another device"});
+                         "needed for what is asked of it", "choose another device", Setting::kDevice});
     }
   }
   return picked;

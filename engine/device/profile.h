@@ -52,9 +52,6 @@ struct DeviceProfile {
   /// did.
   bool may_cut_loops = false;
 
-  /// Whether the driver compiles kernels of packets in seconds; where it takes minutes, lanes take no packets.
-  bool compiles_packets_fast = true;
-
   // Pictures.
   /// Pixels that a lane of the camera stage takes together: 1, 2 or 4.
   uint32_t pixel_packet_size = 1;

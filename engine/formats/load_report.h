@@ -29,8 +29,6 @@ class LoadReport {
   void refuse(const std::string& what, const std::string& place, const std::string& cure);
   void warn(const std::string& sentence);
 
-  bool has_problems() const { return problem_count_ > 0; }
-
   /// Is called for each file before it is read, or found missing.
   void add_source(const std::filesystem::path& file);
   const std::vector<SourceFile>& sources() const { return sources_; }

@@ -144,7 +144,7 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
                  const std::optional<CropPlacement>& crop, std::span<const Channel> channels) {
   const std::string format = format_of(file);
   if (format.empty()) {
-    throw RunError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
+    throw UsageError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
   }
   check_picture(image, crop, channels);
   const PicturesPlugin& plugin = open_pictures();

@@ -15,10 +15,10 @@ namespace promin {
 /// does not suffice, or there is no such way, they are refused.
 class CutLoops {
  public:
-  static CutLoops of_pictures() { return {true, "take a smaller depth or another device"}; }
+  static CutLoops of_pictures() { return {true, "take a smaller depth or take another device", Setting::kDepth}; }
   /// Of pixels that are explained: a lane takes one path anyway.
-  static CutLoops of_pixels() { return {false, "take a smaller depth"}; }
-  static CutLoops of_rays() { return {false, "take another device"}; }
+  static CutLoops of_pixels() { return {false, "take a smaller depth", Setting::kDepth}; }
+  static CutLoops of_rays() { return {false, "take another device", Setting::kDevice}; }
 
   bool takes_many_paths() const { return takes_many_paths_; }
 
@@ -42,15 +42,17 @@ class CutLoops {
   }
 
  private:
-  CutLoops(bool takes_many_paths, std::string cure) : takes_many_paths_(takes_many_paths), cure_(std::move(cure)) {}
+  CutLoops(bool takes_many_paths, std::string cure, Setting setting)
+      : takes_many_paths_(takes_many_paths), cure_(std::move(cure)), setting_(setting) {}
 
   [[noreturn]] void refuse() const {
-    throw RunError(
-        {"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device", cure_});
+    throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device",
+                    cure_, setting_});
   }
 
   bool takes_many_paths_;
   std::string cure_;
+  Setting setting_;
 };
 
 }  // namespace promin

@@ -34,7 +34,7 @@ uint64_t film_bytes(const DeviceScene& scene, const View& view) {
   const uint64_t most_entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.constants().light_count);
   if (most_entries > kMostLogBytes / sizeof(layout::RayLog)) {
     throw RunError({"a pixel may take " + std::to_string(most_entries) + " rays and sources, too many to explain",
-                    "in this scene with so many bounces", "take a smaller depth"});
+                    "in this scene with so many bounces", "take a smaller depth", Setting::kDepth});
   }
   return sizeof(LoggedFilm) + most_entries * sizeof(layout::RayLog);
 }

@@ -10,6 +10,18 @@
 
 namespace promin {
 
+/// What of the caller's choices a problem speaks of, for programs that have a name of their own for it, as an option.
+enum class Setting {
+  /// Of none.
+  kNone,
+  /// View::max_depth.
+  kDepth,
+  /// The selection of gpu::open_device.
+  kDevice,
+  /// The builder of RendererOptions and CasterOptions.
+  kBuilder,
+};
+
 /// One thing that is wrong, in words for people.
 struct PROMIN_EXPORT Problem {
   /// What is wrong.
@@ -18,6 +30,8 @@ struct PROMIN_EXPORT Problem {
   std::string where;
   /// What to do about it. May be empty.
   std::string cure;
+  /// What `where` or `cure` would have changed.
+  Setting setting = Setting::kNone;
 
   /// "WHAT, WHERE; CURE" without the parts that are empty.
   std::string sentence() const;

@@ -76,7 +76,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}, "--crop is empty"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop reaches beyond"},
-      {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "there are 0 (main), 1 (side)"},
+      {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "choose one of: 0 (main), 1 (side)"},
       {{"render", "square.gltf", "-o", "a.exr", "--camera", "2"}, "no camera \"2\", square.gltf"},
       {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "no cameras to choose from"},
       {{"render", "square.gltf", "-o", "a.exr", "--fov", "180"}, "--fov takes a number"},
@@ -85,6 +85,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "inf", "0"}, "--eye takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"}, "parallel"},
       {{"render", "square.gltf", "-o", "a.exr", "--builder", "none"}, "--builder takes "},
+      {{"render", "square.gltf", "-o", "a.exr", "--device", ""},
+       "--device takes a part of a device's name or its index"},
       {{"render", "square.gltf", "-o", "a.exr", "--features", "few"}, "--features takes scene or all, not \"few\""},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
@@ -299,6 +301,13 @@ TEST_F(CliTest, StatsHoldWhatTheInterfacePromises) {
   EXPECT_EQ(stats.at("times_ms").at("trace"), runs[1]) << "the median";
   const double rays = stats.at("rays").at("primary").get<double>() + stats.at("rays").at("shadow").get<double>();
   EXPECT_NEAR(stats.at("mrays_per_s").get<double>(), rays / runs[1] / 1e3, 1e-6 * rays / runs[1]);
+}
+
+TEST_F(CliTest, StatsCountTheLightsThatAreOn) {
+  const ProcessResult result =
+      run({"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "--stats", "s.json", "--lights-off", "0,0,0"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json::parse(read("s.json")).at("scene").at("lights"), 0);
 }
 
 TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {

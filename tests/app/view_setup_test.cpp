@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/App.hpp>
 #include <cmath>
 
+#include "arguments.h"
 #include "core/rounding.h"
 #include "promin/error.h"
 
@@ -51,7 +53,7 @@ TEST(ViewSetupTest, AnUnknownCameraListsThoseThereAre) {
       make_view(make_scene(), options, kSilent);
       ADD_FAILURE() << "accepted " << selection;
     } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("there are 0 (main), 1 (side)"));
+      EXPECT_THAT(error.what(), HasSubstr("choose one of: 0 (main), 1 (side)"));
     }
   }
 }
@@ -88,6 +90,29 @@ TEST(ViewSetupTest, AnOrthonormalPoseIsUsedAsItIs) {
   EXPECT_EQ(camera.up, vec3(0.0F, 0.8F, 0.6F));
   EXPECT_FLOAT_EQ(camera.yfov, 1.57079633F);
   EXPECT_EQ(camera.near, 0.25F);
+}
+
+TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
+  Scene scene = make_scene();
+  scene.cameras[0].projection = Projection::kOrthographic;
+  ViewOptions options;
+  const auto say_and_view = [&] {
+    testing::internal::CaptureStderr();
+    const View view = make_view(scene, options, Console(Verbosity::kNormal));
+    return std::pair(testing::internal::GetCapturedStderr(), view.camera.projection);
+  };
+  EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kOrthographic));
+  options.pose.fov_deg = 40.0;
+  const std::string note = "promin: note: the camera is orthographic; --fov makes it a perspective one\n";
+  EXPECT_EQ(say_and_view(), std::pair(note, Projection::kPerspective));
+  options.camera = "side";
+  EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
+
+  // A camera of the user's own takes nothing of the scene's.
+  options.camera = "main";
+  options.pose.eye = dvec3(0.0);
+  options.pose.look = dvec3(0.0, 0.0, -1.0);
+  EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
 }
 
 TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
@@ -133,6 +158,15 @@ TEST(ViewSetupTest, ACropLiesWithinThePicture) {
   EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
   options.crop = PixelWindow{{0, 0}, {64, 33}};
   EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+}
+
+TEST(ViewSetupTest, LightsToLeaveOutAreNamedOnce) {
+  CLI::App program;
+  OptionTable table(program);
+  ViewOptions options;
+  add_view_options(table, options);
+  program.parse("--lights-off 2,0,2,0");
+  EXPECT_EQ(options.lights_off, (std::vector<uint32_t>{0, 2}));
 }
 
 TEST(LightUpTest, OnlyASceneWithoutLightsIsLitUp) {

@@ -34,7 +34,6 @@ void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.target_dispatch_ms, 25.0);
   EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
-  EXPECT_TRUE(profile.compiles_packets_fast);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
   EXPECT_EQ(profile.wanted_groups, 0U);
   EXPECT_EQ(profile.most_paths_a_lane, 1U);
@@ -63,7 +62,6 @@ void expect_cpu(const DeviceProfile& profile) {
 void expect_cpu_without_packets(const DeviceProfile& profile) {
   expect_cpu(profile);
   EXPECT_FALSE(profile.may_cut_loops);
-  EXPECT_FALSE(profile.compiles_packets_fast);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
   EXPECT_EQ(profile.ray_packet_size, 1U);
 }
@@ -78,7 +76,6 @@ TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
   const DeviceProfile profile = profile_of(true, kLlvmpipe);
   expect_cpu(profile);
   EXPECT_TRUE(profile.may_cut_loops);
-  EXPECT_TRUE(profile.compiles_packets_fast);
   EXPECT_EQ(profile.pixel_packet_size, 4U);
   EXPECT_EQ(profile.ray_packet_size, RayTiler::kPacketSize);
 }

@@ -62,7 +62,6 @@ TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
 }
 
 TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
-  if (!device().profile().compiles_packets_fast) GTEST_SKIP() << "takes minutes to compile packets";
   const world::Scene scene = make_scene_of_everything();
   View view = test::make_view(kSize);
   view.samples_per_pixel = 3;

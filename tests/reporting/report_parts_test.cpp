@@ -13,8 +13,11 @@
 #include "device_scene/pack_scene.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
+#include "oracle/distance.h"
 #include "oracle/oracle.h"
+#include "promin/error.h"
 #include "promin/load_scene.h"
+#include "reporting/aimed_rays.h"
 #include "reporting/misjudged.h"
 #include "reporting/scene_hash.h"
 #include "reporting/scene_names.h"
@@ -54,6 +57,28 @@ TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
   renamed.objects[0].name = "another";
   renamed.file = "another.gltf";
   EXPECT_EQ(hash_of(renamed), hash);
+}
+
+TEST(ReportAimedRays, AreOfEachPrimitiveAndMeetItFromInside) {
+  Random random(1);
+  std::set<size_t> kinds;
+  for (const std::string& name : primitive_names()) {
+    kinds.insert(make_primitive(name, dvec3(0.0), random).objects[0].shape.index());
+    const Enclosure enclosure = make_enclosure(name, 300, random);
+    EXPECT_EQ(enclosure.rays.empty(), name == "plane");
+    size_t at_creases = 0;
+    for (const Ray& ray : enclosure.rays) {
+      const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
+      const oracle::Hit hit = oracle::find_nearest_hit(enclosure.scene, exact);
+      ASSERT_TRUE(hit.exists()) << name;
+      const oracle::Vector point = exact.origin + hit.t * exact.direction;
+      at_creases += oracle::distance_to_crease(enclosure.scene.objects[0].shape, point) < 1e-6L ? 1 : 0;
+    }
+    const bool has_creases = name == "cylinder" || name == "cone" || name == "box";
+    EXPECT_GE(at_creases, has_creases ? 225U : 0U) << name;
+  }
+  EXPECT_EQ(kinds.size(), primitive_names().size());
+  EXPECT_THROW(make_primitive("torus", dvec3(0.0), random), UsageError);
 }
 
 TEST(ReportSceneNames, AreAsLongAsTellsThemApart) {

@@ -144,6 +144,8 @@ def check_page(folder):
     ):
         other = check_report.read_claims(page.replace(said, otherwise))
         expect(list(check_report.find_claim_faults(report, other)), f"not noticed: {otherwise} instead of {said}")
+    primitives = list(dict.fromkeys(row["primitive"] for row in report["kernels"]["rows"]))
+    expect(primitives == check_report.primitive_names() and "box" in primitives, f"other primitives: {primitives}")
     distances = [row["value"] for row in report["kernels"]["range"] if row["variable"] == "distance"]
     said = f"From a distance of {number(min(distances), 2)} to {number(max(distances), 2)} sizes"
     expect(said in page, f"the page does not say: {said}")
@@ -179,6 +181,8 @@ def check_that_faults_are_found(report):
     spoil(lambda: spoilt.pop("frames"), "a section is missing")
     spoil(lambda: find("kernels", "rows").update(max_k="much"), "a word instead of a number")
     spoil(lambda: find("kernels", "rows", is_shipped=True).update(max_k=8.5), "K beyond its bound")
+    spoil(lambda: find("kernels", "rows", is_shipped=True).update(is_shipped=False), "nothing that is shipped")
+    spoil(lambda: find("kernels", "rows", is_shipped=False).update(primitive="torus"), "a primitive that is none")
     spoil(lambda: find("kernels", "rows", is_shipped=True).update(leaks=1), "a leak")
     spoil(lambda: find("kernels", "rows", id="sphere/textbook").update(max_k=1.0), "a textbook that is exact")
     spoil(lambda: find("boxes", "rows", is_shipped=True).update(leaks=1), "a hidden box")
@@ -280,7 +284,7 @@ def check_front_text(report):
     expect(not faults_of(claim), f"at odds: {claim}")
     text = front_text.front_sentence(claim)
     expect("methods textbook takes 0.65 of its time" in text.replace("Methods", "methods"), f"no figures: {text}")
-    expect("rounding alone takes" in text and "leak between its triangles" in text, f"no reasons: {text}")
+    expect("rounding alone takes" in text and "rays leak by its test of the " in text, f"no reasons: {text}")
     claim["ahead"][0]["gives_up"][0]["figure"] = 0
     expect(faults_of(claim), "not noticed: a reason without a figure")
     other["frames"]["errors"] = [row for row in other["frames"]["errors"] if row["method"] == "promin"]
@@ -567,7 +571,8 @@ def makes_tables(folder):
     expect([row["rays"] for row in rows] == ["camera", "shadow", "random"], f"promin-bench: {rows}")
     expect(rows[0]["count"] == 256 and "promin_ms" not in rows[0], f"it should only count steps: {rows}")
     done = run_program(BIN / "promin-bench", "needles:5", "--runs", 0)
-    expect(done.returncode == 1 and "no number of triangles" in done.stderr, f"promin-bench: {done}")
+    expect(done.returncode == 2 and "no number of triangles" in done.stderr, f"promin-bench: {done}")
+    expect(not done.stdout, f"promin-bench has begun: {done}")
 
 
 TESTS = {

@@ -3,11 +3,12 @@
 // promin-compare: how far apart two pictures are, in linear light clamped to [0, 1] as every renderer can write it.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "measure/compare_images.h"
-#include "promin/error.h"
+#include "run_program.h"
 
 namespace {
 
@@ -17,29 +18,40 @@ promin::Image read_clamped(const std::string& file) {
   return image;
 }
 
+struct ComparisonOptions {
+  std::string first;
+  std::string second;
+  promin::CompareOptions compare;
+};
+
+void compare(const ComparisonOptions& options) {
+  const promin::Image first = read_clamped(options.first);
+  const promin::ImageDifference difference =
+      promin::compare_images(first, read_clamped(options.second), options.compare);
+  const nlohmann::ordered_json json = {{"mean_absolute", difference.mean_absolute},
+                                       {"threshold", options.compare.fail},
+                                       {"different_percent", difference.failed_percent()},
+                                       {"largest", difference.largest}};
+  fmt::print("{}\n", json.dump());
+}
+
+promin::app::Command add_compare_command(CLI::App& program) {
+  using promin::app::OptionValues;
+  const auto options = std::make_shared<ComparisonOptions>();
+  options->compare.fail = 0.02F;
+  promin::app::OptionTable table(program);
+  table.add_required("FIRST", "", "A picture", [=](const OptionValues& words) { options->first = words.text(); });
+  table.add_required("SECOND", "", "Another of the same size",
+                     [=](const OptionValues& words) { options->second = words.text(); });
+  table.add("--fail", "D", "A pixel that differs by more counts as different, 0 to 1 [0.02]",
+            [=](const OptionValues& words) { options->compare.fail = static_cast<float>(words.real(0, 0.0, 1.0)); });
+  return {&program, [options] { compare(*options); }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Prints as JSON how two pictures of linear light differ; EXR, or 16-bit PPM.", "promin-compare");
-  std::string first;
-  std::string second;
-  promin::CompareOptions options;
-  options.fail = 0.02F;
-  program.add_option("FIRST", first, "A picture")->required();
-  program.add_option("SECOND", second, "Another of the same size")->required();
-  program.add_option("--fail", options.fail, "A pixel that differs by more counts as different [0.02]");
-  CLI11_PARSE(program, argc, argv);
-  try {
-    const promin::ImageDifference difference =
-        promin::compare_images(read_clamped(first), read_clamped(second), options);
-    const nlohmann::ordered_json json = {{"mean_absolute", difference.mean_absolute},
-                                         {"threshold", options.fail},
-                                         {"different_percent", difference.failed_percent()},
-                                         {"largest", difference.largest}};
-    fmt::print("{}\n", json.dump());
-    return 0;
-  } catch (const promin::Error& error) {
-    fmt::print(stderr, "promin-compare: error: {}\n", error.what());
-    return 1;
-  }
+  return promin::app::run_program("promin-compare",
+                                  "Prints as JSON how two pictures of linear light differ; EXR, or 16-bit PPM.",
+                                  {add_compare_command}, argc, argv);
 }

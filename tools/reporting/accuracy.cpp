@@ -5,12 +5,22 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "core/parallel.h"
 #include "oracle/distance.h"
 
 namespace promin::report {
 namespace {
+
+/// Where a ray meets a rim or a seam, two faces answer for one point: of such solids the distance from the surface is
+/// told instead of the error of t.
+bool has_rims_or_seams(const world::Shape& shape) {
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (std::holds_alternative<world::TYPE>(shape)) return !std::is_same_v<world::TYPE, world::Sphere>;
+#include "promin/kinds/primitives.def"
+  return false;
+}
 
 void judge_one(const world::Scene& scene, const Ray& ray, const layout::HitRecord& record, Accuracy& accuracy) {
   const oracle::Ray exact_ray{oracle::Vector(ray.origin), oracle::Vector(ray.direction), ray.tmin, ray.tmax};
@@ -24,7 +34,7 @@ void judge_one(const world::Scene& scene, const Ray& ray, const layout::HitRecor
   }
   if (!is_hit) return;
   const world::Shape& shape = scene.objects[0].shape;
-  const bool has_rims = std::holds_alternative<world::Cylinder>(shape) || std::holds_alternative<world::Cone>(shape);
+  const bool has_rims = has_rims_or_seams(shape);
   oracle::Real scale = oracle::scale_of(shape, exact.primitive, exact_ray);
   if (std::holds_alternative<world::Plane>(shape)) scale += exact.t * glm::length(exact_ray.direction);
   const oracle::Real error =

@@ -6,6 +6,8 @@
 
 #include "measure/meshes.h"
 #include "measure/ray_sets.h"
+#include "oracle/oracle.h"
+#include "promin/error.h"
 
 namespace promin::report {
 
@@ -16,34 +18,111 @@ namespace {
 /// Of the enclosing mesh.
 constexpr uint32_t kMeshTriangles = 1024;
 
-world::Shape make_shape(const std::string& name, const dvec3& center, double size, Random& random) {
-  const vec3 axis(random.direction());
-  const auto radius = static_cast<float>(size);
-  if (name == "sphere") return world::Sphere{vec3(center), radius};
-  if (name == "plane") return world::Plane{vec3(center), axis};
-  if (name == "cylinder") return world::Cylinder{vec3(center), axis, radius, 0.5F * radius};
-  if (name == "cone") return world::Cone{vec3(center), axis, radius, 0.8F * radius, 0.0F};
-  return measure::make_triangle(center, random, size);
+/// The one primitive without a struct of its own.
+constexpr const char* kTriangle = "triangle";
+
+/// A shape of about this size, turned as it comes. Of each row of the table: what is missing does not link.
+template <class Shape>
+Shape make_shape(const vec3& center, float size, Random& random);
+
+template <>
+world::Sphere make_shape(const vec3& center, float size, Random& /*random*/) {
+  return {center, size};
 }
 
-/// A point of a cylinder's or cone's rim, or of a sphere.
-dvec3 point_at_rim(const world::Shape& shape, Random& random) {
-  if (const auto* sphere = std::get_if<world::Sphere>(&shape)) {
-    return dvec3(sphere->center) + static_cast<double>(sphere->radius) * random.direction();
+template <>
+world::Plane make_shape(const vec3& center, float /*size*/, Random& random) {
+  return {center, vec3(random.direction())};
+}
+
+template <>
+world::Cylinder make_shape(const vec3& center, float size, Random& random) {
+  return {center, vec3(random.direction()), size, 0.5F * size};
+}
+
+template <>
+world::Cone make_shape(const vec3& center, float size, Random& random) {
+  return {center, vec3(random.direction()), size, 0.8F * size, 0.0F};
+}
+
+template <>
+world::Box make_shape(const vec3& center, float size, Random& random) {
+  // As far as turns go.
+  constexpr double kMostSine = 0.52;
+  const dvec3 axis = random.direction();
+  return {center, size * vec3(0.8F, 0.5F, 0.6F), vec3(kMostSine * random.uniform() * axis)};
+}
+
+template <>
+world::Capsule make_shape(const vec3& center, float size, Random& random) {
+  return {center, vec3(random.direction()), 0.5F * size, 0.5F * size, 0.3F * size};
+}
+
+world::Shape make_shape(const std::string& name, const dvec3& center, double size, Random& random) {
+  if (name == kTriangle) return measure::make_triangle(center, random, size);
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (name == #PREFIX) return make_shape<world::TYPE>(vec3(center), static_cast<float>(size), random);
+#include "promin/kinds/primitives.def"
+  throw UsageError({"unknown primitive \"" + name + "\"", "", "take one of primitive_names()"});
+}
+
+// A point of an edge, a corner or a rim, where a surface is most likely to leak.
+
+/// It has none.
+dvec3 point_at_rim(const world::Sphere& sphere, Random& random) {
+  return dvec3(sphere.center) + static_cast<double>(sphere.radius) * random.direction();
+}
+
+dvec3 point_at_rim(const world::Cylinder& cylinder, Random& random) {
+  const dvec3 axis(cylinder.axis);
+  const double side = random.uniform() < 0.5 ? 1.0 : -1.0;
+  return dvec3(cylinder.center) + side * static_cast<double>(cylinder.half_height) * axis +
+         static_cast<double>(cylinder.radius) * random.perpendicular(axis);
+}
+
+dvec3 point_at_rim(const world::Cone& cone, Random& random) {
+  const dvec3 axis(cone.axis);
+  return dvec3(cone.center) - static_cast<double>(cone.half_height) * axis +
+         static_cast<double>(cone.radius_bottom) * random.perpendicular(axis);
+}
+
+/// Of an edge; every third is a corner.
+dvec3 point_at_rim(const world::Box& box, Random& random) {
+  dvec3 share;
+  for (int i = 0; i < 3; ++i) share[i] = random.uniform() < 0.5 ? 1.0 : -1.0;
+  if (random.uniform() > 1.0 / 3.0) share[static_cast<int>(3.0 * random.uniform())] *= random.uniform();
+  dvec3 point(box.center);
+  for (int i = 0; i < 3; ++i) {
+    point += share[i] * static_cast<double>(box.half_size[i]) * dvec3(oracle::axis_of(box, i));
   }
-  const auto* cylinder = std::get_if<world::Cylinder>(&shape);
-  const auto* cone = std::get_if<world::Cone>(&shape);
-  const dvec3 axis(cylinder != nullptr ? cylinder->axis : cone->axis);
-  const double half_height = cylinder != nullptr ? cylinder->half_height : cone->half_height;
-  const double radius = cylinder != nullptr ? cylinder->radius : cone->radius_bottom;
-  const double side = cylinder != nullptr && random.uniform() < 0.5 ? 1.0 : -1.0;
-  return side * half_height * axis + radius * random.perpendicular(axis);
+  return point;
+}
+
+/// Of the circles where the side touches the spheres.
+dvec3 point_at_rim(const world::Capsule& capsule, Random& random) {
+  const dvec3 axis(capsule.axis);
+  const double height = 2.0 * static_cast<double>(capsule.half_height);
+  const double sine = (static_cast<double>(capsule.radius_bottom) - static_cast<double>(capsule.radius_top)) / height;
+  const bool is_top = random.uniform() < 0.5;
+  const double radius = is_top ? capsule.radius_top : capsule.radius_bottom;
+  return dvec3(capsule.center) + ((is_top ? 0.5 : -0.5) * height + sine * radius) * axis +
+         std::sqrt(1.0 - sine * sine) * radius * random.perpendicular(axis);
+}
+
+dvec3 point_at_rim(const world::Shape& shape, Random& random) {
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (const auto* solid = std::get_if<world::TYPE>(&shape)) return point_at_rim(*solid, random);
+#include "promin/kinds/primitives.def"
+  throw UsageError({"a shape that encloses nothing has no rims", "", "take a solid"});
 }
 
 }  // namespace
 
 const std::vector<std::string>& primitive_names() {
-  static const std::vector<std::string> kNames = {"sphere", "plane", "cylinder", "cone", "triangle"};
+  static const std::vector<std::string> kNames = {
+#define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) #PREFIX,
+#include "promin/kinds/primitives.def"
+  };
   return kNames;
 }
 
@@ -82,7 +161,7 @@ std::vector<Ray> make_chords(size_t count, Random& random) {
 
 Enclosure make_enclosure(const std::string& name, size_t ray_count, Random& random) {
   if (name == "plane") return {make_primitive(name, dvec3(0.0), random), {}};
-  if (name != "triangle") {
+  if (name != kTriangle) {
     Enclosure result{make_primitive(name, dvec3(0.0), random), {}};
     const world::Shape& shape = result.scene.objects[0].shape;
     while (result.rays.size() < ray_count) {

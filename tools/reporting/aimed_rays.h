@@ -13,10 +13,11 @@ namespace promin::report {
 
 using measure::Random;
 
-/// "sphere", "plane", "cylinder", "cone", "triangle".
+/// Those of promin/kinds/primitives.def, in its order: "triangle", "sphere", ….
 const std::vector<std::string>& primitive_names();
 
-/// Such a primitive of about unit size at a centre, turned as it comes, as a scene of its own.
+/// Such a primitive of about unit size at a centre, turned as it comes, as a scene of its own. Throws UsageError for
+/// another name, as all of these do.
 world::Scene make_primitive(const std::string& name, const dvec3& center, Random& random);
 /// As many of a quarter of that size in a ball of radius 4.
 world::Scene make_primitives(const std::string& name, size_t count, Random& random);

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
+#include <memory>
 #include <thread>
 
 #include "bvh/builder.h"
@@ -12,9 +13,10 @@
 #include "measure/embree.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
-#include "promin/error.h"
 #include "reporting/provenance.h"
 #include "reporting/session.h"
+#include "run_program.h"
+#include "tracing_options.h"
 
 namespace {
 
@@ -60,6 +62,8 @@ void print_rays(const Json& row) {
 }
 
 void measure_all(const ReportOptions& options) {
+  // What would end the work half-way is found before it begins.
+  for (const std::filesystem::path& file : options.scenes) measure::open_scene(file.string());
   const Session session(options);
   const std::string embree = measure::embree_version();
   Json json = {{"format", kReportFormat}, {"provenance", describe_run(session)}};
@@ -81,30 +85,31 @@ void measure_all(const ReportOptions& options) {
   }
 }
 
+app::Command add_bench_command(CLI::App& program) {
+  const auto options = std::make_shared<ReportOptions>();
+  options->runs = 9;
+  options->side = 1024;
+  app::OptionTable table(program);
+  table.add_required_repeated(
+      "SCENE", "SCENE", "Scene files, or wavy:N or needles:N for a mesh of about N triangles",
+      [=](const app::OptionValues& words) { options->scenes.assign(words.all().begin(), words.all().end()); });
+  program.get_option("SCENE")->expected(-1);  // one or more
+  app::add_device_option(table, options->device);
+  table.add("--builder", "NAME", fmt::format("{} [sah]", fmt::join(builder_names(), ", ")),
+            [=](const app::OptionValues& words) { options->builder = words.choice(builder_names()); });
+  table.add("--runs", "N", "Runs of each after a warm-up [9]; 0 only counts steps",
+            [=](const app::OptionValues& words) { options->runs = words.whole(0, 0, 1000); });
+  table.add("--side", "N", "Pixels of the camera's picture each way [1024]",
+            [=](const app::OptionValues& words) { options->side = words.whole(0, 1, 4096); });
+  table.add("-o,--output", "FILE.json", "Write each run's times and the counts as JSON",
+            [=](const app::OptionValues& words) { options->output = words.text(); });
+  return {&program, [options] { measure_all(*options); }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Rates of promin beside Embree's over the same rays: camera, shadow and random.", "promin-bench");
-  ReportOptions options;
-  options.runs = 9;
-  options.side = 1024;
-  std::vector<std::string> scenes;
-  program.add_option("SCENE", scenes, "Scene files, or wavy:N or needles:N for a mesh of about N triangles")
-      ->required();
-  program.add_option("--device", options.device, "As `promin render` takes it");
-  program.add_option("--builder", options.builder, fmt::format("{} [sah]", fmt::join(builder_names(), ", ")));
-  program.add_option("--runs", *options.runs, "Runs of each after a warm-up [9]; 0 only counts steps")
-      ->check(CLI::Range(0, 1000));
-  program.add_option("--side", *options.side, "Pixels of the camera's picture each way [1024]")
-      ->check(CLI::Range(1, 4096));
-  program.add_option("-o,--output", options.output, "Write each run's times and the counts as JSON");
-  CLI11_PARSE(program, argc, argv);
-  try {
-    options.scenes.assign(scenes.begin(), scenes.end());
-    measure_all(options);
-    return 0;
-  } catch (const Error& error) {
-    fmt::print(stderr, "promin-bench: error: {}\n", error.what());
-    return 1;
-  }
+  return app::run_program("promin-bench",
+                          "Rates of promin beside Embree's over the same rays: camera, shadow and random.",
+                          {add_bench_command}, argc, argv);
 }

@@ -89,7 +89,7 @@ def _of_its_rounding(row, report):
     leaks = [r for r in kernels if r["method"] == row["method"] != "promin" and r.get("leaks")]
     if leaks:
         worst = max(leaks, key=lambda r: r["leaks"])
-        text = f"{worst['leaks']:,} of {worst['leak_rays']:,} rays leak between its {worst['primitive']}s"
+        text = f"{worst['leaks']:,} of {worst['leak_rays']:,} rays leak by its test of the {worst['primitive']}"
         yield _loss("leaks", worst["leaks"], text)
 
 

@@ -21,9 +21,10 @@ namespace {
 
 struct Method {
   std::string name;
-  /// What it does, for people, where it differs between triangles and the rest.
+  /// What it does, for people, where it differs between triangles, boxes and the rest.
   std::string of_quadrics;
   std::string of_triangles;
+  std::string of_boxes;
   std::span<const uint32_t> spirv;
   bool is_shipped = false;
 };
@@ -31,13 +32,15 @@ struct Method {
 std::vector<Method> methods_for(const gpu::Device& device) {
   // The shipped one first: times are told over its own.
   std::vector<Method> methods = {
-      {"promin", "around the closest approach, corrected once", "Woop, Benthin, Wald", k_promin_tests_spirv, true},
-      {"textbook", "quadratic of the textbook", "Möller and Trumbore", k_textbook_tests_spirv},
+      {"promin", "around the closest approach, corrected once", "Woop, Benthin, Wald",
+       "three slabs in the box's frame, from the closest approach", k_promin_tests_spirv, true},
+      {"textbook", "quadratic of the textbook", "Möller and Trumbore", "three slabs in the box's frame",
+       k_textbook_tests_spirv},
       {"recentred", "the same from the closest approach", "Möller and Trumbore from the closest approach",
-       k_recentred_tests_spirv}};
+       "the textbook's slabs from the closest approach", k_recentred_tests_spirv}};
   if (device.has_enabled(gpu::OptionalFeature::kFloat64)) {
-    methods.push_back(
-        {"fp64", "quadratic of the textbook in double", "Möller and Trumbore in double", k_fp64_tests_spirv});
+    methods.push_back({"fp64", "quadratic of the textbook in double", "Möller and Trumbore in double",
+                       "the textbook's slabs in double", k_fp64_tests_spirv});
   }
   return methods;
 }
@@ -92,6 +95,7 @@ class KernelBench {
                     {"method", method.name},
                     {"what", name == "triangle" ? method.of_triangles
                              : name == "plane"  ? plane_method(method.name)
+                             : name == "box"    ? method.of_boxes
                                                 : method.of_quadrics},
                     {"is_shipped", method.is_shipped},
                     {"ns_per_test", times[i]},

@@ -109,16 +109,8 @@ def _ratios(times, others):
     return [own / other for own, other in zip(times, others)]
 
 
-def measure(programs, folder, runs, side, level, device):
-    """The section: "rows" of peers, "first" for the first picture, "gaps"."""
-    for name, depth in (("flake", level), ("ball", 0)):
-        sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
-    scene = f"sphereflake:{level}"
-    scene_hash = hashlib.sha256((folder / "flake.gltf").read_bytes()).hexdigest()[:16]
-    peers = list(_find_peers(folder, folder / "flake.gltf", side))
-    promin = _Promin(programs, folder, side, device)
-    section = {"rows": [], "first": [], "gaps": []}
-    failure = None
+def _run_turns(promin, peers, runs, folder):
+    """Every contestant once a turn; a peer that fails drops out. Returns why promin failed, or None."""
     try:
         # The round before the first only warms caches.
         for turn in range(runs + 1):
@@ -130,50 +122,64 @@ def measure(programs, folder, runs, side, level, device):
                 for peer in peers:
                     peer.trace_ms.clear()
     except RuntimeError as problem:
-        failure = str(problem).strip().splitlines()[-1]
+        return str(problem).strip().splitlines()[-1]
+    return None
+
+
+def _row_of(peer, promin, difference):
+    """Of a whole picture by both."""
+    return {
+        "promin_ms": promin.trace_ms,
+        "peer_ms": peer.trace_ms,
+        "time_ratio": _ratios(promin.trace_ms, peer.trace_ms),
+        "mean_difference": difference["mean_absolute"],
+        "different_pixels_percent": difference["different_percent"],
+    }
+
+
+def _first_row(promin):
+    """Of the first picture, which may take its tracing and twice a whole process that does next to nothing."""
+    allowed_ms = [trace + 2 * small for trace, small in zip(promin.trace_ms, promin.one_sphere_process_ms)]
+    return {
+        "trace_ms": promin.trace_ms,
+        "process_ms": promin.process_ms,
+        "one_sphere_process_ms": promin.one_sphere_process_ms,
+        "allowed_ms": allowed_ms,
+        "time_ratio": _ratios(promin.process_ms, allowed_ms),
+        "rays": sum(promin.rays.values()),
+        "shadow_rays": promin.rays["shadow"],
+    }
+
+
+def _compare(programs, folder, peer):
+    """How far the peer's picture is from promin's; None where that fails, which the peer then tells."""
+    output = peer.attempt(lambda: _run(programs / "promin-compare", "flake.exr", peer.picture, folder=folder)[0])
+    return json.loads(output) if output is not None else None
+
+
+def measure(programs, folder, runs, side, level, device):
+    """The section: "rows" of peers, "first" for the first picture, "gaps"."""
+    for name, depth in (("flake", level), ("ball", 0)):
+        sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
+    scene = f"sphereflake:{level}"
+    scene_hash = hashlib.sha256((folder / "flake.gltf").read_bytes()).hexdigest()[:16]
+    of_scene = {"scene": scene, "scene_hash": scene_hash}
+    peers = {peer.name: peer for peer in _find_peers(folder, folder / "flake.gltf", side)}
+    promin = _Promin(programs, folder, side, device)
+    section = {"rows": [], "first": [], "gaps": []}
+    failure = _run_turns(promin, peers.values(), runs, folder)
+    what = f"a picture of {side} by {side} pixels, {_MAX_DEPTH} bounces"
     for name in ("Tachyon", "POV-Ray"):
-        peer = next((peer for peer in peers if peer.name == name), None)
-        reason = failure
-        if peer and not failure:
-            output = peer.attempt(
-                lambda: _run(programs / "promin-compare", "flake.exr", peer.picture, folder=folder)[0]
-            )
-            reason = peer.failure
-        if reason or not peer:
-            section["gaps"].append({"name": name, "is_installed": bool(reason), "reason": reason or "not installed"})
+        peer = peers.get(name)
+        difference = _compare(programs, folder, peer) if peer and not failure else None
+        if difference is not None:
+            head = {"id": f"{scene}/picture/{name}", **of_scene, "peer": peer.version, "what": what}
+            section["rows"].append({**head, **_row_of(peer, promin, difference)})
             continue
-        difference = json.loads(output)
-        section["rows"].append(
-            {
-                "id": f"{scene}/picture/{name}",
-                "scene": scene,
-                "scene_hash": scene_hash,
-                "peer": peer.version,
-                "what": f"a picture of {side} by {side} pixels, {_MAX_DEPTH} bounces",
-                "promin_ms": promin.trace_ms,
-                "peer_ms": peer.trace_ms,
-                "time_ratio": _ratios(promin.trace_ms, peer.trace_ms),
-                "mean_difference": difference["mean_absolute"],
-                "different_pixels_percent": difference["different_percent"],
-            }
-        )
+        reason = failure or (peer.failure if peer else None)
+        section["gaps"].append({"name": name, "is_installed": bool(reason), "reason": reason or "not installed"})
     if not failure:
-        # What the first picture may take: its tracing and twice a whole process that does next to nothing.
-        allowed_ms = [trace + 2 * small for trace, small in zip(promin.trace_ms, promin.one_sphere_process_ms)]
-        section["first"].append(
-            {
-                "id": f"{scene}/first",
-                "scene": scene,
-                "scene_hash": scene_hash,
-                "trace_ms": promin.trace_ms,
-                "process_ms": promin.process_ms,
-                "one_sphere_process_ms": promin.one_sphere_process_ms,
-                "allowed_ms": allowed_ms,
-                "time_ratio": _ratios(promin.process_ms, allowed_ms),
-                "rays": sum(promin.rays.values()),
-                "shadow_rays": promin.rays["shadow"],
-            }
-        )
+        section["first"].append({"id": f"{scene}/first", **of_scene, **_first_row(promin)})
     return section
 
 

@@ -18,6 +18,7 @@
 #include "reporting/provenance.h"
 #include "reporting/scene_names.h"
 #include "reporting/session.h"
+#include "tracing_options.h"
 
 namespace promin::report {
 namespace {
@@ -130,8 +131,7 @@ app::Command add_report_command(CLI::App& program) {
             [=](const app::OptionValues& words) { options->pictures = words.text(); });
   table.add("--commit", "NAME", "What the report shall say of the sources' commit",
             [=](const app::OptionValues& words) { options->commit = words.text(); });
-  table.add("--device", "NAME|INDEX", "As `promin render` takes it",
-            [=](const app::OptionValues& words) { options->device = words.text(); });
+  app::add_device_option(table, options->device);
   table.add("--runs", "N", "Timed runs of each after a warm-up, in turns [20; 3 with --quick]",
             [=](const app::OptionValues& words) { options->runs = words.whole(0, 1, 1000); });
   table.add_flag("--quick", "Few runs and small sizes: whether it works, not how fast it is", options->is_quick);

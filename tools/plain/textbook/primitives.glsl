@@ -8,10 +8,12 @@
 #define real double
 #define real2 dvec2
 #define real3 dvec3
+#define real3x3 dmat3
 #else
 #define real float
 #define real2 vec2
 #define real3 vec3
+#define real3x3 mat3
 #endif
 
 struct SurfacePoint {
@@ -123,16 +125,16 @@ Crossing intersect_cone(Ray ray, Primitive p) {
 }
 
 // Slabs, in the frame that the rotation matrix of the box's quaternion leads to.
-mat3 box_axes(Primitive p) {
-  vec3 q = vec3(p.b.zw, uintBitsToFloat(p.c.x));
-  float w = sqrt(1.0 - dot(q, q));
-  return mat3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + w * q.z), 2.0 * (q.x * q.z - w * q.y),
-              2.0 * (q.x * q.y - w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + w * q.x),
-              2.0 * (q.x * q.z + w * q.y), 2.0 * (q.y * q.z - w * q.x), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
+real3x3 box_axes(Primitive p) {
+  real3 q = real3(p.b.zw, uintBitsToFloat(p.c.x));
+  real w = sqrt(1.0 - dot(q, q));
+  return real3x3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + w * q.z), 2.0 * (q.x * q.z - w * q.y),
+                 2.0 * (q.x * q.y - w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + w * q.x),
+                 2.0 * (q.x * q.z + w * q.y), 2.0 * (q.y * q.z - w * q.x), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
 }
 
 Crossing intersect_box(Ray ray, Primitive p) {
-  mat3 axes = box_axes(p);
+  real3x3 axes = box_axes(p);
   real3 half_size = real3(p.a.w, p.b.xy);
   real3 oc;
   real start = recentre(ray, p.a.xyz, oc);
@@ -141,7 +143,7 @@ Crossing intersect_box(Ray ray, Primitive p) {
   uint near_face = 0u;
   uint far_face = 0u;
   for (int i = 0; i < 3; ++i) {
-    real3 axis = real3(axes[i]);
+    real3 axis = axes[i];
     real d = dot(real3(ray.direction), axis);
     real o = dot(oc, axis);
     real low = (-half_size[i] - o) / d;
@@ -213,6 +215,6 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
     if (hit.part == PART_BOTTOM) normal = from_center + p.b.w * p.b.xyz;
     if (hit.part == PART_TOP) normal = from_center - p.b.w * p.b.xyz;
   }
-  if (p.c.z == KIND_BOX) normal = ((hit.part & 1u) != 0u ? 1.0 : -1.0) * box_axes(p)[hit.part / 2u];
+  if (p.c.z == KIND_BOX) normal = ((hit.part & 1u) != 0u ? 1.0 : -1.0) * mat3(box_axes(p))[hit.part / 2u];
   return SurfacePoint(position, normalize(normal), 1e-4);
 }

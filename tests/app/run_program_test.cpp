@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "trace/cut_loops.h"
+
+namespace promin::app {
+namespace {
+
+using testing::EndsWith;
+
+std::string message_of_refusal(const CutLoops& cut_loops) {
+  try {
+    cut_loops.check(true);
+  } catch (const RunError& error) {
+    return message_of(error);
+  }
+  return "";
+}
+
+TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
+  EXPECT_THAT(message_of_refusal(CutLoops::of_pictures()),
+              EndsWith(", on this device; lower --max-depth or take another device"));
+  EXPECT_THAT(message_of_refusal(CutLoops::of_pixels()), EndsWith("; lower --max-depth"));
+  EXPECT_THAT(message_of_refusal(CutLoops::of_rays()), EndsWith("; take another --device"));
+  const auto message = [](const char* where, const char* cure, Setting setting) {
+    return message_of(RunError({"bad", where, cure, setting}));
+  };
+  EXPECT_EQ(message("asked for as the device", "choose one", Setting::kDevice),
+            "bad, asked for by --device; choose one");
+  EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "bad, x; try again, or another --device");
+  EXPECT_EQ(message("x", "take the builder sah", Setting::kBuilder), "bad, x; take --builder sah");
+  EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "bad, x; bounce less (--max-depth)") << "other words";
+  EXPECT_EQ(message("another device.gltf", "take another device", Setting::kNone),
+            "bad, another device.gltf; take another device");
+}
+
+TEST(MessageTest, EachProblemHasItsOption) {
+  const InputError error({{"one", "", "take a smaller depth", Setting::kDepth}, {"two", "there", ""}});
+  EXPECT_EQ(message_of(error), "one; lower --max-depth (1 of 2 problems)\n  two, there");
+}
+
+}  // namespace
+}  // namespace promin::app
