@@ -163,17 +163,19 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   const auto parsed = std::from_chars(selection->data(), end, number);
   const bool is_number = !selection->empty() && parsed.ec == std::errc() && parsed.ptr == end;
   for (size_t i = 0; i < infos.size(); ++i) {
-    const bool matches =
-        is_number ? i == number : lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
+    // An empty text is a part of any name, and no choice.
+    const bool is_part =
+        !selection->empty() && lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
+    const bool matches = is_number ? i == number : is_part;
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
       throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],
-                         "asked for as the device", "choose another of: " + list_names(infos)});
+                         "asked for as the device", "choose another of: " + list_names(infos), Setting::kDevice});
     }
     return i;
   }
   throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "asked for as the device",
-                     "choose one of: " + list_names(infos)});
+                     "choose one of: " + list_names(infos), Setting::kDevice});
 }
 
 }  // namespace
@@ -182,13 +184,14 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   try {
     work();
   } catch (const vk::OutOfDeviceMemoryError& error) {
-    throw RunError({"out of device memory", error.what(), "use a smaller scene or picture, or another device"});
+    throw RunError(
+        {"out of device memory", error.what(), "use a smaller scene or picture, or another device", Setting::kDevice});
   } catch (const vk::OutOfHostMemoryError& error) {
     throw RunError({"out of host memory", error.what(), "use a smaller scene or picture"});
   } catch (const vk::DeviceLostError& error) {
-    throw RunError({"the device was lost", error.what(), "try again, or another device"});
+    throw RunError({"the device was lost", error.what(), "try again, or another device", Setting::kDevice});
   } catch (const vk::SystemError& error) {
-    throw RunError({"a Vulkan call failed", error.what(), "try another device"});
+    throw RunError({"a Vulkan call failed", error.what(), "try another device", Setting::kDevice});
   }
 }
 

@@ -236,10 +236,10 @@ Collected collect_primitives(const world::Scene& scene) {
 }
 
 void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
-                   const char* cure) {
+                   const char* cure, Setting setting) {
   if (count <= most) return;
   throw RunError({who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
-                  "promin holds at most " + std::to_string(most) + cure});
+                  "promin holds at most " + std::to_string(most) + cure, setting});
 }
 
 }  // namespace promin

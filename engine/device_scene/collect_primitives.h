@@ -8,6 +8,7 @@
 #include "bvh/primitive_numbers.h"
 #include "core/unset_vector.h"
 #include "layout.h"
+#include "promin/error.h"
 #include "promin/math.h"
 #include "scene/world_scene.h"
 
@@ -35,6 +36,6 @@ Collected collect_primitives(const world::Scene& scene);
 
 /// Throws RunError for "`who` `count` `what`" beyond `most`.
 void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
-                   const char* cure = "");
+                   const char* cure = "", Setting setting = Setting::kNone);
 
 }  // namespace promin

@@ -132,7 +132,7 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
                  [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
                 options);
   check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
-                "; take the builder sah");
+                "; take the builder sah", Setting::kBuilder);
   PackedScene packed;
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);

@@ -202,7 +202,8 @@ TEST_F(CliTest, WithoutADeviceOnlyInfoWorks) {
 }
 
 TEST_F(CliTest, AnUnknownDeviceIsRefused) {
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "no such device"}), 4, "no such device");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "no such device"}), 4,
+                 "no Vulkan device matches \"no such device\", asked for by --device; choose one of: ");
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "99"}), 4, "99");
   EXPECT_THAT(files(), IsEmpty());
 }

@@ -94,6 +94,7 @@ TEST_F(LibraryTest, WrongScenesAndOptionsAreRefused) {
   EXPECT_THROW(Renderer(device(), scene_, {.bvh = "/nonexistent/f.pbvh"}), InputError);
   EXPECT_THROW(Caster(device(), scene_, {.bvh = "/nonexistent/f.pbvh"}), InputError);
   EXPECT_THROW(gpu::open_device("no such device"), DeviceError);
+  EXPECT_THROW(gpu::open_device(""), DeviceError);
 }
 
 TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {

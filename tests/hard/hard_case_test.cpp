@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
+#include "core/file.h"
 #include "gpu/device_fixture.h"
 #include "hard/hard_case.h"
 
@@ -36,6 +38,16 @@ TEST(HardCases, AreNumberedInOrder) {
   const std::vector<HardCase> cases = all_cases();
   ASSERT_FALSE(cases.empty());
   for (size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(cases[i].row, static_cast<int>(i) + 1);
+}
+
+// The document is made by tools/accuracy, which nobody runs who does not think of it.
+TEST(HardCases, AreAllInTheDocument) {
+  const std::vector<std::byte> bytes = read_file(PROMIN_ACCURACY_DOCUMENT);
+  const std::string document(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  for (const HardCase& row : all_cases()) {
+    EXPECT_NE(document.find("\n| " + std::to_string(row.row) + " | "), std::string::npos)
+        << "docs/accuracy.md has no row " << row.row << "; run tools/accuracy";
+  }
 }
 
 }  // namespace
