@@ -500,11 +500,12 @@ def tells_gaps(folder):
     reasons = {gap["name"]: gap["reason"] for gap in found["gaps"] if gap["is_installed"]}
     expect(reasons["Tachyon"] == "Tachyon: no such file", f"Tachyon: {reasons}")
     expect("no time" in reasons["POV-Ray"], f"POV-Ray: {reasons}")
-    # And one that is measured: its picture is black.
+    # And one that is measured: its picture is black. The other is too fast for its own clock.
     script = "printf 'P6\\n16 16\\n65535\\n' >tachyon.ppm; head -c 1536 /dev/zero >>tachyon.ppm"
     script += "; echo 'Version 0.5 Ray Tracing Time: 2.5'"
     (folder / "tachyon").write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
-    (folder / "povray").unlink()
+    script = "echo 'Version 3.7'; echo '  Trace Time:  0 hours  0 minutes  0 seconds (0.000 seconds)'"
+    (folder / "povray").write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
     done = run_python("peers.py", folder, "--programs", BIN, "--side", "16", "--level", "1", environment=fake)
     found = read_report(file)["peers"]
     expect(found["rows"], f"a peer that is there was not measured: {found}, {done.stderr}")
@@ -512,6 +513,8 @@ def tells_gaps(folder):
     expect(
         row["peer"] == "Tachyon 0.5" and row["peer_ms"] == [2500.0], f"a peer that is measured: {row}, {done.stderr}"
     )
+    reasons = {gap["name"]: gap["reason"] for gap in found["gaps"]}
+    expect("less time" in reasons["POV-Ray"], f"a renderer that tells of no time at all: {reasons}")
     expect(row["mean_difference"] > 0.01 and row["time_ratio"] == [row["promin_ms"][0] / 2500.0], f"{row}")
 
 

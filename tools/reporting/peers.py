@@ -54,7 +54,10 @@ class _Peer:
         if not version or not seconds:
             raise RuntimeError(f"{self.name} tells of no version or no time: {output[-300:]}")
         self.version = self.name + " " + version.group(1)
-        self.trace_ms.append(1e3 * float(seconds.group(1)))
+        trace_ms = 1e3 * float(seconds.group(1))
+        if not trace_ms > 0.0:
+            raise RuntimeError(f"{self.name} traces in less time than it can tell")
+        self.trace_ms.append(trace_ms)
 
     def attempt(self, work, *arguments):
         """Its last line is the reason why it is not measured."""
