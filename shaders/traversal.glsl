@@ -33,8 +33,9 @@ uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one that i
 const uint DONE = 0xFFFFFFFFu;
 const uint IN_LEAF = 0xFFFFFFFEu;  // the one that was entered
 
-// take_child without a branch, where `takes`; elsewhere it changes nothing.
-uint take_child_where(bool takes) {
+// The next child that is left, or DONE. Where not `takes` nothing changes. Without branches, which CPU drivers execute
+// for all lanes.
+uint take_child(bool takes) {
   bool has_child = takes && descent.family != NO_FAMILY;
   uint node = has_child ? node_of_family(descent.family) : 0u;
   uint child = next_of_family(descent.family, load_children(node));
@@ -44,18 +45,6 @@ uint take_child_where(bool takes) {
   uint above = stack[descent.stack_top];
   descent.family = has_child ? (pops ? above : left) : descent.family;
   return has_child ? child : DONE;
-}
-
-// The next child that is left, or DONE.
-uint take_child() {
-  if (descent.family == NO_FAMILY) return DONE;
-  uint child = next_of_family(descent.family, load_children(node_of_family(descent.family)));
-  descent.family = without_next(descent.family);
-  if (descent.family == NO_FAMILY && descent.stack_top > 0u) {
-    --descent.stack_top;
-    descent.family = stack[descent.stack_top];
-  }
-  return child;
 }
 
 // The old family is stored whether or not it is kept: of a store under a condition LLVM makes a branch for each lane,
@@ -73,7 +62,7 @@ uint step_together(uint current) {
   count_steps(steps ? 1u : 0u, 0u);
   uint met = meet_children(steps ? current : 0u);
   enter_family(steps ? met : NO_FAMILY);
-  uint child = take_child_where(steps);
+  uint child = take_child(steps);
   return steps ? child : current;
 }
 
@@ -151,7 +140,7 @@ void descend(bool asks_for_any) {
         while (is_inner(current)) {
           count_steps(1u, 0u);
           enter_family(meet_children(current));
-          current = take_child();
+          current = take_child(true);
         }
       } else {
         for (uint i = 0u; i < STEPS_TOGETHER; ++i) current = step_together(current);
@@ -162,7 +151,7 @@ void descend(bool asks_for_any) {
       intersect_leaf(asks_for_any);
       current = IN_LEAF;
       if (waits()) break;
-      current = asks_for_any && !any_takes_part() ? DONE : take_child();
+      current = asks_for_any && !any_takes_part() ? DONE : take_child(true);
     }
     if ((ALL_ASK_FOR_ANY == 0u && SOLIDS_WAIT == 0u) || !waits()) break;
     if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
