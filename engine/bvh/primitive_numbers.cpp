@@ -30,13 +30,13 @@ PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order) 
           order - first - (further_parts(order) - further_parts(first))};
 }
 
-vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights) {
+vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, uint32_t object, const vec2& weights) {
   vec2 whole = weights;
   if (const PackedPart* part = find_part(numbers, order); part != nullptr && part->order == order) {
     whole = part->weights[0] + weights.x * (part->weights[1] - part->weights[0]) +
             weights.y * (part->weights[2] - part->weights[0]);
   }
-  return numbers.is_rewound.at(primitive_of_order(numbers, order).object) ? vec2(whole.y, whole.x) : whole;
+  return numbers.is_rewound.at(object) ? vec2(whole.y, whole.x) : whole;
 }
 
 }  // namespace promin

@@ -38,7 +38,7 @@ struct PrimitiveId {
 PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order);
 
 /// Converts the weights of a packed part's second and third corner to those of the whole triangle's, as it is in its
-/// object.
-vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, const vec2& weights);
+/// object, which primitive_of_order tells.
+vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, uint32_t object, const vec2& weights);
 
 }  // namespace promin

@@ -56,7 +56,7 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const Primit
   hit.object = static_cast<int32_t>(id.object);
   hit.primitive = static_cast<int32_t>(id.primitive);
   const vec2 weights(std::bit_cast<float>(record.a.z), std::bit_cast<float>(record.a.w));
-  const vec2 of_triangle = weights_of_triangle(numbers, record.a.y, weights);
+  const vec2 of_triangle = weights_of_triangle(numbers, record.a.y, id.object, weights);
   hit.u = of_triangle.x;
   hit.v = of_triangle.y;
   hit.normal = {std::bit_cast<float>(record.b.x), std::bit_cast<float>(record.b.y), std::bit_cast<float>(record.b.z)};

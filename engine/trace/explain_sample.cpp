@@ -22,7 +22,7 @@ Hit hit_of(const RayLog& log, const PrimitiveNumbers& numbers) {
   if (order == layout::NO_ORDER) return hit;
   const PrimitiveId id = primitive_of_order(numbers, order);
   const vec2 weights(std::bit_cast<float>(log.hit.z), std::bit_cast<float>(log.hit.w));
-  const vec2 of_triangle = weights_of_triangle(numbers, order, weights);
+  const vec2 of_triangle = weights_of_triangle(numbers, order, id.object, weights);
   hit.t = std::bit_cast<float>(log.hit.x);
   hit.object = static_cast<int32_t>(id.object);
   hit.primitive = static_cast<int32_t>(id.primitive);

@@ -75,9 +75,9 @@ TEST(CutTriangles, NumbersStayThoseOfTheScene) {
     EXPECT_EQ(id.primitive, expected[order].primitive) << order;
   }
   // The first part keeps the third corner; the second has the cut there, 1/4 of the way from it to the first.
-  EXPECT_EQ(weights_of_triangle(packed.numbers, 2, vec2(0.25F, 0.5F)), vec2(0.25F, 0.5F));
+  EXPECT_EQ(weights_of_triangle(packed.numbers, 2, 1, vec2(0.25F, 0.5F)), vec2(0.25F, 0.5F));
   for (const uint32_t order : {4U, 5U, 10U, 11U}) {
-    const vec2 third = weights_of_triangle(packed.numbers, order, vec2(0, 1));
+    const vec2 third = weights_of_triangle(packed.numbers, order, expected[order].object, vec2(0, 1));
     EXPECT_EQ(third, order % 2 == 0 ? vec2(0, 1) : vec2(0, 0.75F)) << order;
   }
 }
