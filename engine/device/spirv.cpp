@@ -55,11 +55,12 @@ struct Block {
 
   uint32_t label() const { return instructions.front()[1]; }
   Words terminator() const { return instructions.back(); }
-  /// The OpLoopMerge of a loop's first block, else empty.
-  Words loop_merge() const {
+  /// The instruction before the terminator, if it is of this kind: OpLoopMerge of a loop's first block, or
+  /// OpSelectionMerge. Else empty.
+  Words merge(Op kind) const {
     if (instructions.size() < 2) return {};
     const Words before = instructions[instructions.size() - 2];
-    return op_of(before) == Op::OpLoopMerge ? before : Words();
+    return op_of(before) == kind ? before : Words();
   }
   bool begins_with_phi() const { return op_of(instructions[1]) == Op::OpPhi; }
 };
@@ -226,7 +227,7 @@ class FunctionPruner {
   FunctionPruner(Function& function, KnownValues& values) : function_(function), values_(values) {
     for (Block& block : function_.blocks) {
       block_of_.emplace_back(block.label(), &block);
-      has_loop_with_phi_ = has_loop_with_phi_ || (!block.loop_merge().empty() && block.begins_with_phi());
+      has_loop_with_phi_ = has_loop_with_phi_ || (!block.merge(Op::OpLoopMerge).empty() && block.begins_with_phi());
     }
     std::ranges::sort(block_of_);
     // Each round knows more values, as fewer blocks lead to others, and fewer blocks are live, as more is known. None
@@ -373,12 +374,13 @@ class FunctionPruner {
     bool is_merge = false;
     std::optional<uint32_t> loop;
     for (const Block& other : function_.blocks) {
-      if (!other.is_live || other.instructions.size() < 2) continue;
-      const Words before = other.instructions[other.instructions.size() - 2];
-      const bool has_merge =
-          op_of(before) == Op::OpLoopMerge || (op_of(before) == Op::OpSelectionMerge && !known_target(other));
-      if (has_merge && before[1] == block.label()) is_merge = true;
-      if (op_of(before) == Op::OpLoopMerge && before[2] == block.label()) loop = other.label();
+      if (!other.is_live) continue;
+      const Words loop_merge = other.merge(Op::OpLoopMerge);
+      const Words selection_merge = known_target(other) ? Words() : other.merge(Op::OpSelectionMerge);
+      for (const Words merge : {loop_merge, selection_merge}) {
+        is_merge = is_merge || (!merge.empty() && merge[1] == block.label());
+      }
+      if (!loop_merge.empty() && loop_merge[2] == block.label()) loop = other.label();
     }
     if (!is_merge && !loop) return;
     append(out, block.instructions.front());
