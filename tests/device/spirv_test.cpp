@@ -16,6 +16,7 @@
 #include "cast.spv.h"
 #include "core/file.h"
 #include "device/branches.h"
+#include "gpu/spirv_module.h"
 #include "layout.h"
 #include "mirror_stage.spv.h"
 #include "support/process.h"
@@ -38,22 +39,9 @@ std::string find_faults(std::span<const uint32_t> spirv) {
   return result.exit_code == 0 ? "" : "spirv-val: " + result.out + result.err;
 }
 
-/// The names that a module gives to ids, but for members. glslang names functions with their parameters' types after
-/// a parenthesis.
-std::set<std::string> names_in(std::span<const uint32_t> spirv) {
-  constexpr uint32_t kOpName = 5;
-  std::set<std::string> names;
-  for (size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
-    if ((spirv[i] & 0xFFFF) != kOpName) continue;
-    const std::string name = reinterpret_cast<const char*>(&spirv[i + 2]);
-    names.insert(name.substr(0, name.find('(')));
-  }
-  return names;
-}
-
-std::set<std::string> names_left(std::span<const uint32_t> spirv,
-                                 const std::vector<SpecializationConstant>& constants) {
-  return names_in(remove_dead_code(spirv, constants));
+std::set<std::string> functions_left(std::span<const uint32_t> spirv,
+                                     const std::vector<SpecializationConstant>& constants) {
+  return test::SpirvModule(remove_dead_code(spirv, constants)).functions;
 }
 
 TEST(RemoveDeadCodeTest, WhatIsLeftIsValid) {
@@ -64,10 +52,10 @@ TEST(RemoveDeadCodeTest, WhatIsLeftIsValid) {
 }
 
 TEST(RemoveDeadCodeTest, FunctionsThatAreCalledNowhereGo) {
-  EXPECT_THAT(names_left(k_branches_spirv, test::BranchConstants{.first = 1, .second = 1}.list()),
+  EXPECT_THAT(functions_left(k_branches_spirv, test::BranchConstants{.first = 1, .second = 1}.list()),
               AllOf(Contains("with_first"), Contains("with_second"), Not(Contains("without_first"))));
   EXPECT_THAT(
-      names_left(k_branches_spirv, test::BranchConstants{.first = 0, .second = 0}.list()),
+      functions_left(k_branches_spirv, test::BranchConstants{.first = 0, .second = 0}.list()),
       AllOf(Contains("without_first"), Contains("is_odd"), Not(Contains("with_first")), Not(Contains("with_second"))));
 }
 
@@ -120,7 +108,7 @@ TEST_P(KernelTest, OnlyTheScenesPrimitivesAreLeft) {
 #include "promin/kinds/primitives.def"
   };
   for (const auto& [bit, function] : kinds) {
-    const std::set<std::string> left = names_left(GetParam().spirv, constants_of(uint64_t{1} << bit, 1, 0));
+    const std::set<std::string> left = functions_left(GetParam().spirv, constants_of(uint64_t{1} << bit, 1, 0));
     for (const auto& [other_bit, other_function] : kinds) {
       EXPECT_EQ(left.contains(other_function), bit == other_bit) << function << ", " << other_function;
     }

@@ -60,7 +60,10 @@ SpirvModule::SpirvModule(std::span<const uint32_t> words) {
     const uint32_t* op = &words[i];
     const uint32_t opcode = op[0] & 0xFFFFU;
     if (opcode == kName) names_[op[1]] = literal_string(op + 2);
-    if (opcode == kFunction) function = names_[op[2]];
+    if (opcode == kFunction) {
+      function = names_[op[2]];
+      functions.insert(function.substr(0, function.find('(')));
+    }
     if (opcode == kDecorate && op[2] == kNoContraction) uncontracted.insert(op[1]);
     if (opcode == kDecorate && op[2] == kSpecId) spec_id_of[op[1]] = op[3];
     if (opcode == kDecorate && op[2] == kBinding) binding_of[op[1]] = op[3];

@@ -23,6 +23,8 @@ struct SpirvModule {
   /// Float additions, subtractions, products and quotients without NoContraction: "opcode in function".
   std::vector<std::string> contractible;
   uint32_t float_operation_count = 0;
+  /// glslang adds the parameters' types after a parenthesis, which are left out here.
+  std::set<std::string> functions;
   /// Bindings by kind: storage buffer variables' distinct binding numbers.
   std::set<uint32_t> storage_bindings;
 

@@ -123,8 +123,8 @@ def primitives_section(runs):
         + "\n\nOver all rays of the hard cases below with one kind of primitive, which aim at edges and silhouettes far"
         + " more often than a picture does. Of all rays leaks are counted; the oracle judges so many, and misclassified"
         + " are counted of these. Boxes, capsules, cylinders, cones and frustums are held to BK: where a ray meets a"
-        + " rim or an edge, the exact hit may be on one part and the device's on another, each at another angle, and K of t"
-        + " may pass 8. Misclassified are rays that hit where the exact ray misses, or miss where it hits; none does so"
+        + " rim or an edge, the exact hit may be on one part and the device's on another, each at another angle, and"
+        + " K of t may pass 8. Misclassified are rays that hit where the exact ray misses, or miss where it hits; none does so"
         + " farther from an edge than the margin says, and none counts as a leak. Of triangles most rays are asked only"
         + " whether they find a hole in a closed mesh; those judged are aimed at edges.\n\n"
         + table(header, rows)
