@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // The first stage of a picture: a sample of each pixel, with its camera ray and the shadow rays of its hit. A lane
-// takes PACKET_SIZE pixels that lie side by side; paths that a mirror leads on go to the queue for mirror_stage.comp.
+// takes PACKET_SIZE pixels that lie side by side; paths that a mirror leads on go to the stream (stream.glsl).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -15,14 +15,17 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "ray.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
+#include "stream.glsl"
 #include "packet.glsl"
 #include "packet_triangles.glsl"
 #include "family.glsl"
 #include "node_boxes.glsl"
 #include "traversal.glsl"
 #include "debug_views.glsl"
+#include "ray_bins.glsl"
 #include "ray_log.glsl"
 #include "secondary.glsl"
+#include "shading_records.glsl"
 #include "lights.glsl"
 #include "shading.glsl"
 #include "path.glsl"
@@ -112,7 +115,7 @@ void aim_at_source(LightRecord light) {
     LightSample sampled = sample_light(light, point.position);
     contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
     if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
-    Ray ray = shadow_ray(point, light, sampled);
+    Ray ray = shadow_ray(point, light);
     packet[i] = ray;
     ++ray_count.y;
   }
@@ -128,6 +131,20 @@ void add_contributions(uint source) {
     precise vec3 sum = seen[i] + contribution;
     seen[i] = sum;
   }
+}
+
+// Hands a path over to the stream, as one of its turn -1.
+void put_path(Path path) {
+  begin_stream();
+  uint number = atomicAdd(stream.turn.z, 1u);
+  uint record = record_of_path(number);
+  pixels[record + RECORD_ORIGIN] = uvec4(floatBitsToUint(path.origin), path.pixel);
+  pixels[record + RECORD_DIRECTION].xyz = floatBitsToUint(path.direction);
+  pixels[record_of_weight(number, 0u)].xyz = floatBitsToUint(path.weight);
+  pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
+  words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
+  words[path_list(turn) + number] = number;
+  ++ray_count.z;
 }
 
 void leave() {
@@ -168,6 +185,7 @@ void trace_pixels() {
 
 void main() {
   if (begin_packet()) {
+    begin_log();
     step_counts = uvec2(0u);
     trace_pixels();
     leave();

@@ -3,13 +3,14 @@
 // The buffer that the stages of a picture write to.
 
 // `pixels` holds, for each pixel, the bits of its sum over samples and the `order` of what it shows. With FEATURE_AOVS
-// the bits of each pixel's geometric normal and depth follow, and then, from dispatch.queue.x on, the paths that
-// camera_stage.comp leaves to mirror_stage.comp. `ray_counts` counts rays (x = primary, y = shadow, z = reflection) and
+// the bits of each pixel's geometric normal and depth follow, and then the stream of paths that camera_stage.comp
+// leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y = shadow, z = reflection) and
 // how often loops were cut (w). Each lane of a workgroup has a counter of its own, because all lanes would queue for a
 // single one, and a sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per subgroup and
 // leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   Dispatch dispatch;
+  StreamState film_stream;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 pixels[];
 };

@@ -62,6 +62,7 @@ LAYOUT_CONSTANT BINDING_NODE_TEXELS = 7u;
 LAYOUT_CONSTANT BINDING_PRIMITIVE_TEXELS = 8u;
 LAYOUT_CONSTANT BINDING_RAY_TEXELS = 9u;
 LAYOUT_CONSTANT BINDING_SHADING_TEXELS = 10u;
+LAYOUT_CONSTANT BINDING_FILM_TEXELS = 11u;
 
 // Specialisation constants.
 LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;  // the first word
@@ -72,6 +73,7 @@ LAYOUT_CONSTANT CONSTANT_PACKET_SIZE = 4u;
 LAYOUT_CONSTANT CONSTANT_MORE_FEATURES = 5u;  // the second word
 LAYOUT_CONSTANT CONSTANT_STEPS_TOGETHER = 6u;
 LAYOUT_CONSTANT CONSTANT_WAITS_WITH_SOLIDS = 7u;
+LAYOUT_CONSTANT CONSTANT_FETCHES_FILM_TEXELS = 8u;
 
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
@@ -156,9 +158,28 @@ struct Dispatch {
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
   uvec4 outcome;   // casting: x = 1 after the dispatch if were_loops_cut(); 0 else
-  uvec4 queue;     // paths from one stage to the next: x = the first record, y = paths put, z = paths taken,
-                   // w = paths that a lane takes at most
 };
+
+// The stream of paths behind the pixels of a film (stream.glsl), for a piece of a picture.
+struct StreamState {
+  uvec4 place;           // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
+  uvec4 turn;            // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
+                         // of this turn's have a ray
+  uvec4 shadow_rays;     // x = how many are listed
+  uvec4 list_groups;     // workgroups of each dispatch of the turn, as Vulkan takes them
+  uvec4 shadow_groups;
+  uvec4 path_groups;
+};
+// What a path takes, and it takes for each source of a turn: records of uvec4.
+LAYOUT_CONSTANT STREAM_PATH_RECORDS = 7u;
+LAYOUT_CONSTANT STREAM_SOURCE_RECORDS = 1u;
+LAYOUT_CONSTANT STREAM_SOURCES = 16u;  // most sources of a turn
+LAYOUT_CONSTANT STREAM_LISTS = 2u;
+LAYOUT_CONSTANT STREAM_BIN_BITS = 9u;  // of the bins by which rays are sorted (ray_bins.glsl)
+LAYOUT_CONSTANT STREAM_BINS = 1u << STREAM_BIN_BITS;
+LAYOUT_CONSTANT STREAM_LANES = 64u;
+// Where the pixels of a film lie in its texels.
+LAYOUT_CONSTANT FILM_HEAD_TEXELS = 5u + 6u + 64u;
 
 // The number is more than one, and the compiler does not know it (loop_check.glsl).
 LAYOUT_CONSTANT LOOP_CHECK_TURNS = 2u;
@@ -201,7 +222,7 @@ static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
 static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 144);
-static_assert(sizeof(Dispatch) == 96);
+static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
 static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS);

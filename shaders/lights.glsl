@@ -23,3 +23,14 @@ LightSample sample_light(LightRecord light, vec3 position) {
   // The pipeline was specialised to none of this kind, so the light adds nothing.
   return LightSample(vec3(0.0), 0.0, 0.0);
 }
+
+// From `origin` to a source, whose direction hangs on the place alone where it has a place, else on nothing.
+Ray shadow_ray(vec3 origin, LightRecord light) {
+  LightSample sampled = sample_light(light, origin);
+  precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
+  return make_ray(origin, to_source, 0.0, sampled.tmax);
+}
+
+uint source_count() {
+  return LIGHT_KIND_COUNT > 0u ? light_count() : 0u;
+}

@@ -30,26 +30,3 @@ void finish_path(Path path) {
   precise vec3 sum = uintBitsToFloat(pixels[path.pixel].xyz) + path.radiance;
   pixels[path.pixel].xyz = floatBitsToUint(sum);
 }
-
-// The queue of paths from one stage to the next; a path takes four records. Paths do not wait for each other, so each
-// takes the next free place.
-const uint QUEUED_PATH_SIZE = 4u;
-
-void put_path(Path path) {
-  uint first = dispatch.queue.x + QUEUED_PATH_SIZE * atomicAdd(dispatch.queue.y, 1u);
-  pixels[first] = uvec4(floatBitsToUint(path.origin), path.pixel);
-  pixels[first + 1u] = uvec4(floatBitsToUint(path.direction), 0u);
-  pixels[first + 2u] = uvec4(floatBitsToUint(path.weight), 0u);
-  pixels[first + 3u] = uvec4(floatBitsToUint(path.radiance), 0u);
-}
-
-// Takes the next path from the queue. False where none is left.
-bool take_path(out Path path) {
-  uint place = atomicAdd(dispatch.queue.z, 1u);
-  if (place >= dispatch.queue.y) return false;
-  uint first = dispatch.queue.x + QUEUED_PATH_SIZE * place;
-  uvec4 origin_pixel = pixels[first];
-  path = Path(uintBitsToFloat(origin_pixel.xyz), uintBitsToFloat(pixels[first + 1u].xyz),
-              uintBitsToFloat(pixels[first + 2u].xyz), uintBitsToFloat(pixels[first + 3u].xyz), origin_pixel.w);
-  return true;
-}

@@ -5,6 +5,7 @@
 
 layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
   Dispatch logged_dispatch;
+  StreamState logged_stream;
   uvec4 logged_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 logged_pixel;
   uvec4 log_count;  // x = number of entries
@@ -13,6 +14,11 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
 
 RayLog path_log;    // entry of the ray that the path follows
 RayLog source_log;  // entry of the source at hand
+
+// Of the first ray of a sample.
+void begin_log() {
+  if (has(FEATURE_RAY_LOG)) log_count.x = 0u;
+}
 
 void append_log(RayLog log) {
   logs[log_count.x] = log;
@@ -70,4 +76,19 @@ void end_path_log(vec3 radiance) {
   if (!has(FEATURE_RAY_LOG)) return;
   path_log.radiance = vec4(radiance, 0.0);
   append_log(path_log);
+}
+
+// What the stream adds to entries that an earlier dispatch has appended: the path's was the last, the sources' before it
+// those of the last turn. `entry` counts from the end: 1 is the last.
+void log_answer(uint entry, Ray ray, Hit blocker) {
+  RayLog log = logs[log_count.x - entry];
+  log_ray(log, ray, blocker);
+  logs[log_count.x - entry].origin_tmin = log.origin_tmin;
+  logs[log_count.x - entry].direction_tmax = log.direction_tmax;
+  logs[log_count.x - entry].hit = log.hit;
+  logs[log_count.x - entry].ids.w = 1u;
+}
+
+void log_sum(uint entry, vec3 radiance) {
+  if (has(FEATURE_RAY_LOG)) logs[log_count.x - entry].radiance = vec4(radiance, 0.0);
 }

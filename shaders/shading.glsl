@@ -2,40 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Phong shading (docs/model.md, "Light") of a point that a ray hit.
 
-// These are views of one buffer, because four storage buffers per stage are all that Vulkan guarantees. Each view
-// starts at a multiple of its own stride (VIEW.first_index).
-layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
-layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
-layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
-layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
-layout(set = 0, binding = BINDING_SHADING_TEXELS) uniform usamplerBuffer shading_texels;
-
-vec4 shading_vector(uint texel) { return uintBitsToFloat(texelFetch(shading_texels, int(texel))); }
-
-SurfaceRecord load_surface(uint index) {
-  if (FETCHES_TEXELS == 0u) return surfaces[index];
-  return SurfaceRecord(texelFetch(shading_texels, int(index)));
-}
-
-MaterialRecord load_material(uint index) {
-  if (FETCHES_TEXELS == 0u) return materials[index];
-  uint first = MATERIAL_TEXELS * index;
-  return MaterialRecord(shading_vector(first), shading_vector(first + 1u), shading_vector(first + 2u),
-                        shading_vector(first + 3u), shading_vector(first + 4u));
-}
-
-LightRecord load_light(uint index) {
-  if (FETCHES_TEXELS == 0u) return lights[index];
-  uint first = LIGHT_TEXELS * index;
-  return LightRecord(shading_vector(first), shading_vector(first + 1u), shading_vector(first + 2u),
-                     shading_vector(first + 3u), texelFetch(shading_texels, int(first + 4u)));
-}
-
-vec3 load_vertex(uint index) {
-  if (FETCHES_TEXELS == 0u) return vertices[index].xyz;
-  return shading_vector(index).xyz;
-}
-
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
@@ -122,18 +88,12 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   return contribution;
 }
 
-Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
-  vec3 origin = lift_off(point.shadow_position, point.geometric_normal, point.lift);
-  precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
-  return make_ray(origin, to_source, 0.0, sampled.tmax);
+Ray shadow_ray(ShadingPoint point, LightRecord light) {
+  return shadow_ray(lift_off(point.shadow_position, point.geometric_normal, point.lift), light);
 }
 
 // The light that the point sends without any source: ambient and emitted.
 vec3 own_light(ShadingPoint point) {
   precise vec3 own = point.material.ambient.xyz * point.color * VIEW.ambient.xyz + point.material.emissive.xyz;
   return own;
-}
-
-uint source_count() {
-  return LIGHT_KIND_COUNT > 0u ? light_count() : 0u;
 }

@@ -108,7 +108,6 @@ FinishedFrame FrameQueue::take(Frame& frame) {
                      stage_ms(frame, FrameMark::kTraced, FrameMark::kDisplayed),
                      stage_ms(frame, FrameMark::kDisplayed, FrameMark::kEnd)};
   finished.units = frame.units;
-  finished.takes_many_paths = frame.takes_many_paths;
   finished.is_of_flight = frame.is_of_flight;
   if (frame.units > 0.0) {
     finished.rays = sum_counts(frame.counters->mapped());

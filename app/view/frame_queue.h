@@ -25,8 +25,6 @@ struct FinishedFrame {
   RayCounts rays;
   /// The driver cut the tracing short (trace/film.h): pixels are wrong.
   bool has_cut_loops = false;
-  /// How it was traced: the value of ProgressivePicture::takes_many_paths.
-  bool takes_many_paths = false;
   /// The units of tracing (ProgressivePicture::record).
   double units = 0.0;
   /// The value of Frame::is_of_flight.
@@ -50,7 +48,6 @@ struct Frame {
   bool is_in_flight = false;
   bool is_presented = false;
   double begin_time = 0.0;
-  bool takes_many_paths = false;
   double units = 0.0;
   /// Whether it shows the next camera of a flight.
   bool is_of_flight = false;

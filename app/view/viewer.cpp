@@ -257,10 +257,7 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   if (finished.units == 0.0) return;
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   try {
-    picture_->take_finished({.units = finished.units,
-                             .time_ms = trace_ms,
-                             .has_cut_loops = finished.has_cut_loops,
-                             .took_many_paths = finished.takes_many_paths});
+    picture_->take_finished({.units = finished.units, .time_ms = trace_ms, .has_cut_loops = finished.has_cut_loops});
   } catch (const RunError& error) {
     if (!is_failure_) report_failure(error.what());
   }
@@ -290,7 +287,6 @@ void Viewer::record_tracing(Frame& frame) {
   using Stage = vk::PipelineStageFlagBits;
   // The frame before may have copied a screenshot from the film that is traced now.
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
-  frame.takes_many_paths = picture_->takes_many_paths();
   frame.units = picture_->record(frame.commands);
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
   if (wants_screenshot_ && picture_->is_complete() && !awaits_mode() && !screenshot_.is_busy()) {
@@ -298,10 +294,9 @@ void Viewer::record_tracing(Frame& frame) {
     view.samples_per_pixel = picture_->shown()->samples_per_pixel;
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
     frame.on_finished = [this, view](const FinishedFrame& finished) {
-      // It is not whole. Where it is traced again, it is taken then.
+      // It is not whole.
       if (finished.has_cut_loops) {
         screenshot_.drop();
-        wants_screenshot_ = finished.takes_many_paths;
         return;
       }
       stats_.view = view;

@@ -6,8 +6,9 @@
 
 namespace promin {
 
-/// a / b, rounded up; a + b < 2^32.
-constexpr uint32_t divide_up(uint32_t a, uint32_t b) {
+/// a / b, rounded up; a + b must not overflow.
+template <typename T>
+constexpr T divide_up(T a, T b) {
   return (a + b - 1) / b;
 }
 

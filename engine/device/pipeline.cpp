@@ -94,10 +94,20 @@ void ComputePipeline::bind(const BoundBuffer& buffer) {
   device_->handle().updateDescriptorSets(write, {});
 }
 
-void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const {
+void ComputePipeline::bind_all(const vk::raii::CommandBuffer& commands) const {
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *compiled_->pipeline);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *compiled_->layout, 0, *set_, {});
+}
+
+void ComputePipeline::dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const {
+  bind_all(commands);
   commands.dispatch(group_count.x, group_count.y, 1);
+}
+
+void ComputePipeline::dispatch_indirect(const vk::raii::CommandBuffer& commands, const Buffer& group_count,
+                                        vk::DeviceSize offset_bytes) const {
+  bind_all(commands);
+  commands.dispatchIndirect(*group_count.handle(), offset_bytes);
 }
 
 }  // namespace promin::gpu

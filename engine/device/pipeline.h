@@ -64,8 +64,13 @@ class ComputePipeline {
 
   /// Records binding everything and `group_count` workgroups, across and down.
   void dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const;
+  /// The same with the workgroups that three words at `offset_bytes` of a buffer tell.
+  void dispatch_indirect(const vk::raii::CommandBuffer& commands, const Buffer& group_count,
+                         vk::DeviceSize offset_bytes) const;
 
  private:
+  void bind_all(const vk::raii::CommandBuffer& commands) const;
+
   const Device* device_;
   const CompiledPipeline* compiled_;
   vk::raii::DescriptorPool pool_{nullptr};

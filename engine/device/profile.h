@@ -39,9 +39,15 @@ struct DeviceProfile {
   /// As texels where no buffer has more bytes, else from storage buffers. A CPU driver gathers a load from a storage
   /// buffer word by word, a texel at once.
   uint64_t most_texel_bytes = 0;
+  /// Whether the stream of a picture is read as texels, where the texel buffers hold a film.
+  bool fetches_film_texels = false;
 
   // How trees are traversed.
-  TraversalForm traversal;
+  /// By packets of rays.
+  TraversalForm packet_traversal;
+  /// By rays one by one, where the tree has triangles and where it has none.
+  TraversalForm ray_traversal;
+  TraversalForm ray_traversal_of_solids;
 
   // How work is cut into dispatches and spread over the workgroups of each.
   /// How long a dispatch should take. At the end of each the threads of a CPU driver wait for the last one.
@@ -55,10 +61,9 @@ struct DeviceProfile {
   // Pictures.
   /// Pixels that a lane of the camera stage takes together: 1, 2 or 4.
   uint32_t pixel_packet_size = 1;
-  /// Workgroups of the mirror stage that there are at least before a lane takes several paths, and how many paths it
-  /// takes one after the other at most.
-  uint32_t wanted_groups = 0;
-  uint32_t most_paths_a_lane = 1;
+  /// Pixels whose paths are traced together, bounce by bounce, at most (trace/path_stream.h): enough to fill the device
+  /// at late bounces too.
+  uint32_t most_stream_paths = 1U << 18;
 
   // Rays that are cast.
   /// How many a lane takes together where they run side by side: 1, or RayTiler::kPacketSize, for which they are put in

@@ -52,8 +52,7 @@ layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& vie
           .sampling = uvec4(view.samples_per_pixel, range.lattice_generator, divide_up(size.x, layout::BLOCK_SIZE),
                             is_orthographic),
           .counts = counts_of(scene),
-          .outcome = uvec4(0),
-          .queue = uvec4(range.first_queue_record, 0, 0, range.most_paths_a_lane)};
+          .outcome = uvec4(0)};
 }
 
 layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_ray, uint32_t end_ray) {
@@ -61,8 +60,7 @@ layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_
           .window = uvec4(0),
           .sampling = uvec4(0),
           .counts = counts_of(scene),
-          .outcome = uvec4(0),
-          .queue = uvec4(0)};
+          .outcome = uvec4(0)};
 }
 
 }  // namespace promin

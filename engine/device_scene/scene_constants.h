@@ -35,10 +35,6 @@ struct TileRange {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   uint32_t sample = 0;
-  /// The largest number of paths that a lane of the mirror stage takes.
-  uint32_t most_paths_a_lane = 1;
-  /// Where the queue of paths begins, in records of the film.
-  uint32_t first_queue_record = 0;
   /// The value of lattice_generator (device_scene/sampling.h) for the view's samples.
   uint32_t lattice_generator = 1;
 };

@@ -12,6 +12,7 @@
 #include "layout.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
+#include "trace/cut_loops.h"
 #include "trace/explain_pixel.h"
 #include "trace/progressive_picture.h"
 
@@ -130,22 +131,10 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
                   const ProgressCallback& on_progress) {
     TileOptions cut = film->piece_options();
     cut.blocks_per_piece = options.blocks_per_dispatch;
-    for (;;) {
-      const bool takes_many_paths = cut_loops.takes_many_paths();
-      const FilmCounts counts = trace_pieces(window, view, cut_loops.limit(cut), result.trace_ms, on_progress);
-      if (cut_loops.must_trace_again(counts.has_cut_loops, takes_many_paths)) continue;
-      result.rays += counts.rays;
-      return;
-    }
-  }
-
-  FilmCounts trace_pieces(const PixelWindow& window, const View& view, const TileOptions& cut, double& trace_ms,
-                          const ProgressCallback& on_progress) {
-    FilmCounts counts;
     const auto collect = [&] {
       const FilmCounts taken = film->take_counts();
-      counts.rays += taken.rays;
-      counts.has_cut_loops = counts.has_cut_loops || taken.has_cut_loops;
+      refuse_cut_loops(taken.has_cut_loops);
+      result.rays += taken.rays;
     };
     film->reserve((window.hi.x - window.lo.x) * (window.hi.y - window.lo.y));
     TileScheduler picture = film->cut(view, window, cut);
@@ -162,7 +151,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
         uncollected += pieces.back().most_rays_a_lane;
       } while (units < pacer.units() && pieces.size() < kMostPiecesAtOnce && !picture.is_done());
       const double time_ms = film->run(pieces);
-      trace_ms += time_ms;
+      result.trace_ms += time_ms;
       pacer.learn(units, time_ms);
       if (uncollected > kMaxRaysALane) {
         collect();
@@ -171,7 +160,6 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       tell_progress(on_progress, picture.fraction_done());
     }
     collect();
-    return counts;
   }
 
   /// Adds what the film holds of a band to the result. The band's first pixel is pixel `first` of the result.
@@ -244,7 +232,6 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   TunedRendererOptions options;
   size_t pipelines_before;
   Pacer pacer;
-  CutLoops cut_loops = CutLoops::of_pictures();
   SetupStats stats;
   SceneOnDevice scene;
   std::optional<Film> film;
@@ -321,7 +308,7 @@ Explanation Renderer::explain(const View& view, const uvec2& pixel) {
   gpu::translate_vulkan_errors([&] {
     const SceneOnDevice& scene = impl_->scene;
     const FeatureMask features = scene.features({.has_shadows = view.mode.has_shadows});
-    explanation = explain_pixel(impl_->device, *scene.device_scene(), scene.numbers(), features, view, pixel);
+    explanation = explain_pixel(impl_->device, scene.device_scene(), scene.numbers(), features, view, pixel);
   });
   return explanation;
 }

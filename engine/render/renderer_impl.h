@@ -9,7 +9,6 @@
 #include "device_scene/device_scene.h"
 #include "promin/renderer.h"
 #include "scene/features.h"
-#include "trace/cut_loops.h"
 #include "trace/film.h"
 #include "trace/picture_shaders.h"
 

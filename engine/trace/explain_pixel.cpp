@@ -4,7 +4,6 @@
 
 #include <array>
 #include <bit>
-#include <cstddef>
 
 #include "device/device.h"
 #include "device_scene/device_scene.h"
@@ -13,87 +12,59 @@
 #include "trace/explain_sample.h"
 #include "trace/film.h"
 #include "trace/tile_scheduler.h"
-#include "trace/tracing_kernel.h"
 
 namespace promin {
 namespace {
 
-/// The head of a film of one pixel; its log follows (shaders/ray_log.glsl).
-struct LoggedFilm {
-  layout::Dispatch dispatch{};
-  std::array<uvec4, layout::BLOCK_SIZE * layout::BLOCK_SIZE> ray_counts{};
-  uvec4 pixel{0};
-  uvec4 log_count{0};
-};
-
 /// The log may take half of what Vulkan guarantees for a storage buffer.
 constexpr uint64_t kMostLogBytes = 64U << 20;
 
-/// The size of the film with the log of one sample of the view, whatever the sample meets.
-uint64_t film_bytes(const DeviceScene& scene, const View& view) {
-  const uint64_t most_entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.constants().light_count);
-  if (most_entries > kMostLogBytes / sizeof(layout::RayLog)) {
-    throw RunError({"a pixel may take " + std::to_string(most_entries) + " rays and sources, too many to explain",
+/// Entries of the log of one sample of the view at most, whatever the sample meets.
+uint64_t most_entries(const DeviceScene& scene, const View& view) {
+  const uint64_t entries = (uint64_t{1} + view.max_depth) * (uint64_t{1} + scene.constants().light_count);
+  if (entries > kMostLogBytes / sizeof(layout::RayLog)) {
+    throw RunError({"a pixel may take " + std::to_string(entries) + " rays and sources, too many to explain",
                     "in this scene with so many bounces", "take a smaller depth", Setting::kDepth});
   }
-  return sizeof(LoggedFilm) + most_entries * sizeof(layout::RayLog);
+  return entries;
 }
 
-constexpr uint64_t kQueuedPathBytes = Film::kQueuedPathRecords * sizeof(uvec4);
+/// The log of the sample that was traced last, behind the pixel (shaders/ray_log.glsl).
+std::vector<layout::RayLog> read_log(const Film& film) {
+  const vk::DeviceSize count_offset = Film::kPixelsOffset + sizeof(uvec4);
+  uvec4 count;
+  film.buffer().read(std::as_writable_bytes(std::span(&count, 1)), count_offset);
+  std::vector<layout::RayLog> log(count.x);
+  film.buffer().read(std::as_writable_bytes(std::span(log)), count_offset + sizeof count);
+  return log;
+}
 
-class LoggingKernel {
- public:
-  LoggingKernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features, const View& view)
-      : view_constants_(device, sizeof(layout::ViewConstants), vk::BufferUsageFlagBits::eUniformBuffer),
-        queue_offset_(film_bytes(scene, view)),
-        film_(device, queue_offset_ + kQueuedPathBytes, vk::BufferUsageFlagBits::eStorageBuffer),
-        kernel_(make_picture_kernel(device, scene, features | layout::FEATURE_RAY_LOG, 1, view_constants_, film_)) {
-    const layout::ViewConstants constants = make_view_constants(scene.constants(), view);
-    view_constants_.write(std::as_bytes(std::span(&constants, 1)));
-  }
-
-  /// Traces one sample of the pixel; samples are traced in their order.
-  std::vector<layout::RayLog> trace(const TileSample& sample) {
-    head_.log_count = uvec4(0);
-    film_.write(std::as_bytes(std::span(&head_, 1)));
-    kernel_.run(sample.dispatch, film_, sample.group_counts);
-    film_.read(std::as_writable_bytes(std::span(&head_, 1)));
-    CutLoops::of_pixels().check(were_loops_cut(std::as_bytes(std::span(head_.ray_counts))));
-    std::vector<layout::RayLog> log(head_.log_count.x);
-    film_.read(std::as_writable_bytes(std::span(log)), sizeof(LoggedFilm));
-    return log;
-  }
-
-  /// The place of the queue, in records of the film.
-  uint32_t first_queue_record() const {
-    return static_cast<uint32_t>((queue_offset_ - offsetof(LoggedFilm, pixel)) / sizeof(uvec4));
-  }
-
-  /// The sum of the samples so far.
-  vec3 sum() const { return std::bit_cast<vec3>(std::array{head_.pixel.x, head_.pixel.y, head_.pixel.z}); }
-
- private:
-  gpu::Buffer view_constants_;
-  /// The place of the queue of paths, behind the log.
-  uint64_t queue_offset_;
-  gpu::Buffer film_;
-  LoggedFilm head_;
-  TracingKernel kernel_;
-};
+/// The sum of the pixel's samples so far.
+vec3 read_sum(const Film& film) {
+  uvec4 pixel;
+  film.buffer().read(std::as_writable_bytes(std::span(&pixel, 1)), Film::kPixelsOffset);
+  return std::bit_cast<vec3>(std::array{pixel.x, pixel.y, pixel.z});
+}
 
 }  // namespace
 
-Explanation explain_pixel(const gpu::Device& device, const DeviceScene& scene, const PrimitiveNumbers& numbers,
-                          FeatureMask features, const View& view, const uvec2& pixel) {
-  LoggingKernel kernel(device, scene, features, view);
-  TileScheduler samples(scene.constants(), view, {pixel, pixel + 1U},
-                        {.first_queue_record = kernel.first_queue_record()});
+Explanation explain_pixel(const gpu::Device& device, const std::shared_ptr<const DeviceScene>& scene,
+                          const PrimitiveNumbers& numbers, FeatureMask features, const View& view, const uvec2& pixel) {
+  constexpr uint64_t kEntryRecords = sizeof(layout::RayLog) / sizeof(uvec4);
+  // Packets share the steps through the tree, but a log is of single rays.
+  Film film(device, scene, features | layout::FEATURE_RAY_LOG,
+            {.packet_size = 1, .log_records = static_cast<uint32_t>(1 + most_entries(*scene, view) * kEntryRecords)});
+  TileScheduler samples = film.cut(view, {pixel, pixel + 1U}, film.piece_options());
   Explanation explanation;
   explanation.pixel = pixel;
+  film.begin(samples);
   while (!samples.is_done()) {
-    explanation.samples.push_back(explain_sample(kernel.trace(samples.next(1.0)), numbers, scene.light_numbers()));
+    const TileSample sample = samples.next(1.0);
+    film.run({&sample, 1});
+    explanation.samples.push_back(explain_sample(read_log(film), numbers, scene->light_numbers()));
   }
-  explanation.sum = kernel.sum();
+  refuse_cut_loops(film.take_counts().has_cut_loops);
+  explanation.sum = read_sum(film);
   explanation.color = explanation.sum / static_cast<float>(view.samples_per_pixel);
   return explanation;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include "promin/explain.h"
 #include "scene/features.h"
 
@@ -15,10 +17,10 @@ class Device;
 class DeviceScene;
 struct View;
 
-/// Traces a pixel of the view's picture with the picture's own shader, which logs what it does (FEATURE_RAY_LOG), and
+/// Traces a pixel of the view's picture with the picture's own shaders, which log what they do (FEATURE_RAY_LOG), and
 /// waits. `features` are those of the scene; the view's crop and debug view are left aside. Throws vk::SystemError, and
 /// RunError where the log might be too long.
-Explanation explain_pixel(const gpu::Device& device, const DeviceScene& scene, const PrimitiveNumbers& numbers,
-                          FeatureMask features, const View& view, const uvec2& pixel);
+Explanation explain_pixel(const gpu::Device& device, const std::shared_ptr<const DeviceScene>& scene,
+                          const PrimitiveNumbers& numbers, FeatureMask features, const View& view, const uvec2& pixel);
 
 }  // namespace promin

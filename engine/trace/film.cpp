@@ -10,8 +10,11 @@
 #include <cstring>
 
 #include "camera_stage.spv.h"
+#include "core/divide_up.h"
 #include "device/device.h"
-#include "mirror_stage.spv.h"
+#include "follow_paths.spv.h"
+#include "trace/film_head.h"
+#include "trace_shadow_rays.spv.h"
 
 namespace promin {
 namespace {
@@ -20,24 +23,12 @@ using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-/// One for each lane of a block.
-using Counters = std::array<uvec4, kLanes>;
-
-/// Head of the film buffer (shaders/film.glsl).
-struct FilmHead {
-  layout::Dispatch dispatch{};
-  Counters ray_counts{};
-};
-
 Counters lanes_of(std::span<const std::byte> counters) {
   Counters lanes;
   assert(counters.size() >= sizeof lanes);
   std::memcpy(lanes.data(), counters.data(), sizeof lanes);
   return lanes;
 }
-
-/// Paths of the longest queue that a piece may need.
-constexpr uint32_t kMostQueuedPaths = TileScheduler::kMaxBlocks * kLanes;
 
 /// Steps and logs are of single rays.
 uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
@@ -50,7 +41,7 @@ const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
 const vk::DeviceSize Film::kCountersBytes = sizeof(Counters);
 
 PictureShaders picture_shaders() {
-  return {k_camera_stage_spirv, k_mirror_stage_spirv};
+  return {k_camera_stage_spirv, k_trace_shadow_rays_spirv, k_follow_paths_spirv};
 }
 
 Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
@@ -61,39 +52,75 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
       packet_size_(options.packet_size.value_or(pick_packet_size(device, features))),
       avoids_texels_(options.avoids_texels),
       shaders_(options.shaders),
+      log_records_(options.log_records),
       view_constants_(device, sizeof(layout::ViewConstants), vk::BufferUsageFlagBits::eUniformBuffer) {
   reserve(kLanes);
   bind_scene();
 }
 
+std::array<gpu::BoundBuffer, 2> Film::film_buffers() const {
+  return {{{layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_},
+           {layout::BINDING_FILM_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*buffer_, &texels_}}};
+}
+
+std::vector<gpu::BoundBuffer> Film::buffers() const {
+  std::vector<gpu::BoundBuffer> buffers = scene_->geometry();
+  for (const gpu::BoundBuffer& bound : scene_->shading()) buffers.push_back(bound);
+  buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &view_constants_});
+  for (const gpu::BoundBuffer& bound : film_buffers()) buffers.push_back(bound);
+  return buffers;
+}
+
 void Film::bind_scene() {
+  // Other lights may take a larger stream.
+  reserve(capacity_);
   // The device has compiled it already unless the scene has outgrown its texel buffers.
-  kernel_.emplace(make_picture_kernel(*device_, *scene_, features_, packet_size_, view_constants_, *buffer_, shaders_,
-                                      avoids_texels_));
+  const auto constants_for = [&](uint32_t packet_size) {
+    const gpu::TraversalForm& form = traversal_form(device_->profile(), features_, packet_size);
+    std::vector<gpu::SpecializationConstant> constants =
+        traversal_constants(form, features_, scene_->stack_size(), scene_->fetches_texels() && !avoids_texels_);
+    constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});
+    return constants;
+  };
+  const std::vector<gpu::BoundBuffer> bound = buffers();
+  kernel_.emplace(*device_, shaders_.camera_stage, constants_for(packet_size_), bound);
+  stream_.reset();
+  if (!has_stream()) return;
+  std::vector<gpu::SpecializationConstant> stream_constants = constants_for(1);
+  stream_constants.push_back({layout::CONSTANT_FETCHES_FILM_TEXELS, fetches_film_texels() ? 1U : 0U});
+  stream_.emplace(*device_, features_, stream_constants, bound, shaders_);
 }
 
 void Film::reserve(uint32_t pixel_count) {
-  if (capacity_ >= pixel_count) return;
-  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + queue_records(pixel_count);
+  pixel_count = std::max(pixel_count, capacity_);
+  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + log_records_;
+  const uint64_t bytes = sizeof(FilmHead) + records * sizeof(uvec4) + stream_shape(pixel_count).bytes();
+  if (buffer_ && buffer_->size_bytes() >= bytes && capacity_ == pixel_count) return;
+  using Usage = vk::BufferUsageFlagBits;
   // There before the old one goes: where memory is short the film stays whole.
-  gpu::Buffer buffer(*device_, sizeof(FilmHead) + records * sizeof(uvec4), vk::BufferUsageFlagBits::eStorageBuffer);
+  gpu::Buffer buffer(*device_, bytes, Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eIndirectBuffer);
+  vk::raii::BufferView texels = buffer.make_texel_view();
+  texels_ = std::move(texels);
   buffer_.emplace(std::move(buffer));
   capacity_ = pixel_count;
-  if (kernel_) kernel_->bind({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &*buffer_});
+  if (!kernel_) return;
+  for (const gpu::BoundBuffer& bound : film_buffers()) {
+    kernel_->bind(bound);
+    if (stream_) stream_->bind(bound);
+  }
 }
 
 TileOptions Film::piece_options() const {
   const gpu::DeviceProfile& profile = device_->profile();
+  // A piece's paths have room in the stream, be they all of its pixels.
+  const uint32_t most_paths = stream_shape(TileOptions::kMaxBlocks * kLanes).most_paths;
   return {.packet_size = packet_size_,
           .most_group_rows = profile.most_group_rows,
-          .wanted_groups = profile.wanted_groups,
-          .most_paths_a_lane = profile.most_paths_a_lane};
+          .most_blocks = has_stream() ? most_paths / kLanes : TileOptions::kMaxBlocks};
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
-  TileOptions placed = options;
-  placed.first_queue_record = capacity_ * records_per_pixel();
-  return {scene_->constants(), view, window, placed};
+  return {scene_->constants(), view, window, options};
 }
 
 void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileScheduler& picture) const {
@@ -105,7 +132,11 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
-  kernel_->record(commands, piece.dispatch, *buffer_, piece.group_counts);
+  const StreamShape shape = stream_shape(capacity_);
+  const bool takes_stream = stream_ && piece.bounces > 0;
+  if (takes_stream) stream_->record_begin(commands, *buffer_, shape);
+  kernel_->record(commands, piece.dispatch, *buffer_, piece.group_count);
+  if (takes_stream) stream_->record_turns(commands, *buffer_, shape, piece.bounces);
 }
 
 void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
@@ -135,6 +166,12 @@ FilmCounts Film::take_counts() const {
 }
 
 void Film::warm_up() const {
+  if (stream_) {
+    device_->run([&](const vk::raii::CommandBuffer& commands) {
+      stream_->record_begin(commands, *buffer_, stream_shape(capacity_));
+      stream_->record_warm_up(commands);
+    });
+  }
   View one_pixel;
   one_pixel.size = uvec2(1);
   one_pixel.max_depth = 0;
@@ -148,33 +185,28 @@ uint32_t Film::records_per_pixel() const {
   return features_.has_any(layout::FEATURE_AOVS) ? 2 : 1;
 }
 
-uint32_t Film::queue_records(uint32_t pixel_count) const {
-  if (!features_.has_any(layout::FEATURE_MIRRORS)) return 0;
-  return kQueuedPathRecords * std::min(pixel_count, kMostQueuedPaths);
+bool Film::has_stream() const {
+  return features_.has_any(layout::FEATURE_MIRRORS);
+}
+
+bool Film::fetches_film_texels() const {
+  const gpu::DeviceProfile& profile = device_->profile();
+  const bool holds_any_film = device_->limits().maxStorageBufferRange <= profile.most_texel_bytes;
+  return profile.fetches_film_texels && holds_any_film && !avoids_texels_;
+}
+
+StreamShape Film::stream_shape(uint32_t pixel_count) const {
+  if (!has_stream()) return {};
+  const uint32_t most_paths = std::min(device_->profile().most_stream_paths, divide_up(pixel_count, kLanes) * kLanes);
+  StreamShape shape = StreamShape::of(scene_->constants().light_count, features_, most_paths);
+  shape.first_record = pixel_count * records_per_pixel() + log_records_;
+  return shape;
 }
 
 uint32_t Film::max_capacity() const {
   const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(FilmHead)) / sizeof(uvec4);
-  return static_cast<uint32_t>((records - queue_records(kMostQueuedPaths)) / records_per_pixel());
-}
-
-TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
-                                  const PictureShaders& shaders, bool avoids_texels) {
-  const std::vector<gpu::SpecializationConstant> constants = traversal_constants(
-      device.profile().traversal, features, scene.stack_size(), scene.fetches_texels() && !avoids_texels);
-  std::vector<gpu::SpecializationConstant> camera_constants = constants;
-  camera_constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});
-  std::vector<gpu::BoundBuffer> buffers = scene.geometry();
-  for (const gpu::BoundBuffer& bound : scene.shading()) buffers.push_back(bound);
-  buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &view});
-  buffers.push_back({layout::BINDING_FILM, vk::DescriptorType::eStorageBuffer, &film});
-  TracingKernel kernel(device, shaders.camera_stage, camera_constants, buffers);
-  if (features.has_any(layout::FEATURE_MIRRORS)) {
-    // Mirror rays go everywhere: each is traced alone.
-    kernel.add_stage(shaders.mirror_stage, constants, buffers);
-  }
-  return kernel;
+  const uint64_t most_of_stream = StreamShape::kMostBytes / sizeof(uvec4);
+  return static_cast<uint32_t>((records - most_of_stream) / records_per_pixel());
 }
 
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {

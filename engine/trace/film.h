@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include "device_scene/device_scene.h"
 #include "promin/ray_counts.h"
 #include "scene/features.h"
+#include "trace/path_stream.h"
 #include "trace/picture_shaders.h"
 #include "trace/tile_scheduler.h"
 #include "trace/tracing_kernel.h"
@@ -29,11 +31,13 @@ struct FilmOptions {
   bool avoids_texels = false;
   /// Others with the same bindings are for measurements.
   PictureShaders shaders = picture_shaders();
+  /// Room behind the pixels, of uvec4: FEATURE_RAY_LOG's.
+  uint32_t log_records = 0;
 };
 
 /// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece
-/// in two stages (shaders/camera_stage.comp, shaders/mirror_stage.comp). A picture is begun, then all of its pieces
-/// run; nothing of that waits unless it says so.
+/// in two stages (shaders/camera_stage.comp, and the stream of paths behind it). A picture is begun, then all of its
+/// pieces run; nothing of that waits unless it says so.
 class Film {
  public:
   /// Compiles unless the device has compiled the same already. `features` of the scene and of the debug view
@@ -76,12 +80,15 @@ class Film {
   /// Where the pixels lie in the buffer; counters before them.
   static const vk::DeviceSize kPixelsOffset;
   static const vk::DeviceSize kCountersBytes;
-  /// Of uvec4, what a path takes in the queue between the stages (shaders/path.glsl).
-  static constexpr uint32_t kQueuedPathRecords = 4;
 
  private:
-  /// Of the queue of paths, for a film of so many pixels.
-  uint32_t queue_records(uint32_t pixel_count) const;
+  /// Whether paths go on beyond the camera stage.
+  bool has_stream() const;
+  bool fetches_film_texels() const;
+  /// Of a film of so many pixels.
+  StreamShape stream_shape(uint32_t pixel_count) const;
+  std::array<gpu::BoundBuffer, 2> film_buffers() const;
+  std::vector<gpu::BoundBuffer> buffers() const;
 
   const gpu::Device* device_;
   std::shared_ptr<const DeviceScene> scene_;
@@ -89,16 +96,14 @@ class Film {
   uint32_t packet_size_;
   bool avoids_texels_;
   PictureShaders shaders_;
+  uint32_t log_records_;
   gpu::Buffer view_constants_;
   std::optional<gpu::Buffer> buffer_;
+  vk::raii::BufferView texels_{nullptr};
   uint32_t capacity_ = 0;
   std::optional<TracingKernel> kernel_;
+  std::optional<PathStream> stream_;
 };
-
-/// The stages of a picture for a scene's `features`, bound to the scene and to these buffers.
-TracingKernel make_picture_kernel(const gpu::Device& device, const DeviceScene& scene, FeatureMask features,
-                                  uint32_t packet_size, const gpu::Buffer& view, const gpu::Buffer& film,
-                                  const PictureShaders& shaders = picture_shaders(), bool avoids_texels = false);
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);

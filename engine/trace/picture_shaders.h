@@ -7,13 +7,14 @@
 
 namespace promin {
 
-/// The SPIR-V of both stages of a picture.
+/// The SPIR-V of what traces and shades a picture.
 struct PictureShaders {
   std::span<const uint32_t> camera_stage;
-  std::span<const uint32_t> mirror_stage;
+  std::span<const uint32_t> trace_shadow_rays;
+  std::span<const uint32_t> follow_paths;
 };
 
-/// The SPIR-V of shaders/camera_stage.comp and shaders/mirror_stage.comp.
+/// Of the files of these names in shaders.
 PictureShaders picture_shaders();
 
 }  // namespace promin

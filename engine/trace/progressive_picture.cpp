@@ -9,6 +9,7 @@
 #include "core/divide_up.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
+#include "trace/cut_loops.h"
 
 namespace promin {
 namespace {
@@ -92,8 +93,7 @@ uvec2 ProgressivePicture::first_size() const {
 void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
-  const TileOptions options = cut_loops_.limit(films_[film].piece_options());
-  picture_ = films_[film].cut(view, {uvec2(0), view.size}, options);
+  picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options());
   picture_when_done_ = {film, view.size, view.samples_per_pixel};
   picture_version_ = wanted_version_;
   films_[film].record_begin(commands, *picture_);
@@ -139,9 +139,7 @@ void ProgressivePicture::take_finished(const Finished& finished) {
   if (finished.units == 0.0) return;
   // Drivers compile in a pipeline's first dispatch.
   if (std::exchange(is_warm_, true)) pacer_.learn(finished.units, finished.time_ms);
-  if (!cut_loops_.must_trace_again(finished.has_cut_loops, finished.took_many_paths)) return;
-  picture_.reset();
-  ++wanted_version_;
+  refuse_cut_loops(finished.has_cut_loops);
 }
 
 void ProgressivePicture::take_scene_change() {
@@ -152,7 +150,7 @@ void ProgressivePicture::take_scene_change() {
 
 void ProgressivePicture::trace() {
   if (!counters_) counters_.emplace(gpu::Buffer::make_readback(*device_, Film::kCountersBytes));
-  Finished finished{.took_many_paths = takes_many_paths()};
+  Finished finished;
   const Stopwatch waiting;
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     finished.units = record(commands);

@@ -8,7 +8,6 @@
 
 #include "promin/image.h"
 #include "promin/view.h"
-#include "trace/cut_loops.h"
 #include "trace/film.h"
 
 namespace promin {
@@ -64,13 +63,9 @@ class ProgressivePicture {
     double units = 0.0;
     double time_ms = 0.0;
     bool has_cut_loops = false;
-    /// The value of takes_many_paths() when they were recorded.
-    bool took_many_paths = false;
   };
-  /// Learns from their time, so that the next budget is met. Where the driver cut loops, what is shown is wrong, and
-  /// all is traced again with one path per lane; throws RunError where that was done already.
+  /// Learns from their time, so that the next budget is met. Throws RunError where the driver cut loops.
   void take_finished(const Finished& finished);
-  bool takes_many_paths() const { return cut_loops_.takes_many_paths(); }
   void set_budget(double budget_ms);
 
   /// Takes note that the scene has changed parts that need no other pipeline: all is traced again. The device must be
@@ -101,7 +96,6 @@ class ProgressivePicture {
   double budget_ms_;
   Pacer pacer_;
   bool is_warm_ = false;
-  CutLoops cut_loops_ = CutLoops::of_pictures();
   uvec2 full_size_{1};
   std::optional<double> fixed_scale_;
   bool is_paused_ = false;

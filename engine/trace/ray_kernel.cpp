@@ -45,9 +45,9 @@ struct RayKernel::Impl {
     view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
     view_constants->write(std::as_bytes(std::span(&values, 1)));
     make_buffers(1);
-    std::vector<gpu::SpecializationConstant> constants =
-        traversal_constants(options.traversal.value_or(device.profile().traversal), options.features,
-                            scene->stack_size(), fetches_texels());
+    std::vector<gpu::SpecializationConstant> constants = traversal_constants(
+        options.traversal.value_or(traversal_form(device.profile(), options.features, options.packet_size)),
+        options.features, scene->stack_size(), fetches_texels());
     constants.push_back({layout::CONSTANT_PACKET_SIZE, options.packet_size});
     constants.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, options.query == HitQuery::kAny ? 1U : 0U});
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
@@ -56,7 +56,7 @@ struct RayKernel::Impl {
     kernel.emplace(device, options.spirv, constants, buffers);
     // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
     const layout::Dispatch no_rays = make_cast_dispatch(scene->constants(), 0, 0);
-    kernel->run(no_rays, *hits, {uvec2(1)});
+    kernel->run(no_rays, *hits, uvec2(1));
     pipeline_ms = compiling.ms();
   }
 
@@ -109,8 +109,8 @@ struct RayKernel::Impl {
       const layout::Dispatch dispatch = make_cast_dispatch(scene->constants(), first, first + count);
       // Those beyond the last ray do nothing.
       const uvec2 groups = arrange_in_rows(divide_up(count, group_rays), most_group_rows);
-      const double time_ms = kernel->run(dispatch, *hits, {groups});
-      CutLoops::of_rays().check(were_loops_cut());
+      const double time_ms = kernel->run(dispatch, *hits, groups);
+      refuse_cut_loops(were_loops_cut());
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;

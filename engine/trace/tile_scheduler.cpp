@@ -11,16 +11,6 @@
 #include "trace/group_rows.h"
 
 namespace promin {
-namespace {
-
-/// A lane with several paths does not wait for its neighbours' paths; but there must be enough workgroups for all of
-/// the device's cores.
-uint32_t pick_paths_a_lane(uint32_t blocks, const TileOptions& options) {
-  if (options.wanted_groups == 0) return options.most_paths_a_lane;
-  return std::clamp(blocks / options.wanted_groups, 1U, options.most_paths_a_lane);
-}
-
-}  // namespace
 
 TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,
                              const TileOptions& options)
@@ -29,7 +19,7 @@ TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, cons
       window_(window),
       options_(options),
       lattice_generator_(lattice_generator(view.samples_per_pixel)) {
-  static_assert(kMaxBlocks <= 65535, "Vulkan's guaranteed workgroup count");
+  static_assert(TileOptions::kMaxBlocks <= 65535, "Vulkan's guaranteed workgroup count");
   assert(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel);
   const uvec2 size = window.hi - window.lo;
   pixel_count_ = size.x * size.y;
@@ -43,18 +33,15 @@ double TileScheduler::fraction_done() const {
 TileSample TileScheduler::next(double units) {
   assert(!is_done());
   if (sample_ == 0) block_count_ = pick_block_count(units);
-  const uint32_t paths_a_lane = pick_paths_a_lane(block_count_, options_);
 
   TileSample piece;
   piece.dispatch = make_tile_dispatch(scene_, view_, window_,
                                       {.first_block = first_block_,
                                        .end_block = first_block_ + block_count_,
                                        .sample = sample_,
-                                       .most_paths_a_lane = paths_a_lane,
-                                       .first_queue_record = options_.first_queue_record,
                                        .lattice_generator = lattice_generator_});
-  piece.group_counts = {arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows),
-                        uvec2(divide_up(block_count_, paths_a_lane), 1)};
+  piece.group_count = arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows);
+  piece.bounces = view_.max_depth;
   piece.units = block_count_;
   piece.most_rays_a_lane = (1.0 + view_.max_depth) * (1.0 + scene_.light_count) * piece.units;
 
@@ -69,8 +56,9 @@ TileSample TileScheduler::next(double units) {
 
 uint32_t TileScheduler::pick_block_count(double units) const {
   const uint32_t remaining = block_total_ - first_block_;
-  if (options_.blocks_per_piece > 0) return std::min({options_.blocks_per_piece, remaining, kMaxBlocks});
-  const auto blocks = static_cast<uint32_t>(std::clamp(units, double{kMinBlocks}, double{kMaxBlocks}));
+  if (options_.blocks_per_piece > 0) return std::min({options_.blocks_per_piece, remaining, options_.most_blocks});
+  const auto most = static_cast<double>(options_.most_blocks);
+  const auto blocks = static_cast<uint32_t>(std::clamp(units, std::min<double>(kMinBlocks, most), most));
   return std::min(blocks, remaining);
 }
 

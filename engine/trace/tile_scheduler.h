@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "device_scene/scene_constants.h"
@@ -11,11 +10,13 @@
 
 namespace promin {
 
-/// A sample of each pixel of some blocks: one dispatch of each stage of a picture.
+/// A sample of each pixel of some blocks: one dispatch of the camera stage, and of what follows.
 struct TileSample {
   layout::Dispatch dispatch{};
-  /// Workgroups of shaders/camera_stage.comp (y = rows) and of shaders/mirror_stage.comp (y = 1).
-  std::array<uvec2, 2> group_counts{};
+  /// Workgroups of shaders/camera_stage.comp; y = rows.
+  uvec2 group_count{0};
+  /// Of the view.
+  uint32_t bounces = 0;
   /// The amount of its work, counted in blocks of 8x8 pixels.
   double units = 0.0;
   /// The largest number of rays that a lane may count in it.
@@ -23,17 +24,14 @@ struct TileSample {
 };
 
 struct TileOptions {
+  static constexpr uint32_t kMaxBlocks = 8192;
+
   /// The number of pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
   /// See trace/group_rows.h.
   uint32_t most_group_rows = 1;
-  /// Workgroups of the mirror stage that there are at least, before a lane takes several paths.
-  uint32_t wanted_groups = 0;
-  /// The largest number of paths that a lane of the mirror stage takes one after the other. llvmpipe lets a lane's
-  /// loops turn 65535 times, all together (shaders/loop_check.glsl).
-  uint32_t most_paths_a_lane = 1;
-  /// Where the queue of paths begins, in records of the film.
-  uint32_t first_queue_record = 0;
+  /// The largest piece, kMaxBlocks at most.
+  uint32_t most_blocks = kMaxBlocks;
   /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
@@ -57,8 +55,6 @@ class TileScheduler {
   TileSample next(double units);
 
   static constexpr uint32_t kMinBlocks = 64;
-  /// A piece has at most this many blocks, which bounds the queue of paths.
-  static constexpr uint32_t kMaxBlocks = 8192;
 
  private:
   uint32_t pick_block_count(double units) const;

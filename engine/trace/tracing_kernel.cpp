@@ -27,6 +27,12 @@ void Pacer::learn(double units, double time_ms) {
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
 
+const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, FeatureMask features,
+                                         uint32_t packet_size) {
+  if (packet_size > 1) return profile.packet_traversal;
+  return features.has_any(layout::FEATURE_TRIANGLES) ? profile.ray_traversal : profile.ray_traversal_of_solids;
+}
+
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,
                                                              uint32_t stack_size, bool fetches_texels) {
   return {{layout::CONSTANT_FEATURES, features.words()[0]},
@@ -40,31 +46,14 @@ std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::Traversa
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                              std::span<const gpu::SpecializationConstant> constants,
                              std::span<const gpu::BoundBuffer> buffers)
-    : device_(&device) {
-  add_stage(spirv, constants, buffers);
+    : device_(&device), pipeline_(device, spirv, constants, buffers) {
   if (device.timestamp_period_ns() > 0.0) {
     queries_ = vk::raii::QueryPool(device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2));
   }
 }
 
-void TracingKernel::add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
-                              std::span<const gpu::BoundBuffer> buffers) {
-  stages_.emplace_back(*device_, spirv, constants, buffers);
-}
-
 void TracingKernel::bind(const gpu::BoundBuffer& buffer) {
-  for (gpu::ComputePipeline& stage : stages_) stage.bind(buffer);
-}
-
-void TracingKernel::dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const {
-  for (size_t i = 0; i < stages_.size(); ++i) {
-    if (i > 0) {
-      const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite,
-                                         Access::eShaderRead | Access::eShaderWrite);
-      commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader, {}, after_last, {}, {});
-    }
-    stages_[i].dispatch(commands, group_counts[i]);
-  }
+  pipeline_.bind(buffer);
 }
 
 void TracingKernel::put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
@@ -78,14 +67,13 @@ void TracingKernel::put_constants(const vk::raii::CommandBuffer& commands, const
 }
 
 void TracingKernel::record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
-                           const gpu::Buffer& head, const GroupCounts& group_counts) const {
+                           const gpu::Buffer& head, const uvec2& group_count) const {
   put_constants(commands, constants, head);
-  dispatch_stages(commands, group_counts);
+  pipeline_.dispatch(commands, group_count);
 }
 
-double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head,
-                          const GroupCounts& group_counts) const {
-  return run([&](const vk::raii::CommandBuffer& commands) { record(commands, constants, head, group_counts); });
+double TracingKernel::run(const layout::Dispatch& constants, const gpu::Buffer& head, const uvec2& group_count) const {
+  return run([&](const vk::raii::CommandBuffer& commands) { record(commands, constants, head, group_count); });
 }
 
 double TracingKernel::run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -31,43 +30,38 @@ class Pacer {
   double units_;
 };
 
-/// Workgroups of each stage of a TracingKernel, across and down; those of stages that it has not are of no account.
-using GroupCounts = std::array<uvec2, 2>;
+/// Of the profile's forms the one for packets of so many rays in a scene.
+const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, FeatureMask features, uint32_t packet_size);
 
 /// What every pipeline that traces is specialised to.
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,
                                                              uint32_t stack_size, bool fetches_texels);
 
-/// A pipeline that traces, or two one after the other, timed by the device's clock where it has one.
+/// A pipeline that traces, timed by the device's clock where it has one.
 class TracingKernel {
  public:
   TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
                 std::span<const gpu::SpecializationConstant> constants, std::span<const gpu::BoundBuffer> buffers);
-
-  /// Adds another pipeline, which runs after the first and sees what that wrote.
-  void add_stage(std::span<const uint32_t> spirv, std::span<const gpu::SpecializationConstant> constants,
-                 std::span<const gpu::BoundBuffer> buffers);
 
   void bind(const gpu::BoundBuffer& buffer);
 
   /// Records that `constants` go to the head of `head` and the workgroups run, after all that compute shaders and
   /// transfers recorded before.
   void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
-              const GroupCounts& group_counts) const;
+              const uvec2& group_count) const;
 
   /// Runs what `record` records and waits. Returns device milliseconds (waiting time on the host where the queue has no
   /// timestamps).
-  double run(const layout::Dispatch& constants, const gpu::Buffer& head, const GroupCounts& group_counts) const;
+  double run(const layout::Dispatch& constants, const gpu::Buffer& head, const uvec2& group_count) const;
   /// Does the same with all that `record_all` records, which calls `record` as often as it likes.
   double run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const;
 
  private:
-  void dispatch_stages(const vk::raii::CommandBuffer& commands, const GroupCounts& group_counts) const;
   static void put_constants(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants,
                             const gpu::Buffer& head);
 
   const gpu::Device* device_;
-  std::vector<gpu::ComputePipeline> stages_;
+  gpu::ComputePipeline pipeline_;
   vk::raii::QueryPool queries_{nullptr};
 };
 

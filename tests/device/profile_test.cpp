@@ -29,14 +29,16 @@ DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 
 /// What a GPU is given, be it discrete or integrated.
 void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
-  EXPECT_EQ(profile.traversal.steps_together, 0U);
-  EXPECT_FALSE(profile.traversal.waits_with_solids);
+  for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal, profile.ray_traversal_of_solids}) {
+    EXPECT_EQ(form.steps_together, 0U);
+    EXPECT_FALSE(form.waits_with_solids);
+  }
   EXPECT_EQ(profile.target_dispatch_ms, 25.0);
   EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
-  EXPECT_EQ(profile.wanted_groups, 0U);
-  EXPECT_EQ(profile.most_paths_a_lane, 1U);
+  EXPECT_GE(profile.most_stream_paths, 1U << 17);
+  EXPECT_FALSE(profile.fetches_film_texels);
   EXPECT_EQ(profile.ray_packet_size, 1U);
   EXPECT_FALSE(profile.sorts_rays);
   EXPECT_EQ(profile.most_frames_in_flight, 2U);
@@ -48,10 +50,10 @@ void expect_gpu(const DeviceProfile& profile) {
 /// What any CPU device with 8 cores is given, but for what is lavapipe's own.
 void expect_cpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
+  EXPECT_TRUE(profile.fetches_film_texels);
+  EXPECT_EQ(profile.most_stream_paths, 1U << 15);
   EXPECT_EQ(profile.target_dispatch_ms, 100.0);
   EXPECT_EQ(profile.most_group_rows, 8U);
-  EXPECT_EQ(profile.wanted_groups, 64U);
-  EXPECT_EQ(profile.most_paths_a_lane, 16U);
   EXPECT_TRUE(profile.sorts_rays);
   EXPECT_EQ(profile.most_frames_in_flight, 1U);
   EXPECT_TRUE(profile.presents_late);
@@ -82,15 +84,21 @@ TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
 
 TEST(ProfileTest, NewerLavapipesLookIntoLeavesAfterEachStep) {
   for (const char* older : {"", "Mesa", "Mesa 22.3.6 (LLVM 15.0.6)", "Mesa 24.3.4", "LLVM 25.0.0"}) {
-    EXPECT_EQ(profile_of(true, kLlvmpipe, 8, older).traversal.steps_together, 0U);
+    const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, older);
+    EXPECT_EQ(profile.packet_traversal.steps_together, 0U);
+    EXPECT_EQ(profile.ray_traversal.steps_together, 1U);
+    EXPECT_EQ(profile.ray_traversal_of_solids.steps_together, 0U);
   }
   for (const char* newer : {"Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)", "Mesa 25.1.0-devel", "Mesa 101.0"}) {
     const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, newer);
-    EXPECT_EQ(profile.traversal.steps_together, 1U);
-    EXPECT_TRUE(profile.traversal.waits_with_solids);
+    for (const TraversalForm& form :
+         {profile.packet_traversal, profile.ray_traversal, profile.ray_traversal_of_solids}) {
+      EXPECT_EQ(form.steps_together, 1U);
+      EXPECT_TRUE(form.waits_with_solids);
+    }
     EXPECT_EQ(profile.pixel_packet_size, 4U);
   }
-  EXPECT_EQ(profile_of(true, kSwiftShader, 8, "Mesa 25.0.7").traversal.steps_together, 0U);
+  EXPECT_EQ(profile_of(true, kSwiftShader, 8, "Mesa 25.0.7").ray_traversal.steps_together, 0U);
   expect_gpu(profile_of(false, kNvidia, 8, "550.163.01"));
 }
 
@@ -103,7 +111,6 @@ TEST(ProfileTest, OtherCpuDevicesTakeNoPackets) {
 TEST(ProfileTest, ThereAreAsManyRowsOfGroupsAsTheDriverHasThreads) {
   EXPECT_EQ(profile_of(true, kLlvmpipe, 1).most_group_rows, 1U);
   EXPECT_EQ(profile_of(true, kLlvmpipe, 64).most_group_rows, 32U);
-  EXPECT_EQ(profile_of(true, kLlvmpipe, 64).wanted_groups, 512U);
   EXPECT_EQ(profile_of(false, kNvidia, 64).most_group_rows, 1U);
 }
 

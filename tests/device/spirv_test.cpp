@@ -16,10 +16,11 @@
 #include "cast.spv.h"
 #include "core/file.h"
 #include "device/branches.h"
+#include "follow_paths.spv.h"
 #include "gpu/spirv_module.h"
 #include "layout.h"
-#include "mirror_stage.spv.h"
 #include "support/process.h"
+#include "trace_shadow_rays.spv.h"
 
 namespace promin::gpu {
 namespace {
@@ -74,8 +75,10 @@ struct Kernel {
   const char* name;
   std::span<const uint32_t> spirv;
 };
-const Kernel kKernels[] = {
-    {"Cast", k_cast_spirv}, {"CameraStage", k_camera_stage_spirv}, {"MirrorStage", k_mirror_stage_spirv}};
+const Kernel kKernels[] = {{"Cast", k_cast_spirv},
+                           {"CameraStage", k_camera_stage_spirv},
+                           {"FollowPaths", k_follow_paths_spirv},
+                           {"TraceShadowRays", k_trace_shadow_rays_spirv}};
 
 std::vector<SpecializationConstant> constants_of(uint64_t features, uint32_t packet_size, uint32_t any) {
   return {{layout::CONSTANT_FEATURES, static_cast<uint32_t>(features)},

@@ -37,35 +37,36 @@ TEST(TileScheduler, CoverEverySampleOnceAndInOrder) {
   }
 }
 
-TEST(TileScheduler, GroupsOfEachStageSufficeForAllPixels) {
+TEST(TileScheduler, GroupsSufficeForAllPixels) {
   for (const double units : {1.0, 100.0, 1050.0, 1e9}) {
-    TileScheduler pieces = cut({.packet_size = 4, .most_group_rows = 16, .wanted_groups = 16, .most_paths_a_lane = 16});
+    TileScheduler pieces = cut({.packet_size = 4, .most_group_rows = 16});
     while (!pieces.is_done()) {
       const TileSample piece = pieces.next(units);
       const uint32_t blocks = piece.dispatch.range.y - piece.dispatch.range.x;
-      const uvec2 groups = piece.group_counts[0];
+      const uvec2 groups = piece.group_count;
       ASSERT_LE(groups.y, 16U);
       ASSERT_GE(4 * groups.x * groups.y, blocks) << units << " units";
       ASSERT_LT(4 * (groups.x - 1) * groups.y, blocks) << units << " units";
-      ASSERT_GE(piece.group_counts[1].x * piece.dispatch.queue.w, blocks) << units << " units";
     }
   }
 }
 
-// llvmpipe ends loops that turn too often, without a word; and threads want groups to share.
-TEST(TileScheduler, ALaneTakesSeveralPathsWhereThereAreGroupsEnough) {
-  const TileOptions options{.wanted_groups = 16, .most_paths_a_lane = 16};
-  EXPECT_EQ(cut(options).next(64.0).dispatch.queue.w, 4U);
-  EXPECT_EQ(cut(options).next(1e9).dispatch.queue.w, 16U);
-  EXPECT_EQ(cut({.wanted_groups = 1000, .most_paths_a_lane = 16}).next(64.0).dispatch.queue.w, 1U);
-}
-
-TEST(TileScheduler, TheQueueOfPathsIsBounded) {
+// The stream of paths has room for so many.
+TEST(TileScheduler, PiecesAreNoLargerThanAsked) {
+  for (const double units : {1.0, 1e9}) {
+    for (const uint32_t most_blocks : {1U, 100U}) {
+      TileScheduler pieces = cut({.most_blocks = most_blocks});
+      while (!pieces.is_done()) {
+        const layout::Dispatch dispatch = pieces.next(units).dispatch;
+        ASSERT_LE(dispatch.range.y - dispatch.range.x, most_blocks) << units << " units";
+      }
+    }
+  }
   View view = make_view();
   view.size = uvec2(4096);
   TileScheduler pieces(SceneConstants{}, view, {uvec2(0), view.size});
   const layout::Dispatch dispatch = pieces.next(1e9).dispatch;
-  EXPECT_EQ(dispatch.range.y - dispatch.range.x, TileScheduler::kMaxBlocks);
+  EXPECT_EQ(dispatch.range.y - dispatch.range.x, TileOptions::kMaxBlocks);
 }
 
 }  // namespace

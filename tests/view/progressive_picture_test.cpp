@@ -7,6 +7,7 @@
 #include "device/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "promin/error.h"
 #include "promin/renderer.h"
 #include "render/renderer_impl.h"
 
@@ -66,10 +67,10 @@ TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
   const Image expected = renderer.render(view).image;
   for (const double units : {150.0, 1050.0, 3000.0}) {
     ProgressivePicture picture = make_picture();
-    picture.take_finished({.units = 1.0, .time_ms = 1.0, .took_many_paths = true});  // the first is not taken
+    picture.take_finished({.units = 1.0, .time_ms = 1.0});  // the first is not taken
     picture.want(view);
     while (!picture.is_complete() || picture.shown()->samples_per_pixel != 16) {
-      picture.take_finished({.units = units, .time_ms = 1.0, .took_many_paths = true});
+      picture.take_finished({.units = units, .time_ms = 1.0});
       trace(picture);
     }
     EXPECT_TRUE(test::has_same_bits(read(picture), expected)) << units << " units a frame";
@@ -145,18 +146,11 @@ TEST_F(ProgressivePictureTest, RestsWhenPausedWhileItIsRefined) {
   EXPECT_FALSE(picture.is_settled());
 }
 
-TEST_F(ProgressivePictureTest, IsTracedAgainWhereLoopsWereCut) {
+TEST_F(ProgressivePictureTest, IsRefusedWhereLoopsWereCut) {
   ProgressivePicture picture = make_picture();
-  View view = test::make_view(kSize);
-  picture.want(view);
-  while (!picture.is_complete()) trace(picture);
-  trace(picture);  // refining is under way
-  picture.take_finished({.units = 1.0, .time_ms = 1.0, .has_cut_loops = true, .took_many_paths = true});
-  EXPECT_FALSE(picture.takes_many_paths());
-  EXPECT_FALSE(picture.is_complete());
-  view.samples_per_pixel = 4;
-  while (!picture.is_complete() || picture.shown()->samples_per_pixel != 4) trace(picture);
-  EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
+  picture.want(test::make_view(kSize));
+  trace(picture);
+  EXPECT_THROW(picture.take_finished({.units = 1.0, .time_ms = 1.0, .has_cut_loops = true}), RunError);
 }
 
 TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
@@ -165,9 +159,8 @@ TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
   picture.want(view);
   const double units = trace(picture);
   const uvec2 before = picture.shown()->size;
-  picture.take_finished(
-      {.units = units, .time_ms = 1.0, .took_many_paths = true});  // the first, which compiles, is not taken
-  picture.take_finished({.units = units, .time_ms = 0.5, .took_many_paths = true});
+  picture.take_finished({.units = units, .time_ms = 1.0});  // the first, which compiles, is not taken
+  picture.take_finished({.units = units, .time_ms = 0.5});
   view.camera.eye.x += 0.25F;
   picture.want(view);
   trace(picture);

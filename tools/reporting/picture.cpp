@@ -7,15 +7,19 @@
 #include <cmath>
 
 #include "fixed_offset_camera_stage.spv.h"
-#include "fixed_offset_mirror_stage.spv.h"
+#include "fixed_offset_follow_paths.spv.h"
+#include "fixed_offset_trace_shadow_rays.spv.h"
 #include "full_boxes_camera_stage.spv.h"
-#include "full_boxes_mirror_stage.spv.h"
+#include "full_boxes_follow_paths.spv.h"
+#include "full_boxes_trace_shadow_rays.spv.h"
 #include "integer_offset_camera_stage.spv.h"
-#include "integer_offset_mirror_stage.spv.h"
+#include "integer_offset_follow_paths.spv.h"
+#include "integer_offset_trace_shadow_rays.spv.h"
 #include "render/renderer_impl.h"
 #include "reporting/full_boxes.h"
 #include "textbook_camera_stage.spv.h"
-#include "textbook_mirror_stage.spv.h"
+#include "textbook_follow_paths.spv.h"
+#include "textbook_trace_shadow_rays.spv.h"
 
 namespace promin::report {
 
@@ -24,17 +28,18 @@ const std::vector<PictureMethod>& picture_methods() {
       {"promin", "as shipped"},
       {"full boxes",
        "boxes in fp32 instead of bytes",
-       {k_full_boxes_camera_stage_spirv, k_full_boxes_mirror_stage_spirv},
+       {k_full_boxes_camera_stage_spirv, k_full_boxes_trace_shadow_rays_spirv, k_full_boxes_follow_paths_spirv},
        true},
       {"fixed offset",
        "secondary rays start 10⁻⁴ off the surface",
-       {k_fixed_offset_camera_stage_spirv, k_fixed_offset_mirror_stage_spirv}},
+       {k_fixed_offset_camera_stage_spirv, k_fixed_offset_trace_shadow_rays_spirv, k_fixed_offset_follow_paths_spirv}},
       {"integer offset",
        "secondary rays start some floats off the surface (Wächter and Binder)",
-       {k_integer_offset_camera_stage_spirv, k_integer_offset_mirror_stage_spirv}},
+       {k_integer_offset_camera_stage_spirv, k_integer_offset_trace_shadow_rays_spirv,
+        k_integer_offset_follow_paths_spirv}},
       {"textbook",
        "the textbook's intersections, boxes as they are, offset 10⁻⁴",
-       {k_textbook_camera_stage_spirv, k_textbook_mirror_stage_spirv}}};
+       {k_textbook_camera_stage_spirv, k_textbook_trace_shadow_rays_spirv, k_textbook_follow_paths_spirv}}};
   return kMethods;
 }
 

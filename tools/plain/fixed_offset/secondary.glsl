@@ -6,8 +6,4 @@
 #include "shaders/secondary.glsl"
 #undef lift_off
 
-vec3 lift_off(vec3 position, vec3 geometric_normal, float lift) {
-  // `precise`, or glslang 12 fails.
-  precise vec3 origin = position + 1e-4 * geometric_normal;
-  return origin;
-}
+precise vec3 lift_off(vec3 position, vec3 geometric_normal, float lift) { return position + 1e-4 * geometric_normal; }

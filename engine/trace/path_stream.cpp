@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/path_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstddef>
+
+#include "core/divide_up.h"
+#include "device/buffer.h"
+#include "device/device.h"
+#include "list_rays.spv.h"
+#include "place_rays.spv.h"
+#include "trace/film_head.h"
+#include "trace/tracing_kernel.h"
+
+namespace promin {
+namespace {
+
+using Access = vk::AccessFlagBits;
+using Stage = vk::PipelineStageFlagBits;
+
+/// Behind the lists (shaders/stream.glsl).
+constexpr uint64_t kBinBytes = sizeof(uint32_t) * 2 * layout::STREAM_LISTS * layout::STREAM_BINS;
+
+/// Behind a film's pixels.
+uint64_t offset_of_record(uint64_t record) {
+  return sizeof(FilmHead) + record * sizeof(uvec4);
+}
+
+std::vector<gpu::SpecializationConstant> with_query(std::span<const gpu::SpecializationConstant> constants,
+                                                    bool asks_for_any) {
+  std::vector<gpu::SpecializationConstant> all(constants.begin(), constants.end());
+  all.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, asks_for_any ? 1U : 0U});
+  return all;
+}
+
+void wait_for_last(const vk::raii::CommandBuffer& commands) {
+  const vk::MemoryBarrier barrier(Access::eShaderRead | Access::eShaderWrite | Access::eTransferWrite,
+                                  Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);
+  commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader | Stage::eDrawIndirect, {},
+                           barrier, {}, {});
+}
+
+}  // namespace
+
+StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t most_paths) {
+  StreamShape shape;
+  shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
+  shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(light_count, shape.sources);
+  const auto fitting = static_cast<uint32_t>(kMostBytes / shape.path_bytes());
+  shape.most_paths = std::min(most_paths, fitting) / kLanes * kLanes;
+  return shape;
+}
+
+uint64_t StreamShape::path_bytes() const {
+  const uint64_t records = layout::STREAM_PATH_RECORDS + layout::STREAM_SOURCE_RECORDS * uint64_t{sources};
+  // What it asks for, and its places in the lists.
+  const uint64_t words = (1 + sources) + (2 + sources);
+  return sizeof(uvec4) * records + sizeof(uint32_t) * words;
+}
+
+uint64_t StreamShape::bytes() const {
+  return most_paths == 0 ? 0 : path_bytes() * most_paths + kBinBytes;
+}
+
+PathStream::PathStream(const gpu::Device& device, FeatureMask features,
+                       std::span<const gpu::SpecializationConstant> constants,
+                       std::span<const gpu::BoundBuffer> buffers, const PictureShaders& shaders)
+    : most_group_rows_(device.profile().most_group_rows),
+      place_(device, k_place_rays_spirv, constants, buffers),
+      list_(device, k_list_rays_spirv, constants, buffers),
+      // A log tells where shadow rays are blocked.
+      shadow_(device, shaders.trace_shadow_rays, with_query(constants, !features.has_any(layout::FEATURE_RAY_LOG)),
+              buffers),
+      follow_(device, shaders.follow_paths, with_query(constants, false), buffers) {}
+
+void PathStream::bind(const gpu::BoundBuffer& buffer) {
+  for (gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_, &follow_}) pipeline->bind(buffer);
+}
+
+void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film,
+                              const StreamShape& shape) const {
+  layout::StreamState state{};
+  state.place = uvec4(shape.first_record, shape.most_paths, shape.sources, most_group_rows_);
+  // So that the first turn is 0.
+  state.turn.x = ~0U;
+  const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead,
+                                     Access::eTransferWrite);
+  commands.pipelineBarrier(Stage::eComputeShader | Stage::eDrawIndirect, Stage::eTransfer, {}, after_last, {}, {});
+  commands.updateBuffer<layout::StreamState>(*film.handle(), offsetof(FilmHead, stream), state);
+  const uint64_t first_bin = offset_of_record(shape.first_record) + shape.path_bytes() * shape.most_paths;
+  commands.fillBuffer(*film.handle(), first_bin, kBinBytes, 0);
+}
+
+void PathStream::record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film,
+                              const StreamShape& shape, uint32_t bounces) const {
+  const auto dispatch = [&](const gpu::ComputePipeline& pipeline, size_t groups) {
+    wait_for_last(commands);
+    pipeline.dispatch_indirect(commands, film, offsetof(FilmHead, stream) + groups);
+  };
+  // The last turn adds what the shadow rays of the last bounce let through.
+  const uint64_t turns = uint64_t{bounces} * shape.turns_of_bounce + 1;
+  for (uint64_t turn = 0; turn < turns; ++turn) {
+    wait_for_last(commands);
+    place_.dispatch(commands, uvec2(1));
+    dispatch(list_, offsetof(layout::StreamState, list_groups));
+    dispatch(shadow_, offsetof(layout::StreamState, shadow_groups));
+    dispatch(follow_, offsetof(layout::StreamState, path_groups));
+  }
+}
+
+void PathStream::record_warm_up(const vk::raii::CommandBuffer& commands) const {
+  for (const gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_, &follow_}) {
+    wait_for_last(commands);
+    pipeline->dispatch(commands, uvec2(1));
+  }
+}
+
+}  // namespace promin

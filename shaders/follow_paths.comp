@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Ends a turn of the stream: of each path of its list adds what the shadow rays let through, traces its ray, shades
+// what that has met and asks for shadow rays and for the mirror ray. Where there are more sources than a turn takes, a
+// bounce takes several turns, which trace the same ray again, and the last asks for the mirror ray.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "layout.h"
+
+layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
+
+#include "bindings.glsl"
+#include "film.glsl"
+#include "stream.glsl"
+#include "stream_records.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "make_ray.glsl"
+#include "primitives.glsl"
+#include "packet.glsl"
+#include "packet_triangles.glsl"
+#include "family.glsl"
+#include "node_boxes.glsl"
+#include "traversal.glsl"
+#include "ray_log.glsl"
+#include "secondary.glsl"
+#include "shading_records.glsl"
+#include "lights.glsl"
+#include "shading.glsl"
+#include "path.glsl"
+#include "turns.glsl"
+#include "ray_bins.glsl"
+#include "group_rows.glsl"
+#include "loop_check.glsl"
+
+uint shadow_ray_count = 0u;
+uint mirror_ray_count = 0u;
+
+// Adds the sources of the last turn to what is seen.
+vec3 add_contributions(uint path, vec3 seen) {
+  uint sources = sources_at(turn - 1u);
+  for (uint source = 0u; source < sources; ++source) {
+    vec3 unshadowed = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).xyz;
+    bool is_blocked = load_word(ask_of_source(path, source)) == ASK_BLOCKED;
+    vec3 contribution = is_blocked ? vec3(0.0) : unshadowed;
+    precise vec3 sum = seen + contribution;
+    seen = sum;
+    if (has(FEATURE_RAY_LOG)) log_sum(entry_of_source(source), contribution);
+  }
+  return seen;
+}
+
+// Stores what the sources of this turn add where nothing is between, and asks for the shadow rays.
+void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
+  uint sources = sources_at(turn);
+  for (uint source = 0u; source < sources; ++source) {
+    LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
+    LightSample sampled = sample_light(light, point.position);
+    vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
+    store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
+    begin_source_log(first_source(turn) + source);
+    end_source_log(contribution);
+    uint asked = ASK_NOTHING;
+    if (max_abs(contribution) > 0.0) {
+      Ray ray = shadow_ray(point, light);
+      // All begin at one place.
+      store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
+      asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
+      ++shadow_ray_count;
+    }
+    words[ask_of_source(path, source)] = asked;
+  }
+  // A bounce's last turn may take fewer: the answers to the turn before are no asks.
+  for (uint source = sources; source < sources_of_turn; ++source) words[ask_of_source(path, source)] = ASK_NOTHING;
+}
+
+// Adds all sources to what is seen, where nothing casts shadows.
+vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
+  for (uint source = 0u; source < source_count(); ++source) {
+    LightRecord light = load_light(VIEW.first_index.y + source);
+    LightSample sampled = sample_light(light, point.position);
+    vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
+    precise vec3 sum = seen + contribution;
+    seen = sum;
+    begin_source_log(source);
+    end_source_log(contribution);
+  }
+  return seen;
+}
+
+// Asks for the path's mirror ray, or else for the turn after the shadow rays that it waits for.
+uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
+  uint bounces = turn / turns_of_bounce() + 1u;
+  if (bounces >= most_bounces() || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+  store_vector(record_of_weight(number, turn + 1u), path.weight);
+  store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
+  store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
+  ++mirror_ray_count;
+  return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
+}
+
+// Shades what the path's ray has met. Returns what the path asks for.
+uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
+  begin_path_log(ray, hit, turn / turns_of_bounce() + 1u, path.weight);
+  if (hit.primitive == NO_PRIMITIVE) {
+    add_radiance(path, VIEW.background.xyz);
+    log_own_light(VIEW.background.xyz);
+    end_path_log(path.radiance);
+    finish_path(path);
+    return ASK_NOTHING;
+  }
+  path.direction = normalize3(ray.direction);
+  ShadingPoint point = make_shading_point(ray, hit);
+  log_own_light(own_light(point));
+  if (begins_bounce(turn)) seen = own_light(point);
+  if (has(FEATURE_SHADOWS)) {
+    ask_sources(number, point, -path.direction);
+  } else {
+    seen = add_unshadowed(point, -path.direction, seen);
+  }
+  store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
+  store_vector(record_of_path(number) + RECORD_SEEN, seen);
+  if (begins_bounce(turn + 1u)) {
+    end_path_log(path.radiance);
+    return ask_mirror(number, path, point);
+  }
+  // The same ray once more.
+  store_vector(record_of_weight(number, turn + 1u), path.weight);
+  return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
+}
+
+void follow(uint number, bool has_ray, Ray ray, Hit hit) {
+  uint record = record_of_path(number);
+  Path path;
+  path.pixel = pixels[record + RECORD_ORIGIN].w;
+  path.radiance = load_record(record + RECORD_RADIANCE).xyz;
+  path.weight = load_record(record_of_weight(number, turn)).xyz;
+  vec3 seen = vec3(0.0);
+  if (turn > 0u) {
+    seen = load_record(record + RECORD_SEEN).xyz;
+    if (has(FEATURE_SHADOWS)) seen = add_contributions(number, seen);
+    if (begins_bounce(turn)) {
+      vec3 weight = load_record(record_of_weight(number, turn - 1u)).xyz;
+      precise vec3 sum = path.radiance + weight * seen;
+      path.radiance = sum;
+      if (has(FEATURE_RAY_LOG)) log_sum(1u, path.radiance);
+    }
+  }
+  uint asked = ASK_NOTHING;
+  if (has_ray) {
+    asked = shade(number, path, seen, ray, hit);
+  } else {
+    finish_path(path);
+  }
+  words[ask_of_path(number)] = asked;
+}
+
+void main() {
+  begin_stream();
+  uint place = group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+  if (place < paths_of_turn(turn)) {
+    uint path = load_word(path_list(turn) + place);
+    bool has_ray = place < paths_with_ray();
+    Ray ray = make_ray(load_record(record_of_path(path) + RECORD_ORIGIN).xyz,
+                       load_record(record_of_path(path) + RECORD_DIRECTION).xyz, 0.0, has_ray ? INFINITY : 0.0);
+    step_counts = uvec2(0u);
+    Hit hit = trace(ray, false);
+    follow(path, has_ray, ray, hit);
+  }
+  add_counts(uvec3(0u, shadow_ray_count, mirror_ray_count), were_loops_cut());
+}

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The stream: the paths of a piece of a picture that a mirror leads on, and the rays that they ask for. It lies in the
+// film, behind the pixels. A turn makes lists of what has been asked for, sorted so that neighbours meet the same nodes
+// (place_rays.comp, list_rays.comp), traces the shadow rays (trace_shadow_rays.comp), then follows the paths
+// (follow_paths.comp): adds what the shadow rays let through, traces the mirror ray, shades what it has met and asks
+// for the rays of the next turn. All numbers of a path are its own, and its lane makes its sums in the order of bounces
+// and sources, so no bit depends on the order of lists.
+//
+// Of each path there are 7 records, and one for each source of a turn:
+const uint RECORD_ORIGIN = 0u;     // xyz of its ray, w = pixel
+const uint RECORD_DIRECTION = 1u;  // xyz, unit
+const uint RECORD_WEIGHTS = 2u;    // xyz = weight of what the ray sees; two records, by the parity of the ray's turn
+const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the point that it has reached
+const uint RECORD_SEEN = 5u;       // xyz = light that this point sends, so far
+const uint RECORD_SHADOW_ORIGIN = 6u;
+const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between
+
+// Then come words: what each path asks for, a word for its own ray and one for each source; the list of the paths of
+// even turns and that of odd ones; the list of shadow rays; and of paths and shadow rays the bins: how many are in
+// each, then where each begins in the list.
+// An ask is a bin and, above it, the ray's number in that bin; or one of these:
+const uint ASK_NOTHING = 0xFFFFFFFFu;  // a path that has ended, a source without a shadow ray, or one that is not blocked
+const uint ASK_BLOCKED = 0xFFFFFFFEu;  // the answer to a shadow ray that is
+// The last bin is of paths that have no ray, but wait for shadow rays.
+const uint BIN_WITHOUT_RAY = STREAM_BINS - 1u;
+
+layout(std430, set = 0, binding = BINDING_FILM) buffer StreamWords {
+  Dispatch stream_dispatch;
+  StreamState stream;
+  uvec4 stream_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
+  uint words[];
+};
+
+// The head of the stream as it was when the invocation began: begin_stream() comes first. Lavapipe loads what it holds
+// lane by lane and as often as it is named.
+uint first_record;
+uint most_paths;
+uint sources_of_turn;
+uint turn;
+void begin_stream() {
+  first_record = stream.place.x;
+  most_paths = stream.place.y;
+  sources_of_turn = stream.place.z;
+  turn = stream.turn.x;
+}
+
+uint paths_of_turn(uint which) { return (which & 1u) == 0u ? stream.turn.y : stream.turn.z; }
+uint paths_with_ray() { return stream.turn.w; }
+
+uint record_of_path(uint path) {
+  return first_record + (STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * sources_of_turn) * path;
+}
+uint record_of_source(uint path, uint source) {
+  return record_of_path(path) + STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * source;
+}
+uint record_of_weight(uint path, uint which) { return record_of_path(path) + RECORD_WEIGHTS + (which & 1u); }
+
+uint first_ask() { return 4u * record_of_path(most_paths); }
+uint ask_of_path(uint path) { return first_ask() + (1u + sources_of_turn) * path; }
+uint ask_of_source(uint path, uint source) { return ask_of_path(path) + 1u + source; }
+uint path_list(uint which) { return ask_of_path(most_paths) + (which & 1u) * most_paths; }
+uint shadow_list() { return path_list(0u) + 2u * most_paths; }
+// `kind` is one of these.
+const uint LIST_OF_PATHS = 0u;
+const uint LIST_OF_SHADOW_RAYS = 1u;
+uint counts_of_bins(uint kind) { return shadow_list() + sources_of_turn * most_paths + kind * STREAM_BINS; }
+uint places_of_bins(uint kind) { return counts_of_bins(STREAM_LISTS + kind); }
+
+// Asks for a ray of a bin.
+uint ask(uint kind, uint bin) {
+  return bin | (atomicAdd(words[counts_of_bins(kind) + bin], 1u) << STREAM_BIN_BITS);
+}
