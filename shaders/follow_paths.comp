@@ -112,8 +112,9 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   }
   path.direction = normalize3(ray.direction);
   ShadingPoint point = make_shading_point(ray, hit);
-  log_own_light(own_light(point));
-  if (begins_bounce(turn)) seen = own_light(point);
+  vec3 own = own_light(point);
+  log_own_light(own);
+  if (begins_bounce(turn)) seen = own;
   if (has(FEATURE_SHADOWS)) {
     ask_sources(number, point, -path.direction);
   } else {

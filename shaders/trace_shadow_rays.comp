@@ -41,5 +41,5 @@ void main() {
   Hit blocker = trace(ray, true);
   words[ask_of_source(path, source)] = blocker.primitive == NO_PRIMITIVE ? ASK_NOTHING : ASK_BLOCKED;
   if (has(FEATURE_RAY_LOG)) log_answer(entry_of_source(source), ray, blocker);
-  if (were_loops_cut()) atomicAdd(ray_counts[gl_LocalInvocationIndex].w, 1u);
+  add_counts(uvec3(0u), were_loops_cut());
 }
