@@ -107,7 +107,7 @@ class StepCountsTest : public test::DeviceTest, public testing::WithParamInterfa
  protected:
   static Counts count_all(const world::Scene& scene) {
     const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
-    std::vector<RaySet> sets = {measure::make_camera_rays(camera, kSide)};
+    std::vector<RaySet> sets = {measure::make_camera_rays(camera, uvec2(kSide))};
     std::vector<Hit> hits(sets[0].rays.size());
     make_caster(device(), scene).cast(sets[0].rays, hits);
     sets.push_back(measure::make_shadow_rays(sets[0], hits, scene, camera));

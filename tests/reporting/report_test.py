@@ -198,6 +198,8 @@ def check_that_faults_are_found(report):
     spoil(lambda: find("specialisation", "rows").update(is_bit_identical=False), "bits that differ")
     spoil(lambda: find("kernels", "rows", is_shipped=True).pop("max_k"), "a shipped kernel that hits nothing")
     edges = {"rays": "edges"}
+    spoil(lambda: find("rates", "pictures").update(traced_rays=1), "rays that are not the picture's")
+    spoil(lambda: find("rates", "pictures")["kinds"].pop(), "a kind of rays that is left out")
     spoil(lambda: find("robustness", "rows", **edges).update(textbook_lost=0), "a plain kernel that is not plain")
     spoil(lambda: find("robustness", "rows", **edges).update(promin_lost=1), "a ray lost at an edge")
     spoil(lambda: find("robustness", "rows", **edges).update(truth="oracle"), "edges held against another truth")
@@ -536,6 +538,32 @@ def tells_scenes_apart(folder):
     expect(not list(check_report._find_twins(report)), "ids are not one row's alone")
 
 
+def sets_a_picture_beside_its_rays(folder):
+    """promin-bench does, and writes the rays as files that cast takes."""
+    rays = folder / "rays"
+    scene = SCENES / "showcase.gltf"
+    options = ("--runs", 1, "--side", 64, "--max-depth", 2, "--rays", rays, "-o", folder / "runs.json")
+    done = run_program(BIN / "promin-bench", scene, *options)
+    expect(done.returncode == 1 and "no such folder" in done.stderr and not done.stdout, f"a folder is missing: {done}")
+    rays.mkdir()
+    done = run_program(BIN / "promin-bench", scene, *options)
+    expect(done.returncode == 0 and "of what its own" in done.stdout, f"promin-bench: {done}")
+    picture, mirrors = read_report(folder / "runs.json")["rates"]["pictures"]
+    expect((picture["what"], mirrors["what"]) == ("picture", "mirror stage"), f"{picture['what']}, {mirrors['what']}")
+    kinds = [kind["rays"] for kind in picture["kinds"]]
+    expect(kinds == ["camera", "shadow 0", "mirror 1", "shadow 1", "mirror 2", "shadow 2"], f"kinds: {kinds}")
+    expect(mirrors["kinds"] == picture["kinds"][2:], "the mirror stage is of other kinds than those behind first hits")
+    expect(picture["kinds"][0]["count"] == 64 * 64, f"camera rays: {picture['kinds'][0]}")
+    for part in (picture, mirrors):
+        expect(abs(part["count"] - part["traced_rays"]) < 5, f"other rays than the picture's: {part}")
+    for kind in picture["kinds"]:
+        file = rays / f"showcase_{kind['rays'].replace(' ', '_')}.npy"
+        done = run_program(BIN / "promin", "cast", scene, file, "-o", folder / "hits.npy")
+        expect(done.returncode == 0, f"cast of {file.name}: {done}")
+        header = file.read_bytes()[:128].decode("latin1")
+        expect(f"'shape': ({kind['count']}, 8)" in header, f"{file.name} has other rays: {header}")
+
+
 def makes_tables(folder):
     """Of parts of reports, as tools/bench and tools/accuracy do; and a table for the terminal."""
     done = run("--quick", "--runs", 1, "--only", "rates,scaling,robustness", "--side", 32, "-o", folder / "system")
@@ -573,6 +601,7 @@ def makes_tables(folder):
     rows = read_report(folder / "runs.json")["rates"]["rows"]
     expect([row["rays"] for row in rows] == ["camera", "shadow", "random"], f"promin-bench: {rows}")
     expect(rows[0]["count"] == 256 and "promin_ms" not in rows[0], f"it should only count steps: {rows}")
+    sets_a_picture_beside_its_rays(folder)
     done = run_program(BIN / "promin-bench", "needles:5", "--runs", 0)
     expect(done.returncode == 2 and "no number of triangles" in done.stderr, f"promin-bench: {done}")
     expect(not done.stdout, f"promin-bench has begun: {done}")

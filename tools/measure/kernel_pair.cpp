@@ -58,7 +58,7 @@ KernelPair measure_pair(Caster& robust, Caster& plain, const RaySet& set, uint32
 
 std::vector<RaySet> make_ray_sets(Caster& caster, const world::Scene& scene, const Camera& camera, uint32_t side,
                                   bool is_closed) {
-  std::vector<RaySet> sets = {make_camera_rays(camera, side)};
+  std::vector<RaySet> sets = {make_camera_rays(camera, uvec2(side))};
   std::vector<Hit> hits(sets[0].rays.size());
   caster.cast(sets[0].rays, hits);
   sets.push_back(make_shadow_rays(sets[0], hits, scene, camera));

@@ -26,19 +26,19 @@ Ray ray_towards(const dvec3& origin, const dvec3& target) {
   return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), kInfinity};
 }
 
-RaySet make_camera_rays(const Camera& camera, uint32_t side) {
+RaySet make_camera_rays(const Camera& camera, const uvec2& size) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   const double half = is_orthographic ? static_cast<double>(camera.ymag)  //
                                       : std::tan(0.5 * static_cast<double>(camera.yfov));
-  const double pixel = 2.0 * half / side;
+  const double pixel = 2.0 * half / size.y;
   const dvec3 look(camera.look);
   const dvec3 up(camera.up);
   const dvec3 right = glm::cross(look, up);
   RaySet set{"camera", HitQuery::kNearest, {}};
-  set.rays.reserve(size_t{side} * side);
-  for (uint32_t y = 0; y < side; ++y) {
-    for (uint32_t x = 0; x < side; ++x) {
-      const dvec3 on_film = pixel * ((x + 0.5 - 0.5 * side) * right - (y + 0.5 - 0.5 * side) * up);
+  set.rays.reserve(size_t{size.x} * size.y);
+  for (uint32_t y = 0; y < size.y; ++y) {
+    for (uint32_t x = 0; x < size.x; ++x) {
+      const dvec3 on_film = pixel * ((x + 0.5 - 0.5 * size.x) * right - (y + 0.5 - 0.5 * size.y) * up);
       if (is_orthographic) {
         set.rays.push_back({vec3(dvec3(camera.eye) + on_film), camera.near, camera.look, kInfinity});
       } else {

@@ -21,8 +21,8 @@ struct RaySet {
 /// From `origin` towards `target`, both rounded to fp32; the direction has unit length to rounding.
 Ray ray_towards(const dvec3& origin, const dvec3& target);
 
-/// A ray through the centre of each pixel of a square picture, row by row.
-RaySet make_camera_rays(const Camera& camera, uint32_t side);
+/// A ray through the centre of each pixel of a picture, row by row.
+RaySet make_camera_rays(const Camera& camera, const uvec2& size);
 
 /// From each point that a camera ray sees, a little off its surface, to one light: the scene's first, or where it has
 /// none a point beside the camera. `hits` are those of the camera rays; misses are left out, so no ray is idle.

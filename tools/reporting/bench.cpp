@@ -13,6 +13,7 @@
 #include "measure/embree.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
+#include "promin/error.h"
 #include "reporting/provenance.h"
 #include "reporting/session.h"
 #include "run_program.h"
@@ -61,9 +62,30 @@ void print_rays(const Json& row) {
              row["primitive_tests_per_ray"].get<double>());
 }
 
+void print_picture(const Json& row) {
+  fmt::print("  {}, {} x {}, {} bounces: {:.1f} ms, {:.2f} of what its own {:.2f} Mrays take by cast",
+             row["what"].get<std::string>(), row["width"].get<uint32_t>(), row["height"].get<uint32_t>(),
+             row["depth"].get<uint32_t>(), quartiles_of(row, "promin_ms").median,
+             quartiles_of(row, "rays_time_ratio").median, 1e-6 * row["count"].get<double>());
+  if (row.contains("time_ratio"))
+    fmt::print(", {:.2f} of what they take Embree", quartiles_of(row, "time_ratio").median);
+  fmt::print("\n");
+  for (const Json& kind : row["kinds"]) {
+    const auto rate = [&](const char* key) {
+      if (!kind.contains(key)) return std::string("-");
+      return fmt::format("{:.2f}", kind["count"].get<double>() / (1e3 * quartiles_of(kind, key).median));
+    };
+    fmt::print("    {:<10}{:>9}{:>8}{:>9}\n", kind["rays"].get<std::string>(), kind["count"].get<uint64_t>(),
+               rate("promin_ms"), rate("peer_ms"));
+  }
+}
+
 void measure_all(const ReportOptions& options) {
   // What would end the work half-way is found before it begins.
   for (const std::filesystem::path& file : options.scenes) measure::open_scene(file.string());
+  if (options.rays && !std::filesystem::is_directory(*options.rays)) {
+    throw RunError({"no such folder", options.rays->string(), "make it first"});
+  }
   const Session session(options);
   const std::string embree = measure::embree_version();
   Json json = {{"format", kReportFormat}, {"provenance", describe_run(session)}};
@@ -77,8 +99,12 @@ void measure_all(const ReportOptions& options) {
     fmt::print("  {:<7}{:>9}{:>8}{:>9}{:>9}{:>9}{:>15}{:>9}{:>8}{:>8}\n", "rays", "count", "promin", "Embree",
                "packets", "ratio", "quartiles", "differ", "steps", "tests");
     for (const Json& row : rates["rows"]) print_rays(row);
+    if (rates.contains("pictures")) {
+      for (const Json& row : rates["pictures"]) print_picture(row);
+    }
     std::fflush(stdout);
-    for (const char* table : {"rows", "builds"}) {
+    for (const char* table : {"rows", "builds", "pictures"}) {
+      if (!rates.contains(table)) continue;
       for (const Json& row : rates[table]) json["rates"][table].push_back(row);
     }
     if (!options.output.empty()) write_text_file(options.output, json.dump() + "\n");
@@ -101,6 +127,10 @@ app::Command add_bench_command(CLI::App& program) {
             [=](const app::OptionValues& words) { options->runs = words.whole(0, 0, 1000); });
   table.add("--side", "N", "Pixels of the camera's picture each way [1024]",
             [=](const app::OptionValues& words) { options->side = words.whole(0, 1, 4096); });
+  table.add("--max-depth", "N", fmt::format("Mirror bounces of the picture [{}]", View().max_depth),
+            [=](const app::OptionValues& words) { options->max_depth = words.whole(0, 0, kMaxDepth); });
+  table.add("--rays", "FOLDER", "Write the picture's own rays here, a .npy file a kind",
+            [=](const app::OptionValues& words) { options->rays = words.text(); });
   table.add("-o,--output", "FILE.json", "Write each run's times and the counts as JSON",
             [=](const app::OptionValues& words) { options->output = words.text(); });
   return {&program, [options] { measure_all(*options); }};

@@ -173,6 +173,15 @@ def _find_rate_faults(report):
                 yield f"{row['id']}: {rate} Mrays/s are not {row['count']} rays in {times['median']} ms"
 
 
+def _find_picture_faults(report):
+    """Rays of a picture that were found by its rules are, but for grazing ones, those that it traces."""
+    for row in report["rates"].get("pictures", []):
+        if abs(row["count"] - row["traced_rays"]) > max(3, 2e-3 * row["traced_rays"]):
+            yield f"{row['id']}: {row['count']} rays stand for the {row['traced_rays']} of the picture"
+        if sum(kind["count"] for kind in row["kinds"]) != row["count"]:
+            yield f"{row['id']}: its kinds of rays do not add up to {row['count']}"
+
+
 def _find_other_faults(report):
     for row in report["specialisation"]["rows"]:
         if not row["is_bit_identical"]:
@@ -323,6 +332,7 @@ def find_faults(report):
         _find_kernel_faults,
         _find_frame_faults,
         _find_rate_faults,
+        _find_picture_faults,
         _find_other_faults,
         _find_twins,
     )

@@ -43,6 +43,19 @@ PICTURES = [
     ("mean difference", lambda r: number(r["mean_difference"], 2)),
     ("pixels > 0.02, %", lambda r: number(r["different_pixels_percent"], 2)),
 ]
+OVER_RAYS = [
+    scene_column(),
+    ("what", lambda r: r["what"]),
+    ("pixels", lambda r: f"{r['width']} × {r['height']}"),
+    ("bounces", lambda r: r["depth"]),
+    ("its rays", lambda r: f"{r['count']:,}"),
+    ("promin, ms", lambda r: spread(r["promin_ms"])),
+    ("its rays by cast, ms", lambda r: spread(r["rays_ms"])),
+    ("over these", lambda r: interval(r["rays_time_ratio"])),
+    ("peer", lambda r: r.get("peer", "–").split(",")[0]),
+    ("the same rays, ms", lambda r: spread(r.get("peer_ms"))),
+    ("over these", lambda r: interval(r.get("time_ratio"))),
+]
 FIRST = [
     scene_column(),
     ("whole process, ms", lambda r: spread(r["process_ms"])),

@@ -169,6 +169,14 @@ def _build_sentence(row):
     )
 
 
+def _over_rays_sentence(row):
+    what = {"picture": "A picture", "mirror stage": "What mirrors add to it"}[row["what"]]
+    return (
+        f"{what} ({html.escape(row['scene'])}) takes {row['rays_time_ratio']['median']:.2f} times as long as promin "
+        "takes to cast its own rays, kind by kind; the rest is shading and the order of work."
+    )
+
+
 def _picture_sentence(row):
     return (
         f"{row['what'][0].upper() + row['what'][1:]} ({html.escape(row['scene'])}) takes promin "
@@ -202,9 +210,12 @@ def peers(report):
         text.append(" ".join(_own_sentence(r) for r in rates["rows"]))
     if sentences:
         text.append("<ul>" + "\n".join(f"<li>{sentence}</li>" for sentence in sentences) + "</ul>")
+    if rates.get("pictures"):
+        text.append(" ".join(_over_rays_sentence(r) for r in rates["pictures"]))
     kinds = (
         ("Rays", peer_tables.RAYS, rates["rows"]),
         ("From triangles in memory to all that is copied to the device", peer_tables.BUILDS, rates["builds"]),
+        ("Pictures over their own rays", peer_tables.OVER_RAYS, rates.get("pictures", [])),
         ("Pictures", peer_tables.PICTURES, pictures["rows"]),
         ("The first picture", peer_tables.FIRST, pictures["first"]),
     )

@@ -14,6 +14,7 @@
 #include "measure/samples.h"
 #include "measure/step_counts.h"
 #include "render/caster_access.h"
+#include "reporting/picture_over_rays.h"
 #include "reporting/scene_hash.h"
 #include "reporting/session.h"
 
@@ -114,13 +115,23 @@ void add_rates(const Session& session, const world::Scene& scene, Json& rates) {
     if (runs > 0 && !set.rays.empty()) time_rays(caster, embree.get(), set, runs, row);
     rates["rows"].push_back(std::move(row));
   }
+  if (runs > 0 && primitives > 0) add_picture_over_rays(session, scene, caster, embree.get(), rates);
 }
 
 Json measure_rates(const Session& session) {
-  Json rates = {{"rows", Json::array()}, {"builds", Json::array()}, {"gaps", Json::array()}};
+  Json rates = {
+      {"rows", Json::array()}, {"builds", Json::array()}, {"pictures", Json::array()}, {"gaps", Json::array()}};
   for (const world::Scene& scene : session.open_scenes({session.pick("wavy:70000", "wavy:5000")})) {
     session.say("rates: " + session.name_of(scene));
     add_rates(session, scene, rates);
+  }
+  // Meshes have no mirrors; these have.
+  if (session.options().scenes.empty()) {
+    for (const world::Scene& scene : session.open_scenes({"showcase.gltf", "sphereflake.gltf"})) {
+      session.say("rates: " + session.name_of(scene));
+      Caster caster = make_caster(session.device(), scene);
+      add_picture_over_rays(session, scene, caster, nullptr, rates);
+    }
   }
   const auto has_peer = [](const Json& row) { return row.contains("peer"); };
   if (std::none_of(rates["builds"].begin(), rates["builds"].end(), has_peer)) {

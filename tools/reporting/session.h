@@ -30,6 +30,10 @@ struct ReportOptions {
   /// Pixels of the camera rays' picture each way, where rays alone are cast.
   std::optional<uint32_t> side;
   std::string builder = "sah";
+  /// Mirror bounces of the pictures that are set beside their own rays.
+  uint32_t max_depth = View().max_depth;
+  /// A folder for the rays of these pictures, a .npy file a kind.
+  std::optional<std::filesystem::path> rays;
   /// Names of sections; without any all.
   std::vector<std::string> only;
   /// A folder for the pictures of frames, row by row, to be judged by other programs.
@@ -104,7 +108,8 @@ Json measure_specialisation(const Session& session);
 Json measure_scaling(const Session& session);
 /// Rays and builds beside Embree's.
 Json measure_rates(const Session& session);
-/// The same of one scene: appends to the arrays "rows" and "builds". Without runs it only counts steps.
+/// The same of one scene: appends to the arrays "rows", "builds" and "pictures": a picture over its own rays, and the
+/// part of it behind the first hits. Without runs it only counts steps.
 void add_rates(const Session& session, const world::Scene& scene, Json& rates);
 
 }  // namespace promin::report
