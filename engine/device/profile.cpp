@@ -19,8 +19,8 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
   profile.fetches_film_texels = true;
   profile.target_dispatch_ms = 100.0;
   profile.most_group_rows = std::min(traits.core_count, kMostThreads);
-  // Of 2^15 … 2^18 the least was the fastest, or as fast (docs/performance_log.md).
-  profile.most_stream_paths = 1U << 15;
+  // Fewer paths make more dispatches, more do not fit in the caches (docs/performance_log.md).
+  profile.most_stream_paths = 1U << 16;
   profile.sorts_rays = true;
   profile.most_frames_in_flight = 1;
   profile.presents_late = true;
@@ -34,14 +34,13 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.pixel_packet_size = 4;
   profile.ray_packet_size = 4;
   profile.may_cut_loops = true;
-  profile.ray_traversal = {.steps_together = 1, .waits_with_solids = true};
+  profile.ray_traversal = {.steps_together = 2, .waits_with_solids = true};
 }
 
-/// Lanes look into their leaves after each step: pictures take 0.78 to 0.94 of the time with lavapipe 25.0.7, where
+/// Packets look into their leaves after each step: pictures take 0.78 to 0.94 of the time with lavapipe 25.0.7, where
 /// 22.3.6 takes 0.96 to 1.4 (docs/performance_log.md). Versions between were not measured.
 void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
-  profile.ray_traversal_of_solids = profile.packet_traversal;
 }
 
 /// The first number of the version in what Mesa's drivers tell of themselves; 0 in what others tell. Lavapipe's

@@ -45,9 +45,8 @@ struct DeviceProfile {
   // How trees are traversed.
   /// By packets of rays.
   TraversalForm packet_traversal;
-  /// By rays one by one, where the tree has triangles and where it has none.
+  /// By rays one by one.
   TraversalForm ray_traversal;
-  TraversalForm ray_traversal_of_solids;
 
   // How work is cut into dispatches and spread over the workgroups of each.
   /// How long a dispatch should take. At the end of each the threads of a CPU driver wait for the last one.

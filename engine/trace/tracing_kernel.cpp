@@ -27,10 +27,8 @@ void Pacer::learn(double units, double time_ms) {
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
 
-const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, FeatureMask features,
-                                         uint32_t packet_size) {
-  if (packet_size > 1) return profile.packet_traversal;
-  return features.has_any(layout::FEATURE_TRIANGLES) ? profile.ray_traversal : profile.ray_traversal_of_solids;
+const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, uint32_t packet_size) {
+  return packet_size > 1 ? profile.packet_traversal : profile.ray_traversal;
 }
 
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,

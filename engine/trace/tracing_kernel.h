@@ -30,8 +30,8 @@ class Pacer {
   double units_;
 };
 
-/// Of the profile's forms the one for packets of so many rays in a scene.
-const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, FeatureMask features, uint32_t packet_size);
+/// Of the profile's forms the one for packets of so many rays.
+const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, uint32_t packet_size);
 
 /// What every pipeline that traces is specialised to.
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,

@@ -29,7 +29,7 @@ DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 
 /// What a GPU is given, be it discrete or integrated.
 void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
-  for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal, profile.ray_traversal_of_solids}) {
+  for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal}) {
     EXPECT_EQ(form.steps_together, 0U);
     EXPECT_FALSE(form.waits_with_solids);
   }
@@ -51,7 +51,7 @@ void expect_gpu(const DeviceProfile& profile) {
 void expect_cpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
   EXPECT_TRUE(profile.fetches_film_texels);
-  EXPECT_EQ(profile.most_stream_paths, 1U << 15);
+  EXPECT_EQ(profile.most_stream_paths, 1U << 16);
   EXPECT_EQ(profile.target_dispatch_ms, 100.0);
   EXPECT_EQ(profile.most_group_rows, 8U);
   EXPECT_TRUE(profile.sorts_rays);
@@ -82,18 +82,17 @@ TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
   EXPECT_EQ(profile.ray_packet_size, RayTiler::kPacketSize);
 }
 
-TEST(ProfileTest, NewerLavapipesLookIntoLeavesAfterEachStep) {
+TEST(ProfileTest, PacketsOfNewerLavapipesLookIntoLeavesAfterEachStep) {
   for (const char* older : {"", "Mesa", "Mesa 22.3.6 (LLVM 15.0.6)", "Mesa 24.3.4", "LLVM 25.0.0"}) {
     const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, older);
     EXPECT_EQ(profile.packet_traversal.steps_together, 0U);
-    EXPECT_EQ(profile.ray_traversal.steps_together, 1U);
-    EXPECT_EQ(profile.ray_traversal_of_solids.steps_together, 0U);
+    EXPECT_EQ(profile.ray_traversal.steps_together, 2U);
   }
   for (const char* newer : {"Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)", "Mesa 25.1.0-devel", "Mesa 101.0"}) {
     const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, newer);
-    for (const TraversalForm& form :
-         {profile.packet_traversal, profile.ray_traversal, profile.ray_traversal_of_solids}) {
-      EXPECT_EQ(form.steps_together, 1U);
+    EXPECT_EQ(profile.packet_traversal.steps_together, 1U);
+    EXPECT_EQ(profile.ray_traversal.steps_together, 2U);
+    for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal}) {
       EXPECT_TRUE(form.waits_with_solids);
     }
     EXPECT_EQ(profile.pixel_packet_size, 4U);
