@@ -30,8 +30,16 @@
 namespace promin::app {
 namespace {
 
-TunedRendererOptions make_renderer_options(const RenderOptions& options) {
+/// Of all pictures together.
+uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options) {
+  if (options.explained_pixel) return view.samples_per_pixel;
+  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
+  return uint64_t{size.x} * size.y * view.samples_per_pixel * frames * options.tracing.repeat_count;
+}
+
+TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_t expected_samples) {
   TunedRendererOptions result;
+  result.expected_samples = expected_samples;
   choose_tree(options.tracing, result);
   result.force_all_features = options.has_all_features;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
@@ -207,7 +215,8 @@ void render(const RenderOptions& options) {
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   std::future<void> pictures;
   if (has_pictures) pictures = open_pictures_aside();
-  Renderer renderer = make_renderer(*device, scene, make_renderer_options(options));
+  Renderer renderer =
+      make_renderer(*device, scene, make_renderer_options(options, count_samples(*stats.view, frames.size(), options)));
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {
     const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);

@@ -107,10 +107,11 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     FeatureMask features = scene.features(mode);
     if (options.with_aovs) features |= layout::FEATURE_AOVS;
     if (film && features == film_features) return;
-    film.emplace(
-        device, scene.device_scene(), features,
-        FilmOptions{
-            .packet_size = options.packet_size, .avoids_texels = options.avoids_texels, .shaders = options.shaders});
+    film.emplace(device, scene.device_scene(), features,
+                 FilmOptions{.packet_size = options.packet_size,
+                             .expected_samples = options.expected_samples,
+                             .avoids_texels = options.avoids_texels,
+                             .shaders = options.shaders});
     film->warm_up();
     film_features = features;
   }

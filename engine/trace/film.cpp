@@ -11,6 +11,7 @@
 
 #include "camera_stage.spv.h"
 #include "core/divide_up.h"
+#include "core/parallel.h"
 #include "device/device.h"
 #include "follow_paths.spv.h"
 #include "trace/film_head.h"
@@ -30,9 +31,12 @@ Counters lanes_of(std::span<const std::byte> counters) {
   return lanes;
 }
 
-/// Steps and logs are of single rays.
-uint32_t pick_packet_size(const gpu::Device& device, FeatureMask features) {
-  return features.has_any(layout::FEATURE_STEP_COUNTS) ? 1 : device.profile().pixel_packet_size;
+uint32_t pick_packet_size(const gpu::DeviceProfile& profile, FeatureMask features, const FilmOptions& options) {
+  if (options.packet_size) return *options.packet_size;
+  // Steps are of single rays.
+  const bool takes_packets =
+      !features.has_any(layout::FEATURE_STEP_COUNTS) && options.expected_samples >= profile.samples_that_repay_packets;
+  return takes_packets ? profile.pixel_packet_size : 1;
 }
 
 }  // namespace
@@ -49,7 +53,7 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
     : device_(&device),
       scene_(std::move(scene)),
       features_(features),
-      packet_size_(options.packet_size.value_or(pick_packet_size(device, features))),
+      packet_size_(pick_packet_size(device.profile(), features, options)),
       avoids_texels_(options.avoids_texels),
       shaders_(options.shaders),
       log_records_(options.log_records),
@@ -83,12 +87,17 @@ void Film::bind_scene() {
     return constants;
   };
   const std::vector<gpu::BoundBuffer> bound = buffers();
-  kernel_.emplace(*device_, shaders_.camera_stage, constants_for(packet_size_), bound);
   stream_.reset();
-  if (!has_stream()) return;
-  std::vector<gpu::SpecializationConstant> stream_constants = constants_for(1);
-  stream_constants.push_back({layout::CONSTANT_FETCHES_FILM_TEXELS, fetches_film_texels() ? 1U : 0U});
-  stream_.emplace(*device_, features_, stream_constants, bound, shaders_);
+  // A driver compiles a pipeline in one thread, so the two stages are compiled side by side.
+  for_each_index(has_stream() ? 2 : 1, 0, [&](size_t stage) {
+    if (stage == 0) {
+      kernel_.emplace(*device_, shaders_.camera_stage, constants_for(packet_size_), bound);
+      return;
+    }
+    std::vector<gpu::SpecializationConstant> stream_constants = constants_for(1);
+    stream_constants.push_back({layout::CONSTANT_FETCHES_FILM_TEXELS, fetches_film_texels() ? 1U : 0U});
+    stream_.emplace(*device_, features_, stream_constants, bound, shaders_);
+  });
 }
 
 void Film::reserve(uint32_t pixel_count) {

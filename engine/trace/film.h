@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,6 +28,8 @@ struct FilmCounts {
 struct FilmOptions {
   /// Pixels that a lane of the camera stage takes together, 1, 2 or 4; empty: as suits the device.
   std::optional<uint32_t> packet_size = std::nullopt;
+  /// See RendererOptions::expected_samples.
+  uint64_t expected_samples = std::numeric_limits<uint64_t>::max();
   /// Read the scene as storage buffers even where texel buffers hold it, for tests.
   bool avoids_texels = false;
   /// Others with the same bindings are for measurements.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +50,9 @@ struct RendererOptions {
   std::optional<std::filesystem::path> bvh = std::nullopt;
   /// What the first pictures will show: its pipeline is compiled at once, others as they are asked for.
   RenderMode mode = {};
+  /// About how many samples all pictures will have together, over all pixels. Where they are few, kernels are taken
+  /// that are compiled sooner and trace slower. Pictures have the same bits.
+  uint64_t expected_samples = std::numeric_limits<uint64_t>::max();
   /// Whether render() fills RenderResult::aovs. The image's bits stay the same.
   bool with_aovs = false;
   /// Told how far building the tree is; where it returns false the constructor throws Cancelled.

@@ -37,6 +37,7 @@ void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
+  EXPECT_EQ(profile.samples_that_repay_packets, 0U);
   EXPECT_GE(profile.most_stream_paths, 1U << 17);
   EXPECT_FALSE(profile.fetches_film_texels);
   EXPECT_EQ(profile.ray_packet_size, 1U);
@@ -79,6 +80,7 @@ TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
   expect_cpu(profile);
   EXPECT_TRUE(profile.may_cut_loops);
   EXPECT_EQ(profile.pixel_packet_size, 4U);
+  EXPECT_GT(profile.samples_that_repay_packets, 1U << 16);
   EXPECT_EQ(profile.ray_packet_size, RayTiler::kPacketSize);
 }
 

@@ -81,6 +81,25 @@ TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
   }
 }
 
+TEST_F(RendererTest, FewSamplesAreTracedBySinglePixels) {
+  const world::Scene scene = make_scene_of_everything();
+  View view = test::make_view(kSize);
+  TunedRendererOptions options;
+  options.packet_size = 1;
+  const RenderResult expected = render(scene, view, options);
+  const size_t before = device().compiled_pipelines().size();
+  options.packet_size.reset();
+  options.expected_samples = 1;
+  const RenderResult of_few = render(scene, view, options);
+  EXPECT_TRUE(has_same_bits(of_few.image, expected.image));
+  if (device().profile().pixel_packet_size > 1) {
+    EXPECT_EQ(device().compiled_pipelines().size(), before) << "another kernel than that of single pixels";
+    options.expected_samples = device().profile().samples_that_repay_packets;
+    EXPECT_TRUE(has_same_bits(render(scene, view, options).image, expected.image));
+    EXPECT_GT(device().compiled_pipelines().size(), before) << "many samples take the kernel of single pixels too";
+  }
+}
+
 // Two ways to the same memory: the words of a storage buffer, and texels.
 TEST_F(RendererTest, TexelsAndStorageBuffersGiveTheSameBits) {
   constexpr uint64_t kEnough = uint64_t{1} << 26;
