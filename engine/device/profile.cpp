@@ -32,8 +32,8 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
 /// Mesa that were measured (docs/performance_log.md).
 void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.pixel_packet_size = 4;
-  // Compiling the showcase for packets takes 0.9 s longer with 22.3.6 and 2.6 s with 25.0.7, once on a machine; single
-  // pixels take some 50 ns longer to trace each, always (docs/performance_log.md).
+  // Compiling the showcase for packets takes 0.9 s longer with 22.3.6 and 2.6 s with 25.0.7, once on a machine; tracing
+  // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md).
   profile.samples_that_repay_packets = 1U << 19;
   profile.ray_packet_size = 4;
   profile.may_cut_loops = true;
