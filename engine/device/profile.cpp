@@ -33,7 +33,8 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
 void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.pixel_packet_size = 4;
   // Compiling the showcase for packets takes 0.9 s longer with 22.3.6 and 2.6 s with 25.0.7, once on a machine; tracing
-  // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md).
+  // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md). So many samples cost a
+  // tenth of a second at most where the driver's cache has either kernel, and save seconds where it has none.
   profile.samples_that_repay_packets = 1U << 19;
   profile.ray_packet_size = 4;
   profile.may_cut_loops = true;

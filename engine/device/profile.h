@@ -60,7 +60,7 @@ struct DeviceProfile {
   // Pictures.
   /// Pixels that a lane of the camera stage takes together: 1, 2 or 4.
   uint32_t pixel_packet_size = 1;
-  /// Fewer samples do not repay what compiling for such packets takes longer than for single pixels.
+  /// With fewer samples a lane takes one: the kernel is compiled sooner and traces slower.
   uint64_t samples_that_repay_packets = 0;
   /// Pixels whose paths are traced together, bounce by bounce, at most (trace/path_stream.h): enough to fill the device
   /// at late bounces too.

@@ -80,7 +80,7 @@ TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
   expect_cpu(profile);
   EXPECT_TRUE(profile.may_cut_loops);
   EXPECT_EQ(profile.pixel_packet_size, 4U);
-  EXPECT_GT(profile.samples_that_repay_packets, 1U << 16);
+  EXPECT_EQ(profile.samples_that_repay_packets, 1U << 19);
   EXPECT_EQ(profile.ray_packet_size, RayTiler::kPacketSize);
 }
 

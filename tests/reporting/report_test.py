@@ -199,7 +199,7 @@ def check_that_faults_are_found(report):
     spoil(lambda: find("kernels", "rows", is_shipped=True).pop("max_k"), "a shipped kernel that hits nothing")
     edges = {"rays": "edges"}
     spoil(lambda: find("rates", "pictures").update(traced_rays=1), "rays that are not the picture's")
-    spoil(lambda: find("rates", "pictures")["kinds"].pop(), "a kind of rays that is left out")
+    spoil(lambda: spoilt["rates"]["picture_rays"].pop(), "a set of rays that is left out")
     spoil(lambda: find("robustness", "rows", **edges).update(textbook_lost=0), "a plain kernel that is not plain")
     spoil(lambda: find("robustness", "rows", **edges).update(promin_lost=1), "a ray lost at an edge")
     spoil(lambda: find("robustness", "rows", **edges).update(truth="oracle"), "edges held against another truth")
@@ -548,20 +548,28 @@ def sets_a_picture_beside_its_rays(folder):
     rays.mkdir()
     done = run_program(BIN / "promin-bench", scene, *options)
     expect(done.returncode == 0 and "of what its own" in done.stdout, f"promin-bench: {done}")
-    picture, mirrors = read_report(folder / "runs.json")["rates"]["pictures"]
+    rates = read_report(folder / "runs.json")["rates"]
+    picture, mirrors = rates["pictures"]
     expect((picture["what"], mirrors["what"]) == ("picture", "mirror stage"), f"{picture['what']}, {mirrors['what']}")
-    kinds = [kind["rays"] for kind in picture["kinds"]]
-    expect(kinds == ["camera", "shadow 0", "mirror 1", "shadow 1", "mirror 2", "shadow 2"], f"kinds: {kinds}")
-    expect(mirrors["kinds"] == picture["kinds"][2:], "the mirror stage is of other kinds than those behind first hits")
-    expect(picture["kinds"][0]["count"] == 64 * 64, f"camera rays: {picture['kinds'][0]}")
-    for part in (picture, mirrors):
-        expect(abs(part["count"] - part["traced_rays"]) < 5, f"other rays than the picture's: {part}")
-    for kind in picture["kinds"]:
-        file = rays / f"showcase_{kind['rays'].replace(' ', '_')}.npy"
+    sets = {row["rays"]: row["count"] for row in rates["picture_rays"]}
+    expect(list(sets) == ["camera", "shadow 0", "mirror 1", "shadow 1", "mirror 2", "shadow 2"], f"sets: {sets}")
+    expect(sets["camera"] == 64 * 64 and sum(sets.values()) == picture["count"], f"not all rays are there: {sets}")
+    expect(sum(list(sets.values())[2:]) == mirrors["count"], f"other rays than those behind first hits: {mirrors}")
+    for name, count in sets.items():
+        file = rays / f"showcase_{name.replace(' ', '_')}.npy"
         done = run_program(BIN / "promin", "cast", scene, file, "-o", folder / "hits.npy")
         expect(done.returncode == 0, f"cast of {file.name}: {done}")
         header = file.read_bytes()[:128].decode("latin1")
-        expect(f"'shape': ({kind['count']}, 8)" in header, f"{file.name} has other rays: {header}")
+        expect(f"'shape': ({count}, 8)" in header, f"{file.name} has other rays: {header}")
+    # Rays are found by the picture's rules: highlights without diffuse light, colours, cones, parallel cameras.
+    names = ("showcase", "metallic_roughness", "vertex_colors", "light_spot", "light_physical", "orthographic", "mirrors")
+    scenes = [SCENES / f"{name}.gltf" for name in names]
+    done = run_program(BIN / "promin-bench", *scenes, "--runs", 1, "--side", 64, "-o", folder / "runs.json")
+    expect(done.returncode == 0, f"promin-bench: {done}")
+    for part in read_report(folder / "runs.json")["rates"]["pictures"]:
+        expect(abs(part["count"] - part["traced_rays"]) < 9, f"other rays than the picture's: {part}")
+    done = run_program(BIN / "promin-bench", scene, "--runs", 0, "--rays", rays)
+    expect(done.returncode == 2 and "--runs 0" in done.stderr, f"rays without a picture: {done}")
 
 
 def makes_tables(folder):

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "core/file.h"
 #include "scene/light_kinds.h"
@@ -22,12 +25,18 @@ bool is_black(const vec3& color) {
 
 /// What a ray has hit, and the weight of what it sees.
 struct Point {
-  vec3 position;
-  vec3 normal;            // interpolated where the mesh has normals
-  vec3 geometric_normal;  // both face the ray
-  vec3 direction;         // of the ray
-  vec3 weight;
-  uint32_t material;
+  vec3 position{0.0F};
+  /// Where shadow rays start, before they are lifted off the surface.
+  vec3 shadow_position{0.0F};
+  /// Interpolated where the mesh has normals. Both face the ray.
+  vec3 normal{0.0F};
+  vec3 geometric_normal{0.0F};
+  /// Of the mesh's vertices.
+  vec3 color{1.0F};
+  /// Of the ray, unit.
+  vec3 direction{0.0F};
+  vec3 weight{0.0F};
+  uint32_t material = 0;
 };
 
 /// The rules of shaders/shading.glsl, lights.glsl and path.glsl as far as they decide which rays there are.
@@ -41,29 +50,37 @@ class PictureRules {
   Point point_of(const Ray& ray, const Hit& hit, const vec3& weight) const {
     const world::Object& object = scene_.objects[static_cast<size_t>(hit.object)];
     const float side = glm::dot(hit.normal, ray.direction) > 0.0F ? -1.0F : 1.0F;
-    const vec3 normal = side * hit.normal;
-    return {ray.origin + hit.t * ray.direction,
-            side * normal_of(object, hit),
-            normal,
-            glm::normalize(ray.direction),
-            weight,
-            object.material};
+    Point point;
+    point.position = ray.origin + hit.t * ray.direction;
+    point.shadow_position = point.position;
+    point.geometric_normal = side * hit.normal;
+    point.normal = point.geometric_normal;
+    point.direction = glm::normalize(ray.direction);
+    point.weight = weight;
+    point.material = object.material;
+    if (const auto* mesh = std::get_if<Mesh>(&object.shape)) interpolate(*mesh, object.is_rewound, hit, side, point);
+    return point;
   }
 
   /// Whether the light brings anything where nothing is between.
   bool reaches(const Light& light, const Point& point) const {
+    if (!light.is_on) return false;
+    const vec3 way = has_place(light.kind) ? light.position - point.position : -direction_of(light);
+    const vec3 to_light = glm::normalize(way);
+    const float cosine = glm::dot(point.normal, to_light);
+    if (!(cosine > 0.0F)) return false;
+    if (light.attenuation != Attenuation::kNone && !(glm::length(way) < light.range)) return false;
+    if (light.kind == LightKind::kSpot && !(-glm::dot(to_light, light.direction) > std::cos(light.outer_cone_angle))) {
+      return false;
+    }
     const Material& material = scene_.materials[point.material];
-    const bool has_highlight = material.shininess > 0.0F && !is_black(material.specular * light.specular);
-    if (!light.is_on || (is_black(material.diffuse * light.diffuse) && !has_highlight)) return false;
-    const vec3 to_light = has_place(light.kind) ? light.position - point.position : -direction_of(light);
-    if (!(glm::dot(point.normal, to_light) > 0.0F)) return false;
-    if (light.attenuation != Attenuation::kNone && !(glm::length(to_light) < light.range)) return false;
-    return light.kind != LightKind::kSpot ||
-           -glm::dot(glm::normalize(to_light), light.direction) > std::cos(light.outer_cone_angle);
+    if (!is_black(material.diffuse * point.color * light.diffuse)) return true;
+    const bool has_highlight = glm::dot(2.0F * cosine * point.normal - to_light, -point.direction) > 0.0F;
+    return material.shininess > 0.0F && has_highlight && !is_black(material.specular * light.specular);
   }
 
   Ray shadow_ray(const Light& light, const Point& point) const {
-    const vec3 origin = point.position + offset_ * point.geometric_normal;
+    const vec3 origin = point.shadow_position + offset_ * point.geometric_normal;
     if (has_place(light.kind)) return {origin, 0.0F, light.position - origin, 1.0F};
     return {origin, 0.0F, -direction_of(light), kInfinity};
   }
@@ -82,16 +99,27 @@ class PictureRules {
     return light.kind == LightKind::kHeadlight ? view_.camera.look : light.direction;
   }
 
-  /// As wound or outward, with vertex normals where there are any.
-  static vec3 normal_of(const world::Object& object, const Hit& hit) {
-    const auto* mesh = std::get_if<Mesh>(&object.shape);
-    if (mesh == nullptr || mesh->normals.empty()) return hit.normal;
-    const uvec3& corners = mesh->triangles[static_cast<size_t>(hit.primitive)];
-    // Hits tell of corners as the file winds them.
-    const vec2 weights = object.is_rewound ? vec2(hit.v, hit.u) : vec2(hit.u, hit.v);
-    const vec3 sum = (1.0F - hit.u - hit.v) * mesh->normals[corners.x] + weights.x * mesh->normals[corners.y] +
-                     weights.y * mesh->normals[corners.z];
-    return glm::length(sum) > 0.0F ? glm::normalize(sum) : hit.normal;
+  /// What the mesh's vertices tell of the point. Hits have weights of the corners as the file winds them.
+  static void interpolate(const Mesh& mesh, bool is_rewound, const Hit& hit, float side, Point& point) {
+    const uvec3& corners = mesh.triangles[static_cast<size_t>(hit.primitive)];
+    const vec3 weights(1.0F - hit.u - hit.v, is_rewound ? hit.v : hit.u, is_rewound ? hit.u : hit.v);
+    if (!mesh.colors.empty()) {
+      point.color = vec3(0.0F);
+      for (int i = 0; i < 3; ++i) point.color += weights[i] * vec3(mesh.colors[corners[i]]);
+    }
+    if (mesh.normals.empty()) return;
+    vec3 sum(0.0F);
+    for (int i = 0; i < 3; ++i) sum += weights[i] * side * mesh.normals[corners[i]];
+    if (!(glm::length(sum) > 0.0F)) return;
+    point.normal = glm::normalize(sum);
+    // As lift_to_curve of shaders/shading.glsl.
+    vec3 lifted(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      const vec3 normal = side * mesh.normals[corners[i]];
+      const float height = std::min(0.0F, glm::dot(point.position - mesh.positions[corners[i]], normal));
+      lifted += weights[i] * (point.position - height * normal);
+    }
+    point.shadow_position = lifted;
   }
 
   const world::Scene& scene_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-bench: the report's rates of any scenes, as a table.
+// promin-bench: the report's rates of any scenes and their pictures, as tables.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -67,22 +67,27 @@ void print_picture(const Json& row) {
              row["what"].get<std::string>(), row["width"].get<uint32_t>(), row["height"].get<uint32_t>(),
              row["depth"].get<uint32_t>(), quartiles_of(row, "promin_ms").median,
              quartiles_of(row, "rays_time_ratio").median, 1e-6 * row["count"].get<double>());
-  if (row.contains("time_ratio"))
-    fmt::print(", {:.2f} of what they take Embree", quartiles_of(row, "time_ratio").median);
-  fmt::print("\n");
-  for (const Json& kind : row["kinds"]) {
-    const auto rate = [&](const char* key) {
-      if (!kind.contains(key)) return std::string("-");
-      return fmt::format("{:.2f}", kind["count"].get<double>() / (1e3 * quartiles_of(kind, key).median));
-    };
-    fmt::print("    {:<10}{:>9}{:>8}{:>9}\n", kind["rays"].get<std::string>(), kind["count"].get<uint64_t>(),
-               rate("promin_ms"), rate("peer_ms"));
+  if (row.contains("time_ratio")) {
+    fmt::print(", {:.2f} of what Embree takes for them", quartiles_of(row, "time_ratio").median);
   }
+  fmt::print("\n");
+}
+
+void print_picture_rays(const Json& row) {
+  const auto rate = [&](const char* key) {
+    if (!row.contains(key)) return std::string("-");
+    return fmt::format("{:.2f}", row["count"].get<double>() / (1e3 * quartiles_of(row, key).median));
+  };
+  fmt::print("  {:<10}{:>9}{:>8}{:>9}\n", row["rays"].get<std::string>(), row["count"].get<uint64_t>(),
+             rate("promin_ms"), rate("peer_ms"));
 }
 
 void measure_all(const ReportOptions& options) {
   // What would end the work half-way is found before it begins.
   for (const std::filesystem::path& file : options.scenes) measure::open_scene(file.string());
+  if (options.rays && options.runs == 0U) {
+    throw UsageError({"--rays goes with pictures, which --runs 0 leaves out", "on the command line", "give some runs"});
+  }
   if (options.rays && !std::filesystem::is_directory(*options.rays)) {
     throw RunError({"no such folder", options.rays->string(), "make it first"});
   }
@@ -99,11 +104,10 @@ void measure_all(const ReportOptions& options) {
     fmt::print("  {:<7}{:>9}{:>8}{:>9}{:>9}{:>9}{:>15}{:>9}{:>8}{:>8}\n", "rays", "count", "promin", "Embree",
                "packets", "ratio", "quartiles", "differ", "steps", "tests");
     for (const Json& row : rates["rows"]) print_rays(row);
-    if (rates.contains("pictures")) {
-      for (const Json& row : rates["pictures"]) print_picture(row);
-    }
+    for (const Json& row : rates.value("pictures", Json::array())) print_picture(row);
+    for (const Json& row : rates.value("picture_rays", Json::array())) print_picture_rays(row);
     std::fflush(stdout);
-    for (const char* table : {"rows", "builds", "pictures"}) {
+    for (const char* table : {"rows", "builds", "pictures", "picture_rays"}) {
       if (!rates.contains(table)) continue;
       for (const Json& row : rates[table]) json["rates"][table].push_back(row);
     }
@@ -139,7 +143,8 @@ app::Command add_bench_command(CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return app::run_program("promin-bench",
-                          "Rates of promin beside Embree's over the same rays: camera, shadow and random.",
-                          {add_bench_command}, argc, argv);
+  return app::run_program(
+      "promin-bench",
+      "Rates of promin beside Embree's over the same rays: camera, shadow, random, and those of a picture.",
+      {add_bench_command}, argc, argv);
 }

@@ -178,8 +178,9 @@ def _find_picture_faults(report):
     for row in report["rates"].get("pictures", []):
         if abs(row["count"] - row["traced_rays"]) > max(3, 2e-3 * row["traced_rays"]):
             yield f"{row['id']}: {row['count']} rays stand for the {row['traced_rays']} of the picture"
-        if sum(kind["count"] for kind in row["kinds"]) != row["count"]:
-            yield f"{row['id']}: its kinds of rays do not add up to {row['count']}"
+        rays = [r["count"] for r in report["rates"]["picture_rays"] if r["scene"] == row["scene"]]
+        if row["what"] == "picture" and sum(rays) != row["count"]:
+            yield f"{row['id']}: its sets of rays do not add up to {row['count']}"
 
 
 def _find_other_faults(report):

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
-#include <numeric>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "measure/picture_rays.h"
 #include "measure/samples.h"
@@ -57,18 +58,13 @@ Json json_of(const Part& part) {
     json["peer_ms"] = peer_ms;
     json["time_ratio"] = measure::ratios_of(part.ms, peer_ms);
   }
-  for (size_t i = 0; i < part.sets.size(); ++i) {
-    Json kind = {{"rays", part.sets[i].name}, {"count", part.sets[i].rays.size()}, {"promin_ms", part.cast_ms[i]}};
-    if (!part.peer_ms.empty()) kind["peer_ms"] = part.peer_ms[i];
-    json["kinds"].push_back(std::move(kind));
-  }
   return json;
 }
 
 void write_sets(const std::filesystem::path& folder, const std::string& scene, std::span<const measure::RaySet> sets) {
   for (const measure::RaySet& set : sets) {
     std::string name = scene + "_" + set.name + ".npy";
-    std::replace(name.begin(), name.end(), ' ', '_');
+    for (const char odd : {' ', '/'}) std::replace(name.begin(), name.end(), odd, '_');
     measure::write_rays(folder / name, set.rays);
   }
 }
@@ -87,7 +83,9 @@ void add_picture_over_rays(const Session& session, const world::Scene& scene, Ca
   const std::string name = session.name_of(scene);
   if (session.options().rays) write_sets(*session.options().rays, name, sets);
 
-  Renderer renderer = make_renderer(session.device(), lit);
+  TunedRendererOptions options;
+  options.builder = session.options().builder;
+  Renderer renderer = make_renderer(session.device(), lit, options);
   View without_mirrors = view;
   without_mirrors.max_depth = 0;
   RayCounts whole;
@@ -123,6 +121,13 @@ void add_picture_over_rays(const Session& session, const world::Scene& scene, Ca
                         peer_ms.empty() ? peer_ms : peer_ms.subspan(first)}));
     rates["pictures"].push_back(std::move(row));
   };
+  for (size_t i = 0; i < sets.size(); ++i) {
+    Json row = {{"id", name + "/" + sets[i].name}, {"scene", name},
+                {"scene_hash", hash_of(lit)},      {"rays", sets[i].name},
+                {"count", sets[i].rays.size()},    {"promin_ms", cast_ms[i]}};
+    if (!peer_ms.empty()) row["peer_ms"] = peer_ms[i];
+    rates["picture_rays"].push_back(std::move(row));
+  }
   add("picture", ms[0], whole.total(), 0);
   const size_t first = rays.camera_stage.size();
   if (first == sets.size()) return;

@@ -172,8 +172,8 @@ def _build_sentence(row):
 def _over_rays_sentence(row):
     what = {"picture": "A picture", "mirror stage": "What mirrors add to it"}[row["what"]]
     return (
-        f"{what} ({html.escape(row['scene'])}) takes {row['rays_time_ratio']['median']:.2f} times as long as promin "
-        "takes to cast its own rays, kind by kind; the rest is shading and the order of work."
+        f"{what} ({html.escape(row['scene'])}) takes {row['rays_time_ratio']['median']:.2f} times as long, shading "
+        "and all, as promin takes to cast the picture's own rays, set by set, ordering them included."
     )
 
 

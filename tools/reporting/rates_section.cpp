@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays and builds, beside Embree's where it is to be had: over the same rays and triangles, in the same turns.
+// Rays, builds, and pictures over their own rays, beside Embree's where it is to be had: over the same rays and
+// triangles, in the same turns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,8 +120,11 @@ void add_rates(const Session& session, const world::Scene& scene, Json& rates) {
 }
 
 Json measure_rates(const Session& session) {
-  Json rates = {
-      {"rows", Json::array()}, {"builds", Json::array()}, {"pictures", Json::array()}, {"gaps", Json::array()}};
+  Json rates = {{"rows", Json::array()},
+                {"builds", Json::array()},
+                {"pictures", Json::array()},
+                {"picture_rays", Json::array()},
+                {"gaps", Json::array()}};
   for (const world::Scene& scene : session.open_scenes({session.pick("wavy:70000", "wavy:5000")})) {
     session.say("rates: " + session.name_of(scene));
     add_rates(session, scene, rates);
@@ -129,7 +133,9 @@ Json measure_rates(const Session& session) {
   if (session.options().scenes.empty()) {
     for (const world::Scene& scene : session.open_scenes({"showcase.gltf", "sphereflake.gltf"})) {
       session.say("rates: " + session.name_of(scene));
-      Caster caster = make_caster(session.device(), scene);
+      TunedCasterOptions options;
+      options.builder = session.options().builder;
+      Caster caster = make_caster(session.device(), scene, options);
       add_picture_over_rays(session, scene, caster, nullptr, rates);
     }
   }

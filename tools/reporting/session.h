@@ -106,10 +106,10 @@ Json measure_robustness(const Session& session);
 Json measure_specialisation(const Session& session);
 /// Time and steps over triangles, pixels, sources and depth.
 Json measure_scaling(const Session& session);
-/// Rays and builds beside Embree's.
+/// Rays, builds, and pictures over their own rays, beside Embree's.
 Json measure_rates(const Session& session);
-/// The same of one scene: appends to the arrays "rows", "builds" and "pictures": a picture over its own rays, and the
-/// part of it behind the first hits. Without runs it only counts steps.
+/// The same of one scene: appends to the arrays "rows" and "builds", and what add_picture_over_rays does. Without runs
+/// it only counts steps.
 void add_rates(const Session& session, const world::Scene& scene, Json& rates);
 
 }  // namespace promin::report
