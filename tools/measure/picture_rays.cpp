@@ -75,8 +75,10 @@ class PictureRules {
     }
     const Material& material = scene_.materials[point.material];
     if (!is_black(material.diffuse * point.color * light.diffuse)) return true;
-    const bool has_highlight = glm::dot(2.0F * cosine * point.normal - to_light, -point.direction) > 0.0F;
-    return material.shininess > 0.0F && has_highlight && !is_black(material.specular * light.specular);
+    // A narrow highlight is 0 in fp32 but for directions near its own.
+    const float highlight = glm::dot(2.0F * cosine * point.normal - to_light, -point.direction);
+    return material.shininess > 0.0F && highlight > 0.0F &&
+           !is_black(material.specular * light.specular * std::pow(std::min(highlight, 1.0F), material.shininess));
   }
 
   Ray shadow_ray(const Light& light, const Point& point) const {
