@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Begins a turn of the stream, in one workgroup: tells where each bin begins in the list, empties it, and how many
-// workgroups the rest of the turn takes. Each lane adds up all bins before its own, because lanes share no memory.
+// Begins a turn of the stream, in one workgroup: tells where each bin begins in the list, and how many workgroups the
+// rest of the turn takes. Each lane adds up all bins before its own, because lanes share no memory.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "layout.h"

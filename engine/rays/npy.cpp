@@ -118,11 +118,12 @@ uint64_t parse_header(std::string_view header, const fs::path& file) {
   return *count;
 }
 
-std::string make_hit_header(uint64_t count) {
-  std::string dictionary =
-      "{'descr': [('t', '<f4'), ('object', '<i4'), ('primitive', '<i4'), ('u', '<f4'), ('v', '<f4'), "
-      "('normal', '<f4', (3,))], 'fortran_order': False, 'shape': (" +
-      std::to_string(count) + ",), }";
+/// All that comes before the data of an array of so many rows. `type` as numpy.dtype.descr is written, `columns` as
+/// what follows the number of rows in its shape.
+std::string make_header(std::string_view type, uint64_t rows, std::string_view columns) {
+  std::string dictionary("{'descr': ");
+  dictionary.append(type).append(", 'fortran_order': False, 'shape': (");
+  dictionary.append(std::to_string(rows)).append(columns).append("), }");
   // Magic, version and length take 10 bytes; the data begins at a multiple of 64.
   const size_t padding = 64 - (10 + dictionary.size() + 1) % 64;
   dictionary.append(padding, ' ');
@@ -134,6 +135,9 @@ std::string make_hit_header(uint64_t count) {
   header += static_cast<char>(dictionary.size() >> 8);
   return header + dictionary;
 }
+
+constexpr std::string_view kHitType =
+    "[('t', '<f4'), ('object', '<i4'), ('primitive', '<i4'), ('u', '<f4'), ('v', '<f4'), ('normal', '<f4', (3,))]";
 
 }  // namespace
 
@@ -176,9 +180,14 @@ void RayReader::read(std::span<Ray> rays) {
   }
 }
 
+void write_rays(const fs::path& file, std::span<const Ray> rays) {
+  const std::string header = make_header("'<f4'", rays.size(), ", 8");
+  write_file(file, {std::as_bytes(std::span(header)), std::as_bytes(rays)});
+}
+
 HitWriter::HitWriter(const fs::path& file, uint64_t count)
     : target_(file), output_(file), stream_(output_.temporary(), std::ios::binary), missing_(count) {
-  const std::string header = make_hit_header(count);
+  const std::string header = make_header(kHitType, count, ",");
   stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
   check();
 }

@@ -30,6 +30,9 @@ class RayReader {
   uint64_t count_ = 0;
 };
 
+/// Writes rays as a file that RayReader reads, whole or not at all. Throws RunError.
+void write_rays(const std::filesystem::path& file, std::span<const Ray> rays);
+
 /// Writes hits to a NumPy file piece by piece: a structured array of 32 packed bytes a hit with the fields t, object,
 /// primitive, u, v, normal. The file appears whole on commit() or not at all. Throws RunError.
 class HitWriter {

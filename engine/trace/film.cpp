@@ -24,6 +24,7 @@ using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+
 Counters lanes_of(std::span<const std::byte> counters) {
   Counters lanes;
   assert(counters.size() >= sizeof lanes);

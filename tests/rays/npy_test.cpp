@@ -146,6 +146,18 @@ TEST_F(NpyTest, WritesAStructuredArray) {
   EXPECT_EQ(std::memcmp(bytes.data() + header, hits.data(), 96), 0);
 }
 
+TEST_F(NpyTest, RaysThatAreWrittenAreReadBack) {
+  const fs::path file = folder_ / "rays.npy";
+  std::vector<Ray> rays(3);
+  rays[1] = {vec3(1, 2, 3), 0.5F, vec3(0, -1, 0), 7.0F};
+  write_rays(file, rays);
+  RayReader reader(file);
+  std::vector<Ray> read(reader.count());
+  ASSERT_EQ(read.size(), rays.size());
+  reader.read(read);
+  EXPECT_EQ(std::memcmp(read.data(), rays.data(), std::span(rays).size_bytes()), 0);
+}
+
 TEST_F(NpyTest, WithoutACommitTheOldFileStays) {
   const fs::path file = folder_ / "hits.npy";
   std::ofstream(file) << "old";

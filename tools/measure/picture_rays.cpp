@@ -7,11 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 #include <variant>
 
-#include "core/file.h"
 #include "scene/light_kinds.h"
 
 namespace promin::measure {
@@ -131,17 +129,6 @@ class PictureRules {
 
 }  // namespace
 
-RayCounts PictureRays::counts() const {
-  RayCounts counts;
-  for (const std::vector<RaySet>* sets : {&camera_stage, &mirror_stage}) {
-    for (const RaySet& set : *sets) {
-      const bool is_camera = sets == &camera_stage;
-      (set.query == HitQuery::kAny ? counts.shadow : is_camera ? counts.primary : counts.reflection) += set.rays.size();
-    }
-  }
-  return counts;
-}
-
 PictureRays make_picture_rays(Caster& caster, const world::Scene& scene, const View& view) {
   const PictureRules rules(scene, view);
   PictureRays all;
@@ -174,18 +161,6 @@ PictureRays make_picture_rays(Caster& caster, const world::Scene& scene, const V
     }
     if (rays.rays.empty() || bounce == view.max_depth) return all;
   }
-}
-
-void write_rays(const std::filesystem::path& file, std::span<const Ray> rays) {
-  std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, 8), }}", rays.size());
-  // Magic, version and length take 10 bytes; the data begins at a multiple of 64.
-  header.append(63 - (10 + header.size()) % 64, ' ');
-  header += '\n';
-  std::string head("\x93NUMPY\x01\0", 8);
-  head += static_cast<char>(header.size() & 0xFF);
-  head += static_cast<char>(header.size() >> 8);
-  head += header;
-  write_file(file, {std::as_bytes(std::span(head)), std::as_bytes(rays)});
 }
 
 }  // namespace promin::measure

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <span>
 #include <vector>
 
 #include "measure/ray_sets.h"
 #include "promin/caster.h"
-#include "promin/ray_counts.h"
 #include "promin/view.h"
 
 namespace promin::measure {
@@ -23,13 +20,8 @@ struct PictureRays {
   std::vector<RaySet> camera_stage;
   /// All others; no set is empty.
   std::vector<RaySet> mirror_stage;
-
-  RayCounts counts() const;
 };
 
 PictureRays make_picture_rays(Caster& caster, const world::Scene& scene, const View& view);
-
-/// Writes a set of rays as a .npy file that `promin cast` takes. Throws RunError.
-void write_rays(const std::filesystem::path& file, std::span<const Ray> rays);
 
 }  // namespace promin::measure

@@ -41,11 +41,13 @@ void print_build(const std::string& scene, const Json& build) {
   fmt::print("\n");
 }
 
+/// Millions of the row's rays a second, by the median of these times.
+std::string rate_of(const Json& row, const char* key) {
+  if (!row.contains(key)) return "-";
+  return fmt::format("{:.2f}", row["count"].get<double>() / (1e3 * quartiles_of(row, key).median));
+}
+
 void print_rays(const Json& row) {
-  const auto rate = [&](const char* key) {
-    if (!row.contains(key)) return std::string("-");
-    return fmt::format("{:.2f}", row["count"].get<double>() / (1e3 * quartiles_of(row, key).median));
-  };
   std::string quartiles = "-";
   std::string ratio = "-";
   std::string differing = "-";
@@ -57,8 +59,8 @@ void print_rays(const Json& row) {
     differing = std::to_string(row["differing_hits"].get<uint64_t>());
   }
   fmt::print("  {:<7}{:>9}{:>8}{:>9}{:>9}{:>9}{:>15}{:>9}{:>8.2f}{:>8.2f}\n", row["rays"].get<std::string>(),
-             row["count"].get<uint64_t>(), rate("promin_ms"), rate("peer_ms"), rate("peer_packets_ms"), ratio,
-             quartiles, differing, row["node_steps_per_ray"].get<double>(),
+             row["count"].get<uint64_t>(), rate_of(row, "promin_ms"), rate_of(row, "peer_ms"),
+             rate_of(row, "peer_packets_ms"), ratio, quartiles, differing, row["node_steps_per_ray"].get<double>(),
              row["primitive_tests_per_ray"].get<double>());
 }
 
@@ -74,12 +76,8 @@ void print_picture(const Json& row) {
 }
 
 void print_picture_rays(const Json& row) {
-  const auto rate = [&](const char* key) {
-    if (!row.contains(key)) return std::string("-");
-    return fmt::format("{:.2f}", row["count"].get<double>() / (1e3 * quartiles_of(row, key).median));
-  };
   fmt::print("  {:<10}{:>9}{:>8}{:>9}\n", row["rays"].get<std::string>(), row["count"].get<uint64_t>(),
-             rate("promin_ms"), rate("peer_ms"));
+             rate_of(row, "promin_ms"), rate_of(row, "peer_ms"));
 }
 
 void measure_all(const ReportOptions& options) {
@@ -133,7 +131,7 @@ app::Command add_bench_command(CLI::App& program) {
             [=](const app::OptionValues& words) { options->side = words.whole(0, 1, 4096); });
   table.add("--max-depth", "N", fmt::format("Mirror bounces of the picture [{}]", View().max_depth),
             [=](const app::OptionValues& words) { options->max_depth = words.whole(0, 0, kMaxDepth); });
-  table.add("--rays", "FOLDER", "Write the picture's own rays here, a .npy file a kind",
+  table.add("--rays", "FOLDER", "Write the picture's own rays here, a .npy file a set",
             [=](const app::OptionValues& words) { options->rays = words.text(); });
   table.add("-o,--output", "FILE.json", "Write each run's times and the counts as JSON",
             [=](const app::OptionValues& words) { options->output = words.text(); });

@@ -92,7 +92,7 @@ def tables(reports, growth):
         ("target", lambda _, r: _target(r["device_bytes_per_primitive"], most=_MOST_BYTES)),
     ]
     yield _table(reports, "rates", "builds", peer_tables.BUILDS, builds)
-    yield "Pictures beside what cast takes for their own rays, by kind:\n"
+    yield "Pictures beside what cast takes for their own rays, set by set:\n"
     yield _table(reports, "rates", "pictures", peer_tables.OVER_RAYS)
     yield "Sphereflake of 7381 mirror spheres on a plane, 1024², 6 bounces, tracing:\n"
     yield _table(reports, "peers", "rows", peer_tables.PICTURES, [("target", _picture_target)])

@@ -10,6 +10,7 @@
 
 #include "measure/picture_rays.h"
 #include "measure/samples.h"
+#include "rays/npy.h"
 #include "render/renderer_impl.h"
 #include "reporting/scene_hash.h"
 
@@ -21,9 +22,9 @@ using measure::EmbreeCaster;
 /// Milliseconds of each turn.
 using Times = std::vector<double>;
 
-Times sum_of(std::span<const Times> kinds) {
-  Times sums(kinds.front().size(), 0.0);
-  for (const Times& times : kinds) std::transform(sums.begin(), sums.end(), times.begin(), sums.begin(), std::plus());
+Times sum_of(std::span<const Times> sets) {
+  Times sums(sets.front().size(), 0.0);
+  for (const Times& times : sets) std::transform(sums.begin(), sums.end(), times.begin(), sums.begin(), std::plus());
   return sums;
 }
 
@@ -65,7 +66,7 @@ void write_sets(const std::filesystem::path& folder, const std::string& scene, s
   for (const measure::RaySet& set : sets) {
     std::string name = scene + "_" + set.name + ".npy";
     for (const char odd : {' ', '/'}) std::replace(name.begin(), name.end(), odd, '_');
-    measure::write_rays(folder / name, set.rays);
+    write_rays(folder / name, set.rays);
   }
 }
 
@@ -81,6 +82,7 @@ void add_picture_over_rays(const Session& session, const world::Scene& scene, Ca
   std::vector<measure::RaySet> sets = rays.camera_stage;
   sets.insert(sets.end(), rays.mirror_stage.begin(), rays.mirror_stage.end());
   const std::string name = session.name_of(scene);
+  const std::string hash = hash_of(lit);
   if (session.options().rays) write_sets(*session.options().rays, name, sets);
 
   TunedRendererOptions options;
@@ -115,16 +117,16 @@ void add_picture_over_rays(const Session& session, const world::Scene& scene, Ca
   const auto cast_ms = std::span(ms).subspan(2, sets.size());
   const auto peer_ms = std::span(ms).subspan(2 + sets.size());
   const auto add = [&](const std::string& what, const Times& times, uint64_t traced_rays, size_t first) {
-    Json row = {{"id", name + "/" + what}, {"scene", name},         {"scene_hash", hash_of(lit)}, {"what", what},
+    Json row = {{"id", name + "/" + what}, {"scene", name},         {"scene_hash", hash},     {"what", what},
                 {"width", view.size.x},    {"height", view.size.y}, {"depth", view.max_depth}};
     row.update(json_of({what, times, traced_rays, std::span(sets).subspan(first), cast_ms.subspan(first),
                         peer_ms.empty() ? peer_ms : peer_ms.subspan(first)}));
     rates["pictures"].push_back(std::move(row));
   };
   for (size_t i = 0; i < sets.size(); ++i) {
-    Json row = {{"id", name + "/" + sets[i].name}, {"scene", name},
-                {"scene_hash", hash_of(lit)},      {"rays", sets[i].name},
-                {"count", sets[i].rays.size()},    {"promin_ms", cast_ms[i]}};
+    Json row = {
+        {"id", name + "/" + sets[i].name}, {"scene", name},          {"scene_hash", hash}, {"rays", sets[i].name},
+        {"count", sets[i].rays.size()},    {"promin_ms", cast_ms[i]}};
     if (!peer_ms.empty()) row["peer_ms"] = peer_ms[i];
     rates["picture_rays"].push_back(std::move(row));
   }

@@ -32,7 +32,7 @@ struct ReportOptions {
   std::string builder = "sah";
   /// Mirror bounces of the pictures that are set beside their own rays.
   uint32_t max_depth = View().max_depth;
-  /// A folder for the rays of these pictures, a .npy file a kind.
+  /// A folder for the rays of these pictures, a .npy file a set.
   std::optional<std::filesystem::path> rays;
   /// Names of sections; without any all.
   std::vector<std::string> only;
