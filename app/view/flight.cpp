@@ -33,12 +33,17 @@ void FlightReplay::add(const FinishedFrame& frame) {
   frame_ms_.push_back(frame.time_ms);
   total_ms_ += frame.time_ms;
   trace_ms_ += frame.stages.trace;
+  camera_ray_count_ += frame.rays.primary;
 }
 
 std::string FlightReplay::summarize() const {
-  return fmt::format("{} frames: median {:.2f} ms, 99th percentile {:.2f} ms, tracing {:.1f} % of the time",
-                     frame_ms_.size(), median(frame_ms_), percentile(frame_ms_, 0.99),
-                     total_ms_ > 0.0 ? 100.0 * trace_ms_ / total_ms_ : 0.0);
+  const bool took_time = total_ms_ > 0.0;
+  return fmt::format(
+      "{} frames: median {:.2f} ms, 99th percentile {:.2f} ms, tracing {:.1f} % of the time, {:.2f} million camera "
+      "rays a "
+      "second",
+      frame_ms_.size(), median(frame_ms_), percentile(frame_ms_, 0.99), took_time ? 100.0 * trace_ms_ / total_ms_ : 0.0,
+      took_time ? 1e-3 * static_cast<double>(camera_ray_count_) / total_ms_ : 0.0);
 }
 
 }  // namespace promin::app

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ class FlightReplay {
   bool is_done() const { return next_ == pictures_.count(); }
 
   void add(const FinishedFrame& frame);
-  /// One line: how many frames, the median and the 99th percentile of their times, and what of it was tracing.
+  /// One line: how many frames, the median and the 99th percentile of their times, what of it was tracing, and the rate
+  /// of camera rays, which is that of pixels where each has one sample.
   std::string summarize() const;
 
  private:
@@ -49,6 +51,7 @@ class FlightReplay {
   std::vector<double> frame_ms_;
   double total_ms_ = 0.0;
   double trace_ms_ = 0.0;
+  uint64_t camera_ray_count_ = 0;
 };
 
 }  // namespace promin::app

@@ -103,9 +103,12 @@ TEST(FlightReplay, TellsMedianAndPercentile) {
     FinishedFrame frame;
     frame.time_ms = i;
     frame.stages.trace = 0.5 * i;
+    frame.rays.primary = 51000;
     replay.add(frame);
   }
-  EXPECT_EQ(replay.summarize(), "101 frames: median 51.00 ms, 99th percentile 100.00 ms, tracing 50.0 % of the time");
+  EXPECT_EQ(replay.summarize(),
+            "101 frames: median 51.00 ms, 99th percentile 100.00 ms, tracing 50.0 % of the time, "
+            "1.00 million camera rays a second");
   EXPECT_TRUE(replay.is_due(7.0));
   replay.next_camera(7.0);
   EXPECT_TRUE(replay.is_due(7.0)) << "stored frames wait for nothing";
