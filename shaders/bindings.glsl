@@ -24,7 +24,7 @@ layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 // A macro, so that what hangs on it is known before functions are put into one another (engine/device/spirv.h).
 #define has(FEATURE) (FEATURE_BIT(FEATURE) != 0u)
 
-// The numbers of kinds of primitive in the tree and behind it, and the number of kinds of lights.
+// The numbers of kinds of primitive in the tree and behind it, and the numbers of kinds of lights and of models of materials.
 const uint TREE_KIND_COUNT = 0u
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/primitives.def"
@@ -37,6 +37,12 @@ const uint LIGHT_KIND_COUNT = 0u
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/lights.def"
     ;
+const uint MATERIAL_KIND_COUNT = 0u
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
+#include "promin/kinds/materials.def"
+    ;
+// Whether mirror rays that leave the scene may see something else than the background.
+const bool SEES_ENVIRONMENT = (FEATURE_BIT(FEATURE_METALLIC_ROUGHNESS) | FEATURE_BIT(FEATURE_SKY)) != 0u;
 
 // VIEW is what a view's dispatches share, and CAMERA the same for what tells of the camera. A dispatch has one
 // workgroup in z, so both are element 0. But where a branch hangs on uniforms alone, lavapipe makes constants of them

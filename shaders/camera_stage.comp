@@ -27,6 +27,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "secondary.glsl"
 #include "shading_records.glsl"
 #include "lights.glsl"
+#include "environment.glsl"
 #include "shading.glsl"
 #include "path.glsl"
 #include "camera.glsl"
@@ -65,7 +66,7 @@ bool begin_packet() {
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
     uint index = pixel.y * window_size().x + pixel.x;
-    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index);
+    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT);
   }
   return is_any_inside;
 }
@@ -96,8 +97,8 @@ void arrive() {
     seen[i] = VIEW.background.xyz;
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
-      points[i] = make_shading_point(ray, found[i]);
-      seen[i] = own_light(points[i]);
+      points[i] = make_shading_point(ray, paths[i].direction, found[i]);
+      seen[i] = own_light(points[i], paths[i].direction, leads_on(points[i], 0u));
     }
     log_own_light(seen[i]);
   }
@@ -140,6 +141,7 @@ void put_path(Path path) {
   uint record = record_of_path(number);
   pixels[record + RECORD_ORIGIN] = uvec4(floatBitsToUint(path.origin), path.pixel);
   pixels[record + RECORD_DIRECTION].xyz = floatBitsToUint(path.direction);
+  if (SEES_ENVIRONMENT) pixels[record + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
   pixels[record_of_weight(number, 0u)].xyz = floatBitsToUint(path.weight);
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
@@ -153,7 +155,7 @@ void leave() {
     Path path = paths[i];
     add_radiance(path, seen[i]);
     if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance);
-    if (has(FEATURE_MIRRORS) && is_lit[i] && most_bounces() > 0u && bounce(path, points[i])) {
+    if (is_lit[i] && leads_on(points[i], 0u) && bounce(path, points[i])) {
       put_path(path);
     } else {
       finish_path(path);

@@ -27,6 +27,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "secondary.glsl"
 #include "shading_records.glsl"
 #include "lights.glsl"
+#include "environment.glsl"
 #include "shading.glsl"
 #include "path.glsl"
 #include "turns.glsl"
@@ -92,10 +93,11 @@ vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
 // Asks for the path's mirror ray, or else for the turn after the shadow rays that it waits for.
 uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
   uint bounces = turn / turns_of_bounce() + 1u;
-  if (bounces >= most_bounces() || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+  if (!leads_on(point, bounces) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
   store_vector(record_of_weight(number, turn + 1u), path.weight);
   store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
   store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
+  if (SEES_ENVIRONMENT) pixels[record_of_path(number) + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
   ++mirror_ray_count;
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
@@ -104,15 +106,16 @@ uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
 uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   begin_path_log(ray, hit, turn / turns_of_bounce() + 1u, path.weight);
   if (hit.primitive == NO_PRIMITIVE) {
-    add_radiance(path, VIEW.background.xyz);
-    log_own_light(VIEW.background.xyz);
+    vec3 beyond = radiance_beyond(ray.direction, path.roughness);
+    add_radiance(path, beyond);
+    log_own_light(beyond);
     end_path_log(path.radiance);
     finish_path(path);
     return ASK_NOTHING;
   }
   path.direction = normalize3(ray.direction);
-  ShadingPoint point = make_shading_point(ray, hit);
-  vec3 own = own_light(point);
+  ShadingPoint point = make_shading_point(ray, path.direction, hit);
+  vec3 own = own_light(point, path.direction, leads_on(point, turn / turns_of_bounce() + 1u));
   log_own_light(own);
   if (begins_bounce(turn)) seen = own;
   if (has(FEATURE_SHADOWS)) {
@@ -137,6 +140,7 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   path.pixel = pixels[record + RECORD_ORIGIN].w;
   path.radiance = load_record(record + RECORD_RADIANCE).xyz;
   path.weight = load_record(record_of_weight(number, turn)).xyz;
+  path.roughness = SEES_ENVIRONMENT ? load_record(record + RECORD_DIRECTION).w : NO_ENVIRONMENT;
   vec3 seen = vec3(0.0);
   if (turn > 0u) {
     seen = load_record(record + RECORD_SEEN).xyz;

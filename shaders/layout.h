@@ -36,6 +36,10 @@ LAYOUT_CONSTANT FEATURE_WORDS = 2u;
   LAYOUT_CONSTANT LIGHT_##KIND = NUMBER;                                   \
   LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #include "promin/kinds/lights.def"
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  LAYOUT_CONSTANT MATERIAL_##KIND = NUMBER;                             \
+  LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
+#include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #include "features.def"
@@ -118,14 +122,18 @@ LAYOUT_CONSTANT SURFACE_IS_SMOOTH = 0x80000000u;
 LAYOUT_CONSTANT SURFACE_IS_COLORED = 0x40000000u;
 LAYOUT_CONSTANT SURFACE_MATERIAL_MASK = 0x3FFFFFFFu;
 
+// a, b, c and d are the model's own: the shader files in materials/ define them.
 struct MaterialRecord {
-  vec4 ambient;
-  vec4 diffuse;
-  vec4 specular;  // w = shininess
-  vec4 reflection;
-  vec4 emissive;
+  vec4 a;
+  vec4 b;
+  vec4 c;
+  vec4 d;
+  vec4 emissive;  // w = bits of MATERIAL_*
 };
 LAYOUT_CONSTANT MATERIAL_TEXELS = 5u;
+
+// The entries of the table of lobes along each side (shading_records.glsl).
+LAYOUT_CONSTANT LOBE_TABLE_SIDE = 32u;
 
 struct LightRecord {
   vec4 position;   // w = 1 / range
@@ -147,6 +155,8 @@ struct ViewConstants {
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
+  uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level
+  vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
 
 // The numbers that decide branches and loops, at the head of the buffer that is written. They are not in push constants
@@ -221,7 +231,7 @@ LAYOUT_CONSTANT LOG_SOURCE = 1u;
 static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 144);
+static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 304);
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);

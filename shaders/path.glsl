@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A path is Whitted's recursion without refraction, written as a loop: I = sum of (product of kr so far) * Phong.
+// A path is Whitted's recursion without refraction, written as a loop: I = sum of (product of mirror weights so far) *
+// what a point sends.
 
 struct Path {
   vec3 origin;     // origin of the next ray
   vec3 direction;  // direction of the next ray, unit
-  vec3 weight;     // product of kr so far
+  vec3 weight;     // product of mirror weights so far
   vec3 radiance;   // sum so far
   uint pixel;
+  float roughness;  // the largest of the surfaces on its way, or NO_ENVIRONMENT
 };
 
 void add_radiance(inout Path path, vec3 seen) {
@@ -15,13 +17,19 @@ void add_radiance(inout Path path, vec3 seen) {
   path.radiance = sum;
 }
 
+// Whether a mirror ray leads on from the point, the path's bounce of this number.
+bool leads_on(ShadingPoint point, uint bounce) {
+  return has(FEATURE_MIRRORS) && bounce < most_bounces() && max_abs(mirror_weight(point)) > 0.0;
+}
+
 // Turns the path into its mirror ray. False where the mirror ray would add nothing.
 bool bounce(inout Path path, ShadingPoint point) {
-  precise vec3 weight = path.weight * point.material.reflection.xyz;
+  precise vec3 weight = path.weight * mirror_weight(point);
   path.weight = weight;
   if (!(max_abs(weight) > 0.0)) return false;
   path.origin = lift_off(point.position, point.geometric_normal, point.lift);
   path.direction = reflect_direction(path.direction, point.normal, point.geometric_normal);
+  if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
   return true;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Phong shading (docs/model.md, "Light") of a point that a ray hit.
+// Shading (docs/model.md, "Light") of a point that a ray hit.
 
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
@@ -11,7 +11,10 @@ struct ShadingPoint {
   vec3 shadow_position;  // origin of shadow rays, before the lift
   vec3 color;            // vertex colour
   MaterialRecord material;
+  vec2 lobe_shares;  // with FEATURE_METALLIC_ROUGHNESS
 };
+
+#include "materials.glsl"
 
 // Lifts the point onto the curved surface that the vertex normals suggest, so that its own coarse polygon does not
 // shadow what is shaded as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
@@ -38,7 +41,8 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   point.shadow_position = lifted;
 }
 
-ShadingPoint make_shading_point(Ray ray, Hit hit) {
+// `direction` is the ray's, unit.
+ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit) {
   Primitive p = load_primitive(hit.primitive);
   SurfaceRecord record = load_surface(hit.primitive);
   SurfacePoint surface = surface_point(ray, p, hit);
@@ -61,6 +65,10 @@ ShadingPoint make_shading_point(Ray ray, Hit hit) {
                          weights.z * load_vertex(VIEW.first_index.w + record.corners_material.z);
     point.color = color;
   }
+  point.lobe_shares = vec2(1.0, 0.0);
+  if (has(FEATURE_METALLIC_ROUGHNESS)) {
+    point.lobe_shares = load_lobe_shares(-dot3(point.normal, direction), point.material.c.x);
+  }
   if (has(FEATURE_RAY_LOG)) {
     log_surface(point.position, point.lift, surface.normal, point.normal,
                 record.corners_material.w & SURFACE_MATERIAL_MASK);
@@ -74,26 +82,11 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   precise float cosine = dot3(point.normal, to_light);
   if (!(cosine > 0.0 && sampled.strength > 0.0)) return vec3(0.0);
 
-  precise vec3 contribution = point.material.diffuse.xyz * point.color * light.diffuse.xyz * cosine;
-  if (has(FEATURE_SPECULAR) && point.material.specular.w > 0.0) {
-    precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
-    precise float highlight = dot3(mirrored, to_eye);
-    if (highlight > 0.0) {
-      // 1 is the most that unit vectors give; beyond it is rounding.
-      contribution += point.material.specular.xyz * light.specular.xyz *
-               power(min(highlight, 1.0), point.material.specular.w);
-    }
-  }
+  precise vec3 contribution = contribution_of(point, to_eye, to_light, cosine, light);
   contribution *= sampled.strength;
   return contribution;
 }
 
 Ray shadow_ray(ShadingPoint point, LightRecord light) {
   return shadow_ray(lift_off(point.shadow_position, point.geometric_normal, point.lift), light);
-}
-
-// The light that the point sends without any source: ambient and emitted.
-vec3 own_light(ShadingPoint point) {
-  precise vec3 own = point.material.ambient.xyz * point.color * VIEW.ambient.xyz + point.material.emissive.xyz;
-  return own;
 }

@@ -35,3 +35,22 @@ vec3 load_vertex(uint index) {
   if (FETCHES_TEXELS == 0u) return vertices[index].xyz;
   return shading_vector(index).xyz;
 }
+
+// What a lobe of this roughness does with light from all around, as seen from an eye at the angle of this cosine: the
+// shares x = E1, of what it would reflect if all light were, and y = B, of what Schlick's factor would add
+// (engine/device_scene/lobe_table.h). A texel has the four entries of a cell, each in a word, E1 in its lower half.
+vec2 load_lobe_shares(float cosine, float roughness) {
+  precise float x = float(LOBE_TABLE_SIDE - 1u) * sqrt(clamp(cosine, 0.0, 1.0));
+  precise float y = float(LOBE_TABLE_SIDE - 1u) * clamp(roughness, 0.0, 1.0);
+  vec2 cell = min(floor(vec2(x, y)), vec2(float(LOBE_TABLE_SIDE - 2u)));
+  uint index = VIEW.first_lookup.x + uint(cell.y) * (LOBE_TABLE_SIDE - 1u) + uint(cell.x);
+  uvec4 words = FETCHES_TEXELS == 0u ? surfaces[index].corners_material : texelFetch(shading_texels, int(index));
+  precise vec4 shares = vec4(words & 0xFFFFu);
+  precise vec4 schlick = vec4(words >> 16);
+  precise float fx = x - cell.x;
+  precise float fy = y - cell.y;
+  precise vec2 low = vec2(shares.x + fx * (shares.y - shares.x), schlick.x + fx * (schlick.y - schlick.x));
+  precise vec2 high = vec2(shares.z + fx * (shares.w - shares.z), schlick.z + fx * (schlick.w - schlick.z));
+  precise vec2 result = (low + fy * (high - low)) * (1.0 / 65535.0);
+  return result;
+}

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "device/device.h"
+#include "device_scene/lobe_table.h"
 
 namespace promin {
 namespace {
@@ -39,7 +40,36 @@ void write(gpu::Buffer& buffer, const Placed& placed) {
   if (!placed.bytes.empty()) buffer.write(placed.bytes, placed.offset);
 }
 
+/// The table of lobes, where a material looks it up.
+std::vector<uvec4> lobe_table_for(std::span<const Material> materials) {
+  const auto looks_it_up = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
+  return std::ranges::any_of(materials, looks_it_up) ? make_lobe_table() : std::vector<uvec4>();
+}
+
+template <typename... Parts>
+uint64_t total_bytes(const Parts&... parts) {
+  return (std::as_bytes(std::span(parts)).size() + ...);
+}
+
 }  // namespace
+
+struct DeviceScene::PlacedTail {
+  Placed materials;
+  Placed lobe_table;
+  Placed sky;
+  /// The last, because they change most often in number.
+  Placed lights;
+  uint64_t end() const { return lights.end(); }
+};
+
+DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
+  PlacedTail placed;
+  placed.materials = place(tail.materials, head_bytes_);
+  placed.lobe_table = place(tail.lobe_table, placed.materials.end());
+  placed.sky = place(tail.sky.texels, placed.lobe_table.end());
+  placed.lights = place(tail.lights.records, placed.sky.end());
+  return placed;
+}
 
 DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading)
     : device_(&device),
@@ -58,30 +88,39 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.tree_bounds = packed.tree_bounds;
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
-  constants_.environment = shading.environment;
-  std::vector<layout::MaterialRecord> materials = pack_materials(shading.materials);
-  PackedLights lights = pack_lights(shading.lights);
-  take_shading_buffer(make_shading_buffer(place(lights.records, place(materials, head_bytes_).end()).end()));
+  constants_.ambient = shading.environment.ambient;
+  constants_.background = shading.environment.background;
+  Tail tail = pack_tail(shading);
+  take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : {surfaces, normals, colors}) write(*shading_, placed);
-  write_tail(std::move(materials), std::move(lights));
+  write_tail(std::move(tail));
   uploads_.geometry = nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_;
 }
 
 void DeviceScene::set_materials(std::span<const Material> materials) {
-  write_tail(pack_materials(materials), lights_);
+  Tail tail = tail_;
+  tail.materials = pack_materials(materials);
+  tail.lobe_table = lobe_table_for(materials);
+  write_tail(std::move(tail));
 }
 
 void DeviceScene::set_lights(std::span<const Light> lights) {
-  write_tail(materials_, pack_lights(lights));
+  Tail tail = tail_;
+  tail.lights = pack_lights(lights);
+  write_tail(std::move(tail));
 }
 
 void DeviceScene::set_environment(const Environment& environment) {
-  constants_.environment = environment;
+  Tail tail = tail_;
+  tail.sky = pack_sky(environment);
+  if (!tail.sky.texels.empty() || !tail_.sky.texels.empty()) write_tail(std::move(tail));
+  constants_.ambient = environment.ambient;
+  constants_.background = environment.background;
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail = std::as_bytes(std::span(materials_)).size() + std::as_bytes(std::span(lights_.records)).size();
-  return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail;
+  return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + total_bytes(tail_.materials, tail_.lobe_table,
+                                                                                    tail_.sky.texels, tail_.lights.records);
 }
 
 std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {
@@ -111,22 +150,28 @@ void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
                     device_->profile().most_texel_bytes;
 }
 
-void DeviceScene::write_tail(std::vector<layout::MaterialRecord> materials, PackedLights lights) {
-  const Placed placed_materials = place(materials, head_bytes_);
-  const Placed placed_lights = place(lights.records, placed_materials.end());
-  if (shading_->size_bytes() < placed_lights.end()) {
-    gpu::Buffer larger = make_shading_buffer(placed_lights.end());
+DeviceScene::Tail DeviceScene::pack_tail(const ShadingParts& parts) {
+  return {pack_materials(parts.materials), lobe_table_for(parts.materials), pack_sky(parts.environment),
+          pack_lights(parts.lights)};
+}
+
+void DeviceScene::write_tail(Tail tail) {
+  const PlacedTail placed = place_tail(tail);
+  if (shading_->size_bytes() < placed.end()) {
+    gpu::Buffer larger = make_shading_buffer(placed.end());
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  write(*shading_, placed_materials);
-  write(*shading_, placed_lights);
-  uploads_.shading += placed_materials.bytes.size() + placed_lights.bytes.size();
-  constants_.first_index.x = placed_materials.first_index;
-  constants_.first_index.y = placed_lights.first_index;
-  constants_.light_count = static_cast<uint32_t>(lights.records.size());
-  materials_ = std::move(materials);
-  lights_ = std::move(lights);
+  for (const Placed& part : {placed.materials, placed.lobe_table, placed.sky, placed.lights}) {
+    write(*shading_, part);
+    uploads_.shading += part.bytes.size();
+  }
+  constants_.first_index.x = placed.materials.first_index;
+  constants_.first_index.y = placed.lights.first_index;
+  constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky.side, 0);
+  constants_.irradiance = tail.sky.irradiance;
+  constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());
+  tail_ = std::move(tail);
 }
 
 std::shared_ptr<DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed,

@@ -12,6 +12,7 @@
 #include "device_scene/pack_scene.h"
 #include "device_scene/pack_shading.h"
 #include "device_scene/scene_constants.h"
+#include "environment/pack_sky.h"
 
 namespace promin {
 
@@ -38,7 +39,7 @@ class DeviceScene {
   /// What the scene contributes to the constants of pictures and casts.
   const SceneConstants& constants() const { return constants_; }
   /// The index in Scene::lights of each light on the device.
-  const std::vector<uint32_t>& light_numbers() const { return lights_.numbers; }
+  const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
   uint32_t stack_size() const { return stack_size_; }
   /// The size of all that the scene holds in device memory.
   uint64_t size_bytes() const;
@@ -61,9 +62,20 @@ class DeviceScene {
  private:
   gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
-  /// Copies materials and lights behind the surfaces, into a larger buffer where they need one. Where that cannot be
-  /// made nothing changes.
-  void write_tail(std::vector<layout::MaterialRecord> materials, PackedLights lights);
+  /// What is replaced apart, behind the surfaces.
+  struct Tail {
+    std::vector<layout::MaterialRecord> materials;
+    /// Empty where no material looks it up.
+    std::vector<uvec4> lobe_table;
+    PackedSky sky;
+    PackedLights lights;
+  };
+  /// Where the parts of a tail lie.
+  struct PlacedTail;
+  PlacedTail place_tail(const Tail& tail) const;
+  static Tail pack_tail(const ShadingParts& parts);
+  /// Copies the tail, into a larger buffer where it needs one. Where that cannot be made nothing changes.
+  void write_tail(Tail tail);
 
   const gpu::Device* device_;
   gpu::Buffer nodes_;
@@ -74,8 +86,7 @@ class DeviceScene {
   uint64_t head_bytes_ = 0;
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};
-  std::vector<layout::MaterialRecord> materials_;
-  PackedLights lights_;
+  Tail tail_;
   SceneConstants constants_;
   uint32_t stack_size_;
   bool fetches_texels_ = false;

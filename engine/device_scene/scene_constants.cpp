@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_scene/scene_constants.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/divide_up.h"
@@ -25,16 +26,21 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   const dvec3 up = dvec3(camera.up) * pixel;
   // A ray's interval is open, but what lies on the viewport itself is drawn.
   const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
-  return {.eye = vec4(camera.eye, before_near),
+  layout::ViewConstants constants{
+          .eye = vec4(camera.eye, before_near),
           .look = vec4(camera.look, 0.0F),
           .right = vec4(vec3(right), 0.0F),
           .up = vec4(vec3(up), 0.0F),
-          .ambient = vec4(scene.environment.ambient, 0.0F),
-          .background = vec4(scene.environment.background, 0.0F),
+          .ambient = vec4(scene.ambient, 0.0F),
+          .background = vec4(scene.background, 0.0F),
           .tree_bounds = scene.tree_bounds,
           .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
                               static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),
-          .first_index = scene.first_index};
+          .first_index = scene.first_index,
+          .first_lookup = scene.first_lookup,
+          .irradiance = {}};
+  std::ranges::copy(scene.irradiance, constants.irradiance);
+  return constants;
 }
 
 layout::ViewConstants make_cast_constants(const SceneConstants& scene) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include <cstdint>
 
 #include "layout.h"
@@ -17,11 +19,14 @@ struct SceneConstants {
   vec4 tree_bounds{0.0F};
   /// The first records of materials, lights, normals and colours in their views of the buffer of shading.
   uvec4 first_index{0};
+  uvec4 first_lookup{0};
   /// The unbounded primitives, which lie behind those of the tree.
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;
   uint32_t light_count = 0;
-  Environment environment;
+  vec3 ambient{0.0F};
+  vec3 background{0.0F};
+  std::array<vec4, 9> irradiance{};
 };
 
 /// The constants of a view: its camera and picture, computed in double.

@@ -61,6 +61,7 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   primitive_count_ = packed.primitive_count();
   material_features_ = promin::material_features(scene.materials, shown_materials_);
   light_features_ = promin::light_features(scene.lights);
+  environment_features_ = promin::environment_features(scene.environment);
   const Stopwatch uploading;
   device_scene_ = upload_scene(device, packed, {scene.materials, scene.lights, scene.environment});
   stats.upload_ms = uploading.ms();
@@ -71,7 +72,8 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, const RenderMode& mode) const {
   FeatureMask features = force_all_features_
                              ? all_features()
-                             : picture_features(geometry_features_, material_features_, lights, primitive_count_);
+                             : picture_features(geometry_features_, material_features_, lights,
+                                                environment_features_, primitive_count_);
   if (!mode.has_shadows) features = features.without(layout::FEATURE_SHADOWS);
   return features | features_of(mode.debug_view);
 }
@@ -84,6 +86,11 @@ void SceneOnDevice::set_lights(std::span<const Light> lights) {
 void SceneOnDevice::set_materials(std::span<const Material> materials) {
   device_scene_->set_materials(materials);
   material_features_ = promin::material_features(materials, shown_materials_);
+}
+
+void SceneOnDevice::set_environment(const Environment& environment) {
+  device_scene_->set_environment(environment);
+  environment_features_ = promin::environment_features(environment);
 }
 
 // Hidden, although the class around it is not (promin/export.h).
@@ -298,7 +305,10 @@ void Renderer::set_materials(std::span<const Material> materials) {
 
 void Renderer::set_environment(const Environment& environment) {
   throw_if_invalid(environment);
-  impl_->scene.set_environment(environment);
+  gpu::translate_vulkan_errors([&] {
+    impl_->scene.set_environment(environment);
+    impl_->take_change();
+  });
 }
 
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {

@@ -53,7 +53,7 @@ class SceneOnDevice {
 
   void set_lights(std::span<const Light> lights);
   void set_materials(std::span<const Material> materials);
-  void set_environment(const Environment& environment) { device_scene_->set_environment(environment); }
+  void set_environment(const Environment& environment);
 
  private:
   FeatureMask features_with(FeatureMask lights, const RenderMode& mode) const;
@@ -62,6 +62,7 @@ class SceneOnDevice {
   FeatureMask geometry_features_;
   FeatureMask material_features_;
   FeatureMask light_features_;
+  FeatureMask environment_features_;
   uint64_t primitive_count_ = 0;
   std::vector<bool> shown_materials_;
   PrimitiveNumbers numbers_;

@@ -15,6 +15,9 @@ namespace {
 
 using namespace layout;
 
+/// From this roughness on a metallic-roughness material shows the environment alone (ROUGHEST_MIRROR of its shader).
+constexpr float kRoughestMirror = 0.4F;
+
 /// The name of the feature of each bit that a scene may bring; empty for all other bits.
 constexpr auto kSceneFeatures = [] {
   std::array<std::string_view, 32 * FEATURE_WORDS> names{};
@@ -22,6 +25,8 @@ constexpr auto kSceneFeatures = [] {
 #include "promin/kinds/primitives.def"
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;
 #include "promin/kinds/lights.def"
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;
+#include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) names[BIT] = NAME;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
 #include "features.def"
@@ -35,6 +40,8 @@ constexpr bool are_bits_distinct() {
 #include "promin/kinds/primitives.def"
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) ++uses[BIT];
 #include "promin/kinds/lights.def"
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) ++uses[BIT];
+#include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) ++uses[BIT];
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) ++uses[BIT];
 #include "features.def"
@@ -72,6 +79,22 @@ struct ShapeFeatures {
 #include "promin/kinds/primitives.def"
 };
 
+/// What a model of material brings, and what its numbers need beside.
+struct MaterialFeatures {
+  FeatureMask operator()(const Phong& phong) const {
+    FeatureMask features = FEATURE_PHONG;
+    if (phong.shininess > 0.0F && max_component(phong.specular) > 0.0F) features |= FEATURE_SPECULAR;
+    if (max_component(phong.reflection) > 0.0F) features |= FEATURE_MIRRORS;
+    return features;
+  }
+  FeatureMask operator()(const MetallicRoughness& material) const {
+    FeatureMask features = FEATURE_METALLIC_ROUGHNESS;
+    if (material.roughness < kRoughestMirror) features |= FEATURE_MIRRORS;
+    return features;
+  }
+  FeatureMask operator()(const Unlit&) const { return FEATURE_UNLIT; }
+};
+
 FeatureMask feature_of(LightKind kind) {
   switch (kind) {
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) \
@@ -97,10 +120,7 @@ FeatureMask geometry_features(std::span<const world::Object> objects) {
 FeatureMask material_features(std::span<const Material> materials, const std::vector<bool>& is_shown) {
   FeatureMask features;
   for (size_t i = 0; i < materials.size(); ++i) {
-    const Material& material = materials[i];
-    if (!is_shown[i]) continue;
-    if (material.shininess > 0.0F && max_component(material.specular) > 0.0F) features |= FEATURE_SPECULAR;
-    if (max_component(material.reflection) > 0.0F) features |= FEATURE_MIRRORS;
+    if (is_shown[i]) features |= std::visit(MaterialFeatures(), materials[i].model);
   }
   return features;
 }
@@ -113,6 +133,11 @@ FeatureMask light_features(std::span<const Light> lights) {
     if (falls_off(light)) features |= FEATURE_FALLOFF;
   }
   return features;
+}
+
+FeatureMask environment_features(const Environment& environment) {
+  if (std::holds_alternative<std::monostate>(environment.sky)) return {};
+  return FEATURE_SKY;
 }
 
 FeatureMask primitive_features() {
@@ -136,9 +161,9 @@ std::vector<bool> find_shown_materials(std::span<const world::Object> objects, s
   return is_shown;
 }
 
-FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights,
+FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, FeatureMask environment,
                              uint64_t primitive_count) {
-  FeatureMask features = geometry | materials | lights;
+  FeatureMask features = geometry | materials | lights | environment;
   if (lights.is_empty()) return features.without(FEATURE_SPECULAR);
   // A flat primitive alone shadows nothing; a solid shadows its own inside.
   FeatureMask solids;
@@ -154,7 +179,7 @@ FeatureMask features_of(const world::Scene& scene) {
   return picture_features(
       geometry_features(scene.objects),
       material_features(scene.materials, find_shown_materials(scene.objects, scene.materials.size())),
-      light_features(scene.lights), primitives);
+      light_features(scene.lights), environment_features(scene.environment), primitives);
 }
 
 FeatureMask features_of(DebugView view) {
@@ -177,6 +202,8 @@ FeatureMask all_features() {
   FeatureMask features = primitive_features();
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #include "promin/kinds/lights.def"
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
+#include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
 #include "features.def"

@@ -19,6 +19,8 @@ FeatureMask geometry_features(std::span<const world::Object> objects);
 FeatureMask material_features(std::span<const Material> materials, const std::vector<bool>& is_shown);
 /// The features of lights that are on.
 FeatureMask light_features(std::span<const Light> lights);
+/// The features of what surrounds the scene.
+FeatureMask environment_features(const Environment& environment);
 
 /// The features that decide what a ray meets.
 FeatureMask primitive_features();
@@ -28,7 +30,8 @@ std::vector<bool> find_shown_materials(std::span<const world::Object> objects, s
 
 /// The features of a picture, from those of its parts: without lights nothing shines, and a flat primitive alone throws
 /// no shadow.
-FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, uint64_t primitive_count);
+FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, FeatureMask environment,
+                             uint64_t primitive_count);
 
 /// The features that a picture of this scene needs, without camera and depth.
 FeatureMask features_of(const world::Scene& scene);

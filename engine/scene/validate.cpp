@@ -57,17 +57,36 @@ class Validation {
           "use numbers from 0 to 1e15");
   }
 
+  void check_share(float share, const std::string& where) {
+    check(share >= 0.0F && share <= 1.0F, "a share is not from 0 to 1", where, "stay within");
+  }
+
+  void check_model(const Phong& phong, const std::string& place) {
+    check_color(phong.ambient, place + ".ambient");
+    check_color(phong.diffuse, place + ".diffuse");
+    check_color(phong.specular, place + ".specular");
+    check_color(phong.reflection, place + ".reflection");
+    check(std::isfinite(phong.shininess), "the shininess is not finite", place + ".shininess", "use a finite exponent");
+  }
+
+  void check_model(const MetallicRoughness& material, const std::string& place) {
+    for (int i = 0; i < 3; ++i) check_share(material.base_color[i], place + ".base_color");
+    check_share(material.metallic, place + ".metallic");
+    check_share(material.roughness, place + ".roughness");
+    check_share(material.specular, place + ".specular");
+    check_color(material.specular_color, place + ".specular_color");
+    check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
+          "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
+  }
+
+  void check_model(const Unlit& unlit, const std::string& place) { check_color(unlit.color, place + ".color"); }
+
   void check_materials(std::span<const Material> materials) {
     for (size_t i = 0; i < materials.size(); ++i) {
       const Material& material = materials[i];
       const std::string place = place_of("materials", i);
-      check_color(material.ambient, place + ".ambient");
-      check_color(material.diffuse, place + ".diffuse");
-      check_color(material.specular, place + ".specular");
-      check_color(material.reflection, place + ".reflection");
+      std::visit([&](const auto& model) { check_model(model, place); }, material.model);
       check_color(material.emissive, place + ".emissive");
-      check(std::isfinite(material.shininess), "the shininess is not finite", place + ".shininess",
-            "use a finite exponent");
     }
   }
 

@@ -3,19 +3,20 @@
 #pragma once
 
 #include <string>
+#include <variant>
 
 #include "promin/math.h"
 
 namespace promin {
 
-/// A material of Phong's model (docs/model.md, "Light"). All factors are linear RGB, finite and not negative; nothing
-/// is clamped to 1. The default is a matt light grey.
-struct Material {
-  /// For people; empty where there is none.
-  std::string name;
+// The models that a material may follow (docs/model.md). All factors are linear RGB, finite and not negative; nothing is
+// clamped to 1 unless it is said.
+
+/// Phong's model (docs/model.md, "Phong"). The default is a matt light grey.
+struct Phong {
   /// Weight of Environment::ambient.
   vec3 ambient{0.8F};
-  /// Weight of N.L times a light's diffuse power. Of a metallic-roughness material it is the base colour over pi.
+  /// Weight of N.L times a light's diffuse power.
   vec3 diffuse{0.8F};
   /// Weight of the highlight times a light's specular power.
   vec3 specular{0.0F};
@@ -23,8 +24,44 @@ struct Material {
   float shininess = 0.0F;
   /// Weight of what the mirror ray brings; 0 traces none.
   vec3 reflection{0.0F};
-  /// Light that the surface sends by itself; it lights nothing else.
+};
+
+/// The metallic-roughness model of glTF 2.0, appendix B (docs/model.md, "Metallic-roughness"). The default is that of
+/// glTF: a rough white metal.
+struct MetallicRoughness {
+  /// Albedo of the dielectric and reflectance of the metal at normal incidence, 0...1.
+  vec3 base_color{1.0F};
+  /// The share of metal, 0...1.
+  float metallic = 1.0F;
+  /// Perceptual roughness, 0...1; its square is the alpha of GGX.
+  float roughness = 1.0F;
+  /// Index of refraction of the dielectric, >= 1, or 0: it reflects as a mirror does (KHR_materials_ior).
+  float ior = 1.5F;
+  /// Strength of the dielectric's reflection, 0...1 (KHR_materials_specular).
+  float specular = 1.0F;
+  /// Colour of the dielectric's reflection at normal incidence (KHR_materials_specular).
+  vec3 specular_color{1.0F};
+};
+
+/// A colour that no light changes (KHR_materials_unlit).
+struct Unlit {
+  /// What is seen.
+  vec3 color{1.0F};
+};
+
+/// What an object's surface is made of.
+struct Material {
+  /// For people; empty where there is none.
+  std::string name;
+  /// One of the models above.
+  std::variant<Phong, MetallicRoughness, Unlit> model;
+  /// Light that the surface sends by itself, linear RGB, finite and not negative; it lights nothing else.
   vec3 emissive{0.0F};
+
+  /// The model of a Phong material. Throws std::bad_variant_access where it is another.
+  Phong& phong() { return std::get<Phong>(model); }
+  /// The same, to read.
+  const Phong& phong() const { return std::get<Phong>(model); }
 };
 
 }  // namespace promin

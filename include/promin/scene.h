@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "promin/camera.h"
+#include "promin/environment.h"
 #include "promin/export.h"
 #include "promin/lights.h"
 #include "promin/materials.h"
@@ -34,14 +35,6 @@ struct Object {
   dmat4 world_from_object{1.0};
 };
 
-/// What there is beside objects and lights.
-struct Environment {
-  /// Linear RGB, finite and not negative; it lights every point alike, by Material::ambient.
-  vec3 ambient{0.0F};
-  /// Linear RGB, finite and not negative: what a ray brings that leaves the scene. Black by default.
-  vec3 background{0.0F};
-};
-
 /// A description of what is to be rendered, in a world whose unit of length is anything. It has no tree and nothing of
 /// a device. Renderer and Caster read it while they are made and keep nothing of it: a later change takes effect by
 /// Renderer::set_lights and its like, or with a new Renderer. load_scene gives a valid scene, validate() checks any
@@ -61,6 +54,9 @@ struct Scene {
   std::vector<Camera> cameras;
   /// Ambient light and background.
   Environment environment;
+  /// Whether it was written for classic light: a glTF file all of whose materials are Phong's as written
+  /// (PROMIN_materials_phong). Without lights such a scene gets a headlight, any other a studio.
+  bool is_classic = false;
   /// What the file asks for and the renderer does not model, and what it assumed instead; one sentence each.
   std::vector<std::string> warnings;
 

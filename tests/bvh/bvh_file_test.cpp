@@ -387,7 +387,7 @@ TEST_F(BvhFileTest, OtherGeometryMakesItStale) {
 TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
   world::Scene other = scene_;
   other.file = "renamed.gltf";
-  other.materials[1].diffuse = vec3(0.5F);
+  other.materials[1].phong().diffuse = vec3(0.5F);
   other.lights.clear();
   other.environment.ambient = vec3(1.0F);
   other.objects[1].name = "renamed";

@@ -362,11 +362,11 @@ TEST_F(GltfTest, PhongMaterialsAreTakenAsTheyAre) {
                                                     {"reflectionFactor", {0.7, 0.8, 0.9}}}},
                                                   {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}));
   const Material& material = scene.materials.at(0);
-  EXPECT_EQ(material.ambient, vec3(0.1F, 0.2F, 0.3F));
-  EXPECT_EQ(material.diffuse, vec3(0.4F, 0.5F, 0.6F));
-  EXPECT_EQ(material.specular, vec3(2));
-  EXPECT_EQ(material.shininess, 64);
-  EXPECT_EQ(material.reflection, vec3(0.7F, 0.8F, 0.9F));
+  EXPECT_EQ(material.phong().ambient, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.phong().diffuse, vec3(0.4F, 0.5F, 0.6F));
+  EXPECT_EQ(material.phong().specular, vec3(2));
+  EXPECT_EQ(material.phong().shininess, 64);
+  EXPECT_EQ(material.phong().reflection, vec3(0.7F, 0.8F, 0.9F));
   EXPECT_EQ(material.emissive, vec3(3, 0, 0));
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
@@ -375,11 +375,11 @@ TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
   const LoadedScene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
                                                 {"extensions", {{"PROMIN_materials_phong", json::object()}}}}));
   const Material& material = scene.materials.at(0);
-  EXPECT_EQ(material.diffuse, vec3(0.5F, 0.25F, 0));
-  EXPECT_EQ(material.ambient, material.diffuse);
-  EXPECT_EQ(material.specular, vec3(0));
-  EXPECT_EQ(material.shininess, 0);
-  EXPECT_EQ(material.reflection, vec3(0));
+  EXPECT_EQ(material.phong().diffuse, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(material.phong().ambient, material.phong().diffuse);
+  EXPECT_EQ(material.phong().specular, vec3(0));
+  EXPECT_EQ(material.phong().shininess, 0);
+  EXPECT_EQ(material.phong().reflection, vec3(0));
 }
 
 TEST_F(GltfTest, MetallicRoughnessBecomesPhong) {
@@ -388,16 +388,16 @@ TEST_F(GltfTest, MetallicRoughnessBecomesPhong) {
                       {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.15}}}}));
   const Material& material = scene.materials.at(0);
   const vec3 ks = 0.5F * (vec3(0.04F) + vec3(0.8F, 0.4F, 0.2F));
-  expect_near(material.ambient, {0.4F, 0.2F, 0.1F});
-  expect_near(material.diffuse, vec3(0.4F, 0.2F, 0.1F) * std::numbers::inv_pi_v<float>);
-  expect_near(material.specular, ks);
-  EXPECT_NEAR(material.shininess, (2.0 / 0.00050625 - 2.0) / 4.0, 1e-3);
-  expect_near(material.reflection, 0.5F * ks);
+  expect_near(material.phong().ambient, {0.4F, 0.2F, 0.1F});
+  expect_near(material.phong().diffuse, vec3(0.4F, 0.2F, 0.1F) * std::numbers::inv_pi_v<float>);
+  expect_near(material.phong().specular, ks);
+  EXPECT_NEAR(material.phong().shininess, (2.0 / 0.00050625 - 2.0) / 4.0, 1e-3);
+  expect_near(material.phong().reflection, 0.5F * ks);
 }
 
 TEST_F(GltfTest, ExponentsAreKeptInRange) {
-  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}})).materials[0].shininess, 1e4F);
-  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 1}}}})).materials[0].shininess, 1.0F);
+  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}})).materials[0].phong().shininess, 1e4F);
+  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 1}}}})).materials[0].phong().shininess, 1.0F);
 }
 
 TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
@@ -405,9 +405,9 @@ TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
                                                 {"extensions", {{"KHR_materials_unlit", json::object()}}}}));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.emissive, vec3(0.5F, 0.25F, 0));
-  EXPECT_EQ(material.diffuse, vec3(0));
-  EXPECT_EQ(material.ambient, vec3(0));
-  EXPECT_EQ(material.specular, vec3(0));
+  EXPECT_EQ(material.phong().diffuse, vec3(0));
+  EXPECT_EQ(material.phong().ambient, vec3(0));
+  EXPECT_EQ(material.phong().specular, vec3(0));
 }
 
 TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
@@ -417,7 +417,7 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
   const LoadedScene scene = load(gltf);
   EXPECT_EQ(scene.objects[0].material, 0U);
   EXPECT_EQ(scene.objects[1].material, 1U);
-  EXPECT_EQ(scene.materials.at(1).specular, vec3(1)) << "the default is a white metal";
+  EXPECT_EQ(scene.materials.at(1).phong().specular, vec3(1)) << "the default is a white metal";
 }
 
 TEST_F(GltfTest, WhatAMaterialLosesIsSaidByItsName) {

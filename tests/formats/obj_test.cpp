@@ -142,35 +142,35 @@ TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
 TEST_F(ObjTest, FactorsAreTakenAsTheyStand) {
   const Material m = material("Ka 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 2 1 0\nNs 96\nKe 3 0 0\nillum 2\n");
   EXPECT_EQ(m.name, "m");
-  EXPECT_EQ(m.ambient, vec3(0.1F, 0.2F, 0.3F));
-  EXPECT_EQ(m.diffuse, vec3(0.4F, 0.5F, 0.6F));
-  EXPECT_EQ(m.specular, vec3(2, 1, 0));
-  EXPECT_EQ(m.shininess, 96);
+  EXPECT_EQ(m.phong().ambient, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(m.phong().diffuse, vec3(0.4F, 0.5F, 0.6F));
+  EXPECT_EQ(m.phong().specular, vec3(2, 1, 0));
+  EXPECT_EQ(m.phong().shininess, 96);
   EXPECT_EQ(m.emissive, vec3(3, 0, 0));
-  EXPECT_EQ(m.reflection, vec3(0));
+  EXPECT_EQ(m.phong().reflection, vec3(0));
 }
 
 TEST_F(ObjTest, WhatAMaterialLeavesOutIsNotBlack) {
   const Material m = material("");
-  EXPECT_EQ(m.diffuse, vec3(0.8F));
-  EXPECT_EQ(m.ambient, vec3(0.8F));
-  EXPECT_EQ(m.specular, vec3(0));
-  EXPECT_EQ(m.shininess, 0);
-  EXPECT_EQ(material("Kd 0 0 1\n").ambient, vec3(0, 0, 1));
-  EXPECT_EQ(material("Ka 0 0 0\nKd 0 0 1\n").ambient, vec3(0));
+  EXPECT_EQ(m.phong().diffuse, vec3(0.8F));
+  EXPECT_EQ(m.phong().ambient, vec3(0.8F));
+  EXPECT_EQ(m.phong().specular, vec3(0));
+  EXPECT_EQ(m.phong().shininess, 0);
+  EXPECT_EQ(material("Kd 0 0 1\n").phong().ambient, vec3(0, 0, 1));
+  EXPECT_EQ(material("Ka 0 0 0\nKd 0 0 1\n").phong().ambient, vec3(0));
 }
 
 TEST_F(ObjTest, IlluminationModels) {
   const std::string factors = "Ka 0.1 0.1 0.1\nKd 0.5 0.5 0.5\nKs 0.25 0.25 0.25\nNs 10\nillum ";
   const Material color = material(factors + "0\n");
   EXPECT_EQ(color.emissive, vec3(0.5F));
-  EXPECT_EQ(color.diffuse, vec3(0));
-  EXPECT_EQ(color.ambient, vec3(0));
-  EXPECT_EQ(material(factors + "1\n").specular, vec3(0));
-  EXPECT_EQ(material(factors + "2\n").specular, vec3(0.25F));
-  EXPECT_EQ(material(factors + "2\n").reflection, vec3(0));
-  EXPECT_EQ(material(factors + "3\n").specular, vec3(0.25F));
-  EXPECT_EQ(material(factors + "3\n").reflection, vec3(0.25F));
+  EXPECT_EQ(color.phong().diffuse, vec3(0));
+  EXPECT_EQ(color.phong().ambient, vec3(0));
+  EXPECT_EQ(material(factors + "1\n").phong().specular, vec3(0));
+  EXPECT_EQ(material(factors + "2\n").phong().specular, vec3(0.25F));
+  EXPECT_EQ(material(factors + "2\n").phong().reflection, vec3(0));
+  EXPECT_EQ(material(factors + "3\n").phong().specular, vec3(0.25F));
+  EXPECT_EQ(material(factors + "3\n").phong().reflection, vec3(0.25F));
 }
 
 TEST_F(ObjTest, TransparencyAndMapsAreSaid) {
@@ -186,7 +186,7 @@ TEST_F(ObjTest, TransparencyAndMapsAreSaid) {
 
 TEST_F(ObjTest, AMissingMtlIsGrey) {
   const LoadedScene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
-  EXPECT_EQ(scene.materials.at(scene.objects[0].material).diffuse, vec3(0.8F));
+  EXPECT_EQ(scene.materials.at(scene.objects[0].material).phong().diffuse, vec3(0.8F));
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"none.mtl\" does not exist"), HasSubstr("\"red\" is in no MTL")));
 }
 
@@ -198,26 +198,26 @@ TEST_F(ObjTest, FacesKeepTheirMaterials) {
   const Mesh& mesh = mesh_of(scene);
   ASSERT_THAT(mesh.triangle_materials, SizeIs(4));
   std::vector<vec3> colors;
-  for (const uint32_t material : mesh.triangle_materials) colors.push_back(scene.materials.at(material).diffuse);
+  for (const uint32_t material : mesh.triangle_materials) colors.push_back(scene.materials.at(material).phong().diffuse);
   EXPECT_THAT(colors, ElementsAre(vec3(0.8F), vec3(0, 0, 1), vec3(0, 0, 1), vec3(1, 0, 0)));
   EXPECT_THAT(mesh_of(scene, 1).triangle_materials, IsEmpty());
   EXPECT_EQ(scene.materials.at(scene.objects[1].material).name, "blue");
 }
 
 TEST_F(ObjTest, AColourOfOneNumberIsGrey) {
-  EXPECT_EQ(material("Kd 0.5\n").diffuse, vec3(0.5F));
-  EXPECT_EQ(material("Kd 0.5 # grey\n").diffuse, vec3(0.5F));
-  EXPECT_EQ(material("Kd 0.5 0.25\n").diffuse, vec3(0.5F, 0.25F, 0.0F));
-  EXPECT_EQ(material("Kd\n").diffuse, vec3(0.8F));
+  EXPECT_EQ(material("Kd 0.5\n").phong().diffuse, vec3(0.5F));
+  EXPECT_EQ(material("Kd 0.5 # grey\n").phong().diffuse, vec3(0.5F));
+  EXPECT_EQ(material("Kd 0.5 0.25\n").phong().diffuse, vec3(0.5F, 0.25F, 0.0F));
+  EXPECT_EQ(material("Kd\n").phong().diffuse, vec3(0.8F));
 }
 
 TEST_F(ObjTest, StatementsBeforeTheFirstMaterialAreOfNone) {
   write("two.mtl", "Kd 1 0 0\nd 0.5\nnewmtl a\nKs 1\nKs 0 1 0\nKd 0 0 1\nnewmtl b\n");
   const LoadedScene scene = load(kSquare + "mtllib two.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
   ASSERT_THAT(scene.materials, SizeIs(2));
-  EXPECT_EQ(scene.materials[0].specular, vec3(0, 1, 0)) << "the last of equal statements holds";
-  EXPECT_EQ(scene.materials[1].diffuse, vec3(0.8F));
-  EXPECT_EQ(scene.materials[1].specular, vec3(0.0F));
+  EXPECT_EQ(scene.materials[0].phong().specular, vec3(0, 1, 0)) << "the last of equal statements holds";
+  EXPECT_EQ(scene.materials[1].phong().diffuse, vec3(0.8F));
+  EXPECT_EQ(scene.materials[1].phong().specular, vec3(0.0F));
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
@@ -236,10 +236,10 @@ TEST_F(ObjTest, OpacityWinsOverTransparency) {
 TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
   write("my colors.mtl", "newmtl deep red\r\nKd 1 0 0\r\n");
   const LoadedScene scene = load(kSquare + "mtllib my colors.mtl\nusemtl deep red\nf 1 2 3\n");
-  EXPECT_EQ(scene.materials.at(0).diffuse, vec3(1, 0, 0));
+  EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(1, 0, 0));
   write("a.mtl", "newmtl a\nKd 1 0 0\n");
   write("b.mtl", "newmtl b\nKd 0 1 0\n");
-  EXPECT_EQ(load(kSquare + "mtllib a.mtl b.mtl\nusemtl b\nf 1 2 3\n").materials.at(0).diffuse, vec3(0, 1, 0));
+  EXPECT_EQ(load(kSquare + "mtllib a.mtl b.mtl\nusemtl b\nf 1 2 3\n").materials.at(0).phong().diffuse, vec3(0, 1, 0));
 }
 
 // Refusals

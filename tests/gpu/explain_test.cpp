@@ -71,7 +71,7 @@ class ExplainTest : public test::DeviceTest {
         for (const ExplainedSource& source : ray.sources) sent += source.contribution;
         radiance += weight * sent;
         EXPECT_EQ(bits_of(ray.radiance), bits_of(radiance));
-        if (ray.hit.object >= 0) weight *= scene.materials[ray.material].reflection;
+        if (ray.hit.object >= 0) weight *= scene.materials[ray.material].phong().reflection;
         if (ray.hit.object < 0) {
           EXPECT_EQ(ray.own, scene.environment.background);
           EXPECT_TRUE(ray.sources.empty());

@@ -31,7 +31,7 @@ Scene make_scene() {
   floor.triangles = {{0, 2, 1}, {0, 3, 2}};
   Scene scene;
   scene.materials.resize(2);
-  scene.materials[1].reflection = vec3(0.5F);
+  scene.materials[1].phong().reflection = vec3(0.5F);
   scene.add("floor", floor);
   scene.add("ball", Sphere{{0, 1, 0}, 1.0}, 1);
   scene.lights.resize(1);
@@ -104,7 +104,7 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   light.direction = vec3(0);
   EXPECT_THROW(renderer.set_lights({&light, 1}), InputError);
   std::vector<Material> materials = scene_.materials;
-  materials[0].diffuse.r = -1.0F;
+  materials[0].phong().diffuse.r = -1.0F;
   EXPECT_THROW(renderer.set_materials(materials), InputError);
   EXPECT_THROW(renderer.set_materials(std::vector<Material>(3)), InputError);
   EXPECT_THROW(renderer.set_environment({.ambient = vec3(-1)}), InputError);
@@ -183,8 +183,8 @@ TEST_F(LibraryTest, AChangedSceneHasTheBitsOfANewOne) {
   const Image before = renderer.render(view_).image;
   Scene changed = scene_;
   changed.lights.push_back(make_headlight());
-  changed.materials[0].specular = vec3(0.5F);
-  changed.materials[0].shininess = 10.0F;
+  changed.materials[0].phong().specular = vec3(0.5F);
+  changed.materials[0].phong().shininess = 10.0F;
   changed.environment = {.ambient = vec3(0.2F), .background = vec3(0, 0, 1)};
   renderer.set_lights(changed.lights);
   renderer.set_materials(changed.materials);

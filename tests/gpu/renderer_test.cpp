@@ -225,7 +225,7 @@ TEST_F(RendererTest, CountsRays) {
   const double radius = std::tan(std::asin(1.0 / 3.0)) / std::tan(0.35) * 32.0;
   EXPECT_NEAR(static_cast<double>(dull.rays.shadow), 3.14159 * radius * radius * 4.0, 150.0);
 
-  scene.materials[0].reflection = vec3(0.5F);
+  scene.materials[0].phong().reflection = vec3(0.5F);
   const RenderResult mirror = render(scene, view);
   EXPECT_GE(mirror.rays.reflection, dull.rays.shadow);
   view.max_depth = 0;
@@ -248,9 +248,9 @@ TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
 world::Scene make_facing_mirrors(uint32_t light_count) {
   world::Scene scene;
   scene.materials.resize(1);
-  scene.materials[0].diffuse = vec3(0.0F);
+  scene.materials[0].phong().diffuse = vec3(0.0F);
   scene.materials[0].emissive = vec3(1.0F / 1024.0F);
-  scene.materials[0].reflection = vec3(1.0F);
+  scene.materials[0].phong().reflection = vec3(1.0F);
   scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0},
                    {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};
   scene.lights.resize(light_count);
@@ -262,9 +262,9 @@ world::Scene make_facing_mirrors(uint32_t light_count) {
 TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
   world::Scene scene;
   scene.materials.resize(1);
-  scene.materials[0].ambient = vec3(1.0F);
-  scene.materials[0].diffuse = vec3(0.0F);
-  scene.materials[0].reflection = vec3(0.5F);
+  scene.materials[0].phong().ambient = vec3(1.0F);
+  scene.materials[0].phong().diffuse = vec3(0.0F);
+  scene.materials[0].phong().reflection = vec3(0.5F);
   scene.environment.ambient = vec3(1.0F);
   scene.objects = {{"", world::Plane{vec3(0, 0, -1), vec3(0, 0, 1)}, 0},
                    {"", world::Plane{vec3(0, 0, 1), vec3(0, 0, -1)}, 0}};

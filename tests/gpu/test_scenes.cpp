@@ -12,10 +12,10 @@ namespace {
 
 Material make_material(const vec3& color, float specular, float shininess, float reflection) {
   Material material;
-  material.ambient = material.diffuse = color;
-  material.specular = vec3(specular);
-  material.shininess = shininess;
-  material.reflection = vec3(reflection);
+  material.phong().ambient = material.phong().diffuse = color;
+  material.phong().specular = vec3(specular);
+  material.phong().shininess = shininess;
+  material.phong().reflection = vec3(reflection);
   return material;
 }
 

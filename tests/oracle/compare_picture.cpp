@@ -14,7 +14,7 @@ namespace promin::oracle {
 namespace {
 
 bool is_mirror(const Material& material) {
-  return max_component(material.reflection) > 0.0F;
+  return max_component(material.phong().reflection) > 0.0F;
 }
 
 /// Radius of curvature of the primitive at a hit; infinite where it is flat.

@@ -42,7 +42,7 @@ world::Scene make_scene() {
   scene.environment.ambient = vec3(0.1F);
   scene.environment.background = vec3(0.2F, 0.4F, 0.6F);
   scene.materials.resize(2);
-  scene.materials[1].reflection = vec3(0.5F);
+  scene.materials[1].phong().reflection = vec3(0.5F);
   Mesh sheet;
   sheet.positions = {{-3, 0, -1}, {-1, 0, -1}, {-1, 2, -1}, {-3, 2, -1}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};

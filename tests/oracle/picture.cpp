@@ -122,16 +122,16 @@ bool is_in_shadow(const world::Scene& scene, const SurfacePoint& point, const Li
 Vector shade(const world::Scene& scene, const SurfacePoint& point, const Vector& to_eye) {
   const Material& material = *point.material;
   Vector sum =
-      Vector(material.ambient) * point.vertex_color * Vector(scene.environment.ambient) + Vector(material.emissive);
+      Vector(material.phong().ambient) * point.vertex_color * Vector(scene.environment.ambient) + Vector(material.emissive);
   for (const Light& light : scene.lights) {
     const Illumination illumination = illuminate(light, point.position);
     const Real cosine = glm::dot(point.normal, illumination.to_light);
     if (!(cosine > 0) || !(illumination.strength > 0)) continue;
     if (is_in_shadow(scene, point, light, illumination.to_light)) continue;
-    Vector share = Vector(material.diffuse) * point.vertex_color * Vector(light.diffuse) * cosine;
+    Vector share = Vector(material.phong().diffuse) * point.vertex_color * Vector(light.diffuse) * cosine;
     const Real highlight = glm::dot(2 * cosine * point.normal - illumination.to_light, to_eye);
-    if (material.shininess > 0 && highlight > 0) {
-      share += Vector(material.specular) * Vector(light.specular) * std::pow(highlight, Real(material.shininess));
+    if (material.phong().shininess > 0 && highlight > 0) {
+      share += Vector(material.phong().specular) * Vector(light.specular) * std::pow(highlight, Real(material.phong().shininess));
     }
     sum += illumination.strength * share;
   }

@@ -38,7 +38,7 @@ Vector color_of(const world::Scene& scene, const View& view) {
 /// A material that shows nothing by itself.
 Material make_black() {
   Material material;
-  material.ambient = material.diffuse = vec3(0.0F);
+  material.phong().ambient = material.phong().diffuse = vec3(0.0F);
   return material;
 }
 
@@ -50,7 +50,7 @@ Material make_emitter(const vec3& color) {
 
 Material make_mirror(const vec3& reflection, const vec3& emissive = vec3(0.0F)) {
   Material material = make_emitter(emissive);
-  material.reflection = reflection;
+  material.phong().reflection = reflection;
   return material;
 }
 
@@ -58,7 +58,7 @@ Material make_mirror(const vec3& reflection, const vec3& emissive = vec3(0.0F)) 
 world::Scene make_lit_floor() {
   world::Scene scene;
   scene.materials = {make_black()};
-  scene.materials[0].diffuse = vec3(1.0F);
+  scene.materials[0].phong().diffuse = vec3(1.0F);
   scene.objects = {{"floor", kFloor, 0}};
   scene.lights.resize(1);
   scene.lights[0].position = vec3(0, 2, 0);
@@ -126,7 +126,7 @@ TEST(OraclePicture, AmbientAndEmissiveAdd) {
   world::Scene scene = make_lit_floor();
   scene.lights.clear();
   scene.environment.ambient = vec3(0.5F, 1.0F, 2.0F);
-  scene.materials[0].ambient = vec3(0.25F);
+  scene.materials[0].phong().ambient = vec3(0.25F);
   scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
   expect_color(color_of(scene, look_down_at(0)), {0.125L, 0.25L, 1.5L});
 }
@@ -144,13 +144,13 @@ TEST(OraclePicture, DiffuseLightFollowsTheCosine) {
 
 TEST(OraclePicture, HighlightsFollowThePower) {
   world::Scene scene = make_lit_floor();
-  scene.materials[0].diffuse = vec3(0.0F);
-  scene.materials[0].specular = vec3(0.5F);
-  scene.materials[0].shininess = 10;
+  scene.materials[0].phong().diffuse = vec3(0.0F);
+  scene.materials[0].phong().specular = vec3(0.5F);
+  scene.materials[0].phong().shininess = 10;
   const vec3 eye(std::sqrt(1.0F / 3.0F), 1, 0);
   const View view = look_at(eye, vec3(0), glm::normalize(vec3(-1, std::sqrt(1.0F / 3.0F), 0)));
   expect_color(color_of(scene, view), Vector(0.5L * std::pow(0.75L, Real(5))));
-  scene.materials[0].shininess = 0;
+  scene.materials[0].phong().shininess = 0;
   expect_color(color_of(scene, view), Vector(0));
 }
 
@@ -224,7 +224,7 @@ TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {
   world::Scene scene;
   scene.environment.ambient = vec3(1.0F);
   scene.materials = {make_black(), Material()};
-  scene.materials[1].ambient = vec3(0.5F);
+  scene.materials[1].phong().ambient = vec3(0.5F);
   Mesh mesh = make_bent_triangle();
   mesh.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
   mesh.triangle_materials = {1};
@@ -277,7 +277,7 @@ TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
 /// A ball and a can on a mirroring floor under two lights, in units of `size` around `center`.
 Picture render_still_life(float size, const vec3& center) {
   world::Scene scene = make_lit_floor();
-  scene.materials[0].reflection = vec3(0.25F);
+  scene.materials[0].phong().reflection = vec3(0.25F);
   scene.objects = {{"", world::Plane{center, vec3(0, 1, 0)}, 0},
                    {"", world::Sphere{center + size * vec3(0, 1, 0), size}, 0},
                    {"", world::Cylinder{center + size * vec3(2, 1, 0), vec3(0, 1, 0), size, 0.5F * size}, 0},

@@ -38,8 +38,8 @@ TEST(ReportSceneHash, IsTheSameForEveryBuilderAndOtherForOtherContent) {
     EXPECT_EQ(hash_of(scene), hash) << builder;
   }
   std::vector<world::Scene> others(10, scene);
-  others[0].materials[0].diffuse.y += 0.01F;
-  others[1].materials[0].shininess += 1.0F;
+  others[0].materials[0].phong().diffuse.y += 0.01F;
+  others[1].materials[0].phong().shininess += 1.0F;
   others[2].lights.emplace_back();
   others[3].cameras.at(0).eye.x += 0.5F;
   others[4].environment.background.z += 0.1F;

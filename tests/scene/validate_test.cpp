@@ -66,12 +66,12 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
     return dmat4(dvec4(factors.x, 0, 0, 0), dvec4(0, factors.y, 0, 0), dvec4(0, 0, factors.z, 0), dvec4(0, 0, 0, 1));
   };
   const std::vector<Fault<Scene>> faults = {
-      {"materials[0].ambient", [](Scene& s) { s.materials[0].ambient.r = -1; }},
-      {"materials[0].diffuse", [](Scene& s) { s.materials[0].diffuse.g = kNan; }},
-      {"materials[0].specular", [](Scene& s) { s.materials[0].specular.b = kInfinity; }},
-      {"materials[0].reflection", [](Scene& s) { s.materials[0].reflection.r = -0.1F; }},
+      {"materials[0].ambient", [](Scene& s) { s.materials[0].phong().ambient.r = -1; }},
+      {"materials[0].diffuse", [](Scene& s) { s.materials[0].phong().diffuse.g = kNan; }},
+      {"materials[0].specular", [](Scene& s) { s.materials[0].phong().specular.b = kInfinity; }},
+      {"materials[0].reflection", [](Scene& s) { s.materials[0].phong().reflection.r = -0.1F; }},
       {"materials[0].emissive", [](Scene& s) { s.materials[0].emissive.r = kNan; }},
-      {"materials[0].shininess", [](Scene& s) { s.materials[0].shininess = kInfinity; }},
+      {"materials[0].shininess", [](Scene& s) { s.materials[0].phong().shininess = kInfinity; }},
       {"lights[0].kind", [](Scene& s) { s.lights[0].kind = static_cast<LightKind>(99); }},
       {"lights[0].diffuse", [](Scene& s) { s.lights[0].diffuse.r = -1; }},
       {"lights[0].specular", [](Scene& s) { s.lights[0].specular.r = kNan; }},
@@ -133,7 +133,7 @@ TEST(ValidateTest, AVertexOutOfRangeIsTold) {
 
 TEST(ValidateTest, AllProblemsAreToldTogether) {
   Scene scene = make_valid_scene();
-  scene.materials[0].diffuse.r = -1;
+  scene.materials[0].phong().diffuse.r = -1;
   scene.objects[1].geometry = 77;
   EXPECT_THAT(places_of(validate(scene)), ElementsAre("materials[0].diffuse", "objects[1].geometry"));
   try {

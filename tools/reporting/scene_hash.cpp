@@ -67,12 +67,19 @@ class ContentHash {
     add(box.half_size);
     add(box.turn);
   }
+  void add(const Phong& phong) {
+    for (const vec3& factor : {phong.ambient, phong.diffuse, phong.specular, phong.reflection}) add(factor);
+    add(phong.shininess);
+  }
+  void add(const MetallicRoughness& material) {
+    add(material.base_color);
+    for (const float value : {material.metallic, material.roughness, material.ior, material.specular}) add(value);
+    add(material.specular_color);
+  }
+  void add(const Unlit& unlit) { add(unlit.color); }
   void add(const Material& material) {
-    for (const vec3& factor :
-         {material.ambient, material.diffuse, material.specular, material.reflection, material.emissive}) {
-      add(factor);
-    }
-    add(material.shininess);
+    std::visit([&](const auto& model) { add(model); }, material.model);
+    add(material.emissive);
   }
   void add(const Light& light) {
     add(static_cast<uint64_t>(light.kind));

@@ -12,9 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 10> kKnownExtensions = {"KHR_implicit_shapes",
+constexpr std::array<std::string_view, 12> kKnownExtensions = {"KHR_implicit_shapes",
                                                                "KHR_lights_punctual",
                                                                "KHR_materials_emissive_strength",
+                                                               "KHR_materials_ior",
+                                                               "KHR_materials_specular",
                                                                "KHR_materials_unlit",
                                                                "KHR_mesh_quantization",
                                                                "KHR_node_visibility",

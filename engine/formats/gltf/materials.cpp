@@ -3,8 +3,8 @@
 #include "formats/gltf/materials.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <array>
+#include <string_view>
 
 #include "formats/gltf/json_lookup.h"
 
@@ -13,36 +13,41 @@ namespace {
 
 using nlohmann::json;
 
-struct MetallicRoughness {
-  dvec3 base{1.0};
-  double metallic = 1.0;
-  double roughness = 1.0;
-};
-
-/// Phong is fitted by what the two models share: diffuse is base/pi; the specular factor is the reflectance at normal
-/// incidence; the exponent's lobe is as wide as the microfacets' (Blinn's 2/r^4 - 2 around the half vector, a quarter
-/// of that around the reflected ray); the mirror fades as the surface gets rough.
-void shade_as_phong(const MetallicRoughness& pbr, Material& material) {
-  constexpr double kDielectricReflectance = 0.04;
-  constexpr double kRoughestMirror = 0.3;
-  constexpr double kSharpestHighlight = 1e4;
-  const dvec3 diffuse = pbr.base * (1.0 - pbr.metallic);
-  const dvec3 specular = glm::mix(dvec3(kDielectricReflectance), pbr.base, pbr.metallic);
-  const double exponent = (2.0 / std::pow(pbr.roughness, 4.0) - 2.0) / 4.0;
-  material.ambient = vec3(diffuse);
-  material.diffuse = vec3(diffuse / std::numbers::pi);
-  material.specular = vec3(specular);
-  material.shininess = static_cast<float>(std::clamp(exponent, 1.0, kSharpestHighlight));
-  material.reflection = vec3(specular * std::max(0.0, 1.0 - pbr.roughness / kRoughestMirror));
+/// The base colour of a glTF material, whatever its model.
+dvec3 base_color_of(const json& source) {
+  const auto pbr = source.find("pbrMetallicRoughness");
+  return pbr == source.end() ? dvec3(1.0) : dvec3(vec4_of(*pbr, "baseColorFactor", dvec4(1.0)));
 }
 
-void shade_as_written(const json& phong, const dvec3& base, Material& material) {
-  const dvec3 diffuse = vec3_of(phong, "diffuseFactor", base);
-  material.diffuse = vec3(diffuse);
-  material.ambient = vec3(vec3_of(phong, "ambientFactor", diffuse));
-  material.specular = vec3(vec3_of(phong, "specularFactor", dvec3(0.0)));
-  material.shininess = phong.value("shininess", 0.0F);
-  material.reflection = vec3(vec3_of(phong, "reflectionFactor", dvec3(0.0)));
+Phong phong_of(const json& extension, const dvec3& base) {
+  const dvec3 diffuse = vec3_of(extension, "diffuseFactor", base);
+  Phong phong;
+  phong.diffuse = vec3(diffuse);
+  phong.ambient = vec3(vec3_of(extension, "ambientFactor", diffuse));
+  phong.specular = vec3(vec3_of(extension, "specularFactor", dvec3(0.0)));
+  phong.shininess = extension.value("shininess", 0.0F);
+  phong.reflection = vec3(vec3_of(extension, "reflectionFactor", dvec3(0.0)));
+  return phong;
+}
+
+/// Of what the specification bounds by 1, exporters write a little more.
+vec3 to_shares(const dvec3& color) {
+  return vec3(glm::min(color, dvec3(1.0)));
+}
+
+MetallicRoughness metallic_roughness_of(const json& source) {
+  MetallicRoughness material;
+  material.base_color = to_shares(base_color_of(source));
+  if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
+    material.metallic = pbr->value("metallicFactor", 1.0F);
+    material.roughness = pbr->value("roughnessFactor", 1.0F);
+  }
+  if (const json* extension = find_extension(source, "KHR_materials_ior")) material.ior = extension->value("ior", 1.5F);
+  if (const json* extension = find_extension(source, "KHR_materials_specular")) {
+    material.specular = extension->value("specularFactor", 1.0F);
+    material.specular_color = vec3(vec3_of(*extension, "specularColorFactor", dvec3(1.0)));
+  }
+  return material;
 }
 
 bool has_texture(const json& object) {
@@ -51,6 +56,10 @@ bool has_texture(const json& object) {
   }
   return false;
 }
+
+constexpr std::array<std::string_view, 5> kKnown = {"PROMIN_materials_phong", "KHR_materials_unlit",
+                                                    "KHR_materials_emissive_strength", "KHR_materials_ior",
+                                                    "KHR_materials_specular"};
 
 void warn_about_what_is_ignored(const json& source, const std::string& title, LoadReport& report) {
   const auto pbr = source.find("pbrMetallicRoughness");
@@ -61,32 +70,22 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   if (alpha_mode != "OPAQUE") report.warn("material " + title + ": alphaMode " + alpha_mode + " is drawn opaque");
   if (!source.contains("extensions")) return;
   for (const auto& [name, value] : source["extensions"].items()) {
-    if (name != "PROMIN_materials_phong" && name != "KHR_materials_unlit" &&
-        name != "KHR_materials_emissive_strength") {
+    if (std::ranges::find(kKnown, name) == kKnown.end()) {
       report.warn("material " + title + ": " + name + " is ignored");
     }
   }
 }
 
-MetallicRoughness metallic_roughness_of(const json& source) {
-  const auto pbr = source.find("pbrMetallicRoughness");
-  if (pbr == source.end()) return {};
-  return {dvec3(vec4_of(*pbr, "baseColorFactor", dvec4(1.0))), pbr->value("metallicFactor", 1.0),
-          pbr->value("roughnessFactor", 1.0)};
-}
-
 Material read_material(const json& source) {
-  const MetallicRoughness pbr = metallic_roughness_of(source);
   Material material;
   material.name = source.value("name", "");
   if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
-    shade_as_written(*phong, pbr.base, material);
+    material.model = phong_of(*phong, base_color_of(source));
   } else if (find_extension(source, "KHR_materials_unlit") != nullptr) {
-    material.ambient = material.diffuse = vec3(0.0F);
-    material.emissive = vec3(pbr.base);
+    material.model = Unlit{vec3(base_color_of(source))};
     return material;
   } else {
-    shade_as_phong(pbr, material);
+    material.model = metallic_roughness_of(source);
   }
   double strength = 1.0;
   if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
@@ -111,7 +110,7 @@ std::vector<Material> read_gltf_materials(const GltfDocument& document, LoadRepo
 Material default_gltf_material() {
   Material material;
   material.name = "glTF default";
-  shade_as_phong(MetallicRoughness{}, material);
+  material.model = MetallicRoughness{};
   return material;
 }
 

@@ -91,18 +91,19 @@ Material make_material(const MtlMaterial& source) {
   const dvec3 diffuse = source.find("Kd", 0.8);
   Material material;
   material.name = source.name;
-  material.diffuse = vec3(diffuse);
-  material.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : vec3(diffuse);
   material.emissive = vec3(source.find("Ke", 0.0));
+  Phong& phong = material.phong();
+  phong.diffuse = vec3(diffuse);
+  phong.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : vec3(diffuse);
   if (illum == 0.0) {
-    material.emissive += material.diffuse;
-    material.ambient = material.diffuse = vec3(0.0F);
+    material.emissive += phong.diffuse;
+    phong.ambient = phong.diffuse = vec3(0.0F);
   }
   if (illum >= 2.0) {
-    material.specular = vec3(source.find("Ks", 0.0));
-    material.shininess = static_cast<float>(source.find("Ns", 0.0).x);
+    phong.specular = vec3(source.find("Ks", 0.0));
+    phong.shininess = static_cast<float>(source.find("Ns", 0.0).x);
   }
-  if (illum >= 3.0 && illum < 10.0) material.reflection = material.specular;
+  if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
   return material;
 }
 

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Materials as light meets them. Each model of promin/kinds/materials.def has these functions, the name followed by its
+// prefix; `direction` is the unit direction of the ray that has met the point:
+//   own_light         what the point sends without any source: emitted, ambient and from the environment; with
+//                     `follows_mirror` without the part that the mirror ray brings
+//   contribution      what a source of strength 1 adds where nothing is between
+//   mirror_weight     the weight of what the mirror ray brings; 0: none is traced
+//   mirror_roughness  the roughness at which a mirror ray that meets nothing sees the environment, or NO_ENVIRONMENT
+
+#define PROMIN_MATERIAL_SOURCES
+#include "promin/kinds/materials.def"
+
+uint model_of(ShadingPoint point) { return floatBitsToUint(point.material.emissive.w); }
+
+// The function of the point's model.
+#define RETURN_BY_MODEL(KIND, FEATURE, CALL) \
+  if (has(FEATURE) && (MATERIAL_KIND_COUNT == 1u || model_of(point) == MATERIAL_##KIND)) return CALL;
+
+// What the point sends without any source.
+vec3 own_light(ShadingPoint point, vec3 direction, bool follows_mirror) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, own_light_##PREFIX(point, direction, follows_mirror))
+#include "promin/kinds/materials.def"
+  return vec3(0.0);
+}
+
+vec3 contribution_of(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, contribution_##PREFIX(point, to_eye, to_light, cosine, light))
+#include "promin/kinds/materials.def"
+  return vec3(0.0);
+}
+
+vec3 mirror_weight(ShadingPoint point) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, mirror_weight_##PREFIX(point))
+#include "promin/kinds/materials.def"
+  return vec3(0.0);
+}
+
+float mirror_roughness(ShadingPoint point) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, mirror_roughness_##PREFIX(point))
+#include "promin/kinds/materials.def"
+  return NO_ENVIRONMENT;
+}

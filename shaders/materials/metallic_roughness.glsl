@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The metallic-roughness model of glTF 2.0, appendix B (docs/model.md, "Metallic-roughness"). Of its record a = base
+// colour, w of it the share of metal; b = the dielectric's reflectance at normal incidence, w of it at grazing
+// incidence; x of c = roughness.
+
+const float LEAST_COSINE = 0.0009765625;        // 2^-10, to the eye
+const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12: the light comes from behind, as seen from the eye
+const float LEAST_ALPHA = 0.002;                 // of sources, whose images would be points (glTF B.3.2 forbids 0)
+const float INVERSE_PI = 0.318309886;
+// Between these roughnesses reflected objects fade into the environment alone.
+const float SHARPEST_BLUR = 0.1;
+const float ROUGHEST_MIRROR = 0.4;
+// A mirror ray of less weight is not traced.
+const float LEAST_MIRROR_WEIGHT = 1.0 / 256.0;
+
+// What the lobe does with light: K gives back what microfacets reflect more than once, R is the share of light from
+// all around that is sent to the eye (Fdez-Aguera, "A Multiple-Scattering Microfacet Model for Real-Time Image Based
+// Lighting", JCGT 8(1)).
+struct Lobe {
+  vec3 f0;  // Fresnel's reflectance at normal incidence, and at grazing incidence
+  float f90;
+  vec3 k;
+  vec3 r;
+};
+
+Lobe make_lobe(vec3 f0, float f90, vec2 shares) {
+  precise vec3 mean = f0 + (f90 - f0) * (1.0 / 21.0);
+  precise vec3 k = 1.0 / (1.0 - mean * (1.0 - shares.x));
+  precise vec3 r = k * (f0 * (shares.x - shares.y) + f90 * shares.y);
+  return Lobe(f0, f90, k, r);
+}
+
+vec3 base_color_of(ShadingPoint point) {
+  precise vec3 base = point.material.a.xyz * point.color;
+  return base;
+}
+
+Lobe dielectric_lobe(ShadingPoint point) {
+  return make_lobe(point.material.b.xyz, point.material.b.w, point.lobe_shares);
+}
+Lobe metal_lobe(ShadingPoint point) { return make_lobe(base_color_of(point), 1.0, point.lobe_shares); }
+
+// The share of light from all around that is sent to the eye by reflection.
+vec3 reflectance_of(ShadingPoint point) {
+  float metallic = point.material.a.w;
+  precise vec3 sum = (1.0 - metallic) * dielectric_lobe(point).r + metallic * metal_lobe(point).r;
+  return sum;
+}
+
+// The diffuse share: what the dielectric does not reflect.
+vec3 albedo_of(ShadingPoint point) {
+  Lobe lobe = dielectric_lobe(point);
+  precise vec3 albedo =
+      (1.0 - point.material.a.w) * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z))) * base_color_of(point);
+  return albedo;
+}
+
+// The part of what is reflected that a mirror ray brings; the environment brings the rest.
+float sharpness_of(ShadingPoint point) {
+  precise float x =
+      clamp((point.material.c.x - SHARPEST_BLUR) * (1.0 / (ROUGHEST_MIRROR - SHARPEST_BLUR)), 0.0, 1.0);
+  precise float sharpness = 1.0 - x * x * (3.0 - 2.0 * x);
+  return sharpness;
+}
+
+vec3 mirror_weight_metallic_roughness(ShadingPoint point) {
+  precise vec3 weight = sharpness_of(point) * reflectance_of(point);
+  return max_abs(weight) < LEAST_MIRROR_WEIGHT ? vec3(0.0) : weight;
+}
+
+float mirror_roughness_metallic_roughness(ShadingPoint point) { return point.material.c.x; }
+
+// The direction from which the lobe takes most of its light: rough ones lean towards the normal.
+vec3 direction_of_lobe(ShadingPoint point, vec3 direction) {
+  vec3 mirrored = reflect_direction(direction, point.normal, point.geometric_normal);
+  float roughness = point.material.c.x;
+  float alpha2 = roughness * roughness * roughness * roughness;
+  precise vec3 leaning = mirrored + (point.normal - mirrored) * alpha2;
+  return normalize3(leaning);
+}
+
+vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follows_mirror) {
+  float rest = follows_mirror ? 1.0 - sharpness_of(point) : 1.0;
+  precise vec3 own = point.material.emissive.xyz + albedo_of(point) * ambient_at(point.normal) +
+                     rest * reflectance_of(point) *
+                         environment_radiance(direction_of_lobe(point, direction), point.material.c.x);
+  return own;
+}
+
+// The microfacets' density D, where h is the half vector: as k^2 / pi, because 1 - (N.H)^2 loses all its digits in a
+// highlight, while |H - N| keeps them.
+float density_of(vec3 normal, vec3 h, float alpha) {
+  precise vec3 apart = h - normal;
+  precise float q = dot3(apart, apart);
+  precise float s2 = q * (1.0 - 0.25 * q);
+  precise float k = alpha / (s2 + alpha * alpha * (1.0 - s2));
+  precise float density = k * k * INVERSE_PI;
+  return density;
+}
+
+// Smith's height-correlated masking and shadowing over 4 (N.L) (N.V) (Heitz, "Understanding the Masking-Shadowing
+// Function", JCGT 3(2)).
+float visibility_of(float v, float l, float alpha) {
+  precise float a2 = alpha * alpha;
+  precise float v_part = l * sqrt(a2 + (1.0 - a2) * v * v);
+  precise float l_part = v * sqrt(a2 + (1.0 - a2) * l * l);
+  precise float visibility = 0.5 / (v_part + l_part);
+  return visibility;
+}
+
+vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+  precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
+  precise vec3 sum = to_eye + to_light;
+  float size = length3(sum);
+  if (size < LEAST_HALF_VECTOR) return contribution;
+  precise vec3 h = sum / size;
+  float roughness = point.material.c.x;
+  float alpha = max(roughness * roughness, LEAST_ALPHA);
+  float v = max(dot3(point.normal, to_eye), LEAST_COSINE);
+  precise float p = 1.0 - min(0.5 * size, 1.0);
+  precise float p2 = p * p;
+  precise float p5 = p2 * p2 * p;
+  Lobe dielectric = dielectric_lobe(point);
+  Lobe metal = metal_lobe(point);
+  float metallic = point.material.a.w;
+  precise vec3 reflected =
+      (1.0 - metallic) * dielectric.k * (dielectric.f0 + (dielectric.f90 - dielectric.f0) * p5) +
+      metallic * metal.k * (metal.f0 + (metal.f90 - metal.f0) * p5);
+  precise float scale = cosine * density_of(point.normal, h, alpha) * visibility_of(v, cosine, alpha);
+  contribution += reflected * light.specular.xyz * scale;
+  return contribution;
+}

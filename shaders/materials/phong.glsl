@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Phong's model (docs/model.md, "Phong"). Of its record a = ambient, b = diffuse, c = specular, w of it the exponent,
+// d = reflection.
+
+vec3 own_light_phong(ShadingPoint point, vec3 direction, bool follows_mirror) {
+  precise vec3 own = point.material.a.xyz * point.color * ambient_at(point.normal) + point.material.emissive.xyz;
+  return own;
+}
+
+vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+  precise vec3 contribution = point.material.b.xyz * point.color * light.diffuse.xyz * cosine;
+  if (has(FEATURE_SPECULAR) && point.material.c.w > 0.0) {
+    precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
+    precise float highlight = dot3(mirrored, to_eye);
+    if (highlight > 0.0) {
+      // 1 is the most that unit vectors give; beyond it is rounding.
+      contribution +=
+          point.material.c.xyz * light.specular.xyz * power(min(highlight, 1.0), point.material.c.w);
+    }
+  }
+  return contribution;
+}
+
+vec3 mirror_weight_phong(ShadingPoint point) { return point.material.d.xyz; }
+
+// Perfect, so its rays see the environment as it is; where there is none, the background.
+float mirror_roughness_phong(ShadingPoint point) { return has(FEATURE_SKY) ? 0.0 : NO_ENVIRONMENT; }

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A colour that no light changes (KHR_materials_unlit). Of its record a = the colour.
+
+vec3 own_light_unlit(ShadingPoint point, vec3 direction, bool follows_mirror) {
+  precise vec3 own = point.material.a.xyz * point.color + point.material.emissive.xyz;
+  return own;
+}
+
+vec3 contribution_unlit(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+  return vec3(0.0);
+}
+
+vec3 mirror_weight_unlit(ShadingPoint point) { return vec3(0.0); }
+
+float mirror_roughness_unlit(ShadingPoint point) { return NO_ENVIRONMENT; }
