@@ -88,7 +88,7 @@ void print_info(const std::filesystem::path& file) {
   print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(flat)), ", ")));
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
                                packed.bvh.depth, packed.bvh.sah_cost));
-  const uint64_t shading_bytes = pack_materials(scene.materials).size() * sizeof(layout::MaterialRecord) +
+  const uint64_t shading_bytes = scene.materials.size() * sizeof(layout::MaterialRecord) +
                                  pack_lights(scene.lights).records.size() * sizeof(layout::LightRecord);
   print_row("memory", fmt::format("{:.3f} MB of geometry on the host, {:.3f} MB on the device",
                                   1e-6 * static_cast<double>(counts.geometry_bytes),

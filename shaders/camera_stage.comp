@@ -11,18 +11,18 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
 #include "bindings.glsl"
 #include "film.glsl"
+#include "stream.glsl"
 #include "math.glsl"
 #include "ray.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
-#include "stream.glsl"
 #include "packet.glsl"
+#include "ray_bins.glsl"
 #include "packet_triangles.glsl"
 #include "family.glsl"
 #include "node_boxes.glsl"
 #include "traversal.glsl"
 #include "debug_views.glsl"
-#include "ray_bins.glsl"
 #include "ray_log.glsl"
 #include "secondary.glsl"
 #include "shading_records.glsl"
@@ -66,7 +66,8 @@ bool begin_packet() {
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
     uint index = pixel.y * window_size().x + pixel.x;
-    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT);
+    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
+                    CAMERA.look.w, CAMERA.right.w);
   }
   return is_any_inside;
 }
@@ -97,7 +98,8 @@ void arrive() {
     seen[i] = VIEW.background.xyz;
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
-      points[i] = make_shading_point(ray, paths[i].direction, found[i]);
+      widen_cone(paths[i], ray, found[i]);
+      points[i] = make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width);
       seen[i] = own_light(points[i], paths[i].direction, leads_on(points[i], 0u));
     }
     log_own_light(seen[i]);
@@ -142,6 +144,10 @@ void put_path(Path path) {
   pixels[record + RECORD_ORIGIN] = uvec4(floatBitsToUint(path.origin), path.pixel);
   pixels[record + RECORD_DIRECTION].xyz = floatBitsToUint(path.direction);
   if (SEES_ENVIRONMENT) pixels[record + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
+  if (has(FEATURE_TEXTURES)) {
+    pixels[record + RECORD_RADIANCE].w = floatBitsToUint(path.cone_width);
+    pixels[record + RECORD_SEEN].w = floatBitsToUint(path.cone_spread);
+  }
   pixels[record_of_weight(number, 0u)].xyz = floatBitsToUint(path.weight);
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));

@@ -98,6 +98,10 @@ uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
   store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
   store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
   if (SEES_ENVIRONMENT) pixels[record_of_path(number) + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
+  if (has(FEATURE_TEXTURES)) {
+    pixels[record_of_path(number) + RECORD_RADIANCE].w = floatBitsToUint(path.cone_width);
+    pixels[record_of_path(number) + RECORD_SEEN].w = floatBitsToUint(path.cone_spread);
+  }
   ++mirror_ray_count;
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
@@ -114,7 +118,8 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     return ASK_NOTHING;
   }
   path.direction = normalize3(ray.direction);
-  ShadingPoint point = make_shading_point(ray, path.direction, hit);
+  widen_cone(path, ray, hit);
+  ShadingPoint point = make_shading_point(ray, path.direction, hit, path.cone_width);
   vec3 own = own_light(point, path.direction, leads_on(point, turn / turns_of_bounce() + 1u));
   log_own_light(own);
   if (begins_bounce(turn)) seen = own;
@@ -140,6 +145,10 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   path.pixel = pixels[record + RECORD_ORIGIN].w;
   path.radiance = load_record(record + RECORD_RADIANCE).xyz;
   path.weight = load_record(record_of_weight(number, turn)).xyz;
+  if (has(FEATURE_TEXTURES)) {
+    path.cone_width = load_record(record + RECORD_RADIANCE).w;
+    path.cone_spread = load_record(record + RECORD_SEEN).w;
+  }
   path.roughness = SEES_ENVIRONMENT ? load_record(record + RECORD_DIRECTION).w : NO_ENVIRONMENT;
   vec3 seen = vec3(0.0);
   if (turn > 0u) {

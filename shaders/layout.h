@@ -67,6 +67,7 @@ LAYOUT_CONSTANT BINDING_PRIMITIVE_TEXELS = 8u;
 LAYOUT_CONSTANT BINDING_RAY_TEXELS = 9u;
 LAYOUT_CONSTANT BINDING_SHADING_TEXELS = 10u;
 LAYOUT_CONSTANT BINDING_FILM_TEXELS = 11u;
+LAYOUT_CONSTANT BINDING_TEXTURE_TEXELS = 12u;
 
 // Specialisation constants.
 LAYOUT_CONSTANT CONSTANT_FEATURES = 0u;  // the first word
@@ -114,13 +115,15 @@ struct Primitive {
 LAYOUT_CONSTANT PRIMITIVE_TEXELS = 3u;
 
 // The data that shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with
-// vertex normals or colours), w = material index and SURFACE_* bits.
+// normals, colours, texture coordinates or tangents), w = material index and SURFACE_* bits.
 struct SurfaceRecord {
   uvec4 corners_material;
 };
 LAYOUT_CONSTANT SURFACE_IS_SMOOTH = 0x80000000u;
 LAYOUT_CONSTANT SURFACE_IS_COLORED = 0x40000000u;
-LAYOUT_CONSTANT SURFACE_MATERIAL_MASK = 0x3FFFFFFFu;
+LAYOUT_CONSTANT SURFACE_HAS_UVS = 0x20000000u;
+LAYOUT_CONSTANT SURFACE_HAS_TANGENTS = 0x10000000u;
+LAYOUT_CONSTANT SURFACE_MATERIAL_MASK = 0x0FFFFFFFu;
 
 // a, b, c and d are the model's own: the shader files in materials/ define them.
 struct MaterialRecord {
@@ -131,6 +134,26 @@ struct MaterialRecord {
   vec4 emissive;  // w = bits of MATERIAL_*
 };
 LAYOUT_CONSTANT MATERIAL_TEXELS = 5u;
+
+// A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
+struct TextureSlotRecord {
+  vec4 to_u;    // w = bits of TEXTURE_*
+  vec4 to_v;
+  uvec4 image;  // x = its first word, y = width, z = height, w = levels
+};
+LAYOUT_CONSTANT TEXTURE_SLOT_TEXELS = 3u;
+LAYOUT_CONSTANT TEXTURE_UV_SET = 1u;  // the number of the set
+LAYOUT_CONSTANT TEXTURE_IS_SRGB = 2u;
+LAYOUT_CONSTANT TEXTURE_MAGNIFIED_LINEARLY = 4u;
+LAYOUT_CONSTANT TEXTURE_MINIFIED_LINEARLY = 8u;
+LAYOUT_CONSTANT TEXTURE_HAS_LEVELS = 16u;
+LAYOUT_CONSTANT TEXTURE_LEVELS_LINEAR = 32u;
+LAYOUT_CONSTANT TEXTURE_WRAP_U_SHIFT = 8u;
+LAYOUT_CONSTANT TEXTURE_WRAP_V_SHIFT = 10u;
+LAYOUT_CONSTANT TEXTURE_WRAP_MASK = 3u;
+LAYOUT_CONSTANT WRAP_REPEAT = 0u;
+LAYOUT_CONSTANT WRAP_MIRRORED = 1u;
+LAYOUT_CONSTANT WRAP_CLAMP = 2u;
 
 // The entries of the table of lobes along each side (shading_records.glsl).
 LAYOUT_CONSTANT LOBE_TABLE_SIDE = 32u;
@@ -147,8 +170,8 @@ LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 // The constants of a view of a scene (uniform buffer). None of them decides a branch or a loop; those are in Dispatch.
 struct ViewConstants {
   vec4 eye;  // w = near: distance of the viewport plane
-  vec4 look;
-  vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world)
+  vec4 look;   // w = width of a sample's cone of sight at the eye, with TEXTURES
+  vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = how much it grows at distance 1
   vec4 up;
   vec4 ambient;
   vec4 background;
@@ -156,6 +179,7 @@ struct ViewConstants {
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
   uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level
+  uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
   vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
 
@@ -231,11 +255,11 @@ LAYOUT_CONSTANT LOG_SOURCE = 1u;
 static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 304);
+static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 320);
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
-static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS);
+static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS && sizeof(TextureSlotRecord) == 16 * TEXTURE_SLOT_TEXELS);
 #undef LAYOUT_CONSTANT
 #undef LAYOUT_FEATURE
 }  // namespace promin::layout

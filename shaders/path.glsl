@@ -10,7 +10,16 @@ struct Path {
   vec3 radiance;   // sum so far
   uint pixel;
   float roughness;  // the largest of the surfaces on its way, or NO_ENVIRONMENT
+  float cone_width;   // of the cone that its pixel sees, with FEATURE_TEXTURES,
+  float cone_spread;  // and how much it grows at a distance of 1
 };
+
+// Follows the path's cone to where its ray is met.
+void widen_cone(inout Path path, Ray ray, Hit hit) {
+  if (!has(FEATURE_TEXTURES)) return;
+  precise float width = path.cone_width + path.cone_spread * (hit.t * length3(ray.direction));
+  path.cone_width = width;
+}
 
 void add_radiance(inout Path path, vec3 seen) {
   precise vec3 sum = path.radiance + path.weight * seen;
@@ -28,6 +37,12 @@ bool bounce(inout Path path, ShadingPoint point) {
   path.weight = weight;
   if (!(max_abs(weight) > 0.0)) return false;
   path.origin = lift_off(point.position, point.geometric_normal, point.lift);
+  if (has(FEATURE_TEXTURES)) {
+    // What is curved spreads the cone, beyond a focus too.
+    precise float facing = max(-dot3(point.normal, path.direction), 1.0 / 64.0);
+    precise float spread = path.cone_spread + 2.0 * point.curvature * path.cone_width / facing;
+    path.cone_spread = spread;
+  }
   path.direction = reflect_direction(path.direction, point.normal, point.geometric_normal);
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
   return true;

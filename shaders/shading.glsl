@@ -12,9 +12,12 @@ struct ShadingPoint {
   vec3 color;            // vertex colour
   MaterialRecord material;
   vec2 lobe_shares;  // with FEATURE_METALLIC_ROUGHNESS
+  float occlusion;   // with FEATURE_TEXTURES: what is left of the environment's light
+  float curvature;   // with FEATURE_TEXTURES: how fast the normal turns along the surface
 };
 
 #include "materials.glsl"
+#include "textures.glsl"
 
 // Lifts the point onto the curved surface that the vertex normals suggest, so that its own coarse polygon does not
 // shadow what is shaded as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
@@ -22,6 +25,18 @@ vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
   precise float height = min(0.0, dot3(position - corner, normal));
   precise vec3 projected = position - height * normal;
   return projected;
+}
+
+// How fast the normals turn along the triangle's edges, per distance; positive where it is convex.
+float curvature_of(Primitive p, vec3 n0, vec3 n1, vec3 n2) {
+  precise vec3 e0 = corner1(p) - corner0(p);
+  precise vec3 e1 = corner2(p) - corner1(p);
+  precise vec3 e2 = corner0(p) - corner2(p);
+  precise float sum = dot3(n1 - n0, e0) / max(dot3(e0, e0), SMALLEST_NORMAL) +
+                      dot3(n2 - n1, e1) / max(dot3(e1, e1), SMALLEST_NORMAL) +
+                      dot3(n0 - n2, e2) / max(dot3(e2, e2), SMALLEST_NORMAL);
+  precise float mean = sum * (1.0 / 3.0);
+  return mean;
 }
 
 void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, vec3 weights, bool is_flipped) {
@@ -39,10 +54,110 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
                         weights.y * lift_to_curve(point.position, corner1(p), n1 * side) +
                         weights.z * lift_to_curve(point.position, corner2(p), n2 * side);
   point.shadow_position = lifted;
+  if (has(FEATURE_TEXTURES)) point.curvature = side * curvature_of(p, n0, n1, n2);
 }
 
-// `direction` is the ray's, unit.
-ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit) {
+// The area of texture coordinates over that of the triangle, for coordinates at its corners.
+float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
+  precise vec2 ab = b - a;
+  precise vec2 ac = c - a;
+  precise float double_area = abs(ab.x * ac.y - ab.y * ac.x);
+  return double_area / max(area, SMALLEST_NORMAL);
+}
+
+// The normal, turned by a texture of normals: `tangent` and its bitangent span the plane that the texture is painted on.
+vec3 turned_normal(vec3 normal, vec3 texel, float scale, vec4 tangent, float side, vec3 direction) {
+  precise vec2 scaled = (2.0 * texel.xy - 1.0) * scale;
+  precise float z = 2.0 * texel.z - 1.0;
+  // On the back of a surface all three axes turn.
+  precise vec3 t = tangent.xyz * side;
+  precise vec3 along = t - dot3(t, normal) * normal;
+  vec3 axis = normalize3(along);
+  precise vec3 across = tangent.w * side * cross3(normal, axis);
+  precise vec3 sum = scaled.x * axis + scaled.y * across + z * normal;
+  vec3 turned = normalize3(sum);
+  if (max_abs(axis) == 0.0 || max_abs(turned) == 0.0) return normal;
+  // Where it is turned away from the eye it is bent back until it is seen edge-on.
+  precise float cosine = -dot3(turned, direction);
+  precise vec3 bent = turned - (LEAST_COSINE - cosine) * direction;
+  return cosine < LEAST_COSINE ? normalize3(bent) : turned;
+}
+
+// The tangent of the triangle's own texture coordinates, where the mesh has none for its vertices.
+vec4 tangent_of(Primitive p, vec2 a, vec2 b, vec2 c) {
+  precise vec3 e1 = corner1(p) - corner0(p);
+  precise vec3 e2 = corner2(p) - corner0(p);
+  precise vec2 d1 = b - a;
+  precise vec2 d2 = c - a;
+  precise float area = d1.x * d2.y - d1.y * d2.x;
+  float sign_of_area = area < 0.0 ? -1.0 : 1.0;
+  precise vec3 tangent = sign_of_area * (d2.y * e1 - d1.y * e2);
+  // Images have their first row at v = 0, so the bitangent goes up as v goes down.
+  return vec4(normalize3(tangent), -sign_of_area);
+}
+
+void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 weights, vec3 wound_normal,
+                    bool is_flipped, vec3 direction, float cone_width) {
+  vec4 uv0 = load_vertex4(VIEW.first_texture.x + corners.x);
+  vec4 uv1 = load_vertex4(VIEW.first_texture.x + corners.y);
+  vec4 uv2 = load_vertex4(VIEW.first_texture.x + corners.z);
+  precise vec4 uvs = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
+  precise vec3 e1 = corner1(p) - corner0(p);
+  precise vec3 e2 = corner2(p) - corner0(p);
+  float area = length3(cross3(e1, e2));
+  // Seen at an angle the cone covers an ellipse; the mean of its axes' logarithms is taken.
+  float facing = max(abs(dot3(wound_normal, direction)), 1.0 / 64.0);
+  precise float footprint = max(cone_width * cone_width, SMALLEST_NORMAL) / facing;
+  precise vec2 coverage =
+      footprint * vec2(coordinates_per_area(uv0.xy, uv1.xy, uv2.xy, area),
+                       coordinates_per_area(uv0.zw, uv1.zw, uv2.zw, area));
+  TexturePlace place = TexturePlace(uvs, vec2(log2_about(max(coverage.x, SMALLEST_NORMAL)),
+                                              log2_about(max(coverage.y, SMALLEST_NORMAL))));
+  // Nested members are not written to one by one: glslang dies over that.
+  MaterialRecord material = point.material;
+  uint base = slot_number(material.d.x);
+  if (base != 0u) {
+    precise vec3 color = material.a.xyz * look_up(base, place).xyz;
+    material.a = vec4(color, material.a.w);
+  }
+  if (has(FEATURE_METALLIC_ROUGHNESS) && model_of(point) == MATERIAL_METALLIC_ROUGHNESS) {
+    uint metallic_roughness = slot_number(material.d.y);
+    if (metallic_roughness != 0u) {
+      precise vec2 factors = vec2(material.c.x, material.a.w) * look_up(metallic_roughness, place).yz;
+      material.c = vec4(factors.x, material.c.yzw);
+      material.a = vec4(material.a.xyz, factors.y);
+    }
+    uint occlusion = slot_number(material.d.w);
+    if (occlusion != 0u) {
+      precise float left = 1.0 + material.c.z * (look_up(occlusion, place).x - 1.0);
+      point.occlusion = left;
+    }
+    uint emissive = slot_number(material.c.w);
+    if (emissive != 0u) {
+      precise vec3 color = material.emissive.xyz * look_up(emissive, place).xyz;
+      material.emissive = vec4(color, material.emissive.w);
+    }
+    uint normal = slot_number(material.d.z);
+    if (normal != 0u) {
+      vec4 tangent;
+      if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
+        precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
+                           weights.y * load_vertex4(VIEW.first_texture.y + corners.y) +
+                           weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
+        tangent = vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
+      } else {
+        bool is_second = has_flag(load_slot(normal), TEXTURE_UV_SET);
+        tangent = is_second ? tangent_of(p, uv0.zw, uv1.zw, uv2.zw) : tangent_of(p, uv0.xy, uv1.xy, uv2.xy);
+      }
+      point.normal = turned_normal(point.normal, look_up(normal, place).xyz, material.c.y, tangent,
+                                   is_flipped ? -1.0 : 1.0, direction);
+    }
+  }
+  point.material = material;
+}
+
+// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit.
+ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width) {
   Primitive p = load_primitive(hit.primitive);
   SurfaceRecord record = load_surface(hit.primitive);
   SurfacePoint surface = surface_point(ray, p, hit);
@@ -54,6 +169,7 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit) {
   point.lift = surface.lift;
   point.shadow_position = surface.position;
   point.color = vec3(1.0);
+  point.curvature = 0.0;
   point.material = load_material(VIEW.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK));
   precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
   if (has(FEATURE_SMOOTH_NORMALS) && (record.corners_material.w & SURFACE_IS_SMOOTH) != 0u) {
@@ -66,6 +182,10 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit) {
     point.color = color;
   }
   point.lobe_shares = vec2(1.0, 0.0);
+  point.occlusion = 1.0;
+  if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
+    apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
+  }
   if (has(FEATURE_METALLIC_ROUGHNESS)) {
     point.lobe_shares = load_lobe_shares(-dot3(point.normal, direction), point.material.c.x);
   }

@@ -31,6 +31,11 @@ LightRecord load_light(uint index) {
                      shading_vector(first + 3u), texelFetch(shading_texels, int(first + 4u)));
 }
 
+vec4 load_vertex4(uint index) {
+  if (FETCHES_TEXELS == 0u) return vertices[index];
+  return shading_vector(index);
+}
+
 vec3 load_vertex(uint index) {
   if (FETCHES_TEXELS == 0u) return vertices[index].xyz;
   return shading_vector(index).xyz;

@@ -11,8 +11,8 @@
 const uint RECORD_ORIGIN = 0u;     // xyz of its ray, w = pixel
 const uint RECORD_DIRECTION = 1u;  // xyz, unit; w = roughness of the path
 const uint RECORD_WEIGHTS = 2u;    // xyz = weight of what the ray sees; two records, by the parity of the ray's turn
-const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the point that it has reached
-const uint RECORD_SEEN = 5u;       // xyz = light that this point sends, so far
+const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the point that it has reached; w = width of its cone
+const uint RECORD_SEEN = 5u;       // xyz = light that this point sends, so far; w = spread of its cone
 const uint RECORD_SHADOW_ORIGIN = 6u;
 const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between
 

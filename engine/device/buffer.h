@@ -33,6 +33,8 @@ class Buffer {
 
   /// The buffer, or as much of it as the device allows, as texels of four words.
   vk::raii::BufferView make_texel_view() const;
+  /// A view of some of its bytes as words, as many as a view holds.
+  vk::raii::BufferView make_word_view(vk::DeviceSize offset_bytes, vk::DeviceSize byte_count) const;
 
   /// Copies to the buffer and from it, at `offset_bytes` of it. The device is idle with respect to this buffer before
   /// and after.

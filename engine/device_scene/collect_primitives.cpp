@@ -61,6 +61,13 @@ void check_count(const world::Scene& scene, size_t count) {
   check_at_most(CHILD_FIRST_MASK, count, scene, "the scene has", "primitives");
 }
 
+vec4 record_of(const vec3& value) {
+  return {value, 0.0F};
+}
+vec4 record_of(const vec4& value) {
+  return value;
+}
+
 class Collector {
  public:
   explicit Collector(const world::Scene& scene) : scene_(scene), cut_triangles_(scene) {
@@ -103,18 +110,19 @@ class Collector {
   }
 
   void add(const Mesh& mesh) {
-    first_vertex_ = static_cast<uint32_t>(std::max(result_.normals.size(), result_.colors.size()));
+    VertexRecords& vertices = result_.vertices;
+    first_vertex_ = static_cast<uint32_t>(vertices.count());
     uint32_t flags = 0;
-    if (!mesh.normals.empty()) {
-      flags |= SURFACE_IS_SMOOTH;
-      result_.normals.resize(first_vertex_);
-      for (const vec3& n : mesh.normals) result_.normals.emplace_back(n, 0.0F);
-    }
-    if (!mesh.colors.empty()) {
-      flags |= SURFACE_IS_COLORED;
-      result_.colors.resize(first_vertex_);
-      result_.colors.insert(result_.colors.end(), mesh.colors.begin(), mesh.colors.end());
-    }
+    const auto add_all = [&](uint32_t flag, const auto& values, std::vector<vec4>& records) {
+      if (values.empty()) return;
+      flags |= flag;
+      records.resize(first_vertex_);
+      for (const auto& value : values) records.push_back(record_of(value));
+    };
+    add_all(SURFACE_IS_SMOOTH, mesh.normals, vertices.normals);
+    add_all(SURFACE_IS_COLORED, mesh.colors, vertices.colors);
+    add_all(SURFACE_HAS_UVS, mesh.uvs, vertices.uvs);
+    add_all(SURFACE_HAS_TANGENTS, mesh.tangents, vertices.tangents);
     if (cut_triangles_.cut_any()) {
       add_cut(mesh, flags);
     } else {
@@ -190,15 +198,16 @@ class Collector {
       const auto& [u, v] = std::pair(static_cast<float>(corner.weights.x), static_cast<float>(corner.weights.y));
       return (1.0F - u - v) * values[corners.x] + u * values[corners.y] + v * values[corners.z];
     };
-    const size_t vertex = std::max(result_.normals.size(), result_.colors.size());
-    if (!mesh.normals.empty()) {
-      result_.normals.resize(vertex);
-      result_.normals.emplace_back(mix(mesh.normals), 0.0F);
-    }
-    if (!mesh.colors.empty()) {
-      result_.colors.resize(vertex);
-      result_.colors.push_back(mix(mesh.colors));
-    }
+    const size_t vertex = result_.vertices.count();
+    const auto add_mixed = [&](const auto& values, std::vector<vec4>& records) {
+      if (values.empty()) return;
+      records.resize(vertex);
+      records.push_back(record_of(mix(values)));
+    };
+    add_mixed(mesh.normals, result_.vertices.normals);
+    add_mixed(mesh.colors, result_.vertices.colors);
+    add_mixed(mesh.uvs, result_.vertices.uvs);
+    add_mixed(mesh.tangents, result_.vertices.tangents);
     return static_cast<uint32_t>(vertex) - first_vertex_;
   }
 

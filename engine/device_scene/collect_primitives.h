@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,19 @@
 
 namespace promin {
 
+/// What vertices have beside positions, each array empty or with a record for every vertex so far that has one.
+struct VertexRecords {
+  /// w is 0. Empty without smooth meshes.
+  std::vector<vec4> normals;
+  std::vector<vec4> colors;
+  /// As Mesh::uvs and Mesh::tangents.
+  std::vector<vec4> uvs;
+  std::vector<vec4> tangents;
+
+  /// The number of vertices so far.
+  size_t count() const { return std::max({normals.size(), colors.size(), uvs.size(), tangents.size()}); }
+};
+
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
 struct Collected {
   /// All but the unbounded ones and degenerate triangles; surfaces and boxes go with them.
@@ -23,8 +37,7 @@ struct Collected {
   std::vector<layout::Primitive> unbounded;
   std::vector<layout::SurfaceRecord> unbounded_surfaces;
   /// See PackedSurfaces.
-  std::vector<vec4> normals;
-  std::vector<vec4> colors;
+  VertexRecords vertices;
   PrimitiveNumbers numbers;
   /// The number of all primitives so far.
   uint32_t order = 0;

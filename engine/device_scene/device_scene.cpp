@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/divide_up.h"
 #include "device/device.h"
 #include "device_scene/lobe_table.h"
 
@@ -46,6 +47,13 @@ std::vector<uvec4> lobe_table_for(std::span<const Material> materials) {
   return std::ranges::any_of(materials, looks_it_up) ? make_lobe_table() : std::vector<uvec4>();
 }
 
+/// At least what Vulkan lets a device ask of where a view of texels begins.
+constexpr uint64_t kTexelViewAlignment = 256;
+
+constexpr uint64_t align(uint64_t offset, uint64_t alignment) {
+  return divide_up(offset, alignment) * alignment;
+}
+
 template <typename... Parts>
 uint64_t total_bytes(const Parts&... parts) {
   return (std::as_bytes(std::span(parts)).size() + ...);
@@ -55,6 +63,7 @@ uint64_t total_bytes(const Parts&... parts) {
 
 struct DeviceScene::PlacedTail {
   Placed materials;
+  Placed texture_slots;
   Placed lobe_table;
   Placed sky;
   /// The last, because they change most often in number.
@@ -64,8 +73,9 @@ struct DeviceScene::PlacedTail {
 
 DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   PlacedTail placed;
-  placed.materials = place(tail.materials, head_bytes_);
-  placed.lobe_table = place(tail.lobe_table, placed.materials.end());
+  placed.materials = place(tail.materials.records, head_bytes_);
+  placed.texture_slots = place(tail.materials.slots, placed.materials.end());
+  placed.lobe_table = place(tail.lobe_table, placed.texture_slots.end());
   placed.sky = place(tail.sky.texels, placed.lobe_table.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
   return placed;
@@ -79,20 +89,30 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       primitive_texels_(primitives_.make_texel_view()),
       // The size grows in steps, so that scenes of about the same depth share pipelines.
       stack_size_((packed.stack_size + 7) / 8 * 8) {
+  const VertexRecords& vertices = packed.surfaces.vertices;
   const Placed surfaces = place(packed.surfaces.surfaces, 0);
-  const Placed normals = place(packed.surfaces.normals, surfaces.end());
-  const Placed colors = place(packed.surfaces.colors, normals.end());
+  const Placed normals = place(vertices.normals, surfaces.end());
+  const Placed colors = place(vertices.colors, normals.end());
+  const Placed uvs = place(vertices.uvs, colors.end());
+  const Placed tangents = place(vertices.tangents, uvs.end());
+  const Placed image_words = place(packed.surfaces.images.words, align(tangents.end(), kTexelViewAlignment));
   constants_.first_index.z = normals.first_index;
   constants_.first_index.w = colors.first_index;
-  head_bytes_ = colors.end();
+  constants_.first_texture = uvec4(uvs.first_index, tangents.first_index, 0, image_words.first_index);
+  image_words_offset_ = image_words.offset;
+  image_words_bytes_ = image_words.bytes.size();
+  textures_.assign(shading.textures.begin(), shading.textures.end());
+  images_ = packed.surfaces.images.images;
+  head_bytes_ = image_words.end();
   constants_.tree_bounds = packed.tree_bounds;
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
   constants_.ambient = shading.environment.ambient;
   constants_.background = shading.environment.background;
-  Tail tail = pack_tail(shading);
+  Tail tail{pack_materials(shading.materials), lobe_table_for(shading.materials), pack_sky(shading.environment),
+            pack_lights(shading.lights)};
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
-  for (const Placed& placed : {surfaces, normals, colors}) write(*shading_, placed);
+  for (const Placed& placed : {surfaces, normals, colors, uvs, tangents, image_words}) write(*shading_, placed);
   write_tail(std::move(tail));
   uploads_.geometry = nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_;
 }
@@ -119,7 +139,7 @@ void DeviceScene::set_environment(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + total_bytes(tail_.materials, tail_.lobe_table,
+  return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + total_bytes(tail_.materials.records, tail_.materials.slots, tail_.lobe_table,
                                                                                     tail_.sky.texels, tail_.lights.records);
 }
 
@@ -133,7 +153,8 @@ std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {
 
 std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
   return {{layout::BINDING_SHADING, vk::DescriptorType::eStorageBuffer, &*shading_},
-          {layout::BINDING_SHADING_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &shading_texels_}};
+          {layout::BINDING_SHADING_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &shading_texels_},
+          {layout::BINDING_TEXTURE_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &image_texels_}};
 }
 
 gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
@@ -144,15 +165,19 @@ gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
 
 void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
   vk::raii::BufferView texels = buffer.make_texel_view();
+  // Where there are no images it is of words that nothing reads.
+  vk::raii::BufferView image_texels = buffer.make_word_view(image_words_bytes_ == 0 ? 0 : image_words_offset_,
+                                                            std::max<vk::DeviceSize>(image_words_bytes_, sizeof(uint32_t)));
   shading_texels_ = std::move(texels);
+  image_texels_ = std::move(image_texels);
   shading_.emplace(std::move(buffer));
-  fetches_texels_ = std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_->size_bytes()}) <=
-                    device_->profile().most_texel_bytes;
+  const bool holds_images = image_words_bytes_ / sizeof(uint32_t) <= device_->limits().maxTexelBufferElements;
+  fetches_texels_ = holds_images && std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_->size_bytes()}) <=
+                                        device_->profile().most_texel_bytes;
 }
 
-DeviceScene::Tail DeviceScene::pack_tail(const ShadingParts& parts) {
-  return {pack_materials(parts.materials), lobe_table_for(parts.materials), pack_sky(parts.environment),
-          pack_lights(parts.lights)};
+PackedMaterials DeviceScene::pack_materials(std::span<const Material> materials) const {
+  return promin::pack_materials(materials, {textures_, images_});
 }
 
 void DeviceScene::write_tail(Tail tail) {
@@ -162,13 +187,14 @@ void DeviceScene::write_tail(Tail tail) {
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  for (const Placed& part : {placed.materials, placed.lobe_table, placed.sky, placed.lights}) {
+  for (const Placed& part : {placed.materials, placed.texture_slots, placed.lobe_table, placed.sky, placed.lights}) {
     write(*shading_, part);
     uploads_.shading += part.bytes.size();
   }
   constants_.first_index.x = placed.materials.first_index;
   constants_.first_index.y = placed.lights.first_index;
   constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky.side, 0);
+  constants_.first_texture.z = placed.texture_slots.first_index;
   constants_.irradiance = tail.sky.irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());
   tail_ = std::move(tail);

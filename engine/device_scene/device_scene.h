@@ -19,6 +19,8 @@ namespace promin {
 /// The parts of a scene that are replaced apart.
 struct ShadingParts {
   std::span<const Material> materials;
+  /// For good, as images are.
+  std::span<const Texture> textures;
   std::span<const Light> lights;
   Environment environment;
 };
@@ -64,7 +66,7 @@ class DeviceScene {
   void take_shading_buffer(gpu::Buffer buffer);
   /// What is replaced apart, behind the surfaces.
   struct Tail {
-    std::vector<layout::MaterialRecord> materials;
+    PackedMaterials materials;
     /// Empty where no material looks it up.
     std::vector<uvec4> lobe_table;
     PackedSky sky;
@@ -73,7 +75,7 @@ class DeviceScene {
   /// Where the parts of a tail lie.
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
-  static Tail pack_tail(const ShadingParts& parts);
+  PackedMaterials pack_materials(std::span<const Material> materials) const;
   /// Copies the tail, into a larger buffer where it needs one. Where that cannot be made nothing changes.
   void write_tail(Tail tail);
 
@@ -86,6 +88,12 @@ class DeviceScene {
   uint64_t head_bytes_ = 0;
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};
+  /// The words of images in it, and a view of them.
+  vk::DeviceSize image_words_offset_ = 0;
+  vk::DeviceSize image_words_bytes_ = 0;
+  vk::raii::BufferView image_texels_{nullptr};
+  std::vector<Texture> textures_;
+  std::vector<PlacedImage> images_;
   Tail tail_;
   SceneConstants constants_;
   uint32_t stack_size_;

@@ -94,8 +94,8 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.primitives.insert(packed.primitives.end(), collected.unbounded.begin(), collected.unbounded.end());
   surfaces.insert(surfaces.end(), collected.unbounded_surfaces.begin(), collected.unbounded_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.push_back({});
-  packed.surfaces.normals = std::move(collected.normals);
-  packed.surfaces.colors = std::move(collected.colors);
+  packed.surfaces.vertices = std::move(collected.vertices);
+  packed.surfaces.images = pack_images(scene.images, scene.textures);
 
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
@@ -110,8 +110,11 @@ TreeView PackedScene::tree() const {
 }
 
 uint64_t PackedSurfaces::size_bytes() const {
-  return std::as_bytes(std::span(surfaces)).size() + std::as_bytes(std::span(normals)).size() +
-         std::as_bytes(std::span(colors)).size();
+  uint64_t bytes = std::as_bytes(std::span(surfaces)).size() + std::as_bytes(std::span(images.words)).size();
+  for (const auto* records : {&vertices.normals, &vertices.colors, &vertices.uvs, &vertices.tangents}) {
+    bytes += std::as_bytes(std::span(*records)).size();
+  }
+  return bytes;
 }
 
 uint64_t PackedScene::size_bytes() const {

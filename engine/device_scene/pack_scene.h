@@ -15,8 +15,10 @@
 #include "bvh/tree_view.h"
 #include "core/feature_mask.h"
 #include "core/unset_vector.h"
+#include "device_scene/collect_primitives.h"
 #include "layout.h"
 #include "scene/world_scene.h"
+#include "textures/pack_images.h"
 
 // What a scene's geometry becomes on the device, in the layout of shaders/layout.h, with its surfaces, as both follow
 // the order of the tree's leaves. Vulkan-free.
@@ -25,10 +27,9 @@ namespace promin {
 /// What shading needs of the primitives, in leaf order: material numbers and vertices.
 struct PackedSurfaces {
   UnsetVector<layout::SurfaceRecord> surfaces;
-  /// The normals of the vertices that the records number; w is 0. Empty without smooth meshes.
-  std::vector<vec4> normals;
-  /// The colours of these vertices. Empty without coloured meshes.
-  std::vector<vec4> colors;
+  /// Of the vertices that the records number.
+  VertexRecords vertices;
+  PackedImages images;
 
   uint64_t size_bytes() const;
 };

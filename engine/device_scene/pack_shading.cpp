@@ -5,39 +5,82 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace promin {
 namespace {
 
 using namespace layout;
 
-/// The numbers of a model, in the places that its shader file gives them.
-struct ModelRecord {
-  MaterialRecord operator()(const Phong& m) const {
-    return {vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F), {}};
-  }
-  MaterialRecord operator()(const MetallicRoughness& m) const {
-    // KHR_materials_ior: 0 stands for a dielectric that reflects all.
-    const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
-    const dvec3 at_normal = glm::min(slope * slope * dvec3(m.specular_color), dvec3(1.0)) * static_cast<double>(m.specular);
-    return {vec4(m.base_color, m.metallic), vec4(vec3(at_normal), m.specular), vec4(m.roughness, 0.0F, 0.0F, 0.0F), {}, {}};
-  }
-  MaterialRecord operator()(const Unlit& m) const { return {vec4(m.color, 0.0F), {}, {}, {}, {}}; }
-};
+uint flag(bool is_set, uint bit) {
+  return is_set ? bit : 0;
+}
 
-struct ModelNumber {
+uint flags_of(const TextureSlot& slot, const Texture& texture, ImageUse use) {
+  return slot.uv_set * TEXTURE_UV_SET | flag(use == ImageUse::kColor, TEXTURE_IS_SRGB) |
+         flag(texture.is_magnified_linearly, TEXTURE_MAGNIFIED_LINEARLY) |
+         flag(texture.is_minified_linearly, TEXTURE_MINIFIED_LINEARLY) | flag(texture.has_levels, TEXTURE_HAS_LEVELS) |
+         flag(texture.are_levels_linear, TEXTURE_LEVELS_LINEAR) |
+         static_cast<uint>(texture.wrap_u) << TEXTURE_WRAP_U_SHIFT |
+         static_cast<uint>(texture.wrap_v) << TEXTURE_WRAP_V_SHIFT;
+}
+static_assert(static_cast<uint>(TextureWrap::kRepeat) == WRAP_REPEAT &&
+              static_cast<uint>(TextureWrap::kMirroredRepeat) == WRAP_MIRRORED &&
+              static_cast<uint>(TextureWrap::kClampToEdge) == WRAP_CLAMP);
+
+/// Packs a model's numbers into the places that its shader file gives them.
+class MaterialPacker {
+ public:
+  explicit MaterialPacker(const TextureTables& tables) : tables_(tables) {}
+
+  void add(const Material& material) {
+    MaterialRecord record = std::visit([&](const auto& model) { return pack(model, material); }, material.model);
+    record.emissive = vec4(material.emissive, std::bit_cast<float>(std::visit(ModelNumber(), material.model)));
+    packed_.records.push_back(record);
+  }
+  PackedMaterials take() { return std::move(packed_); }
+
+ private:
+  struct ModelNumber {
 #define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   uint operator()(const TYPE&) const {                                  \
     return MATERIAL_##KIND;                                             \
   }
 #include "promin/kinds/materials.def"
-};
+  };
 
-MaterialRecord pack(const Material& m) {
-  MaterialRecord record = std::visit(ModelRecord(), m.model);
-  record.emissive = vec4(m.emissive, std::bit_cast<float>(std::visit(ModelNumber(), m.model)));
-  return record;
-}
+  MaterialRecord pack(const Phong& m, const Material&) {
+    return {vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F), {}};
+  }
+  MaterialRecord pack(const MetallicRoughness& m, const Material& material) {
+    // KHR_materials_ior: 0 stands for a dielectric that reflects all.
+    const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
+    const dvec3 at_normal =
+        glm::min(slope * slope * dvec3(m.specular_color), dvec3(1.0)) * static_cast<double>(m.specular);
+    return {vec4(m.base_color, m.metallic), vec4(vec3(at_normal), m.specular),
+            vec4(m.roughness, m.normal_scale, m.occlusion_strength, add(material.emissive_texture)),
+            vec4(add(m.base_color_texture), add(m.metallic_roughness_texture), add(m.normal_texture),
+                 add(m.occlusion_texture)),
+            {}};
+  }
+  MaterialRecord pack(const Unlit& m, const Material&) {
+    return {vec4(m.color, 0.0F), {}, {}, vec4(add(m.color_texture), 0.0F, 0.0F, 0.0F), {}};
+  }
+
+  /// The bits of the slot's number, 0 where there is no texture or no image.
+  float add(const TextureSlot& slot) {
+    if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0.0F;
+    const Texture& texture = tables_.textures[slot.texture];
+    const PlacedImage& image = tables_.images[texture.image];
+    if (image.levels == 0) return 0.0F;
+    packed_.slots.push_back({vec4(slot.to_u, std::bit_cast<float>(flags_of(slot, texture, image.use))),
+                             vec4(slot.to_v, 0.0F), uvec4(image.first, image.size, image.levels)});
+    return std::bit_cast<float>(static_cast<uint>(packed_.slots.size()));
+  }
+
+  const TextureTables& tables_;
+  PackedMaterials packed_;
+};
 
 /// The least difference of the cosines of a spot's angles for which fp32 still tells points between them apart.
 constexpr double kLeastFalloffWidth = 1e-5;
@@ -53,10 +96,10 @@ LightRecord pack(const Light& light) {
 
 }  // namespace
 
-std::vector<MaterialRecord> pack_materials(std::span<const Material> materials) {
-  std::vector<MaterialRecord> records;
-  for (const Material& material : materials) records.push_back(pack(material));
-  return records;
+PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables) {
+  MaterialPacker packer(tables);
+  for (const Material& material : materials) packer.add(material);
+  return packer.take();
 }
 
 PackedLights pack_lights(std::span<const Light> lights) {

@@ -9,12 +9,24 @@
 #include "layout.h"
 #include "promin/lights.h"
 #include "promin/scene.h"
+#include "textures/pack_images.h"
 
 // What shading needs of a scene beside its primitives, in the layout of shaders/layout.h. Each alone, as they change
 // alone.
 namespace promin {
 
-std::vector<layout::MaterialRecord> pack_materials(std::span<const Material> materials);
+/// What textures are, for materials to name.
+struct TextureTables {
+  std::span<const Texture> textures;
+  std::span<const PlacedImage> images;
+};
+
+struct PackedMaterials {
+  std::vector<layout::MaterialRecord> records;
+  /// Of the textures that records name, which number them from 1 on.
+  std::vector<layout::TextureSlotRecord> slots;
+};
+PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables = {});
 
 /// The lights that are on.
 struct PackedLights {

@@ -24,12 +24,14 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   const double pixel = 2.0 * half_height / view.size.y;
   const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
   const dvec3 up = dvec3(camera.up) * pixel;
+  // A sample's share of a pixel, along a side (shaders/textures.glsl).
+  const auto cone = static_cast<float>(pixel / std::sqrt(static_cast<double>(view.samples_per_pixel)));
   // A ray's interval is open, but what lies on the viewport itself is drawn.
   const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
   layout::ViewConstants constants{
           .eye = vec4(camera.eye, before_near),
-          .look = vec4(camera.look, 0.0F),
-          .right = vec4(vec3(right), 0.0F),
+          .look = vec4(camera.look, is_orthographic ? cone : 0.0F),
+          .right = vec4(vec3(right), is_orthographic ? 0.0F : cone),
           .up = vec4(vec3(up), 0.0F),
           .ambient = vec4(scene.ambient, 0.0F),
           .background = vec4(scene.background, 0.0F),
@@ -38,6 +40,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
                               static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),
           .first_index = scene.first_index,
           .first_lookup = scene.first_lookup,
+          .first_texture = scene.first_texture,
           .irradiance = {}};
   std::ranges::copy(scene.irradiance, constants.irradiance);
   return constants;

@@ -89,10 +89,21 @@ struct MaterialFeatures {
   }
   FeatureMask operator()(const MetallicRoughness& material) const {
     FeatureMask features = FEATURE_METALLIC_ROUGHNESS;
-    if (material.roughness < kRoughestMirror) features |= FEATURE_MIRRORS;
+    // A texture makes it smoother, never rougher.
+    if (material.roughness < kRoughestMirror || material.metallic_roughness_texture.exists()) {
+      features |= FEATURE_MIRRORS;
+    }
+    for (const TextureSlot& slot : {material.base_color_texture, material.metallic_roughness_texture,
+                                    material.normal_texture, material.occlusion_texture}) {
+      if (slot.exists()) features |= FEATURE_TEXTURES;
+    }
     return features;
   }
-  FeatureMask operator()(const Unlit&) const { return FEATURE_UNLIT; }
+  FeatureMask operator()(const Unlit& material) const {
+    FeatureMask features = FEATURE_UNLIT;
+    if (material.color_texture.exists()) features |= FEATURE_TEXTURES;
+    return features;
+  }
 };
 
 FeatureMask feature_of(LightKind kind) {
@@ -120,7 +131,10 @@ FeatureMask geometry_features(std::span<const world::Object> objects) {
 FeatureMask material_features(std::span<const Material> materials, const std::vector<bool>& is_shown) {
   FeatureMask features;
   for (size_t i = 0; i < materials.size(); ++i) {
-    if (is_shown[i]) features |= std::visit(MaterialFeatures(), materials[i].model);
+    if (!is_shown[i]) continue;
+    features |= std::visit(MaterialFeatures(), materials[i].model);
+    const bool is_pbr = std::holds_alternative<MetallicRoughness>(materials[i].model);
+    if (is_pbr && materials[i].emissive_texture.exists()) features |= FEATURE_TEXTURES;
   }
   return features;
 }

@@ -38,6 +38,18 @@ std::vector<vec3> place_normals(const std::vector<vec3>& normals, const Placemen
   return placed;
 }
 
+/// Tangents go along with positions; a mirroring transform exchanges the sides of bitangents.
+std::vector<vec4> place_tangents(const std::vector<vec4>& tangents, const Placement& placement) {
+  std::vector<vec4> placed;
+  placed.reserve(tangents.size());
+  for (const vec4& t : tangents) {
+    const dvec3 tangent = placement.direction(dvec3(vec3(t)));
+    const double length = glm::length(tangent);
+    placed.emplace_back(length > 0.0 ? vec3(tangent / length) : vec3(0.0F), placement.is_mirroring() ? -t.w : t.w);
+  }
+  return placed;
+}
+
 struct ShapeInWorld {
   const dmat4& world_from_object;
 
@@ -63,6 +75,8 @@ Mesh place(const Mesh& mesh, const dmat4& world_from_object) {
   }
   placed.normals = place_normals(mesh.normals, placement);
   placed.colors = mesh.colors;
+  placed.uvs = mesh.uvs;
+  placed.tangents = place_tangents(mesh.tangents, placement);
   placed.triangles = mesh.triangles;
   placed.triangle_materials = mesh.triangle_materials;
   if (placement.is_mirroring()) {
@@ -81,7 +95,8 @@ Object flatten(const promin::Scene& scene, const promin::Object& object) {
 }
 
 Scene flatten(const promin::Scene& scene) {
-  Scene result{scene.file, {}, scene.materials, scene.lights, scene.cameras, scene.environment};
+  Scene result{scene.file,     {},           scene.materials, scene.images,
+               scene.textures, scene.lights, scene.cameras,   scene.environment};
   result.objects.reserve(scene.objects.size());
   for (const promin::Object& object : scene.objects) result.objects.push_back(flatten(scene, object));
   return result;

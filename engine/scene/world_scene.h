@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -36,6 +37,8 @@ struct Scene {
   std::filesystem::path file;
   std::vector<Object> objects;
   std::vector<Material> materials;
+  std::vector<std::shared_ptr<const TextureImage>> images;
+  std::vector<Texture> textures;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   Environment environment;

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "promin/math.h"
+#include "promin/textures.h"
 
 namespace promin {
 
@@ -41,12 +42,24 @@ struct MetallicRoughness {
   float specular = 1.0F;
   /// Colour of the dielectric's reflection at normal incidence (KHR_materials_specular).
   vec3 specular_color{1.0F};
+  /// Factors of the base colour.
+  TextureSlot base_color_texture;
+  /// Factors of roughness (green) and metallic (blue).
+  TextureSlot metallic_roughness_texture;
+  /// Normals in the tangent space of the mesh, their x and y times `normal_scale`.
+  TextureSlot normal_texture;
+  float normal_scale = 1.0F;
+  /// Dims what the environment brings (red): 1 + occlusion_strength * (texture - 1), strength 0...1.
+  TextureSlot occlusion_texture;
+  float occlusion_strength = 1.0F;
 };
 
 /// A colour that no light changes (KHR_materials_unlit).
 struct Unlit {
   /// What is seen.
   vec3 color{1.0F};
+  /// Factors of it.
+  TextureSlot color_texture;
 };
 
 /// What an object's surface is made of.
@@ -57,6 +70,8 @@ struct Material {
   std::variant<Phong, MetallicRoughness, Unlit> model;
   /// Light that the surface sends by itself, linear RGB, finite and not negative; it lights nothing else.
   vec3 emissive{0.0F};
+  /// Factors of it; of metallic-roughness materials alone.
+  TextureSlot emissive_texture;
 
   /// The model of a Phong material. Throws std::bad_variant_access where it is another.
   Phong& phong() { return std::get<Phong>(model); }

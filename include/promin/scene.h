@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "promin/materials.h"
 #include "promin/math.h"
 #include "promin/shapes.h"
+#include "promin/textures.h"
 
 namespace promin {
 
@@ -48,6 +50,10 @@ struct Scene {
   std::vector<Object> objects;
   /// Not empty where there are objects with a geometry.
   std::vector<Material> materials;
+  /// What textures show; shared, because images are large. Not null.
+  std::vector<std::shared_ptr<const TextureImage>> images;
+  /// What materials name.
+  std::vector<Texture> textures;
   /// Any number, none too: see add_default_lights.
   std::vector<Light> lights;
   /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene.

@@ -24,6 +24,11 @@ struct Mesh {
   std::vector<vec3> normals;
   /// Linear RGBA vertex colours that multiply ambient and diffuse; empty or one per position.
   std::vector<vec4> colors;
+  /// Texture coordinates of sets 0 (x, y) and 1 (z, w), finite; empty or one per position.
+  std::vector<vec4> uvs;
+  /// Tangents for normal textures, xyz of any length but 0, w = 1 or -1 the side of the bitangent; empty or one per
+  /// position. Where there are none, those of each triangle's texture coordinates are taken.
+  std::vector<vec4> tangents;
   /// Indices into `positions`. Degenerate triangles stay here, so that numbering holds; they are never hit.
   std::vector<uvec3> triangles;
   /// Index into Scene::materials of each triangle; empty where Object::material holds for all.

@@ -81,10 +81,16 @@ vec3 direction_of_lobe(ShadingPoint point, vec3 direction) {
 }
 
 vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follows_mirror) {
-  float rest = follows_mirror ? 1.0 - sharpness_of(point) : 1.0;
-  precise vec3 own = point.material.emissive.xyz + albedo_of(point) * ambient_at(point.normal) +
-                     rest * reflectance_of(point) *
-                         environment_radiance(direction_of_lobe(point, direction), point.material.c.x);
+  float sharpness = follows_mirror ? sharpness_of(point) : 0.0;
+  vec3 around = environment_radiance(direction_of_lobe(point, direction), point.material.c.x);
+  vec3 reflectance = reflectance_of(point);
+  precise vec3 diffuse = albedo_of(point) * ambient_at(point.normal);
+  precise vec3 own;
+  if (has(FEATURE_TEXTURES)) {
+    own = point.material.emissive.xyz + point.occlusion * (diffuse + (1.0 - sharpness) * reflectance * around);
+  } else {
+    own = point.material.emissive.xyz + diffuse + (1.0 - sharpness) * reflectance * around;
+  }
   return own;
 }
 

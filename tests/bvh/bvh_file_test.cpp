@@ -140,8 +140,8 @@ void expect_same(const PackedScene& a, const PackedScene& b) {
   EXPECT_TRUE(has_same_bytes<layout::Primitive>(a.primitives, b.primitives));
   EXPECT_EQ(a.references, b.references);
   EXPECT_TRUE(has_same_bytes<layout::SurfaceRecord>(a.surfaces.surfaces, b.surfaces.surfaces));
-  EXPECT_EQ(a.surfaces.normals, b.surfaces.normals);
-  EXPECT_EQ(a.surfaces.colors, b.surfaces.colors);
+  EXPECT_EQ(a.surfaces.vertices.normals, b.surfaces.vertices.normals);
+  EXPECT_EQ(a.surfaces.vertices.colors, b.surfaces.vertices.colors);
   EXPECT_EQ(a.stack_size, b.stack_size);
   EXPECT_EQ(a.size_bytes(), b.size_bytes());
   EXPECT_EQ(a.bvh.builder, b.bvh.builder);

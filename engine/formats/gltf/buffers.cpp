@@ -59,13 +59,6 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
   return std::nullopt;
 }
 
-std::optional<Bytes> read_uri(const std::string& uri, const std::string& place, LoadReport& report) {
-  if (is_data(uri)) return read_data_uri(uri, place, report);
-  const auto file = find_file(uri, place, true, report);
-  if (!file) return std::nullopt;
-  return read_file(*file);
-}
-
 /// The number of bytes that a URI names; 0 where the file is missing. A URI that leads where it must not is refused.
 uint64_t size_of_uri(const std::string& uri, const std::string& place, LoadReport& report) {
   if (is_data(uri)) return read_data_uri(uri, place, report).value_or(Bytes{}).size();
@@ -80,7 +73,7 @@ std::string say_too_short(uint64_t size, uint64_t length) {
   return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
 }
 
-/// Which buffers hold attributes or indices of meshes that are read.
+/// Which buffers hold images, or attributes or indices of meshes that are read.
 std::vector<bool> find_needed_buffers(const GltfDocument& document) {
   std::vector<bool> is_needed(elements_of(document.json, "buffers").size(), false);
   const auto need_view = [&](int view) {
@@ -103,10 +96,20 @@ std::vector<bool> find_needed_buffers(const GltfDocument& document) {
       }
     }
   }
+  for (const json& image : elements_of(document.json, "images")) {
+    if (image.contains("bufferView")) need_view(image["bufferView"].get<int>());
+  }
   return is_needed;
 }
 
 }  // namespace
+
+std::optional<Bytes> read_gltf_uri(const std::string& uri, const std::string& place, LoadReport& report) {
+  if (is_data(uri)) return read_data_uri(uri, place, report);
+  const auto file = find_file(uri, place, true, report);
+  if (!file) return std::nullopt;
+  return read_file(*file);
+}
 
 std::optional<Bytes> decode_base64(std::string_view text) {
   static constexpr std::array<int8_t, 256> kValues = make_base64_values();
@@ -163,7 +166,7 @@ GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::s
       continue;
     }
     if (has_uri) {
-      std::optional<Bytes> own = read_uri(source["uri"], place + ".uri", report);
+      std::optional<Bytes> own = read_gltf_uri(source["uri"], place + ".uri", report);
       if (!own) continue;
       bytes = buffers.own.emplace_back(std::move(*own));
     } else if (is_chunk) {

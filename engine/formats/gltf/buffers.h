@@ -13,6 +13,10 @@
 
 namespace promin {
 
+/// The bytes that a URI names, in a file beside the scene or in itself; nullopt once the report holds the reason.
+std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, const std::string& place,
+                                                    LoadReport& report);
+
 /// The bytes of every buffer of a document: from data: URIs, files beside the scene (see find_beside_scene) or the
 /// GLB's binary chunk. A buffer that a mesh's attributes or indices lie in has at least its byteLength of them, any
 /// other has none. Only the former is refused where its bytes are missing or too few; of the latter that is a warning.

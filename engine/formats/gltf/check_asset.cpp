@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 12> kKnownExtensions = {"KHR_implicit_shapes",
+constexpr std::array<std::string_view, 13> kKnownExtensions = {"KHR_implicit_shapes",
                                                                "KHR_lights_punctual",
                                                                "KHR_materials_emissive_strength",
                                                                "KHR_materials_ior",
@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 12> kKnownExtensions = {"KHR_implicit_sha
                                                                "KHR_materials_unlit",
                                                                "KHR_mesh_quantization",
                                                                "KHR_node_visibility",
+                                                               "KHR_texture_transform",
                                                                "OMI_environment_sky",
                                                                "PROMIN_lights_phong",
                                                                "PROMIN_materials_phong",

@@ -29,12 +29,14 @@ class SceneReader {
 
   Scene read() {
     scene_.file = report_.file();
-    scene_.materials = read_gltf_materials(document_, report_);
+    GltfTextures textures(document_, report_);
+    scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);
     for (const PlacedNode& placed : place_gltf_nodes(document_, report_)) read_node(placed);
     if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
     warn_about_motion();
     report_.throw_if_refused();
+    textures.finish(scene_);
     scene_.warnings = report_.warnings();
     return std::move(scene_);
   }

@@ -35,12 +35,22 @@ vec3 to_shares(const dvec3& color) {
   return vec3(glm::min(color, dvec3(1.0)));
 }
 
-MetallicRoughness metallic_roughness_of(const json& source) {
+MetallicRoughness metallic_roughness_of(const json& source, GltfTextures& textures) {
   MetallicRoughness material;
   material.base_color = to_shares(base_color_of(source));
   if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
     material.metallic = pbr->value("metallicFactor", 1.0F);
     material.roughness = pbr->value("roughnessFactor", 1.0F);
+    material.base_color_texture = textures.read_slot(*pbr, "baseColorTexture", ImageUse::kColor);
+    material.metallic_roughness_texture = textures.read_slot(*pbr, "metallicRoughnessTexture", ImageUse::kData);
+  }
+  material.normal_texture = textures.read_slot(source, "normalTexture", ImageUse::kNormal);
+  if (const auto info = source.find("normalTexture"); info != source.end()) {
+    material.normal_scale = info->value("scale", 1.0F);
+  }
+  material.occlusion_texture = textures.read_slot(source, "occlusionTexture", ImageUse::kData);
+  if (const auto info = source.find("occlusionTexture"); info != source.end()) {
+    material.occlusion_strength = info->value("strength", 1.0F);
   }
   if (const json* extension = find_extension(source, "KHR_materials_ior")) material.ior = extension->value("ior", 1.5F);
   if (const json* extension = find_extension(source, "KHR_materials_specular")) {
@@ -63,7 +73,8 @@ constexpr std::array<std::string_view, 5> kKnown = {"PROMIN_materials_phong", "K
 
 void warn_about_what_is_ignored(const json& source, const std::string& title, LoadReport& report) {
   const auto pbr = source.find("pbrMetallicRoughness");
-  if (has_texture(source) || (pbr != source.end() && has_texture(*pbr))) {
+  const bool is_classic = find_extension(source, "PROMIN_materials_phong") != nullptr;
+  if (is_classic && (has_texture(source) || (pbr != source.end() && has_texture(*pbr)))) {
     report.warn("material " + title + ": its textures are ignored, its factors are used");
   }
   const std::string alpha_mode = source.value("alphaMode", "OPAQUE");
@@ -76,16 +87,25 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   }
 }
 
-Material read_material(const json& source) {
+Unlit unlit_of(const json& source, GltfTextures& textures) {
+  Unlit unlit{vec3(base_color_of(source)), {}};
+  if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
+    unlit.color_texture = textures.read_slot(*pbr, "baseColorTexture", ImageUse::kColor);
+  }
+  return unlit;
+}
+
+Material read_material(const json& source, GltfTextures& textures) {
   Material material;
   material.name = source.value("name", "");
   if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
     material.model = phong_of(*phong, base_color_of(source));
   } else if (find_extension(source, "KHR_materials_unlit") != nullptr) {
-    material.model = Unlit{vec3(base_color_of(source))};
+    material.model = unlit_of(source, textures);
     return material;
   } else {
-    material.model = metallic_roughness_of(source);
+    material.model = metallic_roughness_of(source, textures);
+    material.emissive_texture = textures.read_slot(source, "emissiveTexture", ImageUse::kColor);
   }
   double strength = 1.0;
   if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
@@ -97,11 +117,11 @@ Material read_material(const json& source) {
 
 }  // namespace
 
-std::vector<Material> read_gltf_materials(const GltfDocument& document, LoadReport& report) {
+std::vector<Material> read_gltf_materials(const GltfDocument& document, GltfTextures& textures, LoadReport& report) {
   std::vector<Material> materials;
   for (const json& source : elements_of(document.json, "materials")) {
     const size_t index = materials.size();
-    materials.push_back(read_material(source));
+    materials.push_back(read_material(source, textures));
     warn_about_what_is_ignored(source, title_of(document.json, "materials", index), report);
   }
   return materials;

@@ -3,6 +3,7 @@
 #include "formats/gltf/meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -81,6 +82,11 @@ class PrimitiveReader {
     read_positions(positions, mesh);
     if (const int normals = accessor_of("NORMAL"); normals >= 0) read_normals(normals, mesh);
     if (const int colors = accessor_of("COLOR_0"); colors >= 0) read_colors(colors, mesh);
+    read_uvs(mesh);
+    // Without normals the specification ignores tangents.
+    if (const int tangents = accessor_of("TANGENT"); tangents >= 0 && !mesh.normals.empty() && !mesh.uvs.empty()) {
+      read_tangents(tangents, mesh);
+    }
     return mesh;
   }
 
@@ -187,6 +193,43 @@ class PrimitiveReader {
       }
       mesh.colors.push_back(color);
     }
+  }
+
+  void read_uvs(Mesh& mesh) {
+    const std::array<int, 2> accessors = {accessor_of("TEXCOORD_0"), accessor_of("TEXCOORD_1")};
+    if (accessors[0] < 0 && accessors[1] < 0) return;
+    mesh.uvs.resize(used_vertices_.size(), vec4(0.0F));
+    for (int set = 0; set < 2; ++set) {
+      if (accessors[static_cast<size_t>(set)] < 0) continue;
+      const std::vector<float> values = read_floats(document_, accessors[static_cast<size_t>(set)], report_);
+      for (size_t i = 0; i < used_vertices_.size(); ++i) {
+        const float* uv = &values[2 * size_t{used_vertices_[i]}];
+        if (!(std::abs(uv[0]) <= kMaxCoordinate && std::abs(uv[1]) <= kMaxCoordinate)) {
+          report_.refuse("a texture coordinate is not finite or beyond 1e15",
+                         element_place(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", used_vertices_[i]),
+                         "export the mesh again");
+          return;
+        }
+        mesh.uvs[i][2 * set] = uv[0];
+        mesh.uvs[i][2 * set + 1] = uv[1];
+      }
+    }
+  }
+
+  void read_tangents(int accessor, Mesh& mesh) {
+    const std::vector<float> values = read_floats(document_, accessor, report_);
+    std::vector<vec4> tangents;
+    tangents.reserve(used_vertices_.size());
+    for (const uint32_t vertex : used_vertices_) {
+      const float* t = &values[4 * size_t{vertex}];
+      const vec4 tangent(t[0], t[1], t[2], t[3] < 0.0F ? -1.0F : 1.0F);
+      if (!has_length(dvec3(vec3(tangent)))) {
+        report_.warn(place_ + " has tangents of no length, its texture coordinates tell them");
+        return;
+      }
+      tangents.push_back(tangent);
+    }
+    mesh.tangents = std::move(tangents);
   }
 
   const GltfDocument& document_;

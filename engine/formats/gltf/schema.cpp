@@ -42,6 +42,14 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
 #define PROMIN_PHONG "materials[].extensions.PROMIN_materials_phong"
 
+#define PROMIN_TEXTURE_INFO(PATH)                                                                  \
+  object(PATH), needed(index(PATH ".index", "textures")), integer(PATH ".texCoord", 0, kMaxCount), \
+      object(PATH ".extensions"), object(PATH ".extensions.*"),                                    \
+      numbers(PATH ".extensions.KHR_texture_transform.offset", 2, -kMaxScalar, kMaxScalar),        \
+      numbers(PATH ".extensions.KHR_texture_transform.scale", 2, -kMaxScalar, kMaxScalar),         \
+      number(PATH ".extensions.KHR_texture_transform.rotation", -kMaxScalar, kMaxScalar),          \
+      integer(PATH ".extensions.KHR_texture_transform.texCoord", 0, kMaxCount)
+
 constexpr JsonRule kRules[] = {
     needed(object("asset")),
     needed(text("asset.version")),
@@ -119,6 +127,13 @@ constexpr JsonRule kRules[] = {
     number("materials[].pbrMetallicRoughness.metallicFactor", 0.0, 1.0),
     number("materials[].pbrMetallicRoughness.roughnessFactor", 0.0, 1.0),
     color("materials[].emissiveFactor"),
+    PROMIN_TEXTURE_INFO("materials[].pbrMetallicRoughness.baseColorTexture"),
+    PROMIN_TEXTURE_INFO("materials[].pbrMetallicRoughness.metallicRoughnessTexture"),
+    PROMIN_TEXTURE_INFO("materials[].normalTexture"),
+    number("materials[].normalTexture.scale", -kMaxScalar, kMaxScalar),
+    PROMIN_TEXTURE_INFO("materials[].occlusionTexture"),
+    number("materials[].occlusionTexture.strength", 0.0, 1.0),
+    PROMIN_TEXTURE_INFO("materials[].emissiveTexture"),
     choice("materials[].alphaMode", "OPAQUE|MASK|BLEND"),
     object("materials[].extensions"),
     object("materials[].extensions.*"),
@@ -131,6 +146,22 @@ constexpr JsonRule kRules[] = {
     color(PROMIN_PHONG ".specularFactor"),
     color(PROMIN_PHONG ".reflectionFactor"),
     factor(PROMIN_PHONG ".shininess"),
+
+    array("images"),
+    object("images[]"),
+    text("images[].name"),
+    text("images[].uri"),
+    index("images[].bufferView", "bufferViews"),
+    array("textures"),
+    object("textures[]"),
+    index("textures[].source", "images"),
+    index("textures[].sampler", "samplers"),
+    array("samplers"),
+    object("samplers[]"),
+    choice("samplers[].magFilter", "9728|9729"),
+    choice("samplers[].minFilter", "9728|9729|9984|9985|9986|9987"),
+    choice("samplers[].wrapS", "33071|33648|10497"),
+    choice("samplers[].wrapT", "33071|33648|10497"),
 
     array("cameras"),
     object("cameras[]"),
@@ -206,6 +237,7 @@ constexpr JsonRule kRules[] = {
 #undef PROMIN_SKIES
 #undef PROMIN_LINK
 #undef PROMIN_PHONG
+#undef PROMIN_TEXTURE_INFO
 
 }  // namespace
 

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/textures.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/parallel.h"
+#include "formats/gltf/buffers.h"
+#include "formats/gltf/json_lookup.h"
+#include "textures/decode_picture.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+// Values of samplers (glTF 2.0, section 5.26), which are those of OpenGL.
+constexpr int kNearest = 9728;
+constexpr int kLinear = 9729;
+constexpr int kNearestMipmapNearest = 9984;
+constexpr int kLinearMipmapNearest = 9985;
+constexpr int kNearestMipmapLinear = 9986;
+constexpr int kLinearMipmapLinear = 9987;
+constexpr int kClampToEdge = 33071;
+constexpr int kMirroredRepeat = 33648;
+constexpr int kRepeat = 10497;
+
+TextureWrap wrap_of(int value) {
+  if (value == kClampToEdge) return TextureWrap::kClampToEdge;
+  return value == kMirroredRepeat ? TextureWrap::kMirroredRepeat : TextureWrap::kRepeat;
+}
+
+/// A filter that the file leaves out is linear, with levels.
+void take_sampler(const json& sampler, Texture& texture) {
+  texture.wrap_u = wrap_of(sampler.value("wrapS", kRepeat));
+  texture.wrap_v = wrap_of(sampler.value("wrapT", kRepeat));
+  texture.is_magnified_linearly = sampler.value("magFilter", kLinear) != kNearest;
+  const int minified = sampler.value("minFilter", kLinearMipmapLinear);
+  texture.is_minified_linearly =
+      minified == kLinear || minified == kLinearMipmapNearest || minified == kLinearMipmapLinear;
+  texture.has_levels = minified >= kNearestMipmapNearest;
+  texture.are_levels_linear = minified == kNearestMipmapLinear || minified == kLinearMipmapLinear;
+}
+
+/// KHR_texture_transform: the coordinates are scaled, then turned, then moved. The matrix of its text turns the other
+/// way round than its pictures and every viewer do (glTF#1563).
+void take_transform(const json& transform, TextureSlot& slot) {
+  const json offset = transform.value("offset", json::array({0.0, 0.0}));
+  const json scale = transform.value("scale", json::array({1.0, 1.0}));
+  const double angle = transform.value("rotation", 0.0);
+  const double cosine = std::cos(angle);
+  const double sine = std::sin(angle);
+  const dvec2 s(scale[0].get<double>(), scale[1].get<double>());
+  const dvec2 o(offset[0].get<double>(), offset[1].get<double>());
+  slot.to_u = vec3(dvec3(cosine * s.x, sine * s.y, o.x));
+  slot.to_v = vec3(dvec3(-sine * s.x, cosine * s.y, o.y));
+}
+
+}  // namespace
+
+TextureSlot GltfTextures::read_slot(const json& object, const char* name, ImageUse use) {
+  TextureSlot slot;
+  const auto found = object.find(name);
+  if (found == object.end()) return slot;
+  const json& info = *found;
+  slot.uv_set = info.value("texCoord", 0U);
+  if (const json* transform = find_extension(info, "KHR_texture_transform")) {
+    take_transform(*transform, slot);
+    slot.uv_set = transform->value("texCoord", slot.uv_set);
+  }
+  if (slot.uv_set > 1) {
+    report_.warn(std::string(name) + " of texture coordinates " + std::to_string(slot.uv_set) +
+                 " is ignored, there are sets 0 and 1");
+    return slot;
+  }
+  slot.texture = find_texture(info["index"].get<size_t>(), use);
+  return slot;
+}
+
+uint32_t GltfTextures::find_texture(size_t index, ImageUse use) {
+  const auto [known, is_new] = texture_numbers_.try_emplace({index, use}, TextureSlot::kNone);
+  if (!is_new) return known->second;
+  const json& source = document_.json["textures"][index];
+  if (!source.contains("source")) {
+    report_.warn("textures[" + std::to_string(index) + "] has no image that is known, it is ignored");
+    return TextureSlot::kNone;
+  }
+  Texture texture;
+  texture.image = find_image(source["source"].get<int>(), use);
+  if (source.contains("sampler")) {
+    take_sampler(document_.json["samplers"][source["sampler"].get<size_t>()], texture);
+  }
+  textures_.push_back(texture);
+  known->second = static_cast<uint32_t>(textures_.size() - 1);
+  return known->second;
+}
+
+uint32_t GltfTextures::find_image(int index, ImageUse use) {
+  const auto [known, is_new] = image_numbers_.try_emplace({index, use}, static_cast<uint32_t>(images_.size()));
+  if (!is_new) return known->second;
+  Source& source = images_.emplace_back();
+  source.image = std::make_shared<TextureImage>();
+  source.image->use = use;
+  source.title = title_of(document_.json, "images", static_cast<size_t>(index));
+  source.image->name = document_.json["images"][static_cast<size_t>(index)].value("name", "");
+  read_file(static_cast<size_t>(index), source);
+  return known->second;
+}
+
+void GltfTextures::read_file(size_t index, Source& source) {
+  const json& image = document_.json["images"][index];
+  if (image.contains("bufferView")) {
+    const json& view = document_.json["bufferViews"][image["bufferView"].get<size_t>()];
+    source.file = document_.buffers.bytes[view["buffer"].get<size_t>()].subspan(view.value("byteOffset", size_t{0}),
+                                                                               view["byteLength"].get<size_t>());
+    return;
+  }
+  if (!image.contains("uri")) {
+    source.problem = "it has no bytes";
+    return;
+  }
+  // What would refuse a buffer is no more than a warning here: the scene can be shown without.
+  LoadReport attempt(report_.file());
+  std::optional<std::vector<std::byte>> bytes =
+      read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", attempt);
+  for (const SourceFile& file : attempt.sources()) report_.add_source(file.file);
+  try {
+    attempt.throw_if_refused();
+  } catch (const InputError& error) {
+    source.problem = error.problems().front().what;
+    return;
+  }
+  source.own = std::move(*bytes);
+  source.file = source.own;
+}
+
+void GltfTextures::finish(Scene& scene) {
+  for_each_index(images_.size(), 0, [&](size_t i) {
+    Source& source = images_[i];
+    if (!source.problem.empty()) return;
+    try {
+      DecodedPicture picture = decode_picture(source.file);
+      source.image->size = picture.size;
+      source.image->texels = std::move(picture.texels);
+    } catch (const PictureError& error) {
+      source.problem = error.what();
+    }
+    source.own = {};
+  });
+  for (const Source& source : images_) {
+    if (!source.problem.empty()) report_.warn("image " + source.title + " is ignored: " + source.problem);
+    scene.images.push_back(source.image);
+  }
+  scene.textures = textures_;
+}
+
+}  // namespace promin

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "textures/decode_picture.h"
+
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <csetjmp>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "promin/textures.h"
+
+namespace promin {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "texels have red in the lowest byte");
+
+constexpr std::array<uint8_t, 8> kPngMagic = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+constexpr std::array<uint8_t, 3> kJpegMagic = {0xFF, 0xD8, 0xFF};
+
+template <size_t Count>
+bool begins_with(std::span<const std::byte> file, const std::array<uint8_t, Count>& magic) {
+  return file.size() >= Count && std::memcmp(file.data(), magic.data(), Count) == 0;
+}
+
+void check_size(uint64_t width, uint64_t height) {
+  if (width == 0 || height == 0) throw PictureError("it has no pixels");
+  if (width <= kMaxTextureSide && height <= kMaxTextureSide && width * height <= kMaxTextureTexels) return;
+  throw PictureError("its size of " + std::to_string(width) + "x" + std::to_string(height) + " is too large");
+}
+
+/// A PNG file on its way through libpng, which returns from errors by longjmp: nothing with a destructor may be made
+/// between setjmp and a call of libpng.
+class PngReader {
+ public:
+  explicit PngReader(std::span<const std::byte> file) : rest_(file) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, take_error, take_warning);
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+    if (info_ == nullptr) {
+      png_destroy_read_struct(&png_, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
+    png_set_read_fn(png_, this, take_bytes);
+    // Text and profiles are skipped, so that they take no memory.
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
+    png_set_user_limits(png_, kMaxTextureSide, kMaxTextureSide);
+    png_set_chunk_malloc_max(png_, 1U << 20);
+  }
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+
+  uvec2 read_header() {
+    if (setjmp(png_jmpbuf(png_)) != 0) throw PictureError(error_.data());
+    png_read_info(png_, info_);
+    return {png_get_image_width(png_, info_), png_get_image_height(png_, info_)};
+  }
+
+  void read_texels(const uvec2& size, uint32_t* texels) {
+    if (setjmp(png_jmpbuf(png_)) != 0) throw PictureError(error_.data());
+    png_set_expand(png_);
+    png_set_scale_16(png_);
+    png_set_gray_to_rgb(png_);
+    png_set_add_alpha(png_, 0xFF, PNG_FILLER_AFTER);
+    const int passes = png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    if (png_get_rowbytes(png_, info_) != size_t{4} * size.x) png_error(png_, "its rows have another length");
+    for (int pass = 0; pass < passes; ++pass) {
+      for (uint32_t row = 0; row < size.y; ++row) {
+        png_read_row(png_, reinterpret_cast<png_bytep>(texels + size_t{row} * size.x), nullptr);
+      }
+    }
+  }
+
+ private:
+  static void take_bytes(png_structp png, png_bytep to, size_t count) {
+    auto& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
+    if (count > reader.rest_.size()) png_error(png, "it ends too early");
+    std::memcpy(to, reader.rest_.data(), count);
+    reader.rest_ = reader.rest_.subspan(count);
+  }
+  [[noreturn]] static void take_error(png_structp png, png_const_charp message) {
+    auto& reader = *static_cast<PngReader*>(png_get_error_ptr(png));
+    std::strncpy(reader.error_.data(), message, reader.error_.size() - 1);
+    png_longjmp(png, 1);
+  }
+  static void take_warning(png_structp, png_const_charp) {}
+
+  std::span<const std::byte> rest_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  std::array<char, 256> error_{};
+};
+
+class JpegReader {
+ public:
+  explicit JpegReader(std::span<const std::byte> file)
+      : handle_(tjInitDecompress(), tjDestroy), data_(reinterpret_cast<const unsigned char*>(file.data())),
+        bytes_(file.size()) {
+    if (!handle_) throw std::bad_alloc();
+  }
+
+  uvec2 read_header() {
+    int width = 0;
+    int height = 0;
+    int subsampling = 0;
+    int colors = 0;
+    if (tjDecompressHeader3(handle_.get(), data_, bytes_, &width, &height, &subsampling, &colors) != 0) throw_error();
+    if (colors == TJCS_CMYK || colors == TJCS_YCCK) throw PictureError("its colours are CMYK");
+    return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+  }
+
+  void read_texels(const uvec2& size, uint32_t* texels) {
+    const int result = tjDecompress2(handle_.get(), data_, bytes_, reinterpret_cast<unsigned char*>(texels),
+                                     static_cast<int>(size.x), 0, static_cast<int>(size.y), TJPF_RGBA,
+                                     TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS);
+    if (result != 0) throw_error();
+  }
+
+ private:
+  [[noreturn]] void throw_error() { throw PictureError(tjGetErrorStr2(handle_.get())); }
+
+  std::unique_ptr<void, int (*)(tjhandle)> handle_;
+  const unsigned char* data_;
+  unsigned long bytes_;
+};
+
+/// Calls task with the reader that the file's first bytes ask for.
+template <typename Task>
+auto with_reader(std::span<const std::byte> file, const Task& task) {
+  if (begins_with(file, kPngMagic)) {
+    PngReader reader(file);
+    return task(reader);
+  }
+  if (begins_with(file, kJpegMagic)) {
+    JpegReader reader(file);
+    return task(reader);
+  }
+  throw PictureError("it is neither PNG nor JPEG");
+}
+
+template <typename Reader>
+uvec2 read_checked_header(Reader& reader) {
+  const uvec2 size = reader.read_header();
+  check_size(size.x, size.y);
+  return size;
+}
+
+}  // namespace
+
+uvec2 read_picture_size(std::span<const std::byte> file) {
+  return with_reader(file, [](auto& reader) { return read_checked_header(reader); });
+}
+
+DecodedPicture decode_picture(std::span<const std::byte> file) {
+  return with_reader(file, [](auto& reader) {
+    DecodedPicture picture;
+    picture.size = read_checked_header(reader);
+    picture.texels.resize(uint64_t{picture.size.x} * picture.size.y);
+    reader.read_texels(picture.size, picture.texels.data());
+    return picture;
+  });
+}
+
+}  // namespace promin

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "promin/math.h"
+
+namespace promin {
+
+/// Why a picture is no use as a texture, in a few words.
+class PictureError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A picture of 8 bits a channel.
+struct DecodedPicture {
+  uvec2 size{0};
+  /// As TextureImage::texels.
+  std::vector<uint32_t> texels;
+};
+
+/// The size of a PNG or JPEG file, which its first bytes tell from other formats. Throws PictureError where it is
+/// neither, is broken, or is larger than kMaxTextureSide or kMaxTextureTexels.
+uvec2 read_picture_size(std::span<const std::byte> file);
+
+/// The texels of such a file: grey ones in three channels, without alpha 1, 16 bits rounded to 8. Profiles and gamma of
+/// the file are ignored, as glTF 2.0, section 3.8.3, asks for. Throws PictureError, before it takes memory for a picture
+/// that is too large.
+DecodedPicture decode_picture(std::span<const std::byte> file);
+
+/// Most texels of an image: 512 MiB.
+inline constexpr uint64_t kMaxTextureTexels = uint64_t{1} << 27;
+
+}  // namespace promin

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Textures (docs/model.md, "Textures"). Filtering is written out, in an order that no driver may change: samplers differ
+// by some bits of where between two texels a place lies. How large a pixel is on a surface is told by a ray's cone
+// (Akenine-Moller and others, "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems ch. 20).
+
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer ImageWords { uint image_words[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Slots { vec4 slot_vectors[]; };
+layout(set = 0, binding = BINDING_TEXTURE_TEXELS) uniform usamplerBuffer image_texels;
+
+uint load_image_word(uint index) {
+  if (FETCHES_TEXELS == 0u) return image_words[VIEW.first_texture.w + index];
+  return texelFetch(image_texels, int(index)).x;
+}
+
+TextureSlotRecord load_slot(uint number) {
+  // The view of slots begins at a multiple of their own size.
+  uint first = TEXTURE_SLOT_TEXELS * (VIEW.first_texture.z + number - 1u);
+  if (FETCHES_TEXELS == 0u) {
+    return TextureSlotRecord(slot_vectors[first], slot_vectors[first + 1u],
+                             floatBitsToUint(slot_vectors[first + 2u]));
+  }
+  return TextureSlotRecord(shading_vector(first), shading_vector(first + 1u),
+                           texelFetch(shading_texels, int(first + 2u)));
+}
+
+uint flags_of(TextureSlotRecord slot) { return floatBitsToUint(slot.to_u.w); }
+bool has_flag(TextureSlotRecord slot, uint flag) { return (flags_of(slot) & flag) != 0u; }
+
+// log2 of a positive number, off by at most 1e-3, which is a thousandth of a level.
+float log2_about(float x) {
+  uint bits = floatBitsToUint(x);
+  precise float m = uintBitsToFloat((bits & 0x007FFFFFu) | 0x3F800000u);
+  precise float series = -2.153620718 + m * (3.047884161 + m * (-1.051875031 + m * 0.158248767));
+  precise float result = float(int(bits >> 23) - 127) + series;
+  return result;
+}
+
+// (code / 255) as light, to 0.006 of a code's step.
+vec3 decode_srgb(vec3 code) {
+  precise vec3 s = sqrt((code + 0.055) * (1.0 / 1.055));
+  precise vec3 s2 = s * s;
+  precise vec3 curve =
+      s2 * s2 * (0.04322932 + s * (1.266557 + s * (-0.5534927 + s * (0.3362242 - 0.09251754 * s))));
+  precise vec3 line = code * (1.0 / 12.92);
+  return vec3(code.x <= 0.04045 ? line.x : curve.x, code.y <= 0.04045 ? line.y : curve.y,
+              code.z <= 0.04045 ? line.z : curve.z);
+}
+
+// A coordinate in 0...1, of which a texture repeats outside.
+float wrap(float x, uint mode) {
+  precise float repeated = x - floor(x);
+  precise float twice = x - 2.0 * floor(0.5 * x);
+  precise float mirrored = twice > 1.0 ? 2.0 - twice : twice;
+  return mode == WRAP_REPEAT ? repeated : (mode == WRAP_MIRRORED ? mirrored : clamp(x, 0.0, 1.0));
+}
+
+// The texel in place of one beyond the edge by at most one.
+uint wrap_texel(int i, uint count, uint mode) {
+  int last = int(count) - 1;
+  int other_side = i < 0 ? last : (i > last ? 0 : i);
+  return uint(mode == WRAP_REPEAT ? other_side : clamp(i, 0, last));
+}
+
+struct Level {
+  uint first;
+  uvec2 size;
+};
+
+vec4 load_texel(TextureSlotRecord slot, Level level, ivec2 place) {
+  uint flags = flags_of(slot);
+  uint x = wrap_texel(place.x, level.size.x, (flags >> TEXTURE_WRAP_U_SHIFT) & TEXTURE_WRAP_MASK);
+  uint y = wrap_texel(place.y, level.size.y, (flags >> TEXTURE_WRAP_V_SHIFT) & TEXTURE_WRAP_MASK);
+  uint word = load_image_word(level.first + y * level.size.x + x);
+  precise vec4 numbers = vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu) * (1.0 / 255.0);
+  if ((flags & TEXTURE_IS_SRGB) != 0u) numbers.xyz = decode_srgb(numbers.xyz);
+  return numbers;
+}
+
+vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) {
+  Level level = Level(slot.image.x + load_image_word(slot.image.x + number), max(slot.image.yz >> number, uvec2(1u)));
+  uint flags = flags_of(slot);
+  vec2 wrapped = vec2(wrap(uv.x, (flags >> TEXTURE_WRAP_U_SHIFT) & TEXTURE_WRAP_MASK),
+                      wrap(uv.y, (flags >> TEXTURE_WRAP_V_SHIFT) & TEXTURE_WRAP_MASK));
+  precise vec2 place = wrapped * vec2(level.size) - (is_linear ? 0.5 : 0.0);
+  vec2 corner = floor(place);
+  ivec2 first = ivec2(corner);
+  vec4 nearest = load_texel(slot, level, first);
+  if (!is_linear) return nearest;
+  precise vec2 part = place - corner;
+  vec4 right = load_texel(slot, level, first + ivec2(1, 0));
+  vec4 below = load_texel(slot, level, first + ivec2(0, 1));
+  vec4 across = load_texel(slot, level, first + ivec2(1, 1));
+  precise vec4 upper = nearest + part.x * (right - nearest);
+  precise vec4 lower = below + part.x * (across - below);
+  precise vec4 result = upper + part.y * (lower - upper);
+  return result;
+}
+
+// What of a surface's texture coordinates lookups need.
+struct TexturePlace {
+  vec4 uvs;               // of both sets
+  vec2 log_coverage;      // of each: log2 of the area of coordinates that a pixel covers
+};
+
+// A lookup at the level whose texels are as large as the pixel. Where levels are interpolated and a pixel has four
+// samples or more, each sample takes one level: their mean is that of both.
+vec4 look_up(uint number, TexturePlace place) {
+  TextureSlotRecord slot = load_slot(number);
+  bool is_second = has_flag(slot, TEXTURE_UV_SET);
+  vec2 st = is_second ? place.uvs.zw : place.uvs.xy;
+  precise vec2 uv = vec2(slot.to_u.x * st.x + slot.to_u.y * st.y + slot.to_u.z,
+                         slot.to_v.x * st.x + slot.to_v.y * st.y + slot.to_v.z);
+  precise float scale = abs(slot.to_u.x * slot.to_v.y - slot.to_u.y * slot.to_v.x);
+  precise float texels = max(scale * float(slot.image.y) * float(slot.image.z), SMALLEST_NORMAL);
+  precise float level = 0.5 * ((is_second ? place.log_coverage.y : place.log_coverage.x) + log2_about(texels));
+  float last = float(slot.image.w - 1u);
+  if (!(level > 0.0)) return filter_level(slot, 0u, uv, has_flag(slot, TEXTURE_MAGNIFIED_LINEARLY));
+  bool is_linear = has_flag(slot, TEXTURE_MINIFIED_LINEARLY);
+  if (!has_flag(slot, TEXTURE_HAS_LEVELS)) return filter_level(slot, 0u, uv, is_linear);
+  float samples = float(samples_per_pixel());
+  bool takes_one = !has_flag(slot, TEXTURE_LEVELS_LINEAR) || samples_per_pixel() >= 4u;
+  precise float shift =
+      has_flag(slot, TEXTURE_LEVELS_LINEAR) ? (float(sample_at_hand()) + 0.5) / samples : 0.5;
+  precise float at = min(level, last);
+  float below = floor(takes_one ? min(at + shift, last) : at);
+  vec4 finer = filter_level(slot, uint(below), uv, is_linear);
+  if (takes_one || below >= last) return finer;
+  vec4 coarser = filter_level(slot, uint(below) + 1u, uv, is_linear);
+  precise vec4 result = finer + (at - below) * (coarser - finer);
+  return result;
+}
+
+uint slot_number(float bits) { return floatBitsToUint(bits); }
