@@ -74,6 +74,8 @@ class Validation {
     check_share(material.metallic, place + ".metallic");
     check_share(material.roughness, place + ".roughness");
     check_share(material.specular, place + ".specular");
+    check(std::isfinite(material.normal_scale), "the scale is not finite", place + ".normal_scale", "use a finite one");
+    check_share(material.occlusion_strength, place + ".occlusion_strength");
     check_color(material.specular_color, place + ".specular_color");
     check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
           "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
@@ -87,6 +89,59 @@ class Validation {
       const std::string place = place_of("materials", i);
       std::visit([&](const auto& model) { check_model(model, place); }, material.model);
       check_color(material.emissive, place + ".emissive");
+    }
+  }
+
+  void check_images(const Scene& scene) {
+    for (size_t i = 0; i < scene.images.size(); ++i) {
+      const std::string place = place_of("images", i);
+      if (!check(scene.images[i] != nullptr, "there is no image", place, "give an empty one where it is absent")) continue;
+      const TextureImage& image = *scene.images[i];
+      check(static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal), "the use is none of ImageUse",
+            place + ".use", "name one that there is");
+      if (image.texels.empty()) continue;
+      check(image.size.x <= kMaxTextureSide && image.size.y <= kMaxTextureSide,
+            "an image has a side over " + std::to_string(kMaxTextureSide), place + ".size", "make it smaller");
+      check(image.texels.size() == uint64_t{image.size.x} * image.size.y,
+            "there are " + std::to_string(image.texels.size()) + " texels of another number than the size says",
+            place + ".texels", "give one for each pixel, or none");
+    }
+    for (size_t i = 0; i < scene.textures.size(); ++i) {
+      const Texture& texture = scene.textures[i];
+      const std::string place = place_of("textures", i);
+      check(texture.image < scene.images.size(), "the image is out of range", place + ".image", "name one that there is");
+      for (const TextureWrap wrap : {texture.wrap_u, texture.wrap_v}) {
+        check(static_cast<uint32_t>(wrap) <= static_cast<uint32_t>(TextureWrap::kClampToEdge),
+              "the wrap is none of TextureWrap", place, "name one that there is");
+      }
+    }
+  }
+
+  /// The slots of a material; how many textures there are is known where there is a scene.
+  void check_slot(const TextureSlot& slot, size_t texture_count, const std::string& place) {
+    if (!slot.exists()) return;
+    check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "name one that there is");
+    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set", "take one of these");
+    check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
+  }
+
+  void check_slots(const Phong& /*model*/, size_t /*texture_count*/, const std::string& /*place*/) {}
+  void check_slots(const MetallicRoughness& model, size_t texture_count, const std::string& place) {
+    check_slot(model.base_color_texture, texture_count, place + ".base_color_texture");
+    check_slot(model.metallic_roughness_texture, texture_count, place + ".metallic_roughness_texture");
+    check_slot(model.normal_texture, texture_count, place + ".normal_texture");
+    check_slot(model.occlusion_texture, texture_count, place + ".occlusion_texture");
+  }
+  void check_slots(const Unlit& model, size_t texture_count, const std::string& place) {
+    check_slot(model.color_texture, texture_count, place + ".color_texture");
+  }
+
+  void check_slots(const Scene& scene) {
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+      const Material& material = scene.materials[i];
+      const std::string place = place_of("materials", i);
+      std::visit([&](const auto& model) { check_slots(model, scene.textures.size(), place); }, material.model);
+      check_slot(material.emissive_texture, scene.textures.size(), place + ".emissive_texture");
     }
   }
 
@@ -259,6 +314,13 @@ class Validation {
         mesh.colors, [](const vec4& c) { return is_color(vec3(c)) && std::isfinite(c.a); },
         "a vertex colour is negative, beyond 1e15 or not a number", place + ".colors", "use numbers from 0 to 1e15");
     check_each(
+        mesh.uvs, [](const vec4& uv) { return is_in_range(dvec3(uv)) && std::abs(uv.w) <= kMaxCoordinate; },
+        "a texture coordinate is not finite or beyond 1e15", place + ".uvs", "use smaller ones");
+    check_each(
+        mesh.tangents, [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },
+        "a tangent has no length, is not finite or has a side that is neither 1 nor -1", place + ".tangents",
+        "leave the tangents out, or give each a direction and a side");
+    check_each(
         mesh.triangles, [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
         "a corner is out of range of the positions", place + ".triangles", "use indices of positions");
     check_each(
@@ -271,6 +333,8 @@ class Validation {
     };
     check_count(mesh.normals.size(), vertices, ".normals", " positions");
     check_count(mesh.colors.size(), vertices, ".colors", " positions");
+    check_count(mesh.uvs.size(), vertices, ".uvs", " positions");
+    check_count(mesh.tangents.size(), vertices, ".tangents", " positions");
     check_count(mesh.triangle_materials.size(), mesh.triangles.size(), ".triangle_materials", " triangles");
   }
 
@@ -283,6 +347,8 @@ std::vector<Problem> validate(const Scene& scene) {
   std::vector<Problem> problems;
   Validation validation(problems);
   validation.check_materials(scene.materials);
+  validation.check_images(scene);
+  validation.check_slots(scene);
   validation.check_lights(scene.lights);
   validation.check_cameras(scene.cameras);
   validation.check_environment(scene.environment);

@@ -31,6 +31,8 @@ class ContentHash {
     add(mesh.positions);
     add(mesh.normals);
     add(mesh.colors);
+    add(mesh.uvs);
+    add(mesh.tangents);
     add(mesh.triangles);
     add(mesh.triangle_materials);
   }
@@ -75,11 +77,39 @@ class ContentHash {
     add(material.base_color);
     for (const float value : {material.metallic, material.roughness, material.ior, material.specular}) add(value);
     add(material.specular_color);
+    for (const TextureSlot& slot : {material.base_color_texture, material.metallic_roughness_texture,
+                                    material.normal_texture, material.occlusion_texture}) {
+      add(slot);
+    }
+    add(material.normal_scale);
+    add(material.occlusion_strength);
   }
-  void add(const Unlit& unlit) { add(unlit.color); }
+  void add(const Unlit& unlit) {
+    add(unlit.color);
+    add(unlit.color_texture);
+  }
+  void add(const TextureSlot& slot) {
+    add(uint64_t{slot.texture} << 32 | slot.uv_set);
+    add(slot.to_u);
+    add(slot.to_v);
+  }
+  void add(const Texture& texture) {
+    for (const uint64_t word : {uint64_t{texture.image}, static_cast<uint64_t>(texture.wrap_u),
+                                static_cast<uint64_t>(texture.wrap_v), uint64_t{texture.is_magnified_linearly},
+                                uint64_t{texture.is_minified_linearly}, uint64_t{texture.has_levels},
+                                uint64_t{texture.are_levels_linear}}) {
+      add(word);
+    }
+  }
+  void add(const TextureImage& image) {
+    add(uint64_t{image.size.x} << 32 | image.size.y);
+    add(static_cast<uint64_t>(image.use));
+    add(image.texels);
+  }
   void add(const Material& material) {
     std::visit([&](const auto& model) { add(model); }, material.model);
     add(material.emissive);
+    add(material.emissive_texture);
   }
   void add(const Light& light) {
     add(static_cast<uint64_t>(light.kind));
@@ -111,6 +141,9 @@ std::string hash_of(const world::Scene& scene) {
   }
   hash.add(scene.materials.size());
   for (const Material& material : scene.materials) hash.add(material);
+  hash.add(scene.textures.size());
+  for (const Texture& texture : scene.textures) hash.add(texture);
+  for (const auto& image : scene.images) hash.add(*image);
   hash.add(scene.lights.size());
   for (const Light& light : scene.lights) hash.add(light);
   hash.add(scene.cameras.size());

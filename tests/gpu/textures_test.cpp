@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "promin/validate.h"
+#include "render/renderer_impl.h"
+
+namespace promin::test {
+namespace {
+
+/// IEC 61966-2-1.
+double decode_srgb(double code) {
+  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
+}
+
+/// A square of side 2 that fills an orthographic picture, its texture coordinates from `lo` at the lower left corner to
+/// `hi` at the upper right one, both sets alike but for the sign. Unlit, so that the picture shows the texture alone.
+Scene make_board(const TextureImage& image, const vec2& lo = vec2(0), const vec2& hi = vec2(1)) {
+  Scene scene;
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (const vec2& uv : {lo, vec2(hi.x, lo.y), hi, vec2(lo.x, hi.y)}) mesh.uvs.emplace_back(uv, -uv);
+  Material material;
+  material.model = Unlit{vec3(1.0F), {.texture = 0}};
+  scene.materials = {material};
+  scene.images = {std::make_shared<TextureImage>(image)};
+  scene.textures = {Texture{}};
+  scene.add("board", mesh);
+  return scene;
+}
+
+View make_board_view(const uvec2& size, uint32_t samples = 1) {
+  View view;
+  view.camera.eye = vec3(0, 0, 2);
+  view.camera.projection = Projection::kOrthographic;
+  view.camera.ymag = 1.0F;
+  view.size = size;
+  view.samples_per_pixel = samples;
+  return view;
+}
+
+TextureImage make_image(const uvec2& size, const std::function<uint32_t(uint32_t, uint32_t)>& texel,
+                        ImageUse use = ImageUse::kData) {
+  TextureImage image{.name = "", .size = size, .texels = {}, .use = use};
+  for (uint32_t y = 0; y < size.y; ++y) {
+    for (uint32_t x = 0; x < size.x; ++x) image.texels.push_back(texel(x, y));
+  }
+  return image;
+}
+
+uint32_t grey(uint32_t value) {
+  return value * 0x010101U | 0xFF000000U;
+}
+
+class TexturesTest : public DeviceTest {
+ protected:
+  Image render(const Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
+    EXPECT_THAT(validate(scene), testing::IsEmpty());
+    return make_renderer(device(), scene, options).render(view).image;
+  }
+};
+
+TEST_F(TexturesTest, AConstantTextureIsAFactor) {
+  for (const uint32_t code : {0U, 1U, 10U, 11U, 128U, 254U, 255U}) {
+    for (const ImageUse use : {ImageUse::kColor, ImageUse::kData}) {
+      Scene scene = make_board(make_image({5, 3}, [&](uint32_t, uint32_t) { return grey(code); }, use), vec2(-1.5F),
+                               vec2(2.25F));
+      const Image image = render(scene, make_board_view({16, 16}));
+      const double number = code / 255.0;
+      const double expected = use == ImageUse::kColor ? decode_srgb(number) : number;
+      EXPECT_NEAR(static_cast<double>(image.pixels[0].r), expected, 0.006 / 255.0) << code;
+      for (const vec3& pixel : image.pixels) EXPECT_EQ(pixel, image.pixels[0]) << code;
+    }
+  }
+}
+
+TEST_F(TexturesTest, TexelsLieWhereTheyBelong) {
+  // The first row lies at v = 0, and is the lowest here.
+  Scene scene = make_board(make_image({2, 2}, [](uint32_t x, uint32_t y) { return grey(10 * (1 + x + 2 * y)); }));
+  scene.textures[0].is_magnified_linearly = false;
+  const Image image = render(scene, make_board_view({2, 2}));
+  const auto code = [&](size_t i) { return std::lround(255.0F * image.pixels[i].r); };
+  EXPECT_EQ(code(0), 30);
+  EXPECT_EQ(code(1), 40);
+  EXPECT_EQ(code(2), 10);
+  EXPECT_EQ(code(3), 20);
+}
+
+TEST_F(TexturesTest, EdgesRepeatMirrorOrHold) {
+  // Four texels along u, which goes from -2 to 3: 20 of them, each a pixel.
+  const struct {
+    TextureWrap wrap;
+    const char* row;
+  } kCases[] = {{TextureWrap::kRepeat, "01230123012301230123"},
+                {TextureWrap::kMirroredRepeat, "01233210012332100123"},
+                {TextureWrap::kClampToEdge, "00000000012333333333"}};
+  for (const auto& [wrap, row] : kCases) {
+    for (const bool is_linear : {false, true}) {
+      Scene scene = make_board(make_image({4, 1}, [](uint32_t x, uint32_t) { return grey(60 * x); }), vec2(-2, 0),
+                               vec2(3, 1));
+      scene.textures[0].wrap_u = wrap;
+      scene.textures[0].is_magnified_linearly = is_linear;
+      View view = make_board_view({20, 20});
+      const Image image = render(scene, view);
+      std::string codes;
+      for (int x = 0; x < 20; ++x) codes += static_cast<char>('0' + std::lround(255.0F * image.pixels[x].r / 60.0F));
+      // Pixels lie at the texels' middles, so both filters give the same.
+      EXPECT_EQ(codes, row) << is_linear;
+    }
+  }
+}
+
+TEST_F(TexturesTest, BilinearBetweenTexels) {
+  // Of two texels, 0 and 1, clamped: u = 0 ... 1 gives 0 up to 1/4, 1 from 3/4 on, and a line between.
+  Scene scene = make_board(make_image({2, 1}, [](uint32_t x, uint32_t) { return grey(255 * x); }));
+  scene.textures[0].wrap_u = TextureWrap::kClampToEdge;
+  const uint32_t width = 64;
+  const Image image = render(scene, make_board_view({width, width}));
+  for (uint32_t x = 0; x < width; ++x) {
+    const double u = (x + 0.5) / width;
+    EXPECT_NEAR(static_cast<double>(image.pixels[x].r), std::clamp(2.0 * u - 0.5, 0.0, 1.0), 0x1p-20) << x;
+  }
+}
+
+TEST_F(TexturesTest, SetsAndTransformsAreFollowed) {
+  Scene scene = make_board(make_image({4, 4}, [](uint32_t x, uint32_t y) { return grey(10 * (x + 4 * y)); }));
+  scene.textures[0].is_magnified_linearly = false;
+  const Image plain = render(scene, make_board_view({4, 4}));
+  auto& slot = std::get<Unlit>(scene.materials[0].model).color_texture;
+  // The second set has both signs turned.
+  slot.uv_set = 1;
+  const Image turned = render(scene, make_board_view({4, 4}));
+  // Scaled by -1 it is the first again.
+  slot.to_u = vec3(-1, 0, 0);
+  slot.to_v = vec3(0, -1, 0);
+  EXPECT_TRUE(has_same_bits(render(scene, make_board_view({4, 4})), plain));
+  for (size_t i = 0; i < 16; ++i) EXPECT_EQ(turned.pixels[i], plain.pixels[15 - i]) << i;
+  // A quarter to the left, as KHR_texture_transform's offset.
+  slot = {.texture = 0, .to_u = vec3(1, 0, 0.25F)};
+  const Image moved = render(scene, make_board_view({4, 4}));
+  for (size_t i = 0; i < 16; ++i) EXPECT_EQ(moved.pixels[i], plain.pixels[i / 4 * 4 + (i + 1) % 4]) << i;
+}
+
+TEST_F(TexturesTest, SmallTexelsAreAveraged) {
+  // A checkerboard of 256 texels a side in 16 pixels: each covers 16 * 16 of them, light and dark alike.
+  const TextureImage checkers =
+      make_image({256, 256}, [](uint32_t x, uint32_t y) { return grey((x + y) % 2 == 0 ? 255 : 0); }, ImageUse::kColor);
+  Scene scene = make_board(checkers);
+  for (const uint32_t samples : {1U, 4U}) {
+    const Image image = render(scene, make_board_view({16, 16}, samples));
+    // The code of one half is 188, of which this is the light.
+    for (const vec3& pixel : image.pixels) EXPECT_NEAR(static_cast<double>(pixel.r), decode_srgb(188 / 255.0), 1e-4);
+  }
+  scene.textures[0].has_levels = false;
+  scene.textures[0].is_minified_linearly = false;
+  for (const vec3& pixel : render(scene, make_board_view({16, 16})).pixels) EXPECT_TRUE(pixel.r == 0 || pixel.r == 1);
+}
+
+TEST_F(TexturesTest, TheLevelFollowsDistanceAndMirrors) {
+  // Levels told apart by their colour: a texture of noise fades to its mean as it goes away.
+  const TextureImage noise = make_image({64, 64}, [](uint32_t x, uint32_t y) { return grey((37 * x + 91 * y) % 256); });
+  const auto contrast = [&](float distance, const std::function<void(Scene&)>& change) {
+    Scene scene = make_board(noise, vec2(0), vec2(4));
+    change(scene);
+    View view;
+    view.camera.eye = vec3(0, 0, distance);
+    view.camera.yfov = 2.0F * std::atan(1.0F / distance);
+    view.size = uvec2(64);
+    const Image image = render(scene, view);
+    double least = 1.0;
+    double most = 0.0;
+    for (const vec3& pixel : image.pixels) {
+      least = std::min(least, static_cast<double>(pixel.g));
+      most = std::max(most, static_cast<double>(pixel.g));
+    }
+    return most - least;
+  };
+  const auto nothing = [](Scene&) {};
+  // The square fills the picture from any distance, so a pixel covers as many texels.
+  EXPECT_NEAR(contrast(2.0F, nothing), contrast(100.0F, nothing), 0.02);
+  EXPECT_LT(contrast(2.0F, nothing), 0.5);
+  EXPECT_GT(contrast(2.0F, [](Scene& s) { s.textures[0].has_levels = false; }), 0.8);
+}
+
+/// A metallic-roughness board with the studio's absence made up for by one light from the upper left.
+Scene make_lit_board(const TextureImage& image) {
+  Scene scene = make_board(image);
+  MetallicRoughness material;
+  material.metallic = 0.0F;
+  material.base_color = vec3(0.8F);
+  scene.materials[0].model = material;
+  Mesh& mesh = std::get<Mesh>(scene.geometries[0]);
+  mesh.normals.assign(4, vec3(0, 0, 1));
+  Light light;
+  light.kind = LightKind::kDirectional;
+  light.direction = glm::normalize(vec3(1, -1, -1));
+  scene.lights = {light};
+  scene.environment.ambient = vec3(0.25F);
+  return scene;
+}
+
+TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
+  Scene scene = make_lit_board(make_image({1, 1}, [](uint32_t, uint32_t) { return grey(51); }));
+  const auto center = [&] { return render(scene, make_board_view({8, 8})).pixels[27].r; };
+  auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
+  const float open = center();
+  material.occlusion_texture.texture = 0;
+  const float dimmed = center();
+  scene.lights.clear();
+  const float dimmed_alone = center();
+  material.occlusion_texture = {};
+  const float open_alone = center();
+  // A fifth of the environment is left, and all of the source.
+  EXPECT_NEAR(dimmed_alone, 0.2F * open_alone, 1e-6F);
+  EXPECT_NEAR(dimmed - dimmed_alone, open - open_alone, 1e-6F);
+  scene.materials[0].model = [&] {
+    auto half = material;
+    half.occlusion_texture.texture = 0;
+    half.occlusion_strength = 0.5F;
+    return half;
+  }();
+  EXPECT_NEAR(center(), 0.6F * open_alone, 1e-6F);
+}
+
+TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {
+  // +X of the texture goes along +u, +Y against +v, as images have their first row at v = 0; the board's v goes up.
+  const auto shaded = [&](uint32_t texel, bool has_tangents, float turn) {
+    Scene scene = make_lit_board(make_image({1, 1}, [&](uint32_t, uint32_t) { return texel; }, ImageUse::kNormal));
+    Mesh& mesh = std::get<Mesh>(scene.geometries[0]);
+    if (has_tangents) mesh.tangents.assign(4, vec4(1, 0, 0, -1));
+    if (turn != 0.0F) mesh.normals.assign(4, vec3(turn, 0, std::sqrt(1.0F - turn * turn)));
+    if (texel != 0) std::get<MetallicRoughness>(scene.materials[0].model).normal_texture.texture = 0;
+    return render(scene, make_board_view({8, 8})).pixels[27].r;
+  };
+  // x = 204 / 255 * 2 - 1 = 0.6, z = 0.8.
+  const uint32_t to_the_right = 204 | 127 << 8 | 230 << 16;
+  for (const bool has_tangents : {false, true}) {
+    EXPECT_NEAR(shaded(to_the_right, has_tangents, 0.0F), shaded(0, false, 0.6F), 0.01F);
+    EXPECT_LT(shaded(to_the_right, has_tangents, 0.0F), shaded(0, false, 0.0F) - 0.05F);
+    // Green points up in the picture's space, down along v here: away from the light above.
+    const uint32_t along_green = 127 | 204 << 8 | 230 << 16;
+    EXPECT_LT(shaded(along_green, has_tangents, 0.0F), shaded(0, false, 0.0F) - 0.05F);
+  }
+}
+
+TEST_F(TexturesTest, EveryWayOfTracingGivesTheSameBits) {
+  const TextureImage noise = make_image(
+      {61, 37}, [](uint32_t x, uint32_t y) { return (x * 2654435761U) ^ (y * 40503U * 65537U); }, ImageUse::kColor);
+  Scene scene = make_lit_board(noise);
+  auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
+  material.metallic = 1.0F;
+  for (TextureSlot* slot : {&material.base_color_texture, &material.metallic_roughness_texture,
+                            &material.normal_texture, &material.occlusion_texture}) {
+    slot->texture = 0;
+  }
+  scene.materials[0].emissive_texture.texture = 0;
+  scene.materials[0].emissive = vec3(0.5F);
+  scene.add("ball", Sphere{0.5F}, 0);
+  View view = make_board_view({96, 64}, 3);
+  view.camera.projection = Projection::kPerspective;
+  view.camera.eye = vec3(0.5F, 0.25F, 3.0F);
+  const Image image = render(scene, view);
+  TunedRendererOptions options;
+  options.avoids_texels = true;
+  EXPECT_TRUE(has_same_bits(image, render(scene, view, options)));
+  options = {};
+  for (const uint32_t packet : {1U, 2U, 4U}) {
+    options.packet_size = packet;
+    options.blocks_per_dispatch = 5 * packet;
+    EXPECT_TRUE(has_same_bits(image, render(scene, view, options))) << packet;
+  }
+}
+
+}  // namespace
+}  // namespace promin::test
