@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "core/rounding.h"
 #include "gpu/device_fixture.h"
-#include "gpu/test_scenes.h"
 #include "oracle/lobe.h"
 #include "oracle/picture.h"
 #include "promin/renderer.h"
