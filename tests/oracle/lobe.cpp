@@ -233,6 +233,10 @@ Real Lobe::alpha_of_sources() const {
   return std::max(roughness_ * roughness_, kLeastAlphaOfSources);
 }
 
+Vector Lobe::highlights_of_all(const LobeShares& shares) const {
+  return (1 - metallic_) * dielectric_.reflectance(shares) + metallic_ * metal_.reflectance(shares);
+}
+
 Vector Lobe::highlight(const LobeAngles& angles) const {
   const Real alpha = alpha_of_sources();
   const Vector facets = (1 - metallic_) * dielectric_.k * dielectric_.fresnel(angles.v_h) +

@@ -56,6 +56,8 @@ class Lobe {
   Real sharpness() const;
   /// The radiance that the surface reflects of a source with an irradiance of 1 across its way.
   Vector highlight(const LobeAngles& angles) const;
+  /// The sum of the highlights of sources in all directions, of radiance 1, where the lobe's shares are these.
+  Vector highlights_of_all(const LobeShares& shares) const;
   /// The alpha by which sources are reflected.
   Real alpha_of_sources() const;
 

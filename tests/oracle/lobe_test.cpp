@@ -100,6 +100,26 @@ TEST(OracleLobe, TheTablesEntriesAreTheIntegrals) {
   }
 }
 
+// Sources of all directions add up to one on what is white. Lobes are linear in F0 and F90, so what they make of all
+// sources are the exact shares in the place of the table's.
+TEST(OracleLobe, SourcesFromEverywhereAddUpToOne) {
+  std::array<Real, 11> worst{};
+  for_each_index(worst.size(), 0, [&](size_t i) {
+    for (size_t k = 0; k < 16; ++k) {
+      const Real v = (k + 0.5L) / 16;
+      const Real roughness = i / 10.0L;
+      const LobeShares table = look_up_lobe_shares(v, roughness);
+      for (const float metallic : {0.0F, 0.5F, 1.0F}) {
+        const Lobe lobe(make_white(metallic, static_cast<float>(roughness)), Vector(1), table);
+        const LobeShares exact = integrate_lobe_shares(v, std::sqrt(lobe.alpha_of_sources()));
+        const Real one = lobe.albedo().x + lobe.highlights_of_all(exact).x;
+        worst[i] = std::max(worst[i], std::abs(one - 1));
+      }
+    }
+  });
+  for (size_t i = 0; i < worst.size(); ++i) EXPECT_LE(worst[i], 0.01L) << "roughness 0." << i;
+}
+
 // Between entries, in the middle of each cell and of its edges. From the side a smooth lobe hangs on v / alpha, which
 // no table over v resolves: there it is off by as much as 0.081, in a rim of v < 0.05 of surfaces smoother than 0.06.
 TEST(OracleLobe, TheTableIsGoodBetweenItsEntries) {
