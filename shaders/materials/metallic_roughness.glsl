@@ -33,7 +33,7 @@ Lobe make_lobe(vec3 f0, float f90, vec2 shares) {
 
 vec3 base_color_of(ShadingPoint point) {
   precise vec3 base = point.material.a.xyz * point.color;
-  return base;
+  return min(base, vec3(1.0));
 }
 
 Lobe dielectric_lobe(ShadingPoint point) {

@@ -382,32 +382,59 @@ TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
   EXPECT_EQ(material.phong().reflection, vec3(0));
 }
 
-TEST_F(GltfTest, MetallicRoughnessBecomesPhong) {
-  const LoadedScene scene = load(
-      material_gltf({{"pbrMetallicRoughness",
-                      {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.15}}}}));
-  const Material& material = scene.materials.at(0);
-  const vec3 ks = 0.5F * (vec3(0.04F) + vec3(0.8F, 0.4F, 0.2F));
-  expect_near(material.phong().ambient, {0.4F, 0.2F, 0.1F});
-  expect_near(material.phong().diffuse, vec3(0.4F, 0.2F, 0.1F) * std::numbers::inv_pi_v<float>);
-  expect_near(material.phong().specular, ks);
-  EXPECT_NEAR(material.phong().shininess, (2.0 / 0.00050625 - 2.0) / 4.0, 1e-3);
-  expect_near(material.phong().reflection, 0.5F * ks);
+/// What the file's only material is of.
+template <class Model>
+Model model_of(const LoadedScene& scene) {
+  return std::get<Model>(scene.materials.at(0).model);
 }
 
-TEST_F(GltfTest, ExponentsAreKeptInRange) {
-  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}})).materials[0].phong().shininess, 1e4F);
-  EXPECT_EQ(load(material_gltf({{"pbrMetallicRoughness", {{"roughnessFactor", 1}}}})).materials[0].phong().shininess, 1.0F);
+TEST_F(GltfTest, MetallicRoughnessIsTakenAsItIs) {
+  const LoadedScene scene = load(material_gltf(
+      {{"emissiveFactor", {0, 0.5, 0}},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.15}}},
+       {"extensions",
+        {{"KHR_materials_ior", {{"ior", 1.25}}},
+         {"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
+         {"KHR_materials_specular", {{"specularFactor", 0.75}, {"specularColorFactor", {1, 2, 0.5}}}}}}}));
+  const auto model = model_of<MetallicRoughness>(scene);
+  EXPECT_EQ(model.base_color, vec3(0.8F, 0.4F, 0.2F));
+  EXPECT_EQ(model.metallic, 0.5F);
+  EXPECT_EQ(model.roughness, 0.15F);
+  EXPECT_EQ(model.ior, 1.25F);
+  EXPECT_EQ(model.specular, 0.75F);
+  EXPECT_EQ(model.specular_color, vec3(1, 2, 0.5F));
+  EXPECT_EQ(scene.materials.at(0).emissive, vec3(0, 2, 0));
+  EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
-TEST_F(GltfTest, UnlitMaterialsShineByThemselves) {
-  const LoadedScene scene = load(material_gltf({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
+TEST_F(GltfTest, MetallicRoughnessHasTheSpecificationsDefaults) {
+  const auto model = model_of<MetallicRoughness>(load(material_gltf(
+      {{"extensions", {{"KHR_materials_ior", json::object()}, {"KHR_materials_specular", json::object()}}}})));
+  EXPECT_EQ(model.base_color, vec3(1));
+  EXPECT_EQ(model.metallic, 1.0F);
+  EXPECT_EQ(model.roughness, 1.0F);
+  EXPECT_EQ(model.ior, 1.5F);
+  EXPECT_EQ(model.specular, 1.0F);
+  EXPECT_EQ(model.specular_color, vec3(1));
+}
+
+// KHR_materials_ior: 0 stands for what reflects everything.
+TEST_F(GltfTest, AnIndexOfRefractionIsZeroOrFromOneOn) {
+  const auto load_ior = [this](double ior) {
+    return load(material_gltf({{"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}}));
+  };
+  EXPECT_EQ(model_of<MetallicRoughness>(load_ior(0)).ior, 0.0F);
+  EXPECT_EQ(model_of<MetallicRoughness>(load_ior(1)).ior, 1.0F);
+  EXPECT_THROW(load_ior(0.5), InputError);
+}
+
+TEST_F(GltfTest, UnlitMaterialsAreTheirBaseColor) {
+  const LoadedScene scene = load(material_gltf({{"emissiveFactor", {1, 1, 1}},
+                                                {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 1}}}},
                                                 {"extensions", {{"KHR_materials_unlit", json::object()}}}}));
-  const Material& material = scene.materials.at(0);
-  EXPECT_EQ(material.emissive, vec3(0.5F, 0.25F, 0));
-  EXPECT_EQ(material.phong().diffuse, vec3(0));
-  EXPECT_EQ(material.phong().ambient, vec3(0));
-  EXPECT_EQ(material.phong().specular, vec3(0));
+  EXPECT_EQ(model_of<Unlit>(scene).color, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(scene.materials.at(0).emissive, vec3(0)) << "KHR_materials_unlit ignores all but the base colour";
 }
 
 TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
@@ -417,7 +444,8 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
   const LoadedScene scene = load(gltf);
   EXPECT_EQ(scene.objects[0].material, 0U);
   EXPECT_EQ(scene.objects[1].material, 1U);
-  EXPECT_EQ(scene.materials.at(1).phong().specular, vec3(1)) << "the default is a white metal";
+  const auto& model = std::get<MetallicRoughness>(scene.materials.at(1).model);
+  EXPECT_EQ(model.base_color * model.metallic, vec3(1)) << "the default is a white metal";
 }
 
 TEST_F(GltfTest, WhatAMaterialLosesIsSaidByItsName) {

@@ -7,6 +7,7 @@
 #include <bit>
 #include <filesystem>
 
+#include "core/rounding.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/caster.h"
@@ -59,25 +60,43 @@ class ExplainTest : public test::DeviceTest {
     }
   }
 
+  /// What the mirror ray behind this one weighs. That of a metallic-roughness material hangs on the angle; here it only
+  /// takes from what it is a part of.
+  static vec3 next_weight(const ExplainedSample& sample, size_t i, const vec3& weight, const world::Scene& scene) {
+    const ExplainedRay& ray = sample.rays[i];
+    if (ray.hit.object < 0) return weight;
+    const auto& model = scene.materials[ray.material].model;
+    if (const auto* phong = std::get_if<Phong>(&model)) return weight * phong->reflection;
+    if (i + 1 == sample.rays.size()) return vec3(0.0F);
+    EXPECT_TRUE(std::holds_alternative<MetallicRoughness>(model));
+    const vec3 next = sample.rays[i + 1].weight;
+    EXPECT_TRUE(glm::all(glm::lessThanEqual(next, weight)) && max_component(next) > 0.0F);
+    return next;
+  }
+
   /// The colour is what its parts add up to, in fp32 and to the bit.
   static void expect_sums(const Explanation& explanation, const world::Scene& scene) {
     vec3 sum(0.0F);
     for (const ExplainedSample& sample : explanation.samples) {
       vec3 weight(1.0F);
       vec3 radiance(0.0F);
-      for (const ExplainedRay& ray : sample.rays) {
+      bool sees_environment = false;
+      for (size_t i = 0; i < sample.rays.size(); ++i) {
+        const ExplainedRay& ray = sample.rays[i];
         EXPECT_EQ(bits_of(ray.weight), bits_of(weight));
         vec3 sent = ray.own;
         for (const ExplainedSource& source : ray.sources) sent += source.contribution;
         radiance += weight * sent;
         EXPECT_EQ(bits_of(ray.radiance), bits_of(radiance));
-        if (ray.hit.object >= 0) weight *= scene.materials[ray.material].phong().reflection;
         if (ray.hit.object < 0) {
-          EXPECT_EQ(ray.own, scene.environment.background);
+          EXPECT_EQ(ray.own, sees_environment ? scene.environment.ambient : scene.environment.background);
           EXPECT_TRUE(ray.sources.empty());
-        } else {
-          EXPECT_EQ(ray.sources.size(), scene.lights.size());
+          continue;
         }
+        EXPECT_EQ(ray.sources.size(), scene.lights.size());
+        weight = next_weight(sample, i, weight, scene);
+        const bool is_phong = std::holds_alternative<Phong>(scene.materials[ray.material].model);
+        sees_environment = sees_environment || !is_phong;
       }
       sum += radiance;
     }

@@ -107,7 +107,9 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   materials[0].phong().diffuse.r = -1.0F;
   EXPECT_THROW(renderer.set_materials(materials), InputError);
   EXPECT_THROW(renderer.set_materials(std::vector<Material>(3)), InputError);
-  EXPECT_THROW(renderer.set_environment({.ambient = vec3(-1)}), InputError);
+  Environment environment;
+  environment.ambient = vec3(-1);
+  EXPECT_THROW(renderer.set_environment(environment), InputError);
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
 }
 
@@ -185,7 +187,8 @@ TEST_F(LibraryTest, AChangedSceneHasTheBitsOfANewOne) {
   changed.lights.push_back(make_headlight());
   changed.materials[0].phong().specular = vec3(0.5F);
   changed.materials[0].phong().shininess = 10.0F;
-  changed.environment = {.ambient = vec3(0.2F), .background = vec3(0, 0, 1)};
+  changed.environment.ambient = vec3(0.2F);
+  changed.environment.background = vec3(0, 0, 1);
   renderer.set_lights(changed.lights);
   renderer.set_materials(changed.materials);
   renderer.set_environment(changed.environment);

@@ -19,6 +19,16 @@ Material make_material(const vec3& color, float specular, float shininess, float
   return material;
 }
 
+Material make_metallic_roughness(const vec3& color, float metallic, float roughness) {
+  MetallicRoughness model;
+  model.base_color = color;
+  model.metallic = metallic;
+  model.roughness = roughness;
+  Material material;
+  material.model = model;
+  return material;
+}
+
 /// A coarse octahedron whose vertex normals make it look round, with a colour a vertex.
 Mesh make_smooth_mesh(const vec3& center, float radius) {
   Mesh mesh;
@@ -38,10 +48,15 @@ world::Scene make_scene_of_everything(uint32_t sphere_count) {
   scene.file = "everything";
   scene.environment.ambient = vec3(0.1F);
   scene.environment.background = vec3(0.3F, 0.5F, 0.8F);
-  scene.materials = {make_material(vec3(0.7F), 0.0F, 0.0F, 0.1F), make_material(vec3(0.2F, 0.4F, 0.6F), 0.5F, 60, 0.6F),
+  scene.materials = {make_material(vec3(0.7F), 0.0F, 0.0F, 0.1F),
+                     make_material(vec3(0.2F, 0.4F, 0.6F), 0.5F, 60, 0.6F),
                      make_material(vec3(0.8F, 0.3F, 0.2F), 0.3F, 20, 0.0F),
-                     make_material(vec3(0.3F, 0.7F, 0.2F), 0.8F, 200, 0.2F)};
+                     make_material(vec3(0.3F, 0.7F, 0.2F), 0.8F, 200, 0.2F),
+                     make_metallic_roughness(vec3(0.8F, 0.2F, 0.1F), 0.0F, 0.5F),
+                     make_metallic_roughness(vec3(0.9F, 0.7F, 0.3F), 1.0F, 0.2F),
+                     Material()};
   scene.materials[3].emissive = vec3(0.05F, 0.0F, 0.0F);
+  scene.materials[6].model = Unlit{vec3(0.2F, 0.5F, 0.3F)};
   scene.objects = {{"floor", world::Plane{}, 0},
                    {"ball", world::Sphere{vec3(0, 1, 0), 1}, 1},
                    {"can", world::Cylinder{vec3(2.2F, 0.8F, 0), glm::normalize(vec3(0.3F, 1, 0.2F)), 0.7F, 0.5F}, 2},
@@ -54,7 +69,7 @@ world::Scene make_scene_of_everything(uint32_t sphere_count) {
   for (uint32_t i = 0; i < sphere_count; ++i) {
     const float x = 5.0F * uniform();
     const float y = 3.0F + 0.8F * uniform();
-    scene.objects.push_back({"", world::Sphere{vec3(x, y, 3.0F * uniform()), 0.08F}, i % 4});
+    scene.objects.push_back({"", world::Sphere{vec3(x, y, 3.0F * uniform()), 0.08F}, i % 7});
   }
   Light point;
   point.position = vec3(3, 6, 5);

@@ -9,45 +9,17 @@
 #include <variant>
 
 #include "core/rounding.h"
+#include "oracle/normal_error.h"
 
 namespace promin::oracle {
 namespace {
 
-bool is_mirror(const Material& material) {
-  return max_component(material.phong().reflection) > 0.0F;
-}
-
-/// Radius of curvature of the primitive at a hit; infinite where it is flat.
-struct Curvature {
-  const Vector& point;
-  const Vector& normal;
-
-  template <typename Flat>
-  Real operator()(const Flat&) const {
-    return kInfinity;
-  }
-  Real operator()(const world::Sphere& s) const { return s.radius; }
-  Real operator()(const world::Cylinder& c) const { return around(Vector(c.center), Vector(c.axis)); }
-  Real operator()(const world::Cone& c) const { return around(Vector(c.center), Vector(c.axis)); }
-
-  Real operator()(const world::Capsule& c) const {
-    return std::min({Real(std::max(c.radius_bottom, c.radius_top)), around(Vector(c.center), Vector(c.axis))});
-  }
-
-  Real around(const Vector& center, const Vector& axis) const {
-    const Vector v = glm::normalize(axis);
-    const bool is_disk = std::abs(glm::dot(normal, v)) > 1 - 1e-15L;
-    return is_disk ? kInfinity : glm::length(glm::cross(point - center, v));
-  }
+/// Whether a material may send a mirror ray on.
+struct IsMirror {
+  bool operator()(const Phong& phong) const { return max_component(phong.reflection) > 0.0F; }
+  bool operator()(const MetallicRoughness& material) const { return material.roughness < 0.4F; }
+  bool operator()(const Unlit&) const { return false; }
 };
-
-Real allowed_normal_error(const world::Shape& shape, const Ray& ray, const Hit& hit) {
-  if (std::holds_alternative<Mesh>(shape)) return 1e-4L;
-  const Vector point = ray.origin + hit.t * ray.direction;
-  const Real cosine = std::abs(glm::dot(hit.normal, glm::normalize(ray.direction)));
-  const Real radius = std::visit(Curvature{point, hit.normal}, shape);
-  return 1e-6L + 16 * kRoundoff * scale_of(shape, hit.primitive, ray) / (radius * cosine);
-}
 
 /// Distance from the ray to the nearest crease around its hit. There the distance falls and rises once, so that thirds
 /// find the least; were it not so, what they find would be too much rather than too little.
@@ -74,7 +46,8 @@ class Comparison {
       : scene_(scene), expected_(expected), image_(image), aovs_(aovs) {
     report_.bounds = bounds;
     report_.pixel_count = expected.pixels.size();
-    report_.has_mirrors = std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror);
+    report_.has_mirrors = std::ranges::any_of(
+        scene.materials, [](const Material& material) { return std::visit(IsMirror(), material.model); });
   }
 
   PictureReport run() {
@@ -104,10 +77,12 @@ class Comparison {
   }
 
   void compare_color() {
-    const Vector difference = glm::abs(Vector(image_.pixels[index_]) - expected_.pixels[index_].color);
-    const Real error = std::max({difference.x, difference.y, difference.z});
+    const Pixel& pixel = expected_.pixels[index_];
+    const Vector difference = glm::abs(Vector(image_.pixels[index_]) - pixel.color);
+    const Vector unexplained = glm::max(difference - pixel.highlight_error, Vector(0));
+    const Real error = std::max({unexplained.x, unexplained.y, unexplained.z});
     if (error > report_.bounds.color_error) report_.color_errors.push_back({at_, error});
-    color_sum_ += difference.x + difference.y + difference.z;
+    color_sum_ += unexplained.x + unexplained.y + unexplained.z;
     ++color_count_;
   }
 

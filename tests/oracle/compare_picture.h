@@ -33,7 +33,8 @@ struct PictureBounds {
   /// Of all pixels; as many may have the normal from across a crease, which is another answer likewise.
   double id_share = 0.0005;
   Real depth_error = kB1;
-  /// Largest difference of a channel for which a pixel's colour counts as right, and the mean over all pixels.
+  /// Largest difference of a channel for which a pixel's colour counts as right, and the mean over all pixels; of both
+  /// Pixel::highlight_error is taken off before.
   Real color_error = 0.02L;
   Real color_mean = 1e-4L;
   /// Pixels of another colour. What mirrors show moves farther than they do.
@@ -65,12 +66,11 @@ struct PictureReport {
   std::vector<IdMismatch> id_mismatches;
   /// Verdict::t_error, where it is beyond the bound.
   std::vector<PixelError> depth_errors;
-  /// |dN| in units of what is allowed, where it is more: 1e-6 + 16 u S / (r cos) on spheres, cylinders and cones with
-  /// the radius r at the hit, 1e-6 on planes and disks, 1e-4 on meshes.
+  /// |dN| in units of what is allowed (allowed_normal_error), where it is more.
   std::vector<PixelError> normal_errors;
   /// Those where the ray passes a rim or apex within id_margin: either side's normal is right, in a few pixels.
   std::vector<PixelError> normals_at_creases;
-  /// Largest difference of a channel, where it is beyond the bound.
+  /// Largest difference of a channel beyond the pixel's highlight_error, where it is beyond the bound.
   std::vector<PixelError> color_errors;
 
   /// Over all pixels with the same primitive; normals at creases apart.

@@ -69,6 +69,13 @@ View make_view() {
   return view;
 }
 
+/// The same scene with all things of smooth metal.
+world::Scene make_shiny_scene(float roughness) {
+  world::Scene scene = make_scene();
+  for (Material& material : scene.materials) material.model = MetallicRoughness{.roughness = roughness};
+  return scene;
+}
+
 class ComparePictureTest : public testing::Test {
  protected:
   PictureReport compare(const DevicePicture& device) const {
@@ -110,6 +117,23 @@ TEST_F(ComparePictureTest, ColoursAloneCanBeCompared) {
   DevicePicture dark = rounded;
   for (vec3& color : dark.image.pixels) color *= 0.9F;
   EXPECT_FALSE(compare_picture(scene, picture, dark.image, {}).passes());
+}
+
+// The sun stands aside by a normal's rounding, and by more than that.
+TEST_F(ComparePictureTest, HighlightsMayMoveByARoundingAndNoFarther) {
+  const world::Scene shiny = make_shiny_scene(0.1F);
+  const Picture expected = render(shiny, view);
+  const auto compare_moved = [&](float angle) {
+    world::Scene moved = shiny;
+    moved.lights[1].direction = glm::normalize(moved.lights[1].direction + angle * vec3(1, 1, 0));
+    DevicePicture device(render(moved, view));
+    return compare_picture(shiny, expected, device.image, {});
+  };
+  EXPECT_TRUE(compare_moved(2e-7F).passes()) << compare_moved(2e-7F).summary(shiny);
+  EXPECT_FALSE(compare_moved(1e-3F).passes());
+  const world::Scene duller = make_shiny_scene(0.102F);
+  EXPECT_FALSE(compare_picture(shiny, expected, DevicePicture(render(duller, view)).image, {}).passes());
+  EXPECT_TRUE(compare_picture(shiny, expected, DevicePicture(expected).image, {}).has_mirrors);
 }
 
 TEST_F(ComparePictureTest, AHalfPixelShiftFails) {

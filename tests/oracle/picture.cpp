@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <variant>
 
 #include "core/parallel.h"
 #include "oracle/distance.h"
+#include "oracle/lobe.h"
+#include "oracle/normal_error.h"
+#include "oracle/verdict.h"
 #include "scene/light_kinds.h"
 
 namespace promin::oracle {
@@ -89,6 +93,8 @@ SurfacePoint make_surface_point(const world::Scene& scene, const Ray& ray, const
 struct Illumination {
   Vector to_light{0};
   Real strength = 1;
+  /// Infinite for a source without a place.
+  Real distance = kInfinity;
 };
 
 Illumination illuminate(const Light& light, const Vector& position) {
@@ -96,7 +102,7 @@ Illumination illuminate(const Light& light, const Vector& position) {
   if (!has_place(light.kind)) return {-axis};
   const Vector offset = Vector(light.position) - position;
   const Real distance = glm::length(offset);
-  Illumination result{offset / distance};
+  Illumination result{offset / distance, 1, distance};
   if (light.attenuation == Attenuation::kInverseSquare) {
     // KHR_lights_punctual, "Range Property".
     const Real window = 1 - std::pow(distance / light.range, Real(4));
@@ -118,22 +124,145 @@ bool is_in_shadow(const world::Scene& scene, const SurfacePoint& point, const Li
   return is_occluded(scene, {origin, Vector(light.position) - origin, 0, 1});
 }
 
-/// I = Ka i_a + sum over visible sources of Kd (N.L) i_d + Ks (R.V)^s i_s, and what the material emits.
-Vector shade(const world::Scene& scene, const SurfacePoint& point, const Vector& to_eye) {
-  const Material& material = *point.material;
-  Vector sum =
-      Vector(material.phong().ambient) * point.vertex_color * Vector(scene.environment.ambient) + Vector(material.emissive);
+/// How far a device may have the point and the directions from it, because it rounds: lengths in scene units, and
+/// angles.
+struct PointError {
+  Real position = 0;
+  Real normal = 0;
+  Real to_eye = 0;
+};
+
+/// Light, and how far a device may be off it because its highlights lie a little aside.
+struct Radiance {
+  Vector color{0};
+  Real error = 0;
+
+  void add(const Radiance& other) { add(Vector(1), other); }
+  void add(const Vector& weight, const Radiance& other) {
+    color += weight * other.color;
+    error += std::max({weight.x, weight.y, weight.z}) * other.error;
+  }
+};
+
+/// How a material answers the light at one point, seen from one eye. Each model has these functions.
+class PhongSurface {
+ public:
+  PhongSurface(const Phong& phong, const SurfacePoint& point, const Vector& to_eye, const PointError&)
+      : phong_(phong), point_(point), to_eye_(to_eye) {}
+
+  /// What is sent without any source or mirror ray.
+  Vector own(const Vector& ambient) const { return Vector(phong_.ambient) * point_.vertex_color * ambient; }
+  /// What a source adds where nothing is between, of strength 1.
+  Radiance contribution(const Light& light, const Illumination& illumination) const {
+    const Real cosine = glm::dot(point_.normal, illumination.to_light);
+    Vector share = Vector(phong_.diffuse) * point_.vertex_color * Vector(light.diffuse) * cosine;
+    const Real highlight = glm::dot(2 * cosine * point_.normal - illumination.to_light, to_eye_);
+    if (phong_.shininess > 0 && highlight > 0) {
+      share += Vector(phong_.specular) * Vector(light.specular) * std::pow(highlight, Real(phong_.shininess));
+    }
+    return {share};
+  }
+  /// The weight of what the mirror ray brings.
+  Vector mirror_weight() const { return Vector(phong_.reflection); }
+  /// Whether a mirror ray brings the background where it leaves the scene, and nothing where it is not traced; else
+  /// both times the ambient light.
+  static constexpr bool kMirrorsBackground = true;
+
+ private:
+  const Phong& phong_;
+  const SurfacePoint& point_;
+  Vector to_eye_;
+};
+
+class UnlitSurface {
+ public:
+  UnlitSurface(const Unlit& unlit, const SurfacePoint& point, const Vector&, const PointError&)
+      : color_(Vector(unlit.color) * point.vertex_color) {}
+
+  Vector own(const Vector&) const { return color_; }
+  Radiance contribution(const Light&, const Illumination&) const { return {}; }
+  Vector mirror_weight() const { return Vector(0); }
+  static constexpr bool kMirrorsBackground = true;
+
+ private:
+  Vector color_;
+};
+
+class MetallicRoughnessSurface {
+ public:
+  MetallicRoughnessSurface(const MetallicRoughness& material, const SurfacePoint& point, const Vector& to_eye,
+                           const PointError& error)
+      : point_(point),
+        to_eye_(to_eye),
+        error_(error),
+        lobe_(material, point.vertex_color, look_up_lobe_shares(glm::dot(point.normal, to_eye), material.roughness)) {}
+
+  Vector own(const Vector& ambient) const {
+    return lobe_.albedo() * ambient + (1 - lobe_.sharpness()) * lobe_.reflectance() * ambient;
+  }
+
+  Radiance contribution(const Light& light, const Illumination& illumination) const {
+    const Real cosine = glm::dot(point_.normal, illumination.to_light);
+    Radiance sum{lobe_.albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
+    // From behind, as seen from the eye, there is no half vector.
+    const Real apart = glm::length(to_eye_ + illumination.to_light);
+    if (apart < 0x1p-12L) return sum;
+    const LobeAngles angles = angles_of(point_.normal, to_eye_, illumination.to_light);
+    sum.add(Vector(light.specular), bound_highlight(angles, angle_error(illumination, apart)));
+    return sum;
+  }
+
+  Vector mirror_weight() const { return lobe_.sharpness() * lobe_.reflectance(); }
+  static constexpr bool kMirrorsBackground = false;
+
+ private:
+  /// By how much any of the lobe's angles may be off.
+  Real angle_error(const Illumination& illumination, Real apart) const {
+    const Real to_light = 4 * kRoundoff + error_.position / illumination.distance;
+    return std::min(error_.normal + (error_.to_eye + to_light) / std::min(apart, Real(1)), Real(1));
+  }
+
+  /// The lobe grows as the half vector nears the normal, l grows, v falls and V.H falls, so its largest and least
+  /// values within the angles' errors are at the ends. Beside that fp32 errs by 64 u + 8 u / alpha.
+  Radiance bound_highlight(const LobeAngles& at, Real error) const {
+    const auto highlight_at = [&](Real step) {
+      return lobe_.highlight({std::clamp(at.theta - step, Real(0), std::numbers::pi_v<Real> / 2), at.v - step,
+                              std::max(at.l + step, Real(0)), std::clamp(at.v_h - step, Real(0), Real(1))});
+    };
+    const Vector color = lobe_.highlight(at);
+    const Vector off = glm::max(highlight_at(error) - color, color - highlight_at(-error));
+    const Vector rounding = (64 + 8 / lobe_.alpha_of_sources()) * kRoundoff * color;
+    const Vector sum = off + rounding;
+    return {color, std::max({sum.x, sum.y, sum.z})};
+  }
+
+  const SurfacePoint& point_;
+  Vector to_eye_;
+  PointError error_;
+  Lobe lobe_;
+};
+
+PhongSurface make_surface(const Phong& model, const SurfacePoint& point, const Vector& to_eye, const PointError& e) {
+  return {model, point, to_eye, e};
+}
+UnlitSurface make_surface(const Unlit& model, const SurfacePoint& point, const Vector& to_eye, const PointError& e) {
+  return {model, point, to_eye, e};
+}
+MetallicRoughnessSurface make_surface(const MetallicRoughness& model, const SurfacePoint& point, const Vector& to_eye,
+                                      const PointError& e) {
+  return {model, point, to_eye, e};
+}
+
+/// What the point sends by itself and from the visible sources.
+template <class Surface>
+Radiance shade(const world::Scene& scene, const SurfacePoint& point, const Surface& surface) {
+  Radiance sum{Vector(point.material->emissive) + surface.own(Vector(scene.environment.ambient))};
   for (const Light& light : scene.lights) {
     const Illumination illumination = illuminate(light, point.position);
     const Real cosine = glm::dot(point.normal, illumination.to_light);
     if (!(cosine > 0) || !(illumination.strength > 0)) continue;
     if (is_in_shadow(scene, point, light, illumination.to_light)) continue;
-    Vector share = Vector(material.phong().diffuse) * point.vertex_color * Vector(light.diffuse) * cosine;
-    const Real highlight = glm::dot(2 * cosine * point.normal - illumination.to_light, to_eye);
-    if (material.phong().shininess > 0 && highlight > 0) {
-      share += Vector(material.phong().specular) * Vector(light.specular) * std::pow(highlight, Real(material.phong().shininess));
-    }
-    sum += illumination.strength * share;
+    sum.add(Vector(illumination.strength), surface.contribution(light, illumination));
   }
   return sum;
 }
@@ -145,16 +274,70 @@ Vector mirror(const SurfacePoint& point, const Vector& direction) {
   return is_inward ? glm::reflect(mirrored, point.geometric_normal) : mirrored;
 }
 
-/// Whitted's recursion: I = Phong + kr I(mirror ray). `bounces` are left.
-Vector radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, uint32_t bounces) {
-  if (!hit.exists()) return Vector(scene.environment.background);
+/// How far off a device's ray may be, at its origin and in its direction.
+struct RayError {
+  Real position = 0;
+  Real direction = 0;
+};
+
+/// Of a mesh with vertex normals: that of the bent surface.
+Real radius_of_shading(const world::Shape& shape, const Ray& ray, const Hit& hit) {
+  const Mesh* mesh = std::get_if<Mesh>(&shape);
+  if (mesh == nullptr || mesh->normals.empty()) return radius_of_curvature(shape, ray, hit);
+  const glm::uvec3 corners = mesh->triangles[static_cast<size_t>(hit.primitive)];
+  Real radius = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t a = corners[i];
+    const uint32_t b = corners[(i + 1) % 3];
+    radius = std::min(radius, glm::distance(Vector(mesh->positions[a]), Vector(mesh->positions[b])) /
+                                  glm::distance(Vector(mesh->normals[a]), Vector(mesh->normals[b])));
+  }
+  return radius;
+}
+
+/// The hit's own rounding, by the bounds that hold for hits and normals, and what the ray brings.
+PointError error_at(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray) {
+  const world::Shape& shape = scene.objects[static_cast<size_t>(hit.object)].shape;
+  const Real cosine = std::max(std::abs(glm::dot(hit.normal, glm::normalize(ray.direction))), 1e-9L);
+  const Real aside = of_ray.position + of_ray.direction * hit.t * glm::length(ray.direction);
+  PointError error;
+  error.position = aside / cosine + kB1 * kRoundoff * scale_of(shape, hit.primitive, ray) / cosine;
+  error.normal = allowed_normal_error(shape, ray, hit) + aside / (radius_of_shading(shape, ray, hit) * cosine);
+  error.to_eye = of_ray.direction;
+  return error;
+}
+
+/// A mirror ray of less weight is not traced where the environment can stand for what it would bring.
+constexpr Real kLeastMirrorWeight = 1.0L / 256;
+
+/// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). `bounces` are left. A ray that
+/// leaves the scene brings `beyond`.
+Radiance radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray,
+                  const Vector& beyond, uint32_t bounces) {
+  if (!hit.exists()) return {beyond};
   const SurfacePoint point = make_surface_point(scene, ray, hit);
   const Vector direction = glm::normalize(ray.direction);
-  const Vector own = shade(scene, point, -direction);
-  const Vector reflection(point.material->reflection);
-  if (bounces == 0 || reflection == Vector(0)) return own;
-  const Ray next{point.position + point.lift * point.geometric_normal, mirror(point, direction)};
-  return own + reflection * radiance(scene, next, find_nearest_hit(scene, next), bounces - 1);
+  const PointError error = error_at(scene, ray, hit, of_ray);
+  const auto follow = [&](const auto& model) {
+    const auto surface = make_surface(model, point, -direction, error);
+    Radiance sum = shade(scene, point, surface);
+    const Vector weight = surface.mirror_weight();
+    if (weight == Vector(0)) return sum;
+    const Vector ambient(scene.environment.ambient);
+    const bool is_faint = std::max({weight.x, weight.y, weight.z}) < kLeastMirrorWeight;
+    if constexpr (surface.kMirrorsBackground) {
+      if (bounces == 0) return sum;
+    } else if (bounces == 0 || is_faint) {
+      sum.color += weight * ambient;
+      return sum;
+    }
+    const Ray next{point.position + point.lift * point.geometric_normal, mirror(point, direction)};
+    const RayError of_next{error.position, of_ray.direction + 2 * error.normal};
+    sum.add(weight, radiance(scene, next, find_nearest_hit(scene, next), of_next,
+                             surface.kMirrorsBackground ? beyond : ambient, bounces - 1));
+    return sum;
+  };
+  return std::visit(follow, point.material->model);
 }
 
 }  // namespace
@@ -174,6 +357,13 @@ Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) 
   return is_orthographic ? Ray{eye + on_film, look, tmin} : Ray{eye, look + on_film, tmin};
 }
 
+namespace {
+
+/// Of d = look + (x right - y up) each product, the difference and the sum are rounded, and d is normalised.
+constexpr Real kCameraRayError = 8 * kRoundoff;
+
+}  // namespace
+
 Picture render(const world::Scene& scene, const View& view) {
   world::Scene lit = scene;
   for (Light& light : lit.lights) {
@@ -190,7 +380,10 @@ Picture render(const world::Scene& scene, const View& view) {
       Pixel& pixel = picture.pixels[row * view.size.x + x];
       pixel.ray = camera_ray(view.camera, view.size, x, y);
       pixel.hit = find_nearest_hit(lit, pixel.ray);
-      pixel.color = radiance(lit, pixel.ray, pixel.hit, view.max_depth);
+      const Radiance seen = radiance(lit, pixel.ray, pixel.hit, {0, kCameraRayError},
+                                     Vector(scene.environment.background), view.max_depth);
+      pixel.color = seen.color;
+      pixel.highlight_error = seen.error;
     }
   });
   return picture;

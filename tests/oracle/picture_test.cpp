@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "oracle/lobe.h"
 
 namespace promin::oracle {
 namespace {
@@ -51,6 +54,12 @@ Material make_emitter(const vec3& color) {
 Material make_mirror(const vec3& reflection, const vec3& emissive = vec3(0.0F)) {
   Material material = make_emitter(emissive);
   material.phong().reflection = reflection;
+  return material;
+}
+
+Material make_metallic_roughness(const MetallicRoughness& model) {
+  Material material;
+  material.model = model;
   return material;
 }
 
@@ -218,6 +227,104 @@ TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
     view.max_depth = depth;
     expect_color(color_of(scene, view), Vector(2 - std::pow(0.5L, Real(depth))));
   }
+}
+
+// Eye and light above: D = 1 / (pi alpha^2), visibility 1/4, Fresnel's factor that of normal incidence.
+TEST(OraclePicture, MetallicRoughnessFromAbove) {
+  world::Scene scene = make_lit_floor();
+  MetallicRoughness model{.base_color = vec3(0.5F, 0.25F, 1.0F), .metallic = 0.0F, .roughness = 0.5F};
+  scene.materials = {make_metallic_roughness(model)};
+  const LobeShares shares = look_up_lobe_shares(1, 0.5L);
+  const Real pi = std::numbers::pi_v<Real>;
+  // An index of 1.5 is 0.04.
+  const Real k = 1 / (1 - (0.04L + 0.96L / 21) * (1 - shares.all));
+  const Real reflectance = k * (0.04L * (shares.all - shares.grazing) + shares.grazing);
+  const Real highlight = 0.25L / (pi * 0.0625L);
+  const Vector dielectric = (1 - reflectance) * Vector(model.base_color) / pi + k * 0.04L * highlight;
+  expect_color(color_of(scene, look_down_at(0)), dielectric);
+  model.metallic = 1;
+  scene.materials = {make_metallic_roughness(model)};
+  const Vector base(model.base_color);
+  const Vector metal_k = Real(1) / (Real(1) - (base + (Real(1) - base) / Real(21)) * (1 - shares.all));
+  expect_color(color_of(scene, look_down_at(0)), metal_k * base * highlight);
+}
+
+TEST(OraclePicture, MetallicRoughnessSharesAmbientLight) {
+  world::Scene scene = make_lit_floor();
+  scene.lights.clear();
+  scene.environment.ambient = vec3(0.5F);
+  scene.environment.background = vec3(9.0F);
+  for (const float roughness : {0.0F, 0.25F, 1.0F}) {
+    for (const float metallic : {0.0F, 0.5F, 1.0F}) {
+      scene.materials = {make_metallic_roughness({.metallic = metallic, .roughness = roughness})};
+      View view = look_at(vec3(-3, 1, 0), vec3(0), glm::normalize(vec3(1, 3, 0)));
+      expect_color(color_of(scene, view), Vector(0.5L));
+      view.max_depth = 0;
+      expect_color(color_of(scene, view), Vector(0.5L));
+    }
+  }
+}
+
+// A smooth metal sees what is there, and the ambient light where nothing is; a rough one the ambient light alone.
+TEST(OraclePicture, MetalMirrorsAsFarAsItIsSmooth) {
+  world::Scene scene;
+  scene.environment.ambient = vec3(0.5F);
+  scene.environment.background = vec3(9.0F);
+  scene.objects = {{"floor", kFloor, 0}, {"lamp", world::Sphere{{4, 3, 0}, 1}, 1}};
+  const View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
+  const auto color_with = [&](float roughness) {
+    scene.materials = {make_metallic_roughness({.roughness = roughness}), make_emitter(vec3(1, 1, 8))};
+    return color_of(scene, view);
+  };
+  expect_color(color_with(0), {1, 1, 8});
+  expect_color(color_with(0.1F), {1, 1, 8});
+  // Half way.
+  expect_color(color_with(0.25F), {0.75L, 0.75L, 4.25L});
+  expect_color(color_with(0.4F), Vector(0.5L));
+  // From 1/256 on a mirror ray is traced.
+  expect_color(color_with(0.390F), Vector(0.5L));
+  EXPECT_GT(color_with(0.387F).z, 0.52L);
+}
+
+// What a Phong mirror sees where nothing is depends on whether a metal was on the way.
+TEST(OraclePicture, MirrorsBehindMetalSeeTheAmbientLight) {
+  world::Scene scene;
+  scene.environment.ambient = vec3(0.5F);
+  scene.environment.background = vec3(9.0F);
+  const Material metal = make_metallic_roughness({.roughness = 0.0F});
+  scene.objects = {{"floor", kFloor, 0}, {"wall", world::Plane{{4, 0, 0}, {1, 0, 0}}, 1}};
+  const View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
+  scene.materials = {make_mirror(vec3(1.0F)), make_mirror(vec3(1.0F))};
+  expect_color(color_of(scene, view), Vector(9));
+  scene.materials[0] = metal;
+  expect_color(color_of(scene, view), Vector(0.5L));
+  scene.materials = {make_mirror(vec3(1.0F)), metal};
+  expect_color(color_of(scene, view), Vector(0.5L));
+}
+
+TEST(OraclePicture, UnlitIsItsColor) {
+  world::Scene scene = make_lit_floor();
+  scene.environment.ambient = vec3(1.0F);
+  scene.materials[0].model = Unlit{vec3(0.25F, 0.5F, 2.0F)};
+  scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
+  expect_color(color_of(scene, look_down_at(0)), {0.25L, 0.5L, 3});
+  EXPECT_EQ(render(scene, look_down_at(0)).at(0, 0).highlight_error, 0);
+}
+
+// The sharper a highlight, the more a rounded normal does to it, in its flank the most.
+TEST(OraclePicture, HighlightsAreAsUncertainAsTheyAreSharp) {
+  world::Scene scene = make_lit_floor();
+  const auto pixel_with = [&](float roughness, float x) {
+    scene.materials = {make_metallic_roughness({.roughness = roughness})};
+    return render(scene, look_down_at(x)).at(0, 0);
+  };
+  const Pixel sharp = pixel_with(0.1F, 0.01F);
+  const Pixel blunt = pixel_with(0.5F, 0.25F);
+  // Of a flank a normal's error of 1e-6 makes about 2e-6 / alpha.
+  EXPECT_GT(sharp.highlight_error, 1e-4L * sharp.color.x);
+  EXPECT_LT(sharp.highlight_error, 1e-3L * sharp.color.x);
+  EXPECT_LT(blunt.highlight_error, 1e-4L * blunt.color.x);
+  EXPECT_GT(blunt.highlight_error, 0);
 }
 
 TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {

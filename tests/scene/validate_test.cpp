@@ -23,7 +23,12 @@ Mesh& mesh_of(Scene& scene) {
   return std::get<Mesh>(scene.geometries[0]);
 }
 
-/// One of everything: a mesh with all that meshes may have, each shape, a spot light, a camera.
+MetallicRoughness& metal_of(Scene& scene) {
+  return std::get<MetallicRoughness>(scene.materials[1].model);
+}
+
+/// One of everything: a mesh with all that meshes may have, each shape, a material of each model, a spot light, a
+/// camera.
 Scene make_valid_scene() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -32,7 +37,9 @@ Scene make_valid_scene() {
   mesh.triangles = {{0, 1, 2}};
   mesh.triangle_materials = {0};
   Scene scene;
-  scene.materials.resize(1);
+  scene.materials.resize(3);
+  scene.materials[1].model = MetallicRoughness();
+  scene.materials[2].model = Unlit();
   scene.add("mesh", mesh);
   scene.add("sphere", Sphere{});
   scene.add("plane", Plane{});
@@ -72,6 +79,21 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
       {"materials[0].reflection", [](Scene& s) { s.materials[0].phong().reflection.r = -0.1F; }},
       {"materials[0].emissive", [](Scene& s) { s.materials[0].emissive.r = kNan; }},
       {"materials[0].shininess", [](Scene& s) { s.materials[0].phong().shininess = kInfinity; }},
+      {"materials[1].base_color", [](Scene& s) { metal_of(s).base_color.g = 1.01F; }},
+      {"materials[1].base_color", [](Scene& s) { metal_of(s).base_color.b = -0.01F; }},
+      {"materials[1].metallic", [](Scene& s) { metal_of(s).metallic = 1.01F; }},
+      {"materials[1].metallic", [](Scene& s) { metal_of(s).metallic = -0.01F; }},
+      {"materials[1].roughness", [](Scene& s) { metal_of(s).roughness = 1.01F; }},
+      {"materials[1].roughness", [](Scene& s) { metal_of(s).roughness = kNan; }},
+      {"materials[1].ior", [](Scene& s) { metal_of(s).ior = 0.99F; }},
+      {"materials[1].ior", [](Scene& s) { metal_of(s).ior = -1; }},
+      {"materials[1].ior", [](Scene& s) { metal_of(s).ior = kInfinity; }},
+      {"materials[1].specular", [](Scene& s) { metal_of(s).specular = 1.01F; }},
+      {"materials[1].specular", [](Scene& s) { metal_of(s).specular = -0.01F; }},
+      {"materials[1].specular_color", [](Scene& s) { metal_of(s).specular_color.r = -0.01F; }},
+      {"materials[1].specular_color", [](Scene& s) { metal_of(s).specular_color.r = kInfinity; }},
+      {"materials[1].emissive", [](Scene& s) { s.materials[1].emissive.g = -1; }},
+      {"materials[2].color", [](Scene& s) { std::get<Unlit>(s.materials[2].model).color.r = -0.01F; }},
       {"lights[0].kind", [](Scene& s) { s.lights[0].kind = static_cast<LightKind>(99); }},
       {"lights[0].diffuse", [](Scene& s) { s.lights[0].diffuse.r = -1; }},
       {"lights[0].specular", [](Scene& s) { s.lights[0].specular.r = kNan; }},
@@ -98,9 +120,9 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
       {"geometries[0].colors[2]", [](Scene& s) { mesh_of(s).colors[2].r = -1; }},
       {"geometries[0].colors", [](Scene& s) { mesh_of(s).colors.pop_back(); }},
       {"geometries[0].triangles[0]", [](Scene& s) { mesh_of(s).triangles[0].z = 3; }},
-      {"geometries[0].triangle_materials[0]", [](Scene& s) { mesh_of(s).triangle_materials[0] = 1; }},
+      {"geometries[0].triangle_materials[0]", [](Scene& s) { mesh_of(s).triangle_materials[0] = 3; }},
       {"geometries[0].triangle_materials", [](Scene& s) { mesh_of(s).triangle_materials.resize(2); }},
-      {"objects[1].material", [](Scene& s) { s.objects[1].material = 1; }},
+      {"objects[1].material", [](Scene& s) { s.objects[1].material = 3; }},
       {"objects[1].geometry", [](Scene& s) { s.objects[1].geometry = 5; }},
       {"objects[1].world_from_object", [](Scene& s) { s.objects[1].world_from_object[3][0] = kNan; }},
       {"objects[1].world_from_object", [](Scene& s) { s.objects[1].world_from_object[0][3] = 1; }},
@@ -123,6 +145,17 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
     EXPECT_THAT(places_of(validate(scene)), ElementsAre(fault.where));
     EXPECT_THROW(throw_if_invalid(scene), InputError) << fault.where;
   }
+}
+
+// KHR_materials_ior has 0 beside the numbers from 1 on, and the colour of a reflection may be beyond 1.
+TEST(ValidateTest, TheEndsOfRangesAreValid) {
+  Scene scene = make_valid_scene();
+  metal_of(scene) = {.base_color = vec3(0), .metallic = 0, .roughness = 0, .ior = 0, .specular = 0};
+  metal_of(scene).specular_color = vec3(0);
+  EXPECT_THAT(places_of(validate(scene)), IsEmpty());
+  metal_of(scene) = {.base_color = vec3(1), .metallic = 1, .roughness = 1, .ior = 1, .specular = 1};
+  metal_of(scene).specular_color = vec3(2);
+  EXPECT_THAT(places_of(validate(scene)), IsEmpty());
 }
 
 TEST(ValidateTest, AVertexOutOfRangeIsTold) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "oracle/lobe.h"
 #include "scene/light_kinds.h"
 
 namespace promin::measure {
@@ -20,6 +21,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 bool is_black(const vec3& color) {
   return std::max({color.x, color.y, color.z}) <= 0.0F;
 }
+
+/// Of a metallic-roughness material a mirror ray of less weight is not traced (LEAST_MIRROR_WEIGHT of its shader).
+constexpr float kLeastMirrorWeight = 1.0F / 256.0F;
 
 /// What a ray has hit, and the weight of what it sees.
 struct Point {
@@ -71,12 +75,8 @@ class PictureRules {
     if (light.kind == LightKind::kSpot && !(-glm::dot(to_light, light.direction) > std::cos(light.outer_cone_angle))) {
       return false;
     }
-    const Material& material = scene_.materials[point.material];
-    if (!is_black(material.diffuse * point.color * light.diffuse)) return true;
-    // A narrow highlight is 0 in fp32 but for directions near its own.
-    const float highlight = glm::dot(2.0F * cosine * point.normal - to_light, -point.direction);
-    return material.shininess > 0.0F && highlight > 0.0F &&
-           !is_black(material.specular * light.specular * std::pow(std::min(highlight, 1.0F), material.shininess));
+    const auto reflects = [&](const auto& model) { return does_reflect(model, light, point, to_light); };
+    return std::visit(reflects, scene_.materials[point.material].model);
   }
 
   Ray shadow_ray(const Light& light, const Point& point) const {
@@ -85,7 +85,10 @@ class PictureRules {
     return {origin, 0.0F, -direction_of(light), kInfinity};
   }
 
-  vec3 weight_of_mirror(const Point& point) const { return point.weight * scene_.materials[point.material].reflection; }
+  vec3 weight_of_mirror(const Point& point) const {
+    const auto weigh = [&](const auto& model) { return mirror_weight(model, point); };
+    return point.weight * std::visit(weigh, scene_.materials[point.material].model);
+  }
 
   Ray mirror_ray(const Point& point) const {
     const vec3 mirrored = glm::reflect(point.direction, point.normal);
@@ -95,6 +98,32 @@ class PictureRules {
   }
 
  private:
+  /// Whether the model sends the eye any of the light from a direction above the surface.
+  static bool does_reflect(const Phong& phong, const Light& light, const Point& point, const vec3& to_light) {
+    if (!is_black(phong.diffuse * point.color * light.diffuse)) return true;
+    // A narrow highlight is 0 in fp32 but for directions near its own.
+    const float highlight =
+        glm::dot(2.0F * glm::dot(point.normal, to_light) * point.normal - to_light, -point.direction);
+    return phong.shininess > 0.0F && highlight > 0.0F &&
+           !is_black(phong.specular * light.specular * std::pow(std::min(highlight, 1.0F), phong.shininess));
+  }
+  static bool does_reflect(const MetallicRoughness& material, const Light& light, const Point& point, const vec3&) {
+    const bool is_diffuse = material.metallic < 1.0F && !is_black(material.base_color * point.color * light.diffuse);
+    const bool is_glossy = (material.metallic > 0.0F || material.specular > 0.0F) && !is_black(light.specular);
+    return is_diffuse || is_glossy;
+  }
+  static bool does_reflect(const Unlit&, const Light&, const Point&, const vec3&) { return false; }
+
+  static vec3 mirror_weight(const Phong& phong, const Point&) { return phong.reflection; }
+  static vec3 mirror_weight(const MetallicRoughness& material, const Point& point) {
+    const oracle::Real cosine = -glm::dot(point.normal, point.direction);
+    const oracle::Lobe lobe(material, oracle::Vector(point.color),
+                            oracle::look_up_lobe_shares(cosine, material.roughness));
+    const vec3 weight(lobe.sharpness() * lobe.reflectance());
+    return std::max({weight.x, weight.y, weight.z}) < kLeastMirrorWeight ? vec3(0.0F) : weight;
+  }
+  static vec3 mirror_weight(const Unlit&, const Point&) { return vec3(0.0F); }
+
   vec3 direction_of(const Light& light) const {
     return light.kind == LightKind::kHeadlight ? view_.camera.look : light.direction;
   }

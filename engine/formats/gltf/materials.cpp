@@ -35,7 +35,15 @@ vec3 to_shares(const dvec3& color) {
   return vec3(glm::min(color, dvec3(1.0)));
 }
 
-MetallicRoughness metallic_roughness_of(const json& source, GltfTextures& textures) {
+float ior_of(const json& extension, const std::string& title, LoadReport& report) {
+  const float ior = extension.value("ior", 1.5F);
+  if (ior == 0.0F || ior >= 1.0F) return ior;
+  report.warn("material " + title + ": an index of refraction lies between 0 and 1, 1 is taken");
+  return 1.0F;
+}
+
+MetallicRoughness metallic_roughness_of(const json& source, const std::string& title, GltfTextures& textures,
+                                        LoadReport& report) {
   MetallicRoughness material;
   material.base_color = to_shares(base_color_of(source));
   if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
@@ -52,7 +60,9 @@ MetallicRoughness metallic_roughness_of(const json& source, GltfTextures& textur
   if (const auto info = source.find("occlusionTexture"); info != source.end()) {
     material.occlusion_strength = info->value("strength", 1.0F);
   }
-  if (const json* extension = find_extension(source, "KHR_materials_ior")) material.ior = extension->value("ior", 1.5F);
+  if (const json* extension = find_extension(source, "KHR_materials_ior")) {
+    material.ior = ior_of(*extension, title, report);
+  }
   if (const json* extension = find_extension(source, "KHR_materials_specular")) {
     material.specular = extension->value("specularFactor", 1.0F);
     material.specular_color = vec3(vec3_of(*extension, "specularColorFactor", dvec3(1.0)));
@@ -87,6 +97,7 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   }
 }
 
+<<<<<<< HEAD
 Unlit unlit_of(const json& source, GltfTextures& textures) {
   Unlit unlit{vec3(base_color_of(source)), {}};
   if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
@@ -95,7 +106,10 @@ Unlit unlit_of(const json& source, GltfTextures& textures) {
   return unlit;
 }
 
-Material read_material(const json& source, GltfTextures& textures) {
+Material read_material(const json& source, const std::string& title, GltfTextures& textures, LoadReport& report) {
+=======
+Material read_material(const json& source, const std::string& title, GltfTextures& textures, LoadReport& report) {
+>>>>>>> 3a3a1dd49676bc0a04b0d4e3b8d6134f767371d5
   Material material;
   material.name = source.value("name", "");
   if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
@@ -104,8 +118,12 @@ Material read_material(const json& source, GltfTextures& textures) {
     material.model = unlit_of(source, textures);
     return material;
   } else {
-    material.model = metallic_roughness_of(source, textures);
+<<<<<<< HEAD
+    material.model = metallic_roughness_of(source, title, textures, report);
     material.emissive_texture = textures.read_slot(source, "emissiveTexture", ImageUse::kColor);
+=======
+    material.model = metallic_roughness_of(source, title, textures, report);
+>>>>>>> 3a3a1dd49676bc0a04b0d4e3b8d6134f767371d5
   }
   double strength = 1.0;
   if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
@@ -121,8 +139,14 @@ std::vector<Material> read_gltf_materials(const GltfDocument& document, GltfText
   std::vector<Material> materials;
   for (const json& source : elements_of(document.json, "materials")) {
     const size_t index = materials.size();
-    materials.push_back(read_material(source, textures));
+<<<<<<< HEAD
+    materials.push_back(read_material(source, title, textures, report));
     warn_about_what_is_ignored(source, title_of(document.json, "materials", index), report);
+=======
+    const std::string title = title_of(document.json, "materials", index);
+    materials.push_back(read_material(source, title, textures, report));
+    warn_about_what_is_ignored(source, title, report);
+>>>>>>> 3a3a1dd49676bc0a04b0d4e3b8d6134f767371d5
   }
   return materials;
 }

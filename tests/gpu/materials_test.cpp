@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The models of materials on a device, where their light is known without a picture to compare with.
+#include "promin/materials.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "core/rounding.h"
+#include "gpu/device_fixture.h"
+#include "oracle/lobe.h"
+#include "oracle/picture.h"
+#include "promin/renderer.h"
+#include "render/renderer_impl.h"
+
+namespace promin {
+namespace {
+
+constexpr float kU = 0x1p-24F;
+
+Material make_metallic_roughness(const MetallicRoughness& model) {
+  Material material;
+  material.model = model;
+  return material;
+}
+
+/// Without lights, the same light from everywhere, in rays that leave the scene too.
+world::Scene make_furnace(float radiance = 1.0F) {
+  world::Scene scene;
+  scene.environment.ambient = scene.environment.background = vec3(radiance);
+  return scene;
+}
+
+/// One orthographic pixel that looks along `look` at the origin.
+View look_along(const vec3& look) {
+  View view;
+  view.size = uvec2(1);
+  view.camera.projection = Projection::kOrthographic;
+  view.camera.look = look;
+  view.camera.eye = -4.0F * look;
+  view.camera.up = vec3(0, 0, 1);
+  view.camera.ymag = 0.001F;
+  return view;
+}
+
+/// In the plane of x and y, by its cosine to +y.
+vec3 direction_at(float cosine) {
+  return {std::sqrt(1.0F - cosine * cosine), cosine, 0.0F};
+}
+
+Light make_sun(const vec3& to_light, float power = 1.0F) {
+  Light light;
+  light.kind = LightKind::kDirectional;
+  light.direction = -to_light;
+  light.diffuse = light.specular = vec3(power);
+  return light;
+}
+
+/// The largest difference of a channel from a number.
+float largest_difference(const Image& image, float wanted) {
+  float largest = 0.0F;
+  for (const vec3& pixel : image.pixels) {
+    const vec3 difference = glm::abs(pixel - vec3(wanted));
+    largest = std::max({largest, difference.x, difference.y, difference.z});
+  }
+  return largest;
+}
+
+class MaterialsTest : public test::DeviceTest {
+ protected:
+  static Image render(const world::Scene& scene, const View& view) {
+    return make_renderer(device(), scene).render(view).image;
+  }
+
+  /// A floor of one material, seen at an angle of this cosine.
+  static vec3 color_of_floor(const Material& material, float cosine, world::Scene scene) {
+    scene.materials = {material};
+    scene.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
+    return render(scene, look_along(-direction_at(cosine))).pixels[0];
+  }
+};
+
+/// Three rows of eleven spheres: metallic 0, .5 and 1, roughness 0 to 1, far apart.
+world::Scene make_spheres(const vec3& base_color) {
+  world::Scene scene = make_furnace();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 11; ++column) {
+      MetallicRoughness model;
+      model.base_color = base_color;
+      model.metallic = 0.5F * static_cast<float>(row);
+      model.roughness = 0.1F * static_cast<float>(column);
+      scene.objects.push_back(
+          {"", world::Sphere{vec3(column - 5, row - 1, 0), 0.45F}, static_cast<uint32_t>(scene.materials.size())});
+      scene.materials.push_back(make_metallic_roughness(model));
+    }
+  }
+  return scene;
+}
+
+View look_at_spheres() {
+  View view = look_along(vec3(0, 0, -1));
+  view.size = uvec2(352, 96);
+  view.camera.up = vec3(0, 1, 0);
+  view.camera.ymag = 1.5F;
+  return view;
+}
+
+// A white furnace: what the table holds cancels, so it is not the table that makes it 1.
+TEST_F(MaterialsTest, WhiteSpheresVanishInAWhiteFurnace) {
+  Renderer renderer = make_renderer(device(), make_spheres(vec3(1.0F)));
+  View view = look_at_spheres();
+  for (const uint32_t depth : {0U, 1U, 5U}) {
+    view.max_depth = depth;
+    EXPECT_LE(largest_difference(renderer.render(view).image, 1.0F), 8.0F * kU * static_cast<float>(depth + 1))
+        << depth;
+  }
+}
+
+TEST_F(MaterialsTest, ColoredSpheresSendNoMoreThanTheyGet) {
+  const Image image = render(make_spheres(vec3(0.9F, 0.5F, 0.0F)), look_at_spheres());
+  size_t darker = 0;
+  for (const vec3& pixel : image.pixels) {
+    ASSERT_LE(max_component(pixel), 1.0F + 8.0F * kU);
+    ASSERT_GE(std::min({pixel.x, pixel.y, pixel.z}), 0.0F);
+    darker += pixel.z < 0.5F ? 1 : 0;
+  }
+  EXPECT_GT(darker, image.pixels.size() / 4);
+}
+
+// The same light by 4096 sources: so many show a lobe of this roughness as if they were everywhere.
+TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
+  constexpr int kCount = 4096;
+  world::Scene scene;
+  scene.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
+  scene.materials = {make_metallic_roughness({})};
+  const float golden_angle = std::numbers::pi_v<float> * (3.0F - std::sqrt(5.0F));
+  for (int i = 0; i < kCount; ++i) {
+    const float height = 1.0F - (2.0F * static_cast<float>(i) + 1.0F) / kCount;
+    const float radius = std::sqrt(1.0F - height * height);
+    const float azimuth = golden_angle * static_cast<float>(i);
+    const vec3 to_light = glm::normalize(vec3(radius * std::cos(azimuth), height, radius * std::sin(azimuth)));
+    scene.lights.push_back(make_sun(to_light, 4.0F * std::numbers::pi_v<float> / kCount));
+  }
+  Renderer renderer = make_renderer(device(), scene);
+  for (const float metallic : {0.0F, 0.5F, 1.0F}) {
+    for (const float roughness : {0.5F, 0.7F, 1.0F}) {
+      MetallicRoughness model;
+      model.metallic = metallic;
+      model.roughness = roughness;
+      renderer.set_materials(std::vector{make_metallic_roughness(model)});
+      for (const float cosine : {0.999F, 0.8F, 0.5F, 0.25F, 0.1F}) {
+        const vec3 color = renderer.render(look_along(-direction_at(cosine))).image.pixels[0];
+        EXPECT_NEAR(color.x, 1.0F, 0.01F) << "metallic " << metallic << " roughness " << roughness << " at " << cosine;
+      }
+    }
+  }
+}
+
+/// The highlight of a light on a floor with black diffuse light, by the device and by the oracle.
+struct Highlight {
+  float got = 0.0F;
+  oracle::Real wanted = 0;
+};
+
+class HighlightTest : public MaterialsTest {
+ protected:
+  HighlightTest() {
+    scene_.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
+    scene_.materials = {make_metallic_roughness({})};
+    scene_.lights = {make_sun(vec3(0, 1, 0))};
+    renderer_.emplace(make_renderer(device(), scene_));
+  }
+
+  void set_model(float metallic, float roughness) {
+    MetallicRoughness model;
+    model.metallic = metallic;
+    model.roughness = roughness;
+    model.base_color = metallic > 0.0F ? vec3(0.9F, 0.6F, 0.2F) : vec3(0.0F);
+    scene_.materials = {make_metallic_roughness(model)};
+    renderer_->set_materials(scene_.materials);
+  }
+
+  Highlight measure(const vec3& to_eye, const vec3& to_light) {
+    scene_.lights = {make_sun(to_light)};
+    renderer_->set_lights(scene_.lights);
+    View view = look_along(-to_eye);
+    // Any direction across will do.
+    view.camera.up = glm::normalize(glm::cross(to_eye, vec3(0.3F, 0.1F, 1.0F)));
+    return {renderer_->render(view).image.pixels[0].x, oracle::render(scene_, view).at(0, 0).color.x};
+  }
+
+  world::Scene scene_;
+  std::optional<Renderer> renderer_;
+};
+
+// Density, visibility and Fresnel's factor around the mirrored direction, to 64 u + 8 u / alpha of themselves.
+TEST_F(HighlightTest, LobesAreTheOraclesButForRounding) {
+  for (const float metallic : {0.0F, 1.0F}) {
+    for (const float roughness : {0.0F, 0.1F, 0.3F, 0.6F, 1.0F}) {
+      set_model(metallic, roughness);
+      const float alpha = std::max(roughness * roughness, 0.002F);
+      for (const float cosine : {0.95F, 0.6F, 0.2F}) {
+        const vec3 to_eye = glm::normalize(direction_at(cosine));
+        const vec3 mirrored(-to_eye.x, to_eye.y, to_eye.z);
+        for (const float aside : {0.0F, 0.3F, 1.0F, 3.0F}) {
+          const vec3 to_light = glm::normalize(mirrored + std::min(aside * alpha, 0.5F) * vec3(0.3F, 0.5F, 0.8F));
+          const Highlight highlight = measure(to_eye, to_light);
+          const float bound = (64.0F + 8.0F / alpha) * kU;
+          EXPECT_LE(std::abs(highlight.got / highlight.wanted - 1), bound)
+              << "metallic " << metallic << " roughness " << roughness << " cosine " << cosine << " aside " << aside;
+          EXPECT_GT(highlight.got, 0.0F);
+        }
+      }
+    }
+  }
+}
+
+// With eye and light exchanged a surface sends the same, but for the cosine to the light, which is of the source, and
+// for what facets reflect more than once, which is of the eye.
+TEST_F(HighlightTest, TheLobeIsReciprocal) {
+  for (const float roughness : {0.2F, 0.5F, 0.9F}) {
+    set_model(1.0F, roughness);
+    const auto& model = std::get<MetallicRoughness>(scene_.materials[0].model);
+    const float alpha = roughness * roughness;
+    for (int i = 0; i < 8; ++i) {
+      const float a = 0.1F + 0.1F * static_cast<float>(i);
+      const float b = 0.95F - 0.07F * static_cast<float>(i);
+      const vec3 there = glm::normalize(direction_at(a));
+      const vec3 back = glm::normalize(direction_at(b) * vec3(-1, 1, 1) + vec3(0, 0, 0.3F));
+      // What hangs on the direction to the eye alone.
+      const auto share_of = [&](const vec3& to_eye, const vec3& to_light) {
+        const oracle::LobeAngles angles = oracle::angles_of({0, 1, 0}, glm::normalize(oracle::Vector(to_eye)),
+                                                            glm::normalize(oracle::Vector(to_light)));
+        const oracle::Lobe plain(model, oracle::Vector(1), oracle::LobeShares());
+        const oracle::Lobe full(model, oracle::Vector(1), oracle::look_up_lobe_shares(angles.v, roughness));
+        return angles.l * full.highlight(angles).x / plain.highlight(angles).x;
+      };
+      const oracle::Real one = measure(there, back).got / share_of(there, back);
+      const oracle::Real other = measure(back, there).got / share_of(back, there);
+      EXPECT_LE(std::abs(one / other - 1), (32.0F + 16.0F / alpha) * kU) << roughness << " " << i;
+    }
+  }
+}
+
+// KHR_materials_ior: an index of 0 reflects everything, from every side.
+TEST_F(MaterialsTest, AnIndexOfZeroIsAMirror) {
+  MetallicRoughness model{.base_color = vec3(0.0F), .metallic = 0.0F, .roughness = 0.0F, .ior = 0.0F};
+  for (const float cosine : {1.0F, 0.5F, 0.1F}) {
+    const vec3 color = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
+    EXPECT_LE(max_abs_component(color - vec3(1.0F)), 8.0F * kU) << cosine;
+  }
+  // KHR_materials_specular dyes it, and takes it away: then all light is the body's.
+  model.specular_color = vec3(1.0F, 0.5F, 0.0F);
+  EXPECT_LE(
+      max_abs_component(color_of_floor(make_metallic_roughness(model), 1.0F, make_furnace()) - model.specular_color),
+      8.0F * kU);
+  model.base_color = vec3(0.5F);
+  model.specular = 0.0F;
+  EXPECT_EQ(color_of_floor(make_metallic_roughness(model), 0.1F, make_furnace()), vec3(0.5F));
+}
+
+TEST_F(MaterialsTest, WithoutSpecularStrengthASurfaceIsMatt) {
+  MetallicRoughness model{.base_color = vec3(0.5F), .metallic = 0.0F, .roughness = 0.3F};
+  world::Scene scene;
+  scene.lights = {make_sun(direction_at(0.5F) * vec3(-1, 1, 1))};
+  const vec3 glossy = color_of_floor(make_metallic_roughness(model), 0.5F, scene);
+  model.specular = 0.0F;
+  const vec3 matt = color_of_floor(make_metallic_roughness(model), 0.5F, scene);
+  EXPECT_NEAR(matt.x, 0.5F * std::numbers::inv_pi_v<float> * 0.5F, 1e-7F);
+  EXPECT_GT(glossy.x, 2.0F * matt.x);
+}
+
+// A black metal reflects as glass without a body does: only at grazing incidence (Schlick's factor, F90 = 1).
+TEST_F(MaterialsTest, BlackMetalReflectsFromTheSideAlone) {
+  const MetallicRoughness model{.base_color = vec3(0.0F), .metallic = 1.0F, .roughness = 0.0F};
+  for (const float cosine : {1.0F, 0.7F, 0.3F, 0.05F}) {
+    const vec3 color = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
+    // The table's error.
+    EXPECT_NEAR(color.x, std::pow(1.0F - cosine, 5.0F), 0.005F) << cosine;
+  }
+}
+
+/// A triangle across the view from +y, all corners of one colour.
+Mesh make_colored_mesh(const vec3& color) {
+  Mesh mesh;
+  mesh.positions = {{-2, 0, -2}, {0, 0, 3}, {2, 0, -2}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.colors = {vec4(color, 1), vec4(color, 1), vec4(color, 1)};
+  return mesh;
+}
+
+TEST_F(MaterialsTest, VertexColorsAreFactorsOfTheBaseColor) {
+  world::Scene scene = make_furnace(0.5F);
+  scene.lights = {make_sun(vec3(0, 1, 0), 2.0F)};
+  const View view = look_along(-glm::normalize(vec3(0.2F, 1, 0)));
+  const auto color_of = [&](const Material& material, const vec3& vertex_color) {
+    scene.materials = {material};
+    scene.objects = {{"", make_colored_mesh(vertex_color), 0}};
+    return render(scene, view).pixels[0];
+  };
+  for (const float metallic : {0.0F, 0.5F, 1.0F}) {
+    MetallicRoughness model{.base_color = vec3(1, 0.5F, 0.75F), .metallic = metallic, .roughness = 0.6F};
+    const vec3 by_vertices = color_of(make_metallic_roughness(model), vec3(0.25F, 0.5F, 1));
+    const vec3 plain = color_of(make_metallic_roughness(model), vec3(1));
+    model.base_color = vec3(0.25F, 0.25F, 0.75F);
+    const vec3 by_base = color_of(make_metallic_roughness(model), vec3(1));
+    EXPECT_LE(max_abs_component(by_vertices - by_base), 32.0F * kU) << metallic;
+    EXPECT_GT(plain.x, 1.5F * by_base.x) << metallic;
+    // A base colour of more than 1 would send more than it gets.
+    model.base_color = vec3(1);
+    const vec3 white = color_of(make_metallic_roughness(model), vec3(1));
+    EXPECT_LE(max_abs_component(color_of(make_metallic_roughness(model), vec3(4)) - white), 32.0F * kU) << metallic;
+  }
+  Material unlit;
+  unlit.model = Unlit{vec3(1, 0.5F, 2)};
+  EXPECT_LE(max_abs_component(color_of(unlit, vec3(0.5F, 0.5F, 3)) - vec3(0.5F, 0.25F, 6)), 32.0F * kU);
+}
+
+TEST_F(MaterialsTest, NoLightTouchesTheUnlit) {
+  Material unlit;
+  unlit.model = Unlit{vec3(0.3F, 0.6F, 0.9F)};
+  unlit.emissive = vec3(0.5F, 0, 0);
+  const vec3 alone = color_of_floor(unlit, 0.6F, world::Scene());
+  EXPECT_EQ(alone, vec3(0.3F, 0.6F, 0.9F) + vec3(0.5F, 0, 0));
+  world::Scene lit = make_furnace(3.0F);
+  lit.lights = {make_sun(vec3(0, 1, 0), 5.0F), make_headlight()};
+  EXPECT_EQ(color_of_floor(unlit, 0.6F, lit), alone);
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/lobe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "device_scene/lobe_table.h"
+
+namespace promin::oracle {
+namespace {
+
+constexpr Real kPi = std::numbers::pi_v<Real>;
+
+/// The cosine to the eye is at least this in the visibility, because vertex normals may turn away from the eye.
+constexpr Real kLeastCosine = 0x1p-10L;
+/// Sources are points: a smooth surface would show none of them.
+constexpr Real kLeastAlphaOfSources = 0.002L;
+/// The roughness up to which a mirror ray brings all that is reflected, and from which on it brings none.
+constexpr Real kSharpestBlur = 0.1L;
+constexpr Real kRoughestMirror = 0.4L;
+/// The mean over the hemisphere of (1 - c)^5, weighted by the cosine c.
+constexpr Real kMeanGrazing = 1.0L / 21;
+
+Real largest(const Vector& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+Real fifth_power(Real x) {
+  return x * x * x * x * x;
+}
+
+/// glTF's (N.H)^2 (alpha^2 - 1) + 1 is 1 - (1 - alpha^2) (N.H)^2 and so the sum below.
+Real density_of_sine_square(Real sine_square, Real alpha) {
+  const Real sum = alpha * alpha * (1 - sine_square) + sine_square;
+  return alpha * alpha / (kPi * sum * sum);
+}
+
+/// The numbers of the device's table, which is data: entries of 16 bits in cells of four.
+class LobeTable {
+ public:
+  LobeTable() : cells_(make_lobe_table()), side_(static_cast<size_t>(std::lround(std::sqrt(cells_.size()))) + 1) {}
+
+  size_t side() const { return side_; }
+
+  LobeShares entry(size_t column, size_t row) const {
+    const size_t x = std::min(column, side_ - 2);
+    const size_t y = std::min(row, side_ - 2);
+    const uint32_t word = cells_[y * (side_ - 1) + x][static_cast<int>(2 * (row - y) + (column - x))];
+    return {(word % 65536) / 65535.0L, (word / 65536) / 65535.0L};
+  }
+
+ private:
+  std::vector<glm::uvec4> cells_;
+  size_t side_;
+};
+
+LobeShares mix(const LobeShares& a, const LobeShares& b, Real weight) {
+  return {(1 - weight) * a.all + weight * b.all, (1 - weight) * a.grazing + weight * b.grazing};
+}
+
+/// A node and its weight on [0, 1].
+struct GaussNode {
+  Real place;
+  Real weight;
+};
+
+constexpr int kGaussOrder = 12;
+
+/// Roots of Legendre's polynomial by Newton's method.
+std::array<GaussNode, kGaussOrder> make_gauss_nodes() {
+  std::array<GaussNode, kGaussOrder> nodes{};
+  for (int i = 0; i < kGaussOrder; ++i) {
+    Real x = std::cos(kPi * (i + 0.75L) / (kGaussOrder + 0.5L));
+    Real slope = 1;
+    for (int step = 0; step < 50; ++step) {
+      Real last = 1;
+      Real value = x;
+      for (int n = 2; n <= kGaussOrder; ++n) {
+        const Real next = ((2 * n - 1) * x * value - (n - 1) * last) / n;
+        last = value;
+        value = next;
+      }
+      slope = kGaussOrder * (x * value - last) / (x * x - 1);
+      x -= value / slope;
+    }
+    nodes[static_cast<size_t>(i)] = {(1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
+  }
+  return nodes;
+}
+
+/// Edges of panels on [a, b] that grow by 3 from `finest` at a, and with `is_two_sided` at b too.
+std::vector<Real> make_panels(Real a, Real b, Real finest, bool is_two_sided) {
+  std::vector<Real> edges = {a};
+  const Real reach = is_two_sided ? (b - a) / 2 : b - a;
+  for (Real at = finest; at < reach / 2; at *= 3) edges.push_back(a + at);
+  const size_t count = edges.size();
+  if (is_two_sided) {
+    edges.push_back(a + reach);
+    for (size_t i = count; i-- > 1;) edges.push_back(b - (edges[i] - a));
+  }
+  edges.push_back(b);
+  return edges;
+}
+
+template <typename Function>
+void integrate(const std::vector<Real>& panels, const Function& add) {
+  static const std::array<GaussNode, kGaussOrder> kNodes = make_gauss_nodes();
+  for (size_t i = 0; i + 1 < panels.size(); ++i) {
+    const Real width = panels[i + 1] - panels[i];
+    if (!(width > 0)) continue;
+    for (const GaussNode& node : kNodes) add(panels[i] + node.place * width, node.weight * width);
+  }
+}
+
+}  // namespace
+
+Real microfacet_density(Real theta, Real alpha) {
+  const Real sine = std::sin(theta);
+  return density_of_sine_square(sine * sine, alpha);
+}
+
+Real visibility(Real v, Real l, Real alpha) {
+  const Real a2 = alpha * alpha;
+  return 1 / (2 * (l * std::sqrt(v * v + a2 * (1 - v * v)) + v * std::sqrt(l * l + a2 * (1 - l * l))));
+}
+
+LobeShares look_up_lobe_shares(Real v, Real roughness) {
+  static const LobeTable kTable;
+  const Real last = static_cast<Real>(kTable.side() - 1);
+  const Real x = last * std::sqrt(std::clamp(v, Real(0), Real(1)));
+  const Real y = last * roughness;
+  const size_t column = std::min(static_cast<size_t>(x), kTable.side() - 2);
+  const size_t row = std::min(static_cast<size_t>(y), kTable.side() - 2);
+  const LobeShares low = mix(kTable.entry(column, row), kTable.entry(column + 1, row), x - column);
+  const LobeShares high = mix(kTable.entry(column, row + 1), kTable.entry(column + 1, row + 1), x - column);
+  return mix(low, high, y - row);
+}
+
+LobeShares integrate_lobe_shares(Real v, Real roughness) {
+  if (roughness == 0) return {1, fifth_power(1 - v)};
+  const Real alpha = roughness * roughness;
+  const Real sine = std::sqrt(1 - v * v);
+  const Real tilt = std::acos(v);
+  // Directions to the light in polar coordinates around the mirrored direction, azimuths from where it rises; the eye
+  // is at (sine, 0, v), the normal at (0, 0, 1).
+  LobeShares sum{0, 0};
+  const auto add_ring = [&](Real angle, Real ring_weight) {
+    const Real along = std::cos(angle);
+    const Real across = std::sin(angle);
+    // Above the horizon.
+    const Real highest_cosine = across * sine > 0 ? -along * v / (across * sine) : -kInfinity;
+    const Real last = std::acos(std::clamp(highest_cosine, Real(-1), Real(1)));
+    integrate(make_panels(0, last, 1e-3L, true), [&](Real azimuth, Real weight) {
+      // Nodes to double's precision are exact enough, and much faster.
+      const Real forth = across * Real(std::cos(static_cast<double>(azimuth)));
+      const Real aside = across * Real(std::sin(static_cast<double>(azimuth)));
+      const Vector to_light(-along * sine + forth * v, aside, along * v + forth * sine);
+      if (!(to_light.z > 0)) return;
+      const Vector sum_of_ways = to_light + Vector(sine, 0, v);
+      const Real sine_square =
+          (sum_of_ways.x * sum_of_ways.x + sum_of_ways.y * sum_of_ways.y) / glm::dot(sum_of_ways, sum_of_ways);
+      // Both halves of the ring.
+      const Real share = 2 * ring_weight * weight * across * to_light.z * visibility(v, to_light.z, alpha) *
+                         density_of_sine_square(sine_square, alpha);
+      sum.all += share;
+      sum.grazing += share * fifth_power(1 - glm::length(sum_of_ways) / 2);
+    });
+  };
+  // Whole rings, then those that the horizon cuts.
+  const Real whole = kPi / 2 - tilt;
+  integrate(make_panels(0, whole, alpha / 4, false), add_ring);
+  integrate(make_panels(whole, whole + 2 * tilt, std::min(alpha, tilt) / 4, false), add_ring);
+  return sum;
+}
+
+LobeAngles angles_of(const Vector& normal, const Vector& to_eye, const Vector& to_light) {
+  const Vector half = glm::normalize(to_eye + to_light);
+  LobeAngles angles;
+  angles.theta = std::atan2(glm::length(glm::cross(normal, half)), glm::dot(normal, half));
+  angles.v = glm::dot(normal, to_eye);
+  angles.l = glm::dot(normal, to_light);
+  angles.v_h = glm::dot(to_eye, half);
+  return angles;
+}
+
+Lobe::Part::Part(const Vector& at_normal, Real at_grazing, const LobeShares& shares) : f0(at_normal), f90(at_grazing) {
+  const Vector mean = f0 + (f90 - f0) * kMeanGrazing;
+  k = Real(1) / (Real(1) - mean * (1 - shares.all));
+}
+
+Vector Lobe::Part::reflectance(const LobeShares& shares) const {
+  return k * (f0 * (shares.all - shares.grazing) + f90 * shares.grazing);
+}
+
+Vector Lobe::Part::fresnel(Real v_h) const {
+  return f0 + (f90 - f0) * fifth_power(1 - v_h);
+}
+
+namespace {
+
+/// KHR_materials_ior and KHR_materials_specular; an index of 0 makes the quotient 1.
+Vector reflectance_at_normal(const MetallicRoughness& material) {
+  const Real quotient = (Real(material.ior) - 1) / (Real(material.ior) + 1);
+  return glm::min(quotient * quotient * Vector(material.specular_color), Vector(1)) * Real(material.specular);
+}
+
+Vector base_of(const MetallicRoughness& material, const Vector& vertex_color) {
+  return glm::min(Vector(material.base_color) * vertex_color, Vector(1));
+}
+
+}  // namespace
+
+Lobe::Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares)
+    : metallic_(material.metallic),
+      roughness_(material.roughness),
+      dielectric_(reflectance_at_normal(material), material.specular, shares),
+      metal_(base_of(material, vertex_color), 1, shares) {
+  const Vector of_dielectric = dielectric_.reflectance(shares);
+  reflectance_ = (1 - metallic_) * of_dielectric + metallic_ * metal_.reflectance(shares);
+  albedo_ = (1 - metallic_) * (1 - largest(of_dielectric)) * base_of(material, vertex_color);
+}
+
+Real Lobe::sharpness() const {
+  const Real x = std::clamp((roughness_ - kSharpestBlur) / (kRoughestMirror - kSharpestBlur), Real(0), Real(1));
+  return 1 - x * x * (3 - 2 * x);
+}
+
+Real Lobe::alpha_of_sources() const {
+  return std::max(roughness_ * roughness_, kLeastAlphaOfSources);
+}
+
+Vector Lobe::highlights_of_all(const LobeShares& shares) const {
+  return (1 - metallic_) * dielectric_.reflectance(shares) + metallic_ * metal_.reflectance(shares);
+}
+
+Vector Lobe::highlight(const LobeAngles& angles) const {
+  const Real alpha = alpha_of_sources();
+  const Vector facets = (1 - metallic_) * dielectric_.k * dielectric_.fresnel(angles.v_h) +
+                        metallic_ * metal_.k * metal_.fresnel(angles.v_h);
+  return facets * angles.l * visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) *
+         microfacet_density(angles.theta, alpha);
+}
+
+}  // namespace promin::oracle

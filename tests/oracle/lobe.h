@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "oracle/oracle.h"
+
+/// The metallic-roughness model of glTF 2.0, appendix B, at one point (docs/model.md, "Metallic-roughness").
+namespace promin::oracle {
+
+/// The microfacets' density D (Trowbridge and Reitz, GGX): per steradian, of half vectors at the angle theta to the
+/// normal.
+Real microfacet_density(Real theta, Real alpha);
+
+/// Smith's height-correlated masking and shadowing over 4 (N.L) (N.V), of the cosines v to the eye and l to the light
+/// (Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2)).
+Real visibility(Real v, Real l, Real alpha);
+
+/// What a lobe does with light of radiance 1 from everywhere.
+struct LobeShares {
+  /// E1: what is sent to the eye where facets reflect everything once.
+  Real all = 1;
+  /// B: the part of it that goes with (1 - V.H)^5.
+  Real grazing = 0;
+};
+
+/// By the device's table, between its entries bilinear over sqrt(v) and the perceptual roughness.
+LobeShares look_up_lobe_shares(Real v, Real roughness);
+
+/// By Gauss's quadrature over directions to the light. Its error is below 1e-4 for v = 0 or > 1e-3, and mostly 1e-6.
+LobeShares integrate_lobe_shares(Real v, Real roughness);
+
+/// The angles that a lobe hangs on. All but theta are cosines.
+struct LobeAngles {
+  /// Between normal and half vector, radians.
+  Real theta = 0;
+  /// To the eye and to the light.
+  Real v = 1;
+  Real l = 1;
+  /// Between eye and half vector.
+  Real v_h = 1;
+};
+
+LobeAngles angles_of(const Vector& normal, const Vector& to_eye, const Vector& to_light);
+
+/// A material as one eye sees it at one point.
+class Lobe {
+ public:
+  /// The vertex colour is a factor of the base colour, which stays at most 1. The shares are those of the cosine to the
+  /// eye.
+  Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares);
+
+  /// Of light from all around: what is reflected, and the share that the body under the surface sends, both of 1.
+  const Vector& reflectance() const { return reflectance_; }
+  const Vector& albedo() const { return albedo_; }
+  /// The part of the reflected light that a mirror ray brings, 0...1.
+  Real sharpness() const;
+  /// The radiance that the surface reflects of a source with an irradiance of 1 across its way.
+  Vector highlight(const LobeAngles& angles) const;
+  /// The sum of the highlights of sources in all directions, of radiance 1, where the lobe's shares are these.
+  Vector highlights_of_all(const LobeShares& shares) const;
+  /// The alpha by which sources are reflected.
+  Real alpha_of_sources() const;
+
+ private:
+  struct Part {
+    Vector f0{0};
+    Real f90 = 1;
+    /// What microfacets reflect more than once is given back by this factor.
+    Vector k{1};
+    Part(const Vector& at_normal, Real at_grazing, const LobeShares& shares);
+    Vector reflectance(const LobeShares& shares) const;
+    Vector fresnel(Real v_h) const;
+  };
+
+  Real metallic_;
+  Real roughness_;
+  Part dielectric_;
+  Part metal_;
+  Vector reflectance_{0};
+  Vector albedo_{0};
+};
+
+}  // namespace promin::oracle
