@@ -43,14 +43,14 @@ struct MetallicRoughness {
   /// Colour of the dielectric's reflection at normal incidence (KHR_materials_specular).
   vec3 specular_color{1.0F};
   /// Factors of the base colour.
-  TextureSlot base_color_texture;
+  TextureSlot base_color_texture = {};
   /// Factors of roughness (green) and metallic (blue).
-  TextureSlot metallic_roughness_texture;
+  TextureSlot metallic_roughness_texture = {};
   /// Normals in the tangent space of the mesh, their x and y times `normal_scale`.
-  TextureSlot normal_texture;
+  TextureSlot normal_texture = {};
   float normal_scale = 1.0F;
   /// Dims what the environment brings (red): 1 + occlusion_strength * (texture - 1), strength 0...1.
-  TextureSlot occlusion_texture;
+  TextureSlot occlusion_texture = {};
   float occlusion_strength = 1.0F;
 };
 
@@ -59,7 +59,7 @@ struct Unlit {
   /// What is seen.
   vec3 color{1.0F};
   /// Factors of it.
-  TextureSlot color_texture;
+  TextureSlot color_texture = {};
 };
 
 /// What an object's surface is made of.
@@ -71,7 +71,7 @@ struct Material {
   /// Light that the surface sends by itself, linear RGB, finite and not negative; it lights nothing else.
   vec3 emissive{0.0F};
   /// Factors of it; of metallic-roughness materials alone.
-  TextureSlot emissive_texture;
+  TextureSlot emissive_texture = {};
 
   /// The model of a Phong material. Throws std::bad_variant_access where it is another.
   Phong& phong() { return std::get<Phong>(model); }

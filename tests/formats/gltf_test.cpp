@@ -426,7 +426,9 @@ TEST_F(GltfTest, AnIndexOfRefractionIsZeroOrFromOneOn) {
   };
   EXPECT_EQ(model_of<MetallicRoughness>(load_ior(0)).ior, 0.0F);
   EXPECT_EQ(model_of<MetallicRoughness>(load_ior(1)).ior, 1.0F);
-  EXPECT_THROW(load_ior(0.5), InputError);
+  const LoadedScene odd = load_ior(0.5);
+  EXPECT_EQ(model_of<MetallicRoughness>(odd).ior, 1.0F);
+  EXPECT_THAT(odd.warnings, ElementsAre(HasSubstr("index of refraction")));
 }
 
 TEST_F(GltfTest, UnlitMaterialsAreTheirBaseColor) {

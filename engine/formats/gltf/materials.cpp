@@ -97,7 +97,6 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   }
 }
 
-<<<<<<< HEAD
 Unlit unlit_of(const json& source, GltfTextures& textures) {
   Unlit unlit{vec3(base_color_of(source)), {}};
   if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
@@ -107,9 +106,6 @@ Unlit unlit_of(const json& source, GltfTextures& textures) {
 }
 
 Material read_material(const json& source, const std::string& title, GltfTextures& textures, LoadReport& report) {
-=======
-Material read_material(const json& source, const std::string& title, GltfTextures& textures, LoadReport& report) {
->>>>>>> 3a3a1dd49676bc0a04b0d4e3b8d6134f767371d5
   Material material;
   material.name = source.value("name", "");
   if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
@@ -118,12 +114,8 @@ Material read_material(const json& source, const std::string& title, GltfTexture
     material.model = unlit_of(source, textures);
     return material;
   } else {
-<<<<<<< HEAD
     material.model = metallic_roughness_of(source, title, textures, report);
     material.emissive_texture = textures.read_slot(source, "emissiveTexture", ImageUse::kColor);
-=======
-    material.model = metallic_roughness_of(source, title, textures, report);
->>>>>>> 3a3a1dd49676bc0a04b0d4e3b8d6134f767371d5
   }
   double strength = 1.0;
   if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
@@ -138,15 +130,9 @@ Material read_material(const json& source, const std::string& title, GltfTexture
 std::vector<Material> read_gltf_materials(const GltfDocument& document, GltfTextures& textures, LoadReport& report) {
   std::vector<Material> materials;
   for (const json& source : elements_of(document.json, "materials")) {
-    const size_t index = materials.size();
-<<<<<<< HEAD
-    materials.push_back(read_material(source, title, textures, report));
-    warn_about_what_is_ignored(source, title_of(document.json, "materials", index), report);
-=======
-    const std::string title = title_of(document.json, "materials", index);
+    const std::string title = title_of(document.json, "materials", materials.size());
     materials.push_back(read_material(source, title, textures, report));
     warn_about_what_is_ignored(source, title, report);
->>>>>>> 3a3a1dd49676bc0a04b0d4e3b8d6134f767371d5
   }
   return materials;
 }
