@@ -92,10 +92,11 @@ std::vector<const char*> fill_up_alternatives(std::span<const char* const> words
   std::vector<const char*> filled;
   for (size_t i = 0; i < words.size(); ++i) {
     filled.push_back(words[i]);
-    if (i == 0) continue;
-    const auto found = alternatives.find(words[i - 1]);
-    if (found == alternatives.end() || found->second.word != words[i]) continue;
-    filled.insert(filled.end(), found->second.count - 1, words[i]);
+    for (const auto& [name, alternative] : alternatives) {
+      const bool is_alone = i > 0 && words[i - 1] == name && words[i] == alternative.word;
+      if (!is_alone && words[i] != name + "=" + alternative.word) continue;
+      filled.insert(filled.end(), alternative.count - 1, alternative.word.c_str());
+    }
   }
   return filled;
 }

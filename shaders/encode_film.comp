@@ -15,6 +15,7 @@ layout(constant_id = 1) const uint EXPOSURE = 0x3F800000u;
 // The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   Dispatch dispatch;
+  StreamState film_stream;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 pixels[];
 };

@@ -62,6 +62,17 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, const Swapchain& swa
 
 }  // namespace
 
+gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
+                                  const DisplayTransform& display) {
+  const std::array constants{
+      gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
+      gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))}};
+  constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
+  const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, &film},
+                           gpu::BoundBuffer{kEncodedBinding, kStorage, &encoded}};
+  return {device, k_encode_film_spirv, constants, buffers};
+}
+
 DisplayPass::DisplayPass(const gpu::Device& device, const Swapchain& swapchain) : device_(&device) {
   constexpr auto kStage = vk::ShaderStageFlagBits::eFragment;
   constexpr auto kType = vk::DescriptorType::eStorageBuffer;
@@ -94,14 +105,7 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
     write.pBufferInfo = &info;
     device_->handle().updateDescriptorSets(write, {});
   }
-  const std::array constants{
-      gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
-      gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))}};
-  for (size_t i = 0; i < kFilmCount; ++i) {
-    const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, films[i]},
-                             gpu::BoundBuffer{kEncodedBinding, kStorage, &*encoded_}};
-    encoders_[i].emplace(*device_, k_encode_film_spirv, constants, buffers);
-  }
+  for (size_t i = 0; i < kFilmCount; ++i) encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display));
 }
 
 void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) {

@@ -14,6 +14,10 @@
 
 namespace promin::app {
 
+/// Makes what encodes the pixels of a film, as `display` shows them, to words of a buffer (shaders/encode_film.comp).
+gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
+                                  const DisplayTransform& display);
+
 /// Draws pictures to the window: a film is encoded once (shaders/encode_film.comp), then drawn as often as the window
 /// wants it, scaled to all of the window (shaders/display.frag).
 class DisplayPass {

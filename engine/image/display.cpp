@@ -50,6 +50,7 @@ std::span<const std::string_view> tone_mapping_names() {
 }
 
 vec3 apply(const DisplayTransform& display, const vec3& radiance) {
+  if (display == DisplayTransform()) return radiance;
   const dvec3 exposed = std::exp2(static_cast<double>(display.exposure_ev)) * dvec3(radiance);
   if (display.tone_mapping == ToneMapping::kNone) return vec3(exposed);
   dvec3 shown(0.0);
