@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 
 #include "promin/error.h"
 
@@ -60,6 +61,44 @@ void refuse_leftovers(const CLI::App& program) {
       &command == &program && !program.get_subcommands([](const CLI::App*) { return true; }).empty();
   const std::string what = lacks_command ? "unknown command " : "unexpected argument ";
   throw UsageError({what + leftovers.front(), kWhere, cure});
+}
+
+/// One word in place of the several that an option takes.
+struct Alternative {
+  std::string word;
+  size_t count = 0;
+};
+
+/// Those of all options of a program, by the options' names.
+void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& found) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string placeholders = option->get_type_name();
+    const size_t bar = placeholders.rfind('|');
+    if (option->get_type_size() < 2 || bar == std::string::npos) continue;
+    for (const std::string& name : option->get_lnames()) {
+      found[std::string("--").append(name)] = {placeholders.substr(bar + 1),
+                                               static_cast<size_t>(option->get_type_size())};
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    find_alternatives(*command, found);
+  }
+}
+
+/// The words of a command line, with each alternative repeated until it is as many words as its option takes: CLI11
+/// gives an option the same number of words always.
+std::vector<const char*> fill_up_alternatives(std::span<const char* const> words,
+                                              const std::map<std::string, Alternative>& alternatives) {
+  std::vector<const char*> filled;
+  for (size_t i = 0; i < words.size(); ++i) {
+    filled.push_back(words[i]);
+    for (const auto& [name, alternative] : alternatives) {
+      const bool is_alone = i > 0 && words[i - 1] == name && words[i] == alternative.word;
+      if (!is_alone && words[i] != name + "=" + alternative.word) continue;
+      filled.insert(filled.end(), alternative.count - 1, alternative.word.c_str());
+    }
+  }
+  return filled;
 }
 
 }  // namespace
@@ -145,8 +184,11 @@ void add_common_options(CLI::App& app) {
 }
 
 bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
+  std::map<std::string, Alternative> alternatives;
+  find_alternatives(program, alternatives);
+  const std::vector<const char*> words = fill_up_alternatives({argv, static_cast<size_t>(argc)}, alternatives);
   try {
-    program.parse(argc, argv);
+    program.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}", program.help());
     return false;

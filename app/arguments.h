@@ -54,7 +54,7 @@ class OptionTable {
 
   using Setter = std::function<void(const OptionValues&)>;
   /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
-  /// takes: "N", "W H".
+  /// takes: "N", "W H". "R G B|WORD" is three words, or WORD alone, which the setter gets three times.
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// Adds an argument that the command cannot do without.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);

@@ -31,9 +31,8 @@ std::string describe_objects(const SceneCounts& counts, size_t object_count) {
   return kinds.empty() ? "0" : fmt::format("{} ({})", object_count, fmt::join(kinds, ", "));
 }
 
-std::string describe_lights(const std::vector<Light>& lights, const vec3& ambient) {
-  if (lights.empty() && ambient == vec3(0.0F)) return "0; a headlight along the view and ambient light stand in";
-  if (lights.empty()) return "0; a headlight along the view stands in";
+std::string count_lights(const std::vector<Light>& lights) {
+  if (lights.empty()) return "0";
   std::vector<std::string> kinds;
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)                     \
   if (LightKind::ENUMERATOR != LightKind::kHeadlight) {                                        \
@@ -42,6 +41,17 @@ std::string describe_lights(const std::vector<Light>& lights, const vec3& ambien
   }
 #include "promin/kinds/lights.def"
   return fmt::format("{} ({})", lights.size(), fmt::join(kinds, ", "));
+}
+
+std::string describe_background(const Environment& environment, const AssumedLight& assumed) {
+  if (environment.shows_sky) return "the sky";
+  const vec3& color = environment.background;
+  return fmt::format("{:.4g} {:.4g} {:.4g}{}", color.r, color.g, color.b, assumed.has_background ? " (assumed)" : "");
+}
+
+std::string describe_display(const DisplayTransform& display) {
+  return fmt::format("exposure {:+g} EV, tone mapping {}", display.exposure_ev,
+                     tone_mapping_names()[static_cast<size_t>(display.tone_mapping)]);
 }
 
 std::string describe_camera(size_t index, const Camera& camera) {
@@ -56,10 +66,10 @@ std::string describe_camera(size_t index, const Camera& camera) {
   return text;
 }
 
-std::vector<std::string> describe_cameras(const std::vector<Camera>& cameras) {
-  if (cameras.empty()) return {"0; one that frames the scene stands in"};
+std::vector<std::string> describe_cameras(const Scene& scene) {
+  if (scene.cameras.empty()) return {"0; assumed: " + describe_framing(framing_of(scene))};
   std::vector<std::string> rows;
-  for (size_t i = 0; i < cameras.size(); ++i) rows.push_back(describe_camera(i, cameras[i]));
+  for (size_t i = 0; i < scene.cameras.size(); ++i) rows.push_back(describe_camera(i, scene.cameras[i]));
   return rows;
 }
 
@@ -75,15 +85,18 @@ void print_info(const std::filesystem::path& file) {
   print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene.objects.size()));
   print_row("primitives", std::to_string(counts.primitives));
-  const std::string lights = describe_lights(scene.lights, scene.environment.ambient);
-  // The features and the tree are of the scene as it would be rendered, with the lights that stand in.
-  light_up(scene, Console(Verbosity::kQuiet));
+  std::string lights = count_lights(scene.lights);
+  // The features and the tree are of the scene as it would be rendered, with the light that stands in.
+  const AssumedLight assumed = light_scene(scene);
+  if (const std::string light = describe_light(assumed); !light.empty()) lights.append("; assumed: ").append(light);
   const world::Scene flat = world::flatten(scene);
   const PackedScene packed = pack_scene(flat, builder_names().front());
   print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
   print_row("materials", std::to_string(scene.materials.size()));
   print_row("lights", lights);
-  print_rows("cameras", describe_cameras(scene.cameras));
+  print_row("background", describe_background(scene.environment, assumed));
+  print_row("display", describe_display(display_of(scene)));
+  print_rows("cameras", describe_cameras(scene));
   print_row("bounds", describe_bounds(bounds_of(scene)));
   print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(flat)), ", ")));
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 #include <future>
 #include <memory>
 
@@ -109,7 +110,7 @@ void write_pictures(const RenderOptions& options, const PlannedFrame& planned, c
   const Metadata metadata = make_metadata(stats, planned, traced);
   const std::vector<Channel> channels = make_channels(traced.result.aovs, options.aovs);
   for (const std::filesystem::path& file : planned.pictures) {
-    write_image(file, traced.result.image, metadata, placement, channels);
+    write_image(file, traced.result.image, metadata, placement, channels, stats.display);
   }
 }
 
@@ -206,7 +207,12 @@ void render(const RenderOptions& options) {
   view.given_camera = frames.front().camera;
   stats.view = make_view(scene, view, console);
   check_explained_pixel(options, stats.view->size);
-  light_up(scene, console);
+  const AssumedLight assumed = light_up(scene, view.look);
+  stats.display = choose_display(scene, view.look, view.debug_view);
+  const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
+  const std::string assumptions =
+      describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
+  if (!assumptions.empty()) console.note(assumptions);
   check_lights(scene, options.view.lights_off);
   switch_lights(scene.lights, options.view.lights_off);
   const auto is_on = [](const Light& light) { return light.is_on; };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <sstream>
 
@@ -24,6 +25,11 @@ namespace {
 constexpr double kMinFovDeg = 1e-3;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 constexpr uint32_t kMaxFrame = 9999999;
+constexpr double kMaxBackground = 1e9;
+/// More would leave the range of floats.
+constexpr double kMaxExposureEv = 64.0;
+constexpr std::string_view kEnvironment = "environment";
+constexpr std::string_view kAuto = "auto";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
 /// Reads names between commas.
@@ -51,10 +57,22 @@ PixelWindow read_window(const OptionValues& words) {
   return window;
 }
 
-DebugView read_debug_view(const OptionValues& words) {
-  const std::span<const std::string_view> names = debug_view_names();
-  const auto place = std::find(names.begin(), names.end(), words.choice(names));
-  return static_cast<DebugView>(place - names.begin());
+/// The place of the word among names of an enumeration, of which the first `hidden` are not for users.
+template <typename Enum>
+Enum read_name(const OptionValues& words, std::span<const std::string_view> names, size_t hidden = 0) {
+  const auto place = std::find(names.begin(), names.end(), words.choice(names.subspan(hidden)));
+  return static_cast<Enum>(place - names.begin());
+}
+
+BackgroundChoice read_background(const OptionValues& words) {
+  const std::string& first = words.text();
+  if (first == kEnvironment) return {.is_environment = true};
+  if (std::isalpha(static_cast<unsigned char>(first.front())) != 0) {
+    words.refuse(fmt::format("--background takes three numbers or {}, not \"{}\"", kEnvironment, first));
+  }
+  const dvec3 color{words.real(0, 0.0, kMaxBackground), words.real(1, 0.0, kMaxBackground),
+                    words.real(2, 0.0, kMaxBackground)};
+  return {.color = vec3(color)};
 }
 
 /// Reads "3-7", or "3" alone.
@@ -100,6 +118,31 @@ void check_explain_options(const RenderOptions& options) {
   }
 }
 
+void add_look_options(OptionTable& table, LookOptions& look) {
+  const std::span<const std::string_view> lights = light_choice_names();
+  table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
+            "What stands in for light that the scene lacks [studio; classic scenes: headlight]",
+            [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
+  table.add("--framing", fmt::format("{}", fmt::join(framing_names(), "|")),
+            "From where a scene without a camera is seen [three-quarter; classic scenes: front]",
+            [&](const OptionValues& w) { look.framing = read_name<Framing>(w, framing_names()); });
+  table.add("--background", fmt::format("R G B|{}", kEnvironment),
+            "What lies behind all: a linear colour, or what lights the scene [the scene's, or a grey of 0.25; classic "
+            "scenes: the scene's]",
+            [&](const OptionValues& w) { look.background = read_background(w); });
+  table.add("--exposure", fmt::format("EV|{}", kAuto),
+            "Stops by which PNG files and the window are brighter than the scene's light [auto: from the scene's "
+            "lights; classic scenes: 0]",
+            [&](const OptionValues& w) {
+              look.exposure_ev.reset();
+              if (w.text() == kAuto) return;
+              look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv));
+            });
+  table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
+            "How PNG files and the window show what is brighter than they can [neutral; classic scenes: none]",
+            [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
+}
+
 }  // namespace
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
@@ -110,10 +153,11 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
             fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
             [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
   table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(debug_view_names(), ", ")),
-            [&](const OptionValues& w) { view.debug_view = read_debug_view(w); });
+            [&](const OptionValues& w) { view.debug_view = read_name<DebugView>(w, debug_view_names()); });
   table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
   table.add("--lights-off", "INDICES", "Lights to leave out, by their numbers from 0 with commas between",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
+  add_look_options(table, view.look);
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const OptionValues& w) { view.camera = w.text(); });
   table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "promin/lighting.h"
 #include "promin/math.h"
 #include "promin/renderer.h"
 #include "tracing_options.h"
@@ -31,6 +32,27 @@ struct PoseOptions {
   bool any() const { return eye || look || up || fov_deg || near; }
 };
 
+/// What rays from the camera see that leave the scene.
+struct BackgroundChoice {
+  /// Whether they see what surrounds the scene; else the colour.
+  bool is_environment = false;
+  /// Linear RGB.
+  vec3 color{0.0F};
+
+  bool operator==(const BackgroundChoice&) const = default;
+};
+
+/// How a scene is lit and its pictures are shown, as the user asked for it. What the user leaves open follows from the
+/// scene (promin/lighting.h).
+struct LookOptions {
+  LightChoice light = LightChoice::kAuto;
+  std::optional<Framing> framing = std::nullopt;
+  std::optional<BackgroundChoice> background = std::nullopt;
+  /// Stops.
+  std::optional<float> exposure_ev = std::nullopt;
+  std::optional<ToneMapping> tone_mapping = std::nullopt;
+};
+
 /// The part of a scene that is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
 struct ViewOptions {
   std::optional<uvec2> size;
@@ -39,6 +61,7 @@ struct ViewOptions {
   uint32_t max_depth = View{}.max_depth;
   DebugView debug_view = DebugView::kNone;
   bool has_no_shadows = false;
+  LookOptions look;
   /// Indices of the scene's lights to leave out.
   std::vector<uint32_t> lights_off;
   /// The name or number of a camera.

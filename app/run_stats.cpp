@@ -24,10 +24,16 @@ Json json_of_scene(const RunStats& stats) {
   return json;
 }
 
-Json json_of_view(const View& view) {
+std::string name_of(ToneMapping mapping) {
+  return std::string(tone_mapping_names()[static_cast<size_t>(mapping)]);
+}
+
+Json json_of_view(const View& view, const DisplayTransform& display) {
   Json json = {{"size", {view.size.x, view.size.y}},
                {"samples_per_pixel", view.samples_per_pixel},
-               {"max_depth", view.max_depth}};
+               {"max_depth", view.max_depth},
+               {"exposure_ev", display.exposure_ev},
+               {"tone_mapping", name_of(display.tone_mapping)}};
   if (view.crop) json["crop"] = {view.crop->lo.x, view.crop->lo.y, view.crop->hi.x, view.crop->hi.y};
   return json;
 }
@@ -64,7 +70,9 @@ Metadata describe_picture(const RunStats& stats) {
           {"promin:driver", stats.device.driver},
           {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
           {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
-          {"promin:max_depth", std::to_string(stats.view->max_depth)}};
+          {"promin:max_depth", std::to_string(stats.view->max_depth)},
+          {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
+          {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
 }
 
 std::string to_json(const RunStats& stats) {
@@ -93,7 +101,7 @@ std::string to_json(const RunStats& stats) {
   } else {
     json["frames"] = json_of_frames(stats);
   }
-  if (stats.view) json["view"] = json_of_view(*stats.view);
+  if (stats.view) json["view"] = json_of_view(*stats.view, stats.display);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -24,6 +24,8 @@ struct RunStats {
   size_t light_count = 0;
   /// Only set for pictures.
   std::optional<View> view;
+  /// How the picture is shown in files of 8 bits.
+  DisplayTransform display;
   SetupStats setup;
   RayCounts rays;
   /// The numbers of a camera path's frames; the rays are then those of all frames.

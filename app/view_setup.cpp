@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_setup.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <variant>
+#include <vector>
 
 #include "camera.h"
 #include "promin/error.h"
@@ -43,15 +45,24 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   return scene.cameras[index];
 }
 
-Camera choose_camera(const Scene& scene, const ViewOptions& options, const Console& console) {
+Framing choose_framing(const Scene& scene, const LookOptions& look) {
+  return look.framing.value_or(framing_of(scene));
+}
+
+Camera choose_camera(const Scene& scene, const ViewOptions& options) {
   if (options.given_camera) return *options.given_camera;
   if (options.camera) return find_camera(scene, *options.camera);
   if (!scene.cameras.empty()) return scene.cameras.front();
-  if (!options.pose.eye || !options.pose.look) {
-    console.note("the scene has no camera; one that frames it is used");
-  }
-  return frame_scene(scene, options.size ? static_cast<float>(options.size->x) / static_cast<float>(options.size->y)
-                                         : kDefaultAspectRatio);
+  return frame_scene(
+      scene,
+      options.size ? static_cast<float>(options.size->x) / static_cast<float>(options.size->y) : kDefaultAspectRatio,
+      choose_framing(scene, options.look));
+}
+
+/// Whether the view's camera is one that frames the scene, and nobody has said from where.
+bool is_camera_assumed(const Scene& scene, const ViewOptions& options) {
+  const bool is_given = options.given_camera || options.camera || (options.pose.eye && options.pose.look);
+  return scene.cameras.empty() && !is_given && !options.look.framing;
 }
 
 void apply_pose(Camera& camera, const PoseOptions& pose, const Console& console) {
@@ -90,7 +101,7 @@ uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene&
 
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console) {
   View view;
-  view.camera = choose_camera(scene, options, console);
+  view.camera = choose_camera(scene, options);
   view.size = choose_size(options, view.camera, scene);
   apply_pose(view.camera, options.pose, console);
   view.crop = options.crop;
@@ -104,15 +115,52 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   return view;
 }
 
-void light_up(Scene& scene, const Console& console) {
-  const AddedLights added = add_default_lights(scene);
-  if (!added.has_headlight) return;
-  if (!added.has_ambient) {
-    console.note("the scene has no lights; a headlight along the view is used");
-    return;
+AssumedLight light_up(Scene& scene, const LookOptions& look) {
+  AssumedLight assumed = light_scene(scene, look.light);
+  if (!look.background) return assumed;
+  assumed.has_background = false;
+  Environment& environment = scene.environment;
+  const bool has_sky = !std::holds_alternative<std::monostate>(environment.sky);
+  environment.shows_sky = look.background->is_environment && has_sky;
+  // Without a sky what surrounds the scene is its ambient light.
+  environment.background = look.background->is_environment ? environment.ambient : look.background->color;
+  return assumed;
+}
+
+DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view) {
+  if (debug_view != DebugView::kNone) return {};
+  DisplayTransform display = display_of(scene, look.light);
+  if (look.exposure_ev) display.exposure_ev = *look.exposure_ev;
+  if (look.tone_mapping) display.tone_mapping = *look.tone_mapping;
+  return display;
+}
+
+std::string describe_framing(Framing framing) {
+  return framing == Framing::kFront ? "a camera in front that frames the scene"
+                                    : "a camera that frames the scene from three quarters";
+}
+
+std::string describe_light(const AssumedLight& light) {
+  if (light.has_studio_light) return "the light of a studio";
+  if (light.has_studio) return "a studio's weaker light around the scene's own";
+  if (light.has_ambient) return fmt::format("a headlight along the view and ambient light of {}", kDefaultAmbient);
+  return light.has_headlight ? "a headlight along the view" : "";
+}
+
+std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                 const std::optional<DisplayTransform>& display) {
+  const LookOptions& look = options.look;
+  std::vector<std::string> parts;
+  if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, look)));
+  if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
+  if (light.has_background) parts.emplace_back("a grey background");
+  if (display && !look.exposure_ev && display->exposure_ev != 0.0F) {
+    parts.push_back(fmt::format("an exposure of {:+g} EV", display->exposure_ev));
   }
-  console.note(fmt::format("the scene has no lights; a headlight along the view and ambient light of {} are used",
-                           kDefaultAmbient));
+  if (display && !look.tone_mapping && display->tone_mapping != ToneMapping::kNone) {
+    parts.push_back(fmt::format("tone mapping {}", tone_mapping_names()[static_cast<size_t>(display->tone_mapping)]));
+  }
+  return parts.empty() ? "" : fmt::format("assumed: {}", fmt::join(parts, ", "));
 }
 
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {

@@ -2,21 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "console.h"
+#include "promin/lighting.h"
 #include "promin/renderer.h"
 #include "promin/scene.h"
 #include "render_options.h"
 
 namespace promin::app {
 
-/// The view that the options ask of this scene. A scene without a camera gets one that frames it, and an orthographic
-/// camera with a field of view becomes a perspective one; a note says so.
-/// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
+/// The view that the options ask of this scene. A scene without a camera gets one that frames it. An orthographic
+/// camera with a field of view becomes a perspective one; a note says so. Throws UsageError for an unknown camera,
+/// parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 
-/// Gives a scene without lights a headlight, which follows the camera of each view, and ambient light where it has
-/// none. A note says so.
-void light_up(Scene& scene, const Console& console);
+/// Lights the scene as the options ask, and gives it the background that they name. Throws as light_scene does.
+AssumedLight light_up(Scene& scene, const LookOptions& look);
+
+/// How pictures of a scene are shown, lit up or not. Debug views are shown as they are.
+DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view);
+
+/// One sentence of what is assumed where neither the file nor the options say it, for promin's notes; empty if nothing
+/// is. The light is what light_up has added to the scene; `display` is what the picture is shown with, if it is.
+std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                 const std::optional<DisplayTransform>& display);
+
+/// What an assumption is called, as describe_assumptions and `promin info` have it; empty where there is none.
+std::string describe_framing(Framing framing);
+std::string describe_light(const AssumedLight& light);
 
 /// Throws UsageError where the scene, with its default lights, has no light of such an index.
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices);

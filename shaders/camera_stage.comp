@@ -30,8 +30,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "environment.glsl"
 #include "shading.glsl"
 #include "path.glsl"
-#include "camera.glsl"
 #include "group_rows.glsl"
+#include "camera.glsl"
 #include "loop_check.glsl"
 
 uvec3 ray_count = uvec3(0u);
@@ -96,6 +96,7 @@ void arrive() {
     }
     begin_path_log(ray, found[i], 0u, paths[i].weight);
     seen[i] = VIEW.background.xyz;
+    if (has(FEATURE_SHOWN_SKY)) seen[i] = radiance_beyond(paths[i].direction, 0.0);
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
       widen_cone(paths[i], ray, found[i]);

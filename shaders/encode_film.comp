@@ -1,21 +1,27 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Encodes a film's pixels for a window: divides the sum over samples by their number and encodes it to sRGB in 8 bits,
-// as PNG files do.
+// Encodes a film's pixels for a window, as PNG files do: divides the sum over samples by their number, exposes it, maps
+// its tones and encodes it to sRGB in 8 bits.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
+// The transform to the display: TONE_MAPPING_*, and the bits of the factor of exposure.
+layout(constant_id = 0) const uint TONE_MAPPING = 0u;
+layout(constant_id = 1) const uint EXPOSURE = 0x3F800000u;
+
 // The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   Dispatch dispatch;
+  StreamState film_stream;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 pixels[];
 };
 
 #include "dispatch.glsl"
+#include "tone_mapping.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
 
 vec3 encode_srgb(vec3 linear) {
@@ -29,6 +35,7 @@ void main() {
   uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
     vec3 radiance = uintBitsToFloat(pixels[i].xyz) / samples;
-    encoded[i] = packUnorm4x8(vec4(encode_srgb(radiance), 1.0));
+    vec3 shown = map_tones(TONE_MAPPING, uintBitsToFloat(EXPOSURE) * radiance);
+    encoded[i] = packUnorm4x8(vec4(encode_srgb(shown), 1.0));
   }
 }

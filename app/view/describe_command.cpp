@@ -18,6 +18,23 @@ std::string quote(const std::string& word) {
   return quoted + "'";
 }
 
+/// The options of a look; the framing is not among them, because the command has a pose.
+std::string options_of(const LookOptions& look) {
+  std::string options;
+  if (look.light != LightChoice::kAuto) {
+    options += fmt::format(" --light {}", light_choice_names()[static_cast<size_t>(look.light)]);
+  }
+  if (look.background) {
+    options += fmt::format(" --background {}",
+                           look.background->is_environment ? "environment" : words_of(look.background->color));
+  }
+  if (look.exposure_ev) options += fmt::format(" --exposure {:.9g}", *look.exposure_ev);
+  if (look.tone_mapping) {
+    options += fmt::format(" --tone-mapping {}", tone_mapping_names()[static_cast<size_t>(*look.tone_mapping)]);
+  }
+  return options;
+}
+
 }  // namespace
 
 std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera) {
@@ -43,6 +60,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   }
   if (!scene.has_shadows) command += " --no-shadows";
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
+  command += options_of(scene.look);
   if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
   command +=
       fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));

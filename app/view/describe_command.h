@@ -9,14 +9,17 @@
 
 #include "promin/scene.h"
 #include "promin/view.h"
+#include "render_options.h"
 
 namespace promin::app {
 
-/// What of a scene a command leaves out, and which camera gives an orthographic view its size.
+/// What of a scene a command leaves out, how it lights and shows it, and which camera gives an orthographic view its
+/// size.
 struct DescribedScene {
   std::filesystem::path file;
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
+  LookOptions look = {};
   /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
   /// The tree, which decides the steps that a picture may show.

@@ -3,6 +3,8 @@
 #include "view/display_pass.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include "core/divide_up.h"
 #include "cover_window.spv.h"
@@ -19,6 +21,9 @@ struct DisplayConstants {
   vec4 scale;
 };
 constexpr uint32_t kDecodes = 0;
+/// Constants of shaders/encode_film.comp.
+constexpr uint32_t kToneMapping = 0;
+constexpr uint32_t kExposure = 1;
 constexpr uint32_t kEncodedBinding = 0;
 
 /// Most workgroups that encode a film: enough for any device, each takes its share.
@@ -57,6 +62,17 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, const Swapchain& swa
 
 }  // namespace
 
+gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
+                                  const DisplayTransform& display) {
+  const std::array constants{
+      gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
+      gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))}};
+  constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
+  const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, &film},
+                           gpu::BoundBuffer{kEncodedBinding, kStorage, &encoded}};
+  return {device, k_encode_film_spirv, constants, buffers};
+}
+
 DisplayPass::DisplayPass(const gpu::Device& device, const Swapchain& swapchain) : device_(&device) {
   constexpr auto kStage = vk::ShaderStageFlagBits::eFragment;
   constexpr auto kType = vk::DescriptorType::eStorageBuffer;
@@ -72,7 +88,8 @@ DisplayPass::DisplayPass(const gpu::Device& device, const Swapchain& swapchain) 
   set_ = std::move(vk::raii::DescriptorSets(device.handle(), allocation).front());
 }
 
-void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count) {
+void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count,
+                       const DisplayTransform& display) {
   constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
   const vk::DeviceSize size = pixel_count * sizeof(uint32_t);
   if (!encoded_ || encoded_->size_bytes() < size) {
@@ -88,11 +105,7 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
     write.pBufferInfo = &info;
     device_->handle().updateDescriptorSets(write, {});
   }
-  for (size_t i = 0; i < kFilmCount; ++i) {
-    const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, films[i]},
-                             gpu::BoundBuffer{kEncodedBinding, kStorage, &*encoded_}};
-    encoders_[i].emplace(*device_, k_encode_film_spirv, std::span<const gpu::SpecializationConstant>(), buffers);
-  }
+  for (size_t i = 0; i < kFilmCount; ++i) encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display));
 }
 
 void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) {

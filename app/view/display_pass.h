@@ -7,11 +7,16 @@
 
 #include "device/buffer.h"
 #include "device/pipeline.h"
+#include "promin/display.h"
 #include "promin/math.h"
 #include "trace/progressive_picture.h"
 #include "view/swapchain.h"
 
 namespace promin::app {
+
+/// Makes what encodes the pixels of a film, as `display` shows them, to words of a buffer (shaders/encode_film.comp).
+gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
+                                  const DisplayTransform& display);
 
 /// Draws pictures to the window: a film is encoded once (shaders/encode_film.comp), then drawn as often as the window
 /// wants it, scaled to all of the window (shaders/display.frag).
@@ -20,9 +25,9 @@ class DisplayPass {
   /// Throws vk::SystemError.
   DisplayPass(const gpu::Device& device, const Swapchain& swapchain);
 
-  /// Makes room for pictures of so many pixels, and says where the films are now; the device must be idle. What was
-  /// encoded last is kept.
-  void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count);
+  /// Makes room for pictures of so many pixels, and says where the films are now and how they are shown; the device
+  /// must be idle. What was encoded last is kept.
+  void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count, const DisplayTransform& display);
 
   /// Records encoding a picture that was traced before.
   void record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture);

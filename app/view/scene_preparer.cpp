@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "console.h"
 #include "device/device.h"
 #include "formats/source_file.h"
 #include "promin/error.h"
@@ -33,8 +32,8 @@ void ReadyPicture::take_lights() {
 }
 
 ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
-                             std::vector<SourceFile> sources)
-    : device_(&device), budget_ms_(budget_ms), file_(std::move(file)), watch_(std::move(sources)) {}
+                             std::vector<SourceFile> sources, LookOptions look)
+    : device_(&device), budget_ms_(budget_ms), file_(std::move(file)), look_(look), watch_(std::move(sources)) {}
 
 ScenePreparer::~ScenePreparer() {
   is_given_up_ = true;
@@ -74,7 +73,7 @@ void ScenePreparer::read() {
   step_ = Step::kReading;
   work_.start([this, request = asked_] {
     const auto scene = std::make_shared<Scene>(load_scene(file_, sources_));
-    light_up(*scene, Console(Verbosity::kQuiet));
+    light_up(*scene, look_);
     return make(put_on_device(scene, request), request);
   });
 }
@@ -119,7 +118,7 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
                                                                const PictureRequest& request) {
   built_ = 0.0;
   enter(Step::kBuilding);
-  ShownScene shown{scene, request.choice, nullptr};
+  ShownScene shown{scene, request.choice, choose_display(*scene, look_, DebugView::kNone), nullptr};
   shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
   RendererOptions options;
   options.builder = request.choice.builder;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "promin/renderer.h"
+#include "render_options.h"
 #include "trace/progressive_picture.h"
 #include "view/background.h"
 #include "view/scene_watch.h"
@@ -26,10 +27,12 @@ struct SceneChoice {
 
 /// A scene in device memory.
 struct ShownScene {
-  /// The scene as its file has it, with default lights added, whatever lights are on.
+  /// The scene as its file has it, lit up, whatever lights are on.
   std::shared_ptr<const Scene> scene;
   /// The tree and the lights that are on the device.
   SceneChoice choice;
+  /// How its light is shown.
+  DisplayTransform display;
   std::shared_ptr<Renderer> renderer;
 };
 
@@ -56,13 +59,13 @@ struct PictureRequest {
 /// picture is shown.
 class ScenePreparer {
  public:
-  /// Takes a scene's file, and the files that it was read from.
+  /// Takes a scene's file, the files that it was read from, and how it is lit and shown.
   ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
-                std::vector<SourceFile> sources);
+                std::vector<SourceFile> sources, LookOptions look);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 
-  /// Makes the first picture of a scene that has been read and has its default lights.
+  /// Makes the first picture of a scene that has been read and lit up.
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// Makes another picture than the one shown where the request is another than the last, or where files of the scene
   /// have changed. Returns whether it has begun to. Work that failed is not tried again.
@@ -94,6 +97,7 @@ class ScenePreparer {
   const gpu::Device* device_;
   double budget_ms_;
   std::filesystem::path file_;
+  LookOptions look_;
   SceneWatch watch_;
   double next_look_at_files_s_ = 0.0;
   PictureRequest asked_;

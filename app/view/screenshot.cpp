@@ -18,13 +18,16 @@ namespace {
 
 constexpr int kLastNumber = 9999;
 
-std::string write_pictures(const std::vector<uvec4>& records, const View& view, const Metadata& metadata) {
+std::string write_pictures(const std::vector<uvec4>& records, const View& view, const Metadata& metadata,
+                           const DisplayTransform& display) {
   Image image;
   image.size = view.size;
   image.pixels.resize(records.size());
   average_samples(records, view.samples_per_pixel, image.pixels);
   const std::string name = find_free_name(fs::current_path());
-  for (const char* ending : {".exr", ".png"}) write_image(name + ending, image, metadata);
+  for (const char* ending : {".exr", ".png"}) {
+    write_image(name + ending, image, metadata, std::nullopt, {}, display);
+  }
   return fmt::format("wrote {0}.exr and {0}.png, {1}x{2}, {3} spp", name, view.size.x, view.size.y,
                      view.samples_per_pixel);
 }
@@ -44,11 +47,11 @@ void Screenshot::record_copy(const vk::raii::CommandBuffer& commands, const gpu:
   commands.pipelineBarrier(Stage::eTransfer, Stage::eHost, {}, copied, {}, {});
 }
 
-void Screenshot::write(const Metadata& metadata) {
+void Screenshot::write(const Metadata& metadata, const DisplayTransform& display) {
   std::vector<uvec4> records(static_cast<size_t>(view_.size.x) * view_.size.y);
   std::memcpy(records.data(), copy_->mapped().data(), records.size() * sizeof(uvec4));
   copy_.reset();
-  written_ = std::async(std::launch::async, write_pictures, std::move(records), view_, metadata);
+  written_ = std::async(std::launch::async, write_pictures, std::move(records), view_, metadata, display);
 }
 
 void Screenshot::wait() const {

@@ -23,7 +23,7 @@ class Screenshot {
   /// Records copying a film that holds all of the picture. Must not be called while busy.
   void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view);
   /// Is called when the device has done that; writes on a thread of its own.
-  void write(const Metadata& metadata);
+  void write(const Metadata& metadata, const DisplayTransform& display);
   /// Is called instead of writing, where the copy is not wanted after all.
   void drop() { copy_.reset(); }
   /// Waits until the picture is written; the device must have finished.

@@ -102,7 +102,12 @@ void view(const WindowOptions& options) {
     view_options.given_camera = start.replay->camera(0);
   }
   start.view = make_view(*scene, view_options, console);
-  light_up(*scene, console);
+  const LookOptions& look = options.view.look;
+  const AssumedLight assumed = light_up(*scene, look);
+  const DisplayTransform display = choose_display(*scene, look, start.view.mode.debug_view);
+  const std::string assumptions = describe_assumptions(*scene, view_options, assumed, display);
+  if (!assumptions.empty()) console.note(assumptions);
+  start.look = look;
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;
   check_lights(*scene, options.view.lights_off);
@@ -119,7 +124,8 @@ void view(const WindowOptions& options) {
   const gpu::Device device({.selection = tracing.device, .presentation = &presentation});
   stats.device = device.info();
   console.detail(device.choice());
-  ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources));
+  ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources),
+                         look);
   // This takes longest and comes last, because without a window it would be in vain.
   preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);

@@ -29,6 +29,7 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       console_(console),
       preparer_(preparer),
       file_(start.file),
+      look_(start.look),
       stats_(std::move(stats)),
       follows_display_(!start.target_ms && device.profile().keeps_up_with_display),
       target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
@@ -243,7 +244,7 @@ bool Viewer::fit_window() {
 void Viewer::fit_picture() {
   picture_->resize(swapchain_.size());
   const uvec2 full_size = picture_->full_size();
-  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y);
+  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y, display());
   encoded_count_ = 0;
 }
 
@@ -300,7 +301,8 @@ void Viewer::record_tracing(Frame& frame) {
         return;
       }
       stats_.view = view;
-      screenshot_.write(describe_picture(stats_));
+      stats_.display = display();
+      screenshot_.write(describe_picture(stats_), stats_.display);
     };
     wants_screenshot_ = false;
   }
@@ -352,6 +354,10 @@ void Viewer::report_failure(const std::string& text) {
   is_failure_ = true;
   console_.warn(text);
   draw_again();
+}
+
+DisplayTransform Viewer::display() const {
+  return mode_.debug_view == DebugView::kNone ? scene_->display : DisplayTransform();
 }
 
 View Viewer::current_view() const {

@@ -28,6 +28,7 @@ namespace promin::app {
 struct ViewerStart {
   std::filesystem::path file;
   SceneChoice choice;
+  LookOptions look;
   View view;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval where the device keeps up with it, else kCpuTargetMs.
@@ -97,6 +98,8 @@ class Viewer {
   void report_failure(const std::string& text);
   /// What describe_command needs for the command that gives a view's picture.
   DescribedScene described_scene(const View& view) const;
+  /// How the picture's light is shown.
+  DisplayTransform display() const;
   View current_view() const;
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
@@ -109,6 +112,7 @@ class Viewer {
   const Console& console_;
   ScenePreparer& preparer_;
   std::filesystem::path file_;
+  LookOptions look_;
   RunStats stats_;
   /// Whether the target is the refresh interval of the display that the window is on.
   bool follows_display_;

@@ -80,7 +80,7 @@ void Viewer::handle_press(Press press) {
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   const std::optional<size_t> camera = find_half_height(*scene_->scene, view.camera);
-  return {file_, mode_.has_shadows, on.lights_off, camera, on.builder, on.bvh};
+  return {file_, mode_.has_shadows, on.lights_off, look_, camera, on.builder, on.bvh};
 }
 
 }  // namespace promin::app

@@ -37,12 +37,13 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
   return words;
 }
 
-std::vector<uint8_t> encode_pixels(const Image& image) {
+std::vector<uint8_t> encode_pixels(const Image& image, const DisplayTransform& display) {
   std::vector<uint8_t> bytes;
   bytes.reserve(image.pixels.size() * 3);
   for (const vec3& pixel : image.pixels) {
+    const vec3 shown = apply(display, pixel);
     for (int channel = 0; channel < 3; ++channel) {
-      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * encode_srgb(pixel[channel]))));
+      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * encode_srgb(shown[channel]))));
     }
   }
   return bytes;
@@ -141,7 +142,8 @@ float encode_srgb(float linear) {
 }
 
 void write_image(const fs::path& file, const Image& image, const Metadata& metadata,
-                 const std::optional<CropPlacement>& crop, std::span<const Channel> channels) {
+                 const std::optional<CropPlacement>& crop, std::span<const Channel> channels,
+                 const DisplayTransform& display) {
   const std::string format = format_of(file);
   if (format.empty()) {
     throw UsageError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
@@ -165,7 +167,7 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
   } else {
     const ProminPicturesChannel bytes[] = {
         {"R", PROMIN_PICTURES_UINT8}, {"G", PROMIN_PICTURES_UINT8}, {"B", PROMIN_PICTURES_UINT8}};
-    encode_and_write(plugin, source, file, encode_pixels(image).data(), bytes, {});
+    encode_and_write(plugin, source, file, encode_pixels(image, display).data(), bytes, {});
   }
 }
 

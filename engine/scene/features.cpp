@@ -151,7 +151,9 @@ FeatureMask light_features(std::span<const Light> lights) {
 
 FeatureMask environment_features(const Environment& environment) {
   if (std::holds_alternative<std::monostate>(environment.sky)) return {};
-  return FEATURE_SKY;
+  FeatureMask features = FEATURE_SKY;
+  if (environment.shows_sky) features |= FEATURE_SHOWN_SKY;
+  return features;
 }
 
 FeatureMask primitive_features() {

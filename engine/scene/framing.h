@@ -9,8 +9,12 @@
 namespace promin {
 
 /// The implementation of frame_scene and add_default_lights, for both forms of a scene.
-Camera frame_bounds(const Bounds& bounds, float aspect_ratio);
+Camera frame_bounds(const Bounds& bounds, float aspect_ratio, Framing framing = Framing::kFront);
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
+
+/// The box to look at: everything finite, or else a box of size 2 around the first plane's point or the origin. Throws
+/// InputError as bounds_of() does.
+Bounds frame_of(const Scene& scene);
 
 /// A box of size 2, to look at where nothing is finite.
 Bounds bounds_around(const vec3& center);

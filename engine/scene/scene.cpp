@@ -3,7 +3,9 @@
 #include "promin/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -15,10 +17,28 @@
 namespace promin {
 namespace {
 
-/// How far the framing camera looks down, radians.
-constexpr double kFramePitch = 0.25;
 constexpr double kFrameMargin = 1.05;
-constexpr float kFrameYfov = 0.7F;
+
+/// From where a box is framed.
+struct Viewpoint {
+  /// About +Y from +Z towards +X, and above the horizon, radians.
+  double azimuth;
+  double elevation;
+  /// The vertical field of view, radians.
+  float yfov;
+};
+constexpr Viewpoint kFromTheFront = {0.0, 0.25, 0.7F};
+constexpr float kThreeQuarterYfov = 0.698131701F;
+constexpr Viewpoint kFromThreeQuarters = {std::numbers::pi / 6.0, 17.0 * std::numbers::pi / 180.0, kThreeQuarterYfov};
+constexpr Viewpoint kAtABoard = {0.0, 0.0, kThreeQuarterYfov};
+constexpr Viewpoint kOntoTheGround = {std::numbers::pi / 6.0, std::numbers::pi / 4.0, kThreeQuarterYfov};
+
+Viewpoint choose_viewpoint(const dvec3& size, Framing framing) {
+  if (framing == Framing::kFront) return kFromTheFront;
+  if (16.0 * size.y < std::max(size.x, size.z) && size.y <= size.z) return kOntoTheGround;
+  if (4.0 * size.z < std::max(size.x, size.y)) return kAtABoard;
+  return kFromThreeQuarters;
+}
 
 /// The geometry of an object that has one. Throws InputError if it is not there.
 const Geometry& geometry_of(const Scene& scene, const Object& object) {
@@ -72,7 +92,8 @@ struct CenterOfUnbounded {
 #include "promin/kinds/primitives.def"
 };
 
-/// The box to look at: everything finite, or else a box of size 2 around the first plane's point or the origin.
+}  // namespace
+
 Bounds frame_of(const Scene& scene) {
   Bounds bounds = bounds_of(scene);
   if (!bounds.is_empty()) return bounds;
@@ -86,8 +107,6 @@ Bounds frame_of(const Scene& scene) {
   }
   return bounds_around(center);
 }
-
-}  // namespace
 
 Bounds bounds_around(const vec3& center) {
   Bounds bounds;
@@ -120,20 +139,31 @@ uint32_t primitive_count(const Scene& scene, const Object& object) {
   return object.geometry == Object::kNoGeometry ? 0 : primitive_count(geometry_of(scene, object));
 }
 
-Camera frame_scene(const Scene& scene, float aspect_ratio) {
+std::span<const std::string_view> framing_names() {
+  using std::string_view_literals::operator""sv;
+  static constexpr std::array kNames = {"three-quarter"sv, "front"sv};
+  return kNames;
+}
+
+Camera frame_scene(const Scene& scene, float aspect_ratio, Framing framing) {
   if (!(aspect_ratio > 0.0F && std::isfinite(aspect_ratio))) {
     throw UsageError({"the aspect ratio is not positive and finite", "in frame_scene", "give width over height"});
   }
-  return frame_bounds(frame_of(scene), aspect_ratio);
+  return frame_bounds(frame_of(scene), aspect_ratio, framing);
 }
 
-Camera frame_bounds(const Bounds& frame, float aspect_ratio) {
+Camera frame_bounds(const Bounds& frame, float aspect_ratio, Framing framing) {
   const dvec3 center = 0.5 * (dvec3(frame.lo) + dvec3(frame.hi));
   const dvec3 half = 0.5 * (dvec3(frame.hi) - dvec3(frame.lo));
 
-  const dvec3 look(0.0, -std::sin(kFramePitch), -std::cos(kFramePitch));
-  const dvec3 up(0.0, std::cos(kFramePitch), -std::sin(kFramePitch));
-  const double tan_y = std::tan(0.5 * static_cast<double>(kFrameYfov));
+  const Viewpoint from = choose_viewpoint(2.0 * half, framing);
+  const dvec2 turn(std::sin(from.azimuth), std::cos(from.azimuth));
+  const dvec2 tilt(std::sin(from.elevation), std::cos(from.elevation));
+  // Differences from 0 are never -0.
+  const dvec3 right(turn.y, 0.0, 0.0 - turn.x);
+  const dvec3 look(0.0 - tilt.y * turn.x, 0.0 - tilt.x, 0.0 - tilt.y * turn.y);
+  const dvec3 up(0.0 - tilt.x * turn.x, tilt.y, 0.0 - tilt.x * turn.y);
+  const double tan_y = std::tan(0.5 * static_cast<double>(from.yfov));
   const double tan_x = tan_y * static_cast<double>(aspect_ratio);
 
   // The least distance at which each corner of the box lies within both fields of view.
@@ -141,7 +171,7 @@ Camera frame_bounds(const Bounds& frame, float aspect_ratio) {
   for (int corner = 0; corner < 8; ++corner) {
     const dvec3 sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
     const dvec3 offset = sign * half;
-    const double across = std::max(std::abs(offset.x) / tan_x, std::abs(glm::dot(offset, up)) / tan_y);
+    const double across = std::max(std::abs(glm::dot(offset, right)) / tan_x, std::abs(glm::dot(offset, up)) / tan_y);
     distance = std::max(distance, across - glm::dot(offset, look));
   }
   distance *= kFrameMargin;
@@ -156,7 +186,7 @@ Camera frame_bounds(const Bounds& frame, float aspect_ratio) {
   camera.eye = vec3(center - distance * look);
   camera.look = vec3(look);
   camera.up = vec3(up);
-  camera.yfov = kFrameYfov;
+  camera.yfov = from.yfov;
   camera.aspect_ratio = aspect_ratio;
   return camera;
 }

@@ -40,8 +40,11 @@ struct Environment {
   vec3 ambient{0.0F};
   /// Linear RGB, finite and not negative: what a ray brings that leaves the scene. Black by default.
   vec3 background{0.0F};
-  /// What surrounds the scene instead of ambient light; rays from the camera see the background all the same.
+  /// What surrounds the scene instead of ambient light; rays from the camera see the background all the same, unless
+  /// `shows_sky`.
   std::variant<std::monostate, Studio, GradientSky, Panorama> sky;
+  /// Whether rays from the camera see the sky after all, where there is one.
+  bool shows_sky = false;
   /// How far the sky is turned about +Y, radians.
   float rotation = 0.0F;
   /// A factor of the sky's radiance, finite and not negative.

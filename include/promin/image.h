@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "promin/display.h"
 #include "promin/export.h"
 #include "promin/math.h"
 
@@ -56,14 +57,15 @@ PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
-/// picture's display window) or .png (sRGB, 8 bit, clamped, without `channels`; a crop is a picture of its own). Equal
-/// arguments give equal bytes. Atomic: the picture is written to a temporary file beside the target and renamed; on
-/// failure the target is as it was. Any thread may call it. Throws UsageError for another ending, for a picture without
-/// pixels and where the pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be
-/// written, and where libpromin_pictures.so, the plugin that encodes pictures, is missing.
+/// picture's display window) or .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels`; a crop is a
+/// picture of its own). Equal arguments give equal bytes. Atomic: the picture is written to a temporary file beside the
+/// target and renamed; on failure the target is as it was. Any thread may call it. Throws UsageError for another
+/// ending, for a picture without pixels and where the pixels, a channel's values or the crop do not suit the size;
+/// RunError where the file cannot be written, and where libpromin_pictures.so, the plugin that encodes pictures, is
+/// missing.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
-                               std::span<const Channel> channels = {});
+                               std::span<const Channel> channels = {}, const DisplayTransform& display = {});
 
 /// The most pixels that read_image takes; larger pictures are refused before their pixels are read.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;

@@ -10,8 +10,8 @@
 namespace promin {
 
 /// Reads a scene by its ending: .gltf, .glb or .obj. The scene comes back valid (promin/validate.h). A scene without
-/// lights stays without, see add_default_lights. Throws InputError with every problem found, each with place and cure;
-/// warnings lie in Scene::warnings. Any thread may call it.
+/// lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem found, each with
+/// place and cure; warnings lie in Scene::warnings. Any thread may call it.
 PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file);
 
 }  // namespace promin

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "promin/camera.h"
@@ -54,7 +56,7 @@ struct Scene {
   std::vector<std::shared_ptr<const TextureImage>> images;
   /// What materials name.
   std::vector<Texture> textures;
-  /// Any number, none too: see add_default_lights.
+  /// Any number, none too: see light_scene (promin/lighting.h) and add_default_lights.
   std::vector<Light> lights;
   /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene.
   std::vector<Camera> cameras;
@@ -80,10 +82,22 @@ PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 /// names a geometry that is not there.
 PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
 
-/// A perspective camera that looks down -Z, a little from above, and frames everything finite in the scene.
-/// `aspect_ratio` is width over height of the picture. Throws UsageError where that is not a positive finite number,
-/// and InputError as bounds_of() does.
-PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio);
+/// From where frame_scene looks.
+enum class Framing : uint32_t {
+  /// From 30 degrees to the right of the front (+Z) and 17 degrees above. A scene whose depth is less than a quarter of
+  /// its width or height, a board, is seen from the front, at its own height. One that lies flat, with a height of less
+  /// than 1/16 of width or depth and no more than its depth, is seen from 45 degrees above.
+  kThreeQuarter,
+  /// Along -Z, a little from above.
+  kFront,
+};
+
+/// Names for people, by the value of the Framing; the first is "three-quarter".
+PROMIN_EXPORT std::span<const std::string_view> framing_names();
+
+/// A perspective camera that frames everything finite in the scene. `aspect_ratio` is width over height of the picture.
+/// Throws UsageError where that is not a positive finite number, and InputError as bounds_of() does.
+PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio, Framing framing = Framing::kFront);
 
 /// What add_default_lights has added.
 struct AddedLights {

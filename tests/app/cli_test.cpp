@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,10 @@
 #include <thread>
 
 #include "cli_fixture.h"
+#include "promin/device.h"
+#include "promin/lighting.h"
+#include "promin/load_scene.h"
+#include "promin/renderer.h"
 
 namespace promin {
 namespace {
@@ -27,6 +32,27 @@ using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
+
+/// The square with one classic material, without lights and cameras.
+std::string classic_square() {
+  json gltf = json::parse(kSquareGltf);
+  gltf["extensionsUsed"].push_back("PROMIN_materials_phong");
+  gltf["materials"] = {{{"extensions", {{"PROMIN_materials_phong", json::object()}}}}};
+  gltf["meshes"][0]["primitives"][0]["material"] = 0;
+  gltf["scenes"][0]["nodes"] = {0};
+  return gltf.dump();
+}
+
+/// Expects the PNG of a picture to show it so.
+void expect_displayed(const Image& picture, const Image& png, const DisplayTransform& display) {
+  ASSERT_EQ(png.size, picture.size);
+  for (size_t i = 0; i < picture.pixels.size(); ++i) {
+    const vec3 shown = apply(display, picture.pixels[i]);
+    for (int c = 0; c < 3; ++c) {
+      ASSERT_EQ(std::lround(255.0F * png.pixels[i][c]), std::lround(255.0F * encode_srgb(shown[c]))) << "pixel " << i;
+    }
+  }
+}
 
 TEST_F(CliTest, HelpAndVersionEverywhere) {
   for (const OptionValues& command :
@@ -88,6 +114,20 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--device", ""},
        "--device takes a part of a device's name or its index"},
       {{"render", "square.gltf", "-o", "a.exr", "--features", "few"}, "--features takes scene or all, not \"few\""},
+      {{"render", "square.gltf", "-o", "a.exr", "--light", "lamp"},
+       "--light takes studio or headlight or none, not \"lamp\", on the command line; see promin render --help"},
+      {{"render", "square.gltf", "-o", "a.exr", "--light", "auto"}, "--light takes studio or headlight or none"},
+      {{"render", "square.gltf", "-o", "a.exr", "--framing", "back"}, "--framing takes three-quarter or front, not"},
+      {{"render", "square.gltf", "-o", "a.exr", "--tone-mapping", "agx"},
+       "--tone-mapping takes none or neutral or aces"},
+      {{"render", "square.gltf", "-o", "a.exr", "--exposure", "bright"}, "--exposure takes a number from -64 to 64"},
+      {{"render", "square.gltf", "-o", "a.exr", "--exposure", "nan"}, "--exposure takes a number from -64 to 64"},
+      {{"render", "square.gltf", "-o", "a.exr", "--background", "-1", "0", "0"},
+       "--background takes a number from 0 to 1e+09, not \"-1\""},
+      {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0", "inf"}, "--background takes a number"},
+      {{"render", "square.gltf", "--background", "sky", "-o", "a.exr"},
+       "--background takes three numbers or environment, not \"sky\""},
+      {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"}, "too few values for --background"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
   };
@@ -220,6 +260,27 @@ TEST_F(CliTest, InfoSaysWhatASceneHolds) {
   EXPECT_THAT(info.out, ContainsRegex("memory +[0-9.]+ MB of geometry on the host, [0-9.]+ MB on the device"));
 }
 
+TEST_F(CliTest, InfoSaysWhatIsAssumed) {
+  const std::string lit = run({"info", "square.gltf"}).out;
+  EXPECT_THAT(lit, ContainsRegex("lights +1 \\(point: 1.*; assumed: a studio's weaker light around the scene's own\n"));
+  EXPECT_THAT(lit, ContainsRegex("background +0.0625 0.0625 0.0625 \\(assumed\\)\n")) << "0.25 / 2^2";
+  EXPECT_THAT(lit, ContainsRegex("display +exposure \\+2 EV, tone mapping neutral\n"));
+
+  const std::string bare = run({"info", "triangle.obj"}).out;
+  EXPECT_THAT(bare, ContainsRegex("lights +0; assumed: the light of a studio\n"));
+  EXPECT_THAT(bare, ContainsRegex("cameras +0; assumed: a camera that frames the scene from three quarters\n"));
+  EXPECT_THAT(bare, ContainsRegex("background +0.25 0.25 0.25 \\(assumed\\)\n"));
+  EXPECT_THAT(bare, ContainsRegex("display +exposure \\+0 EV, tone mapping neutral\n"));
+  EXPECT_THAT(bare, ContainsRegex("features +.*a sky"));
+
+  write("classic.gltf", classic_square());
+  const std::string classic = run({"info", "classic.gltf"}).out;
+  EXPECT_THAT(classic, ContainsRegex("lights +0; assumed: a headlight along the view and ambient light of 0.1\n"));
+  EXPECT_THAT(classic, ContainsRegex("cameras +0; assumed: a camera in front that frames the scene\n"));
+  EXPECT_THAT(classic, ContainsRegex("background +0 0 0\n"));
+  EXPECT_THAT(classic, ContainsRegex("display +exposure \\+0 EV, tone mapping none\n"));
+}
+
 TEST_F(CliTest, DevicesNamesTheDefault) {
   const ProcessResult devices = run({"devices"});
   EXPECT_EQ(devices.exit_code, 0) << devices.err;
@@ -236,13 +297,87 @@ TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.exr", "a.png"));
 
   const Image exr = read_image(folder() / "a.exr");
-  const Image png = read_image(folder() / "a.png");
   ASSERT_EQ(exr.size, uvec2(64, 36));
-  ASSERT_EQ(png.size, uvec2(64, 36));
-  EXPECT_EQ(exr.at(0, 0), vec3(0.0F)) << "the background is black";
-  EXPECT_GT(exr.at(32, 18).x, 0.0F) << "the square is lit";
-  for (size_t i = 0; i < exr.pixels.size(); ++i) {
-    ASSERT_EQ(std::lround(255.0F * png.pixels[i].y), std::lround(255.0F * encode_srgb(exr.pixels[i].y)));
+  // 3 candela at a distance of 2 are 0.75 lux, which 2 stops bring to about pi.
+  EXPECT_EQ(exr.at(0, 0), vec3(0.0625F)) << "the background is grey when it is exposed, and EXR files are not";
+  EXPECT_NE(exr.at(32, 18), vec3(0.0625F)) << "the square is seen";
+  expect_displayed(exr, read_image(folder() / "a.png"), {.exposure_ev = 2.0F, .tone_mapping = ToneMapping::kNeutral});
+}
+
+TEST_F(CliTest, PicturesAreShownAsAsked) {
+  const std::pair<OptionValues, DisplayTransform> cases[] = {
+      {{"--tone-mapping", "none"}, {2.0F, ToneMapping::kNone}},
+      {{"--exposure", "0.5"}, {0.5F, ToneMapping::kNeutral}},
+      {{"--exposure", "3", "--exposure", "auto", "--tone-mapping", "aces"}, {2.0F, ToneMapping::kAces}},
+      {{"--exposure", "-1", "--shading", "normals"}, {}}};
+  for (const auto& [options, display] : cases) {
+    SCOPED_TRACE(testing::PrintToString(options));
+    OptionValues arguments = {"square.gltf", "--size", "32", "18", "-o", "a.png"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Image exr = render(arguments, "a.exr");
+    expect_displayed(exr, read_image(folder() / "a.png"), display);
+    const std::string header = read("a.exr");
+    // A header has the length of a value, in four bytes, before it.
+    const auto value_of = [&](const std::string& name, size_t length) {
+      return header.substr(header.find(name) + name.size() + sizeof "string" + 5, length);
+    };
+    const std::string mapping(tone_mapping_names()[static_cast<size_t>(display.tone_mapping)]);
+    EXPECT_EQ(value_of("promin:tone_mapping", mapping.size()), mapping);
+    const std::string exposure = display.exposure_ev == 0.5F ? "0.5" : display.exposure_ev == 2.0F ? "2" : "0";
+    EXPECT_EQ(value_of("promin:exposure_ev", exposure.size()), exposure);
+  }
+  // Neither of them is in the light itself, nor does a crop change them.
+  const OptionValues plain = {"square.gltf", "--size", "32", "18"};
+  OptionValues exposed = plain;
+  exposed.insert(exposed.end(), {"--exposure", "5", "--tone-mapping", "none"});
+  EXPECT_EQ(render(plain, "a.exr").pixels, render(exposed, "b.exr").pixels);
+  OptionValues crop = plain;
+  crop.insert(crop.end(), {"--crop", "8", "4", "24", "14"});
+  const Image whole = render(plain, "a.png");
+  const Image part = render(crop, "b.png");
+  for (uint32_t x = 0; x < 16; ++x) EXPECT_EQ(part.at(x, 3), whole.at(x + 8, 7));
+}
+
+TEST_F(CliTest, TheBackgroundIsTheUsers) {
+  const OptionValues size = {"triangle.obj", "--size", "32", "18"};
+  const auto corner = [&](const OptionValues& options) {
+    OptionValues arguments = size;
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return render(arguments, "a.exr").at(0, 0);
+  };
+  EXPECT_EQ(corner({}), vec3(0.25F));
+  EXPECT_EQ(corner({"--background", "0.5", "0", "2"}), vec3(0.5F, 0.0F, 2.0F));
+  EXPECT_EQ(corner({"--light", "headlight", "--background", "environment"}), vec3(0.1F)) << "the ambient light";
+  EXPECT_EQ(corner({"--light", "headlight", "--background=environment"}), vec3(0.1F));
+  // One word, whatever follows it.
+  OptionValues arguments = {"render", "--light", "headlight", "--background", "environment"};
+  arguments.insert(arguments.end(), size.begin(), size.end());
+  arguments.insert(arguments.end(), {"-o", "b.exr"});
+  EXPECT_EQ(run(arguments).exit_code, 0);
+  EXPECT_EQ(read_image(folder() / "b.exr").at(0, 0), vec3(0.1F));
+}
+
+// The picture of a file's camera, headlight and black background, as pictures were before there was a studio.
+TEST_F(CliTest, ClassicLightGivesClassicPictures) {
+  write("classic.gltf", classic_square());
+  const gpu::DeviceHandle device = gpu::open_device();
+  const std::pair<const char*, OptionValues> cases[] = {
+      {"classic.gltf", {}},
+      {"triangle.obj", {"--light", "headlight", "--framing", "front", "--background", "0", "0", "0"}}};
+  for (const auto& [file, options] : cases) {
+    Scene scene = load_scene(folder() / file);
+    add_default_lights(scene);
+    View view;
+    view.size = uvec2(64, 36);
+    view.camera = frame_scene(scene, 16.0F / 9.0F);
+    const Image expected = Renderer(*device, scene).render(view).image;
+    OptionValues arguments = {file, "--size", "64", "36", "-o", "a.png"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Image exr = render(arguments, "a.exr");
+    EXPECT_EQ(exr.pixels, expected.pixels) << file;
+    EXPECT_GT(exr.at(32, 18).x, 0.1F);
+    EXPECT_EQ(exr.at(0, 0), vec3(0.0F));
+    expect_displayed(exr, read_image(folder() / "a.png"), {});
   }
 }
 
@@ -255,13 +390,16 @@ TEST_F(CliTest, QuietIsSilent) {
 
 TEST_F(CliTest, WhatIsAssumedIsSaid) {
   const ProcessResult bare = run({"render", "triangle.obj", "--size", "64", "36", "-o", "a.exr"});
-  EXPECT_THAT(bare.err, HasSubstr("promin: note: the scene has no camera; one that frames it is used\n"));
-  EXPECT_THAT(bare.err, HasSubstr("promin: note: the scene has no lights; a headlight along the view and ambient "
-                                  "light of 0.1 are used\n"));
-  EXPECT_GT(read_image(folder() / "a.exr").at(32, 18).x, 0.1F);
-
-  const ProcessResult whole = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr"});
-  EXPECT_THAT(whole.err, Not(HasSubstr("note")));
+  EXPECT_EQ(bare.err,
+            "promin: note: assumed: a camera that frames the scene from three quarters, the light of a studio, a grey "
+            "background\n");
+  const ProcessResult shown = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-o", "a.png"});
+  EXPECT_EQ(shown.err,
+            "promin: note: assumed: a studio's weaker light around the scene's own, a grey background, an exposure of "
+            "+2 EV, tone mapping neutral\n");
+  const ProcessResult said = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.png", "--light", "none",
+                                  "--background", "0", "0", "0", "--exposure", "0", "--tone-mapping", "aces"});
+  EXPECT_EQ(said.err, "");
 }
 
 TEST_F(CliTest, VerboseTellsTheSteps) {

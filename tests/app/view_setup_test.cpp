@@ -169,21 +169,133 @@ TEST(ViewSetupTest, LightsToLeaveOutAreNamedOnce) {
   EXPECT_EQ(options.lights_off, (std::vector<uint32_t>{0, 2}));
 }
 
-TEST(LightUpTest, OnlyASceneWithoutLightsIsLitUp) {
+TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
   Scene scene = make_scene();
-  light_up(scene, kSilent);
+  scene.is_classic = true;
+  light_up(scene, {});
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_EQ(scene.lights[0].kind, LightKind::kHeadlight);
   EXPECT_EQ(scene.environment.ambient, vec3(0.1F));
 
-  light_up(scene, kSilent);
+  light_up(scene, {});
   EXPECT_EQ(scene.lights.size(), 1U);
 
   Scene ambient = make_scene();
+  ambient.is_classic = true;
   ambient.environment.ambient = vec3(0.5F);
-  light_up(ambient, kSilent);
+  light_up(ambient, {});
   EXPECT_EQ(ambient.lights.size(), 1U);
   EXPECT_EQ(ambient.environment.ambient, vec3(0.5F)) << "the file's ambient light stays";
+
+  Scene other = make_scene();
+  EXPECT_TRUE(light_up(other, {}).has_studio_light);
+  EXPECT_EQ(other.lights[0].kind, LightKind::kDirectional);
+}
+
+TEST(LightUpTest, TheBackgroundIsTheUsers) {
+  const BackgroundChoice environment{.is_environment = true};
+  Scene scene = make_scene();
+  const AssumedLight assumed = light_up(scene, {.background = BackgroundChoice{.color = vec3(0.0F, 0.5F, 1.0F)}});
+  EXPECT_FALSE(assumed.has_background);
+  EXPECT_EQ(scene.environment.background, vec3(0.0F, 0.5F, 1.0F));
+  EXPECT_FALSE(scene.environment.shows_sky);
+
+  Scene studio = make_scene();
+  light_up(studio, {.background = environment});
+  EXPECT_TRUE(studio.environment.shows_sky);
+
+  // Without a sky the environment is ambient light.
+  Scene ambient = make_scene();
+  light_up(ambient, {.light = LightChoice::kHeadlight, .background = environment});
+  EXPECT_FALSE(ambient.environment.shows_sky);
+  EXPECT_EQ(ambient.environment.background, vec3(0.1F));
+
+  // A file that shows its sky no longer does.
+  Scene sky = make_scene();
+  sky.environment.sky = GradientSky{};
+  sky.environment.shows_sky = true;
+  light_up(sky, {});
+  EXPECT_TRUE(sky.environment.shows_sky);
+  light_up(sky, {.background = BackgroundChoice{}});
+  EXPECT_FALSE(sky.environment.shows_sky);
+}
+
+TEST(ChooseDisplayTest, OptionsComeBeforeTheScene) {
+  Scene scene = make_scene();
+  Light lamp;
+  lamp.kind = LightKind::kDirectional;
+  lamp.diffuse = vec3(201.0F);
+  scene.lights = {lamp};
+  EXPECT_EQ(choose_display(scene, {}, DebugView::kNone), (DisplayTransform{-6.0F, ToneMapping::kNeutral}));
+  EXPECT_EQ(choose_display(scene, {.exposure_ev = 1.0F, .tone_mapping = ToneMapping::kAces}, DebugView::kNone),
+            (DisplayTransform{1.0F, ToneMapping::kAces}));
+  EXPECT_EQ(choose_display(scene, {.exposure_ev = 1.0F}, DebugView::kNormals), DisplayTransform())
+      << "a debug view shows no light";
+  scene.is_classic = true;
+  EXPECT_EQ(choose_display(scene, {}, DebugView::kNone), DisplayTransform());
+  EXPECT_EQ(choose_display(scene, {.tone_mapping = ToneMapping::kNeutral}, DebugView::kNone),
+            (DisplayTransform{0.0F, ToneMapping::kNeutral}));
+}
+
+/// What is said of a scene for a picture that is displayed.
+std::string assumptions_of(Scene scene, const ViewOptions& options) {
+  const AssumedLight assumed = light_up(scene, options.look);
+  return describe_assumptions(scene, options, assumed, choose_display(scene, options.look, DebugView::kNone));
+}
+
+TEST(DescribeAssumptionsTest, OneSentenceTellsAll) {
+  Scene scene;
+  EXPECT_EQ(assumptions_of(scene, {}),
+            "assumed: a camera that frames the scene from three quarters, the light of a studio, a grey background, "
+            "tone mapping neutral");
+  scene.is_classic = true;
+  EXPECT_EQ(assumptions_of(scene, {}),
+            "assumed: a camera in front that frames the scene, a headlight along the view and ambient light of 0.1");
+  scene.environment.ambient = vec3(0.2F);
+  EXPECT_EQ(assumptions_of(scene, {}), "assumed: a camera in front that frames the scene, a headlight along the view");
+  scene.lights = {make_headlight()};
+  scene.cameras = {Camera()};
+  EXPECT_EQ(assumptions_of(scene, {}), "");
+
+  scene.is_classic = false;
+  scene.environment.ambient = vec3(0.0F);
+  scene.lights[0].diffuse = vec3(201.0F);
+  EXPECT_EQ(assumptions_of(scene, {}),
+            "assumed: a studio's weaker light around the scene's own, a grey background, an exposure of -6 EV, tone "
+            "mapping neutral");
+}
+
+TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
+  ViewOptions options;
+  options.look = {.light = LightChoice::kHeadlight,
+                  .framing = Framing::kFront,
+                  .background = BackgroundChoice{},
+                  .exposure_ev = 3.0F,
+                  .tone_mapping = ToneMapping::kNeutral};
+  EXPECT_EQ(assumptions_of(Scene(), options), "");
+  options.look.framing.reset();
+  options.pose.eye = options.pose.look = dvec3(0.0, 0.0, 1.0);
+  EXPECT_EQ(assumptions_of(Scene(), options), "");
+  // Nothing of the display where nothing is displayed.
+  Scene scene;
+  scene.cameras = {Camera()};
+  const AssumedLight assumed = light_up(scene, {});
+  EXPECT_EQ(describe_assumptions(scene, {}, assumed, std::nullopt),
+            "assumed: the light of a studio, a grey background");
+}
+
+TEST(ViewSetupTest, TheFramingIsTheUsersOrTheScenes) {
+  Scene scene;
+  ViewOptions options;
+  const auto azimuth = [&] { return std::abs(make_view(scene, options, kSilent).camera.look.x); };
+  EXPECT_GT(azimuth(), 0.4F);
+  options.look.framing = Framing::kFront;
+  EXPECT_EQ(azimuth(), 0.0F);
+  scene.is_classic = true;
+  options.look.framing.reset();
+  EXPECT_EQ(azimuth(), 0.0F);
+  options.look.framing = Framing::kThreeQuarter;
+  EXPECT_GT(azimuth(), 0.4F);
 }
 
 }  // namespace

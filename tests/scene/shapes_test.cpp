@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/shapes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "core/rounding.h"
@@ -171,6 +173,55 @@ TEST(SceneTest, TheFramingCameraSeesEverything) {
       }
     }
   }
+}
+
+/// The camera that frames a box of this size at the origin from three quarters, as azimuth and elevation in degrees.
+dvec2 framed_from(const vec3& size, float aspect_ratio = 1.5F) {
+  Scene scene;
+  scene.add("box", Box{.half_size = 0.5 * dvec3(size)});
+  const Camera camera = frame_scene(scene, aspect_ratio, Framing::kThreeQuarter);
+  const dvec2 extent = extent_on_picture(camera, bounds_of(scene));
+  EXPECT_LE(std::max(extent.x, extent.y), 1.0) << "it does not see all";
+  EXPECT_GE(std::max(extent.x, extent.y), 0.6) << "too far away";
+  EXPECT_FLOAT_EQ(camera.yfov, glm::radians(40.0F));
+  EXPECT_NEAR(glm::dot(camera.look, camera.up), 0.0, 1e-6);
+  EXPECT_NEAR(glm::cross(camera.look, camera.up).y, 0.0, 1e-6) << "upright";
+  const dvec3 to_eye = -dvec3(camera.look);
+  return glm::degrees(dvec2(std::atan2(to_eye.x, to_eye.z), std::asin(to_eye.y)));
+}
+
+TEST(SceneTest, ScenesAreFramedFromThreeQuarters) {
+  const auto near = [](double azimuth, double elevation) {
+    return testing::AllOf(testing::Field(&dvec2::x, testing::DoubleNear(azimuth, 1e-5)),
+                          testing::Field(&dvec2::y, testing::DoubleNear(elevation, 1e-5)));
+  };
+  for (const float scale : {1e-6F, 1.0F, 1e6F}) {
+    for (const vec3& size : {vec3(1), vec3(1, 5, 2), vec3(4, 1, 1.01F), vec3(1, 1, 9)}) {
+      EXPECT_THAT(framed_from(scale * size), near(30.0, 17.0)) << size.x;
+    }
+    EXPECT_THAT(framed_from(scale * vec3(4, 1, 0.99F)), near(0.0, 0.0)) << "a board";
+    EXPECT_THAT(framed_from(scale * vec3(1, 4, 0.99F)), near(0.0, 0.0)) << "a board that stands";
+    EXPECT_THAT(framed_from(scale * vec3(100, 5, 0.1F)), near(0.0, 0.0)) << "a long board";
+    EXPECT_THAT(framed_from(scale * vec3(16.1F, 1, 10)), near(30.0, 45.0)) << "a plate";
+    EXPECT_THAT(framed_from(scale * vec3(10, 1, 16.1F)), near(30.0, 45.0));
+    EXPECT_THAT(framed_from(scale * vec3(15.9F, 1, 10)), near(30.0, 17.0)) << "hardly a plate";
+    EXPECT_THAT(framed_from(scale * vec3(100, 0.5F, 5)), near(30.0, 45.0)) << "a strip";
+  }
+  EXPECT_THAT(framed_from(vec3(1), 0.3F), near(30.0, 17.0));
+}
+
+TEST(SceneTest, FramingFromTheFrontKeepsItsBits) {
+  Mesh mesh;
+  mesh.positions = {vec3(-1.0F, 1.5F, 2.0F), vec3(3.0F, 2.5F, 4.0F), vec3(0.0F, 2.0F, 3.0F)};
+  mesh.triangles = {{0, 1, 2}};
+  Scene scene;
+  scene.add("triangle", mesh);
+  const Camera camera = frame_scene(scene, 16.0F / 9.0F);
+  EXPECT_EQ(camera.eye, vec3(1.0F, 0x1.8acf12p+1F, 0x1.cfcf4ep+2F));
+  EXPECT_EQ(camera.look, vec3(0.0F, -0x1.faaeeep-3F, -0x1.f0154ap-1F));
+  EXPECT_EQ(camera.up, vec3(0.0F, 0x1.f0154ap-1F, -0x1.faaeeep-3F));
+  for (const float x : {camera.look.x, camera.up.x}) EXPECT_FALSE(std::signbit(x));
+  EXPECT_EQ(camera.yfov, 0.7F);
 }
 
 TEST(SceneTest, TheFramingCameraIsUpright) {

@@ -41,6 +41,23 @@ TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
   EXPECT_THAT(command, testing::Not(testing::HasSubstr("--fov")));
 }
 
+TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
+  const View view;
+  EXPECT_THAT(describe_command({.file = "s"}, view), testing::HasSubstr(" --max-depth 5 --eye "));
+  LookOptions look{.light = LightChoice::kHeadlight,
+                   .framing = Framing::kFront,
+                   .background = BackgroundChoice{.color = vec3(0.1F, 0.0F, 1.0F)},
+                   .exposure_ev = -1.1F,
+                   .tone_mapping = ToneMapping::kAces};
+  EXPECT_THAT(
+      describe_command({.file = "s", .look = look}, view),
+      testing::HasSubstr(" --light headlight --background 0.100000001 0 1 --exposure -1.10000002 --tone-mapping "
+                         "aces --eye "));
+  look = {.background = BackgroundChoice{.is_environment = true}};
+  EXPECT_THAT(describe_command({.file = "s", .look = look}, view),
+              testing::HasSubstr(" --background environment --eye"));
+}
+
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
   View view;
   EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::Not(testing::HasSubstr("median")));

@@ -34,17 +34,19 @@ def run(*words, environment=None):
 
 
 class Session:
-    """A window on the showcase, in a folder that holds a copy of it."""
+    """A window on a scene, the first of its files, in a folder that holds a copy of them."""
 
-    def __init__(self, bin_folder, scenes, folder, *arguments, takes_keys=True, **environment):
+    SHOWCASE = ("showcase.gltf", "showcase.bin")
+
+    def __init__(self, bin_folder, scenes, folder, *arguments, files=SHOWCASE, takes_keys=True, **environment):
         self.bin = bin_folder
         self.folder = folder
-        for name in ("showcase.gltf", "showcase.bin"):
+        for name in files:
             shutil.copy(scenes / name, folder)
-        self.scene = folder / "showcase.gltf"
+        self.scene = folder / files[0]
         self.display = Display()
         try:
-            words = ["showcase.gltf", "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
+            words = [files[0], "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
             self.viewer = Viewer(self.display, bin_folder / "promin-view", words, folder, **environment)
             # A replay takes no keys, and may be over before the window is found.
             if takes_keys and "--replay" not in arguments:
@@ -218,6 +220,46 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         expect(look_of(after) == look_of(command), f"the camera turned: {after}")
         session.expect_same_picture(4, after)
         session.quit()
+
+
+def lights_as_render_does(bin_folder, scenes, folder):
+    """A scene without lights and camera."""
+    files = ("obj_materials.obj", "obj_materials.mtl")
+    session = Session(bin_folder, scenes, folder, files=files)
+    with session as viewer:
+        viewer.wait_for_line("note: assumed: .*three quarters, .*studio, .*grey.*neutral$", 1, "assumptions")
+        viewer.press("Tab", "p")
+        session.take_screenshot(1)
+        command = session.print_command()
+        session.expect_same_picture(1, command)
+        # From the same place whatever frames the scene.
+        session.expect_same_picture(1, f"{command} --framing front")
+
+        # A debug view is not exposed.
+        viewer.press("F2")
+        session.take_screenshot(2)
+        command = session.print_command()
+        expect(" --shading normals " in command, f"not what is shown: {command}")
+        session.expect_same_picture(2, command)
+        session.quit()
+
+    words = ["--light", "headlight", "--background", "environment", "--exposure", "1.25", "--tone-mapping", "aces"]
+    session = Session(bin_folder, scenes, folder, *words, files=files)
+    with session as viewer:
+        viewer.press("Tab", "p")
+        session.take_screenshot(3)
+        command = session.print_command()
+        expect(" ".join(words) in command, f"not what is shown: {command}")
+        session.expect_same_picture(3, command)
+        # What is read again is lit and shown as before.
+        text = session.scene.read_text()
+        session.scene.write_text(text + "# changed\n")
+        viewer.wait_for_line("note: read obj_materials.obj", 1, "scene again")
+        session.take_screenshot(4)
+        session.expect_same_picture(4, command)
+        session.quit()
+    pictures = [(folder / f"promin-000{number}.png").read_bytes() for number in (1, 2, 3, 4)]
+    expect(len(set(pictures)) == 3 and pictures[2] == pictures[3], "options change nothing, or reading does")
 
 
 def plays_what_it_recorded(bin_folder, scenes, folder):

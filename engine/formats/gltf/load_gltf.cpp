@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/load_gltf.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
+#include <variant>
 
 #include "formats/gltf/cameras.h"
 #include "formats/gltf/document.h"
@@ -33,6 +35,8 @@ class SceneReader {
     scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);
     for (const PlacedNode& placed : place_gltf_nodes(document_, report_)) read_node(placed);
+    const auto is_phong = [](const Material& material) { return std::holds_alternative<Phong>(material.model); };
+    scene_.is_classic = !scene_.materials.empty() && std::ranges::all_of(scene_.materials, is_phong);
     if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
     warn_about_motion();
     report_.throw_if_refused();

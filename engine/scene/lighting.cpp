@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "promin/lighting.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "scene/framing.h"
+#include "scene/light_kinds.h"
+
+namespace promin {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Where the studio's directional light comes from, as the viewer sees it, radians; + is to the right and up.
+constexpr double kStudioLightAzimuth = -35.0 * kPi / 180.0;
+constexpr double kStudioLightElevation = 40.0 * kPi / 180.0;
+
+/// A camera that looks up or down more steeply has its azimuth by `up`: its look has too few digits of one.
+constexpr float kLeastHorizontalLook = 1e-3F;
+
+/// The illuminances between which nothing is exposed otherwise, and the one that others are brought to, lux. A white
+/// surface under pi lux sends radiance 1.
+constexpr double kLeastIlluminance = kPi / 4.0;
+constexpr double kMostIlluminance = 4.0 * kPi;
+
+template <typename Model>
+bool has_any(const std::vector<Material>& materials) {
+  const auto is_one = [](const Material& material) { return std::holds_alternative<Model>(material.model); };
+  return std::ranges::any_of(materials, is_one);
+}
+
+bool has_sky(const Environment& environment) {
+  return !std::holds_alternative<std::monostate>(environment.sky) || environment.ambient != vec3(0.0F);
+}
+
+bool is_of_phong(const Scene& scene) {
+  return has_any<Phong>(scene.materials) && !has_any<MetallicRoughness>(scene.materials);
+}
+
+/// The power that a light of one lux needs for materials of the scene's models (docs/model.md, "Light").
+double power_per_lux(const Scene& scene) {
+  return is_of_phong(scene) ? 1.0 / kPi : 1.0;
+}
+
+double luminance_of(const vec3& color) {
+  return glm::dot(dvec3(color), dvec3(0.2126, 0.7152, 0.0722));
+}
+
+bool falls_off(const Light& light) {
+  return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
+}
+
+/// In the middle of the scene, as exposure_of counts it.
+double illuminance_of(const Scene& scene) {
+  dvec3 center(0.0);
+  double least_distance = 0.0;
+  // Bounds of a large scene take time.
+  if (std::ranges::any_of(scene.lights, falls_off)) {
+    const Bounds bounds = frame_of(scene);
+    center = 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
+    least_distance = 0.25 * glm::length(dvec3(bounds.hi) - dvec3(bounds.lo));
+  }
+  double sum = 0.0;
+  for (const Light& light : scene.lights) {
+    const double distance =
+        falls_off(light) ? std::max(glm::length(dvec3(light.position) - center), least_distance) : 1.0;
+    sum += luminance_of(light.diffuse) / (distance * distance);
+  }
+  return sum / power_per_lux(scene);
+}
+
+}  // namespace
+
+std::span<const std::string_view> light_choice_names() {
+  using std::string_view_literals::operator""sv;
+  static constexpr std::array kNames = {"auto"sv, "studio"sv, "headlight"sv, "none"sv};
+  return kNames;
+}
+
+AssumedLight light_scene(Scene& scene, LightChoice choice) {
+  if (choice == LightChoice::kAuto) choice = scene.is_classic ? LightChoice::kHeadlight : LightChoice::kStudio;
+  AssumedLight assumed;
+  Environment& environment = scene.environment;
+  const bool had_sky = has_sky(environment);
+  const float unexposed = std::exp2(-exposure_of(scene));
+
+  if (!scene.is_classic && !had_sky && environment.background == vec3(0.0F)) {
+    environment.background = vec3(kStudioBackground * unexposed);
+    assumed.has_background = true;
+  }
+  if (choice == LightChoice::kHeadlight) {
+    const AddedLights added = add_default_lights(scene);
+    assumed.has_headlight = added.has_headlight;
+    assumed.has_ambient = added.has_ambient;
+  }
+  if (choice != LightChoice::kStudio || had_sky) return assumed;
+  const float front = front_of(scene);
+  environment.sky = Studio{front};
+  assumed.has_studio = true;
+  if (!scene.lights.empty()) {
+    environment.intensity = kStudioFill * unexposed;
+    return assumed;
+  }
+  scene.lights.push_back(make_studio_light(front, static_cast<float>(kStudioLightPower * power_per_lux(scene))));
+  assumed.has_studio_light = true;
+  return assumed;
+}
+
+float front_of(const Scene& scene) {
+  if (scene.cameras.empty()) return 0.0F;
+  const Camera& camera = scene.cameras.front();
+  vec3 to_viewer = -camera.look;
+  if (std::max(std::abs(to_viewer.x), std::abs(to_viewer.z)) < kLeastHorizontalLook) {
+    // The viewer of a picture from above stands at its lower edge.
+    to_viewer = camera.look.y < 0.0F ? -camera.up : camera.up;
+  }
+  return std::atan2(to_viewer.x, to_viewer.z);
+}
+
+Light make_studio_light(float front, float power) {
+  const double azimuth = static_cast<double>(front) + kStudioLightAzimuth;
+  Light light;
+  light.name = "studio";
+  light.kind = LightKind::kDirectional;
+  light.direction = -vec3(dvec3(std::cos(kStudioLightElevation) * std::sin(azimuth), std::sin(kStudioLightElevation),
+                                std::cos(kStudioLightElevation) * std::cos(azimuth)));
+  light.diffuse = light.specular = vec3(power);
+  return light;
+}
+
+float exposure_of(const Scene& scene) {
+  const double illuminance = illuminance_of(scene);
+  if (!(illuminance > 0.0) || (illuminance >= kLeastIlluminance && illuminance <= kMostIlluminance)) return 0.0F;
+  // Powers are floats and distances at least 1e-15 or so: the logarithm of what is not finite is all that is left out.
+  const double stops = 0.5 * std::round(2.0 * std::log2(kPi / illuminance));
+  return std::isfinite(stops) ? static_cast<float>(stops) : 0.0F;
+}
+
+DisplayTransform display_of(const Scene& scene, LightChoice choice) {
+  if (scene.is_classic || (choice == LightChoice::kHeadlight && is_of_phong(scene))) return {};
+  return {exposure_of(scene), ToneMapping::kNeutral};
+}
+
+Framing framing_of(const Scene& scene) {
+  return scene.is_classic ? Framing::kFront : Framing::kThreeQuarter;
+}
+
+}  // namespace promin

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What a window shows (shaders/encode_film.comp) against what PNG files have.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "device/device.h"
+#include "device/pipeline.h"
+#include "gpu/device_fixture.h"
+#include "promin/display.h"
+#include "promin/image.h"
+#include "trace/film_head.h"
+#include "view/display_pass.h"
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kSamples = 2;
+constexpr uvec2 kSize(40, 25);
+
+/// Sums of two samples, each pixel another colour: from black to far beyond white.
+std::vector<vec3> make_sums() {
+  std::vector<vec3> sums;
+  float x = 1e-4F;
+  for (uint32_t i = 0; i < kSize.x * kSize.y; ++i) {
+    const float share = static_cast<float>(i % 7) / 6.0F;
+    sums.push_back(x * vec3(1.0F, share, 1.0F - share));
+    x *= 1.02F;
+  }
+  sums.front() = vec3(0.0F);
+  return sums;
+}
+
+class EncodeFilmTest : public test::DeviceTest {
+ protected:
+  /// The bytes that the window shows, R, G and B of each pixel.
+  static std::vector<std::array<int, 3>> encode(const std::vector<vec3>& sums, const DisplayTransform& display) {
+    constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
+    FilmHead head;
+    head.dispatch.window = uvec4(0, 0, kSize);
+    head.dispatch.sampling.x = kSamples;
+    // What lies between must not be taken for pixels.
+    head.ray_counts.fill(uvec4(std::bit_cast<uint32_t>(1e9F)));
+    gpu::Buffer film(device(), sizeof head + sums.size() * sizeof(uvec4), kStorage);
+    film.write(std::as_bytes(std::span(&head, 1)));
+    std::vector<uvec4> pixels;
+    for (const vec3& sum : sums) pixels.emplace_back(glm::floatBitsToUint(sum), 0U);
+    film.write(std::as_bytes(std::span(pixels)), sizeof head);
+
+    const gpu::Buffer encoded(device(), sums.size() * sizeof(uint32_t), kStorage);
+    const gpu::ComputePipeline encoder = make_encoder(device(), film, encoded, display);
+    device().run([&](const vk::raii::CommandBuffer& commands) { encoder.dispatch(commands, uvec2(3, 1)); });
+    std::vector<uint32_t> words(sums.size());
+    encoded.read(std::as_writable_bytes(std::span(words)));
+    std::vector<std::array<int, 3>> bytes;
+    for (const uint32_t word : words) {
+      EXPECT_EQ(word >> 24, 255U);
+      bytes.push_back(
+          {static_cast<int>(word & 255U), static_cast<int>(word >> 8 & 255U), static_cast<int>(word >> 16 & 255U)});
+    }
+    return bytes;
+  }
+};
+
+TEST_F(EncodeFilmTest, AWindowShowsWhatPngFilesHave) {
+  const std::vector<vec3> sums = make_sums();
+  for (const DisplayTransform& display :
+       {DisplayTransform{}, DisplayTransform{-2.5F, ToneMapping::kNone}, DisplayTransform{0.0F, ToneMapping::kNeutral},
+        DisplayTransform{3.0F, ToneMapping::kNeutral}, DisplayTransform{-1.0F, ToneMapping::kAces}}) {
+    const std::vector<std::array<int, 3>> shown = encode(sums, display);
+    int differing = 0;
+    for (size_t i = 0; i < sums.size(); ++i) {
+      const vec3 expected = apply(display, sums[i] / static_cast<float>(kSamples));
+      for (int c = 0; c < 3; ++c) {
+        const auto in_file = static_cast<int>(std::lround(255.0F * encode_srgb(expected[c])));
+        const int in_window = shown[i][static_cast<size_t>(c)];
+        // The device's pow may round the other way.
+        ASSERT_LE(std::abs(in_window - in_file), 1) << "pixel " << i << ", radiance " << sums[i][c];
+        differing += in_window == in_file ? 0 : 1;
+      }
+    }
+    EXPECT_LT(differing, 6) << "of 3000";
+  }
+}
+
+}  // namespace
+}  // namespace promin::app
