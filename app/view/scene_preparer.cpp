@@ -33,8 +33,12 @@ void ReadyPicture::take_lights() {
 }
 
 ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
-                             std::vector<SourceFile> sources)
-    : device_(&device), budget_ms_(budget_ms), file_(std::move(file)), watch_(std::move(sources)) {}
+                             std::vector<SourceFile> sources, EnvironmentChoice environment)
+    : device_(&device),
+      budget_ms_(budget_ms),
+      file_(std::move(file)),
+      environment_(std::move(environment)),
+      watch_(std::move(sources)) {}
 
 ScenePreparer::~ScenePreparer() {
   is_given_up_ = true;
@@ -74,6 +78,7 @@ void ScenePreparer::read() {
   step_ = Step::kReading;
   work_.start([this, request = asked_] {
     const auto scene = std::make_shared<Scene>(load_scene(file_, sources_));
+    environment_.apply(*scene);
     light_up(*scene, Console(Verbosity::kQuiet));
     return make(put_on_device(scene, request), request);
   });

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "environment_options.h"
 #include "promin/renderer.h"
 #include "trace/progressive_picture.h"
 #include "view/background.h"
@@ -56,13 +57,13 @@ struct PictureRequest {
 /// picture is shown.
 class ScenePreparer {
  public:
-  /// Takes a scene's file, and the files that it was read from.
+  /// Takes a scene's file, the files that it was read from, and what is changed about its surroundings.
   ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
-                std::vector<SourceFile> sources);
+                std::vector<SourceFile> sources, EnvironmentChoice environment);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 
-  /// Makes the first picture of a scene that has been read and has its default lights.
+  /// Makes the first picture of a scene that has been read and has its surroundings and default lights.
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// Makes another picture than the one shown where the request is another than the last, or where files of the scene
   /// have changed. Returns whether it has begun to. Work that failed is not tried again.
@@ -94,6 +95,7 @@ class ScenePreparer {
   const gpu::Device* device_;
   double budget_ms_;
   std::filesystem::path file_;
+  EnvironmentChoice environment_;
   SceneWatch watch_;
   double next_look_at_files_s_ = 0.0;
   PictureRequest asked_;

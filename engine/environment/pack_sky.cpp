@@ -32,13 +32,13 @@ constexpr Level kLevels[] = {
 };
 constexpr uint32_t kLevelCount = std::size(kLevels);
 
-/// Directions of a lobe for a texel of each level but the sharpest. Sources are blurred as far as these lie apart, so
-/// few suffice.
-constexpr uint32_t kLobeSamples[kLevelCount] = {0, 24, 32, 48, 64, 128};
+/// Directions of a lobe for a texel of each level but the sharpest. They are few, because the sky between them is
+/// blurred beforehand; of a panorama, which may have a sun in it, twice as many.
+constexpr uint32_t kLobeSamples[kLevelCount] = {0, 16, 32, 64, 192, 512};
 
-/// The sides of skies without edges that are finer than their texels.
-constexpr uint32_t kStudioSide = 128;
-constexpr uint32_t kGradientSide = 256;
+/// The sharpest side of studio and gradient: their edges are some degrees wide. Against an integration with 20,000
+/// directions the studio errs by .014 (rms) at roughness 0, .018 at .1 and .2, .003 at 1, of a mean of .48.
+constexpr uint32_t kSmoothSide = 256;
 constexpr uint32_t kLeastPanoramaSide = 128;
 constexpr uint32_t kMostSide = 512;
 /// The sky is looked up so often along each side of a texel of the sharpest level.
@@ -47,8 +47,8 @@ constexpr int kSamplesAlongTexel = 2;
 uint32_t side_of(const Environment& environment) {
   struct Side {
     uint32_t operator()(std::monostate) const { return 0; }
-    uint32_t operator()(const Studio&) const { return kStudioSide; }
-    uint32_t operator()(const GradientSky&) const { return kGradientSide; }
+    uint32_t operator()(const Studio&) const { return kSmoothSide; }
+    uint32_t operator()(const GradientSky&) const { return kSmoothSide; }
     uint32_t operator()(const Panorama& panorama) const {
       // The horizon is as long as two sides.
       return std::clamp(std::bit_ceil((panorama.image->size.x + 1) / 2), kLeastPanoramaSide, kMostSide);
@@ -141,9 +141,9 @@ std::vector<LobeSample> sample_lobe(double roughness, uint32_t count, const std:
     const double sine_to_light = std::sqrt(1.0 - cosine_to_light * cosine_to_light);
     const double spread = cosine2 * (alpha * alpha - 1.0) + 1.0;
     const double density = alpha * alpha / (pi * spread * spread);
-    const double level =
-        std::clamp(0.5 * std::log2(4.0 / (count * density) * std::pow(maps.front().side(), 2) / (4.0 * pi)), 0.0,
-                   static_cast<double>(maps.size()) - 1.001);
+    const double texels = 4.0 / (count * density) * std::pow(maps.front().side(), 2) / (4.0 * pi);
+    // Half a level sharper, because interpolation blurs too.
+    const double level = std::clamp(0.5 * std::log2(texels) - 0.5, 0.0, static_cast<double>(maps.size()) - 1.001);
     const double map = std::floor(level);
     samples.push_back(
         {vec3(dvec3(sine_to_light * std::cos(azimuth), sine_to_light * std::sin(azimuth), cosine_to_light)),
@@ -222,8 +222,9 @@ PackedSky pack_sky(const Environment& environment, unsigned thread_count) {
   while (maps.back().side() > 4) maps.push_back(halve(maps.back()));
   packed.texels.reserve(packed_sky_bytes(environment) / sizeof(uvec4));
   append(maps.front(), packed.texels);
+  const uint32_t factor = std::holds_alternative<Panorama>(environment.sky) ? 2 : 1;
   for (uint32_t level = 1; level < kLevelCount; ++level) {
-    const std::vector<LobeSample> lobe = sample_lobe(kLevels[level].roughness, kLobeSamples[level], maps);
+    const std::vector<LobeSample> lobe = sample_lobe(kLevels[level].roughness, factor * kLobeSamples[level], maps);
     append(blur(maps, side_of_level(packed.side, level), lobe, thread_count), packed.texels);
   }
   return packed;
