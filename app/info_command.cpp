@@ -79,7 +79,8 @@ struct SkyDescription {
 
 std::string describe_sky(const Environment& environment) {
   std::string text = std::visit(SkyDescription(), environment.sky);
-  if (environment.rotation != 0.0F) text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
+  if (environment.rotation != 0.0F)
+    text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
   if (environment.intensity != 1.0F) text += fmt::format(", times {:.4g}", environment.intensity);
   return text;
 }

@@ -41,9 +41,6 @@ constexpr uint32_t kLobeSamples[kLevelCount] = {0, 16, 32, 64, 192, 512};
 constexpr uint32_t kSmoothSide = 256;
 constexpr uint32_t kLeastPanoramaSide = 128;
 constexpr uint32_t kMostSide = 512;
-/// The sky is looked up so often along each side of a texel of the sharpest level.
-constexpr int kSamplesAlongTexel = 2;
-
 uint32_t side_of(const Environment& environment) {
   struct Side {
     uint32_t operator()(std::monostate) const { return 0; }
@@ -57,18 +54,17 @@ uint32_t side_of(const Environment& environment) {
   return std::visit(Side(), environment.sky);
 }
 
-/// The mean radiance of each texel.
-SkyMap look_up_sky(const Environment& environment, uint32_t side, unsigned thread_count) {
+/// The mean radiance of each texel, looked up `count` times along each of its sides.
+SkyMap look_up_sky(const Environment& environment, uint32_t side, int count, unsigned thread_count) {
   SkyMap map(static_cast<int>(side));
-  const double step = 1.0 / (kSamplesAlongTexel * static_cast<double>(side));
+  const double step = 1.0 / (count * static_cast<double>(side));
   for_each_index(side, thread_count, [&](size_t row) {
     const auto y = static_cast<int>(row);
     for (int x = 0; x < map.side(); ++x) {
       dvec3 sum(0.0);
       double weights = 0.0;
-      for (int i = 0; i < kSamplesAlongTexel * kSamplesAlongTexel; ++i) {
-        const dvec2 sample(kSamplesAlongTexel * x + i % kSamplesAlongTexel,
-                           kSamplesAlongTexel * y + i / kSamplesAlongTexel);
+      for (int i = 0; i < count * count; ++i) {
+        const dvec2 sample(count * x + i % count, count * y + i / count);
         const dvec2 place = step * (sample + 0.5);
         const double weight = solid_angle_density(place);
         sum += weight * sky_radiance(environment, octahedral_point(place));
@@ -213,16 +209,16 @@ PackedSky pack_sky(const Environment& environment, unsigned thread_count) {
   PackedSky packed;
   packed.side = side_of(environment);
   if (packed.side == 0) return packed;
+  // Panoramas may have anything in them, and get more lookups than what is smooth.
   Environment looked_up = environment;
-  if (auto* panorama = std::get_if<Panorama>(&looked_up.sky)) {
-    *panorama = shrink_panorama(*panorama, 4 * packed.side, thread_count);
-  }
-  std::vector<SkyMap> maps = {look_up_sky(looked_up, packed.side, thread_count)};
+  auto* panorama = std::get_if<Panorama>(&looked_up.sky);
+  const uint32_t factor = panorama == nullptr ? 1 : 2;
+  if (panorama != nullptr) *panorama = shrink_panorama(*panorama, 2 * packed.side, thread_count);
+  std::vector<SkyMap> maps = {look_up_sky(looked_up, packed.side, panorama == nullptr ? 2 : 3, thread_count)};
   packed.irradiance = project_irradiance(maps.front());
   while (maps.back().side() > 4) maps.push_back(halve(maps.back()));
   packed.texels.reserve(packed_sky_bytes(environment) / sizeof(uvec4));
   append(maps.front(), packed.texels);
-  const uint32_t factor = std::holds_alternative<Panorama>(environment.sky) ? 2 : 1;
   for (uint32_t level = 1; level < kLevelCount; ++level) {
     const std::vector<LobeSample> lobe = sample_lobe(kLevels[level].roughness, factor * kLobeSamples[level], maps);
     append(blur(maps, side_of_level(packed.side, level), lobe, thread_count), packed.texels);

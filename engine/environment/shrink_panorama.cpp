@@ -36,12 +36,24 @@ Covered covered_by(uint32_t i, uint32_t new_count, uint32_t old_count) {
   return {first, beyond, first + 1 - begin, end - (beyond - 1)};
 }
 
+/// Gives each of a row's pixels the mean of those up to `reach` to both sides, around the sphere.
+void blur_row(vec3* row, uint32_t width, uint32_t reach) {
+  if (reach == 0) return;
+  const std::vector<dvec3> old(row, row + width);
+  const uint32_t count = 2 * reach + 1;
+  for (uint32_t x = 0; x < width; ++x) {
+    // Summed anew, not with what enters and leaves: the rest of a sun that has left would stay.
+    dvec3 sum(0.0);
+    for (uint32_t i = 0; i < count; ++i) sum += old[(x + width - reach + i) % width];
+    row[x] = vec3(sum / static_cast<double>(count));
+  }
+}
+
 }  // namespace
 
 Panorama shrink_panorama(const Panorama& panorama, uint32_t most_width, unsigned thread_count) {
   const Image& from = *panorama.image;
   const uvec2 size = glm::min(from.size, uvec2(most_width, most_width / 2));
-  if (size == from.size) return panorama;
   auto to = std::make_shared<Image>();
   to->size = size;
   to->pixels.resize(static_cast<size_t>(size.x) * size.y);
@@ -65,6 +77,8 @@ Panorama shrink_panorama(const Panorama& panorama, uint32_t most_width, unsigned
       }
     }
     for (uint32_t x = 0; x < size.x; ++x) to->at(x, y) = vec3(sums[x] / weights[x]);
+    const double wanted = size.x / (2.0 * size.y * std::sin(std::numbers::pi * (y + 0.5) / size.y));
+    blur_row(&to->at(0, y), size.x, std::min(static_cast<uint32_t>(0.5 * wanted), (size.x - 1) / 2));
   });
   return {to};
 }
