@@ -12,6 +12,8 @@
 #include "console.h"
 #include "device_scene/pack_scene.h"
 #include "device_scene/pack_shading.h"
+#include "environment/pack_sky.h"
+#include "environment_options.h"
 #include "promin/load_scene.h"
 #include "rows.h"
 #include "scene/features.h"
@@ -73,14 +75,32 @@ std::vector<std::string> describe_cameras(const Scene& scene) {
   return rows;
 }
 
+struct SkyDescription {
+  std::string operator()(std::monostate) const { return "none"; }
+  std::string operator()(const Studio&) const { return "studio"; }
+  std::string operator()(const GradientSky&) const { return "gradient"; }
+  std::string operator()(const Panorama& panorama) const {
+    return fmt::format("panorama of {}x{}", panorama.image->size.x, panorama.image->size.y);
+  }
+};
+
+std::string describe_sky(const Environment& environment) {
+  std::string text = std::visit(SkyDescription(), environment.sky);
+  if (environment.rotation != 0.0F)
+    text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
+  if (environment.intensity != 1.0F) text += fmt::format(", times {:.4g}", environment.intensity);
+  return text;
+}
+
 std::string describe_bounds(const Bounds& bounds) {
   if (bounds.is_empty()) return "nothing finite";
   return fmt::format("{:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}", bounds.lo.x, bounds.lo.y, bounds.lo.z, bounds.hi.x,
                      bounds.hi.y, bounds.hi.z);
 }
 
-void print_info(const std::filesystem::path& file) {
+void print_info(const std::filesystem::path& file, const EnvironmentOptions& environment) {
   Scene scene = load_scene(file);
+  EnvironmentChoice(environment).apply(scene);
   const SceneCounts counts = count_scene(scene);
   print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene.objects.size()));
@@ -95,6 +115,7 @@ void print_info(const std::filesystem::path& file) {
   print_row("materials", std::to_string(scene.materials.size()));
   print_row("lights", lights);
   print_row("background", describe_background(scene.environment, assumed));
+  print_row("sky", describe_sky(scene.environment));
   print_row("display", describe_display(display_of(scene)));
   print_rows("cameras", describe_cameras(scene));
   print_row("bounds", describe_bounds(bounds_of(scene)));
@@ -102,7 +123,8 @@ void print_info(const std::filesystem::path& file) {
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
                                packed.bvh.depth, packed.bvh.sah_cost));
   const uint64_t shading_bytes = scene.materials.size() * sizeof(layout::MaterialRecord) +
-                                 pack_lights(scene.lights).records.size() * sizeof(layout::LightRecord);
+                                 pack_lights(scene.lights).records.size() * sizeof(layout::LightRecord) +
+                                 packed_sky_bytes(scene.environment);
   print_row("memory", fmt::format("{:.3f} MB of geometry on the host, {:.3f} MB on the device",
                                   1e-6 * static_cast<double>(counts.geometry_bytes),
                                   1e-6 * static_cast<double>(packed.size_bytes() + shading_bytes)));
@@ -113,10 +135,16 @@ void print_info(const std::filesystem::path& file) {
 
 Command add_info_command(CLI::App& program) {
   CLI::App& command = add_command(program, "info", "Print what a scene holds and what is modelled of it");
-  const auto file = std::make_shared<std::filesystem::path>();
-  OptionTable(command).add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
-                                    [file](const OptionValues& w) { *file = w.text(); });
-  return {&command, [file] { print_info(*file); }};
+  struct InfoOptions {
+    std::filesystem::path file;
+    EnvironmentOptions environment;
+  };
+  const auto options = std::make_shared<InfoOptions>();
+  OptionTable table(command);
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+                     [options](const OptionValues& w) { options->file = w.text(); });
+  add_environment_options(table, options->environment);
+  return {&command, [options] { print_info(options->file, options->environment); }};
 }
 
 }  // namespace promin::app

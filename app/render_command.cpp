@@ -168,6 +168,7 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
 std::vector<std::filesystem::path> input_files(const RenderOptions& options) {
   std::vector<std::filesystem::path> files = input_files(options.tracing);
   if (options.path) files.push_back(*options.path);
+  if (options.view.environment.panorama) files.push_back(*options.view.environment.panorama);
   return files;
 }
 
@@ -203,6 +204,7 @@ void render(const RenderOptions& options) {
 
   RunStats stats;
   Scene scene = load_for(tracing, stats, console);
+  EnvironmentChoice(options.view.environment).apply(scene);
   ViewOptions view = options.view;
   view.given_camera = frames.front().camera;
   stats.view = make_view(scene, view, console);

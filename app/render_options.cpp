@@ -170,6 +170,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
             [&](const OptionValues& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
   table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
             [&](const OptionValues& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
+  add_environment_options(table, view.environment);
 }
 
 void add_fps_option(OptionTable& table, std::optional<double>& fps) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "environment_options.h"
 #include "promin/lighting.h"
 #include "promin/math.h"
 #include "promin/renderer.h"
@@ -69,6 +70,7 @@ struct ViewOptions {
   /// A pose that takes the place of the scene's cameras.
   std::optional<Camera> given_camera;
   PoseOptions pose;
+  EnvironmentOptions environment;
 };
 
 /// The AOVs that --aov asks for.

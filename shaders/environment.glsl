@@ -5,14 +5,106 @@
 // Of rays that were never deflected by a surface with an environment: they see the background.
 const float NO_ENVIRONMENT = -1.0;
 
-// The mean radiance about a direction, over a lobe of this roughness.
-vec3 environment_radiance(vec3 direction, float roughness) {
-  return VIEW.ambient.xyz;
+// Where all features are compiled in, a scene may have no sky. Its levels are then of side 0, and what is fetched of
+// them is put aside: no branch may hang on a uniform.
+bvec3 has_no_sky() { return bvec3(VIEW.first_lookup.z == 0u); }
+
+// One of the prefiltered levels (engine/environment/pack_sky.h): its first entry, and its side in texels.
+struct SkyLevel {
+  uint first;
+  uint side;
+};
+
+uint side_of_sky_level(uint shift) {
+  uint side = VIEW.first_lookup.z;
+  return max(side >> shift, min(side, LEAST_SKY_SIDE));
 }
 
-// The light of all directions over pi, weighted by the cosine to the normal.
+// Where a direction of any length lies on the map (engine/environment/octahedron.h), 0...1.
+vec2 octahedral_place(vec3 direction) {
+  precise float size = abs(direction.x) + abs(direction.y) + abs(direction.z);
+  precise vec2 seen = direction.xz / size;
+  precise vec2 folded =
+      vec2(times_sign_of(1.0 - abs(seen.y), seen.x), times_sign_of(1.0 - abs(seen.x), seen.y));
+  precise vec2 place = 0.5 + 0.5 * (direction.y < 0.0 ? folded : seen);
+  return place;
+}
+
+// The interpolation between the two texels of an entry.
+vec3 mix_sky_entry(uint index, float across) {
+  uvec4 words = FETCHES_TEXELS == 0u ? surfaces[index].corners_material : texelFetch(shading_texels, int(index));
+  vec2 first = unpackHalf2x16(words.x);
+  vec2 middle = unpackHalf2x16(words.y);
+  vec2 last = unpackHalf2x16(words.z);
+  vec3 left = vec3(first, middle.x);
+  vec3 right = vec3(middle.y, last);
+  precise vec3 mixed = left + across * (right - left);
+  return mixed;
+}
+
+vec3 look_up_sky_level(SkyLevel level, vec2 place) {
+  // The border's texels come first, so that the middle of texel 0 is at 1.
+  precise vec2 texel = place * float(level.side) + 0.5;
+  precise vec2 corner = floor(texel);
+  precise vec2 offset = texel - corner;
+  uint index = level.first + uint(corner.y) * (level.side + 1u) + uint(corner.x);
+  vec3 upper = mix_sky_entry(index, offset.x);
+  vec3 lower = mix_sky_entry(index + level.side + 1u, offset.x);
+  precise vec3 mixed = upper + offset.y * (lower - upper);
+  return mixed;
+}
+
+// The mean radiance about a direction of any length, over a lobe of this roughness.
+vec3 environment_radiance(vec3 direction, float roughness) {
+  if (!has(FEATURE_SKY)) return VIEW.ambient.xyz;
+  // The last level that is not rougher, and the next.
+  SkyLevel sharper = SkyLevel(0u, 0u);
+  SkyLevel rougher = SkyLevel(0u, 0u);
+  float sharper_roughness = 0.0;
+  float rougher_roughness = 0.0;
+  SkyLevel level = SkyLevel(VIEW.first_lookup.y, 0u);
+#define PROMIN_SKY_LEVEL(ROUGHNESS, SHIFT)                             \
+  level.side = side_of_sky_level(SHIFT);                               \
+  if (roughness >= ROUGHNESS) {                                        \
+    sharper = level;                                                   \
+    sharper_roughness = ROUGHNESS;                                     \
+  } else if (rougher_roughness <= sharper_roughness) {                 \
+    rougher = level;                                                   \
+    rougher_roughness = ROUGHNESS;                                     \
+  }                                                                    \
+  level.first += (level.side + 1u) * (level.side + 2u);
+#include "sky_levels.def"
+  vec2 place = octahedral_place(direction);
+  vec3 radiance = look_up_sky_level(sharper, place);
+  if (roughness > sharper_roughness) {
+    precise float share = (roughness - sharper_roughness) / (rougher_roughness - sharper_roughness);
+    vec3 blurred = look_up_sky_level(rougher, place);
+    precise vec3 mixed = radiance + share * (blurred - radiance);
+    radiance = mixed;
+  }
+  return mix(radiance, VIEW.ambient.xyz, has_no_sky());
+}
+
+// The light of all directions over pi, weighted by the cosine to the unit normal. It is 0 at least: the few coefficients
+// ring around a sun.
 vec3 ambient_at(vec3 normal) {
-  return VIEW.ambient.xyz;
+  if (!has(FEATURE_SKY)) return VIEW.ambient.xyz;
+  precise float xy = normal.x * normal.y;
+  precise float yz = normal.y * normal.z;
+  precise float zx = normal.z * normal.x;
+  precise float z2 = 3.0 * normal.z * normal.z - 1.0;
+  precise float x2_y2 = normal.x * normal.x - normal.y * normal.y;
+  precise vec3 light = VIEW.irradiance[0].xyz + VIEW.irradiance[1].xyz * normal.y +
+                       VIEW.irradiance[2].xyz * normal.z + VIEW.irradiance[3].xyz * normal.x +
+                       VIEW.irradiance[4].xyz * xy + VIEW.irradiance[5].xyz * yz + VIEW.irradiance[6].xyz * z2 +
+                       VIEW.irradiance[7].xyz * zx + VIEW.irradiance[8].xyz * x2_y2;
+  return mix(max(light, vec3(0.0)), VIEW.ambient.xyz, has_no_sky());
+}
+
+// The roughness at which perfect mirrors see the sky; where there is none, they see the background.
+float perfect_mirror_roughness() {
+  if (!has(FEATURE_SKY)) return NO_ENVIRONMENT;
+  return mix(0.0, NO_ENVIRONMENT, has_no_sky().x);
 }
 
 // What a ray brings that leaves the scene; `roughness` is the largest of those on its way, or NO_ENVIRONMENT.

@@ -158,6 +158,9 @@ LAYOUT_CONSTANT WRAP_CLAMP = 2u;
 // The entries of the table of lobes along each side (shading_records.glsl).
 LAYOUT_CONSTANT LOBE_TABLE_SIDE = 32u;
 
+// Texels along each side of the coarsest levels of a sky (sky_levels.def, environment.glsl).
+LAYOUT_CONSTANT LEAST_SKY_SIDE = 32u;
+
 struct LightRecord {
   vec4 position;   // w = 1 / range
   vec4 direction;  // the direction in which the light travels; w = cosine of a spot's outer angle

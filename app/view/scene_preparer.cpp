@@ -32,8 +32,13 @@ void ReadyPicture::take_lights() {
 }
 
 ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
-                             std::vector<SourceFile> sources, LookOptions look)
-    : device_(&device), budget_ms_(budget_ms), file_(std::move(file)), look_(look), watch_(std::move(sources)) {}
+                             std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment)
+    : device_(&device),
+      budget_ms_(budget_ms),
+      file_(std::move(file)),
+      look_(look),
+      environment_(std::move(environment)),
+      watch_(std::move(sources)) {}
 
 ScenePreparer::~ScenePreparer() {
   is_given_up_ = true;
@@ -73,6 +78,7 @@ void ScenePreparer::read() {
   step_ = Step::kReading;
   work_.start([this, request = asked_] {
     const auto scene = std::make_shared<Scene>(load_scene(file_, sources_));
+    environment_.apply(*scene);
     light_up(*scene, look_);
     return make(put_on_device(scene, request), request);
   });

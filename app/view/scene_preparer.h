@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "environment_options.h"
 #include "promin/renderer.h"
 #include "render_options.h"
 #include "trace/progressive_picture.h"
@@ -59,13 +60,14 @@ struct PictureRequest {
 /// picture is shown.
 class ScenePreparer {
  public:
-  /// Takes a scene's file, the files that it was read from, and how it is lit and shown.
+  /// Takes a scene's file, the files that it was read from, how it is lit and shown, and what is changed about its
+  /// surroundings.
   ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
-                std::vector<SourceFile> sources, LookOptions look);
+                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 
-  /// Makes the first picture of a scene that has been read and lit up.
+  /// Makes the first picture of a scene that has been read, has its surroundings and is lit up.
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// Makes another picture than the one shown where the request is another than the last, or where files of the scene
   /// have changed. Returns whether it has begun to. Work that failed is not tried again.
@@ -98,6 +100,7 @@ class ScenePreparer {
   double budget_ms_;
   std::filesystem::path file_;
   LookOptions look_;
+  EnvironmentChoice environment_;
   SceneWatch watch_;
   double next_look_at_files_s_ = 0.0;
   PictureRequest asked_;

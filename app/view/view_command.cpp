@@ -71,6 +71,7 @@ void check_window_options(const WindowOptions& options) {
   }
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);
   if (options.replay) inputs.push_back(*options.replay);
+  if (options.view.environment.panorama) inputs.push_back(*options.view.environment.panorama);
   if (options.record) check_outputs(inputs, {*options.record}, std::nullopt);
 }
 
@@ -96,6 +97,8 @@ void view(const WindowOptions& options) {
   ViewerStart start;
   start.file = tracing.scene;
   auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
+  const EnvironmentChoice environment(options.view.environment);
+  environment.apply(*scene);
   ViewOptions view_options = options.view;
   if (options.replay) {
     start.replay.emplace(read_camera_path(*options.replay), options.fps);
@@ -125,7 +128,7 @@ void view(const WindowOptions& options) {
   stats.device = device.info();
   console.detail(device.choice());
   ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources),
-                         look);
+                         look, environment);
   // This takes longest and comes last, because without a window it would be in vain.
   preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);

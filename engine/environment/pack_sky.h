@@ -13,14 +13,26 @@ namespace promin {
 
 /// A sky as shaders/environment.glsl reads it.
 struct PackedSky {
-  /// Texels of the sharpest level along each side; 0 where there is no sky.
+  /// Texels of the sharpest level along each side, a power of two from 128 to 512; 0 where there is no sky.
   uint32_t side = 0;
+  /// The levels of shaders/sky_levels.def one after the other, each with side + 2 rows of side + 1 entries: its texels
+  /// with a border of one (environment/sky_map.h), two neighbours of a row in an entry, each texel as three half floats
+  /// from the lowest bits on.
   std::vector<glm::uvec4> texels;
-  /// Coefficients of the light that a surface gets, over pi; w is 0.
+  /// Coefficients of the light that a surface gets, over pi; w is 0. With the unit normal (x, y, z) they are those of
+  /// 1, y, z, x, xy, yz, 3zz - 1, zx and xx - yy.
   std::array<vec4, 9> irradiance{};
 };
 
-/// Prefilters an environment's sky on all cores. Empty where it has none.
-PackedSky pack_sky(const Environment& environment);
+/// Texels along each side of a level, by the side of the sharpest one and the level's number.
+uint32_t side_of_level(uint32_t sharpest_side, uint32_t level);
+
+/// Prefilters an environment's sky: level i has in each direction the mean over a lobe of GGX of its roughness, seen
+/// along its normal, so that a level shows what a rough metal of this colour reflects. On up to `thread_count` threads
+/// (0: all cores); the result does not depend on their number. Empty where there is no sky.
+PackedSky pack_sky(const Environment& environment, unsigned thread_count = 0);
+
+/// The size of pack_sky's texels, without making them.
+uint64_t packed_sky_bytes(const Environment& environment);
 
 }  // namespace promin

@@ -6,11 +6,13 @@
 #include <bit>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <new>
 
 #include "core/file.h"
 #include "image/open_pictures.h"
+#include "image/read_image.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -172,6 +174,10 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
 }
 
 Image read_image(const fs::path& file) {
+  return read_image_within(file, uvec2(std::numeric_limits<uint32_t>::max()));
+}
+
+Image read_image_within(const fs::path& file, const uvec2& most) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) throw InputError({"no such picture", file.string(), "check the path"});
   const PicturesPlugin& plugin = open_pictures();
@@ -185,6 +191,11 @@ Image read_image(const fs::path& file) {
                       "name a picture such as .exr or .png"});
   }
   if (info.is_flat == 0) throw InputError({"not a flat picture", file.string(), "name a two-dimensional picture"});
+  if (info.width > most.x || info.height > most.y) {
+    throw InputError(
+        {"the picture is too large (" + std::to_string(info.width) + "x" + std::to_string(info.height) + " pixels)",
+         file.string(), "give one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
+  }
   const uint64_t pixel_count = info.width * info.height;
   if (pixel_count > kMaxReadPixels) {
     throw InputError({"the picture is too large (" + std::to_string(pixel_count) + " pixels)", file.string(),

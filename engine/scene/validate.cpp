@@ -170,6 +170,44 @@ class Validation {
   void check_environment(const Environment& environment) {
     check_color(environment.ambient, "environment.ambient");
     check_color(environment.background, "environment.background");
+    check(std::isfinite(environment.rotation), "the rotation is not finite", "environment.rotation", "use an angle");
+    check(environment.intensity >= 0.0F && environment.intensity <= kMaxPower,
+          "the intensity is negative, beyond 1e15 or not a number", "environment.intensity",
+          "use a number from 0 to 1e15");
+    std::visit([&](const auto& sky) { check_sky(sky); }, environment.sky);
+  }
+
+  void check_sky(std::monostate) {}
+
+  void check_sky(const Studio& studio) {
+    check(std::isfinite(studio.front), "the front is not finite", "environment.sky.front", "use an angle");
+  }
+
+  void check_sky(const GradientSky& sky) {
+    check_color(sky.top, "environment.sky.top");
+    check_color(sky.horizon, "environment.sky.horizon");
+    check_color(sky.bottom, "environment.sky.bottom");
+    const auto check_curve = [&](float curve, const std::string& where) {
+      check(curve > 0.0F && std::isfinite(curve), "the curve is not positive", where, "use 1 for an even transition");
+    };
+    check_curve(sky.top_curve, "environment.sky.top_curve");
+    check_curve(sky.bottom_curve, "environment.sky.bottom_curve");
+  }
+
+  void check_sky(const Panorama& panorama) {
+    const std::string place = "environment.sky.image";
+    if (!check(panorama.image != nullptr, "the panorama has no picture", place, "give it one")) return;
+    const Image& image = *panorama.image;
+    const uint64_t pixel_count = uint64_t{image.size.x} * image.size.y;
+    if (!check(pixel_count > 0 && pixel_count == image.pixels.size(), "the panorama's pixels do not suit its size",
+               place + ".pixels", "give one for each place") ||
+        !check(image.size.x <= Panorama::kMaxWidth && image.size.y <= Panorama::kMaxHeight,
+               "the panorama is larger than 16384x8192", place + ".size", "make it smaller")) {
+      return;
+    }
+    check(std::ranges::all_of(image.pixels, is_color),
+          "a pixel of the panorama is negative, beyond 1e15 or not a number", place + ".pixels",
+          "use numbers from 0 to 1e15");
   }
 
   void check_cameras(std::span<const Camera> cameras) {

@@ -5,31 +5,46 @@
 #include <memory>
 #include <variant>
 
+#include "promin/export.h"
 #include "promin/image.h"
+#include "promin/lights.h"
 #include "promin/math.h"
 
 namespace promin {
 
 /// The built-in surroundings for scenes without light (docs/model.md, "Studio"): a grey gradient with three soft lamps
-/// of its own, made to show form and gloss. It stands by the viewer whom `front` says.
+/// in it, made to show form and gloss. The studio stands by the viewer of whom `front` tells. What casts its shadows is
+/// a light of its own, make_studio_light.
 struct Studio {
-  /// The azimuth from which the scene is looked at, radians about +Y from +Z towards +X: where its front is.
+  /// The azimuth from which the scene is looked at, radians about +Y from +Z towards +X: where its front is. Finite.
   float front = 0.0F;
 };
 
-/// A gradient of colours, linear RGB, by elevation (OMI_environment_sky): from `horizon` up to `top` and down to
-/// `bottom`. A curve is the exponent of the way there, > 0: 1 - (1 - |sin elevation|)^(1 / curve) of it.
+/// A gradient of colours, linear RGB, finite and not negative, over the elevation (OMI_environment_sky): from `horizon`
+/// up to `top` and down to `bottom`. The way there is 1 - (1 - e)^(1 / curve), where e is the part of the right angle
+/// between horizon and top or bottom: a curve of 1 is linear, with a smaller one the horizon is narrower.
 struct GradientSky {
+  /// The colour at +Y.
   vec3 top{0.3F, 0.5F, 1.0F};
+  /// The colour of all that is level.
   vec3 horizon{0.8F, 0.8F, 0.9F};
+  /// The colour at -Y.
   vec3 bottom{0.2F, 0.2F, 0.2F};
+  /// The curve from horizon to top, > 0 and finite.
   float top_curve = 0.15F;
+  /// The curve from horizon to bottom, > 0 and finite.
   float bottom_curve = 0.02F;
 };
 
-/// A picture of all directions, linear RGB, row 0 at +Y, the middle of a row at -Z and a quarter to the right of it +X.
+/// A picture of all directions: the top row is at +Y, the middle of a row at -Z, a quarter to the right of it is +X,
+/// and equal steps in it are equal angles (equirectangular). Linear RGB, finite and not negative.
 struct Panorama {
-  /// Shared, because skies are copied; not null.
+  /// The most pixels of a row.
+  static constexpr uint32_t kMaxWidth = 16384;
+  /// The most rows.
+  static constexpr uint32_t kMaxHeight = 8192;
+
+  /// Shared, because skies are copied; not null, and not empty.
   std::shared_ptr<const Image> image;
 };
 
@@ -45,10 +60,14 @@ struct Environment {
   std::variant<std::monostate, Studio, GradientSky, Panorama> sky;
   /// Whether rays from the camera see the sky after all, where there is one.
   bool shows_sky = false;
-  /// How far the sky is turned about +Y, radians.
+  /// How far the sky is turned about +Y, radians, from +Z towards +X; finite.
   float rotation = 0.0F;
   /// A factor of the sky's radiance, finite and not negative.
   float intensity = 1.0F;
 };
+
+/// The directional light of a studio, 2 lux from the upper left of its front. Scenes in a studio have it among their
+/// lights.
+PROMIN_EXPORT Light make_studio_light(const Studio& studio);
 
 }  // namespace promin

@@ -108,7 +108,7 @@ struct AddedLights {
 };
 
 /// Gives a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient light
-/// of kDefaultAmbient where it has none. A scene with lights stays as it is.
+/// of kDefaultAmbient where it has none. A scene with lights or with a sky stays as it is.
 PROMIN_EXPORT AddedLights add_default_lights(Scene& scene);
 /// Each component of the ambient light that add_default_lights adds.
 inline constexpr float kDefaultAmbient = 0.1F;

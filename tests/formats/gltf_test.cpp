@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "core/rounding.h"
+#include "environment/sky_radiance.h"
+#include "promin/image.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 
@@ -542,6 +544,61 @@ TEST_F(GltfTest, ThePlainSkyIsBackgroundAndAmbientLight) {
   EXPECT_EQ(scene.environment.background, vec3(0));
   EXPECT_EQ(scene.environment.ambient, vec3(0.25F));
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"physical\"")));
+}
+
+TEST_F(GltfTest, GradientSkiesAreRead) {
+  GltfBuilder gltf = triangle_gltf();
+  auto& skies = gltf.json["extensions"]["OMI_environment_sky"]["skies"];
+  skies = {
+      {{"type", "gradient"},
+       {"gradient",
+        {{"topColor", {0, 0, 2}}, {"horizonColor", {1, 1, 1}}, {"bottomColor", {0.5, 0.25, 0}}, {"topCurve", 0.5}}}}};
+  LoadedScene scene = load(gltf);
+  const auto& sky = std::get<GradientSky>(scene.environment.sky);
+  EXPECT_EQ(sky.top, vec3(0, 0, 2));
+  EXPECT_EQ(sky.horizon, vec3(1));
+  EXPECT_EQ(sky.bottom, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(sky.top_curve, 0.5F);
+  EXPECT_EQ(sky.bottom_curve, 0.02F) << "as the specification says";
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  skies[0]["ambientSkyContribution"] = 0.5;
+  skies[0]["gradient"]["sunCurve"] = 4;
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("ambientSkyContribution"), HasSubstr("suns")));
+  skies[0]["gradient"]["bottomCurve"] = 0;
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("bottomCurve"));
+  skies[0]["gradient"].erase("bottomCurve");
+  skies[0]["gradient"].erase("topColor");
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("topColor"));
+}
+
+TEST_F(GltfTest, PanoramasLieBesideTheFile) {
+  GltfBuilder gltf = triangle_gltf();
+  auto& skies = gltf.json["extensions"]["OMI_environment_sky"]["skies"];
+  skies = {{{"type", "panorama"}, {"panorama", {{"equirectangular", 1}}}}};
+  gltf.json["textures"] = {json::object(), {{"source", 0}}};
+  gltf.json["images"] = {{{"uri", "my%20sky.exr"}}};
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("missing")));
+  write("my sky.exr", "no picture");
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cannot be read")));
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(load(gltf).environment.sky));
+  // The middle is +Z and the left is +X: of four pixels the first goes from -Z to +X.
+  write_image(folder_ / "my sky.exr", {{4, 2}, std::vector<vec3>(8, vec3(0))});
+  Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.0F))};
+  picture.at(0, 0) = picture.at(0, 1) = vec3(1, 0, 0);
+  write_image(folder_ / "my sky.exr", picture);
+  const LoadedScene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_EQ(std::get<Panorama>(scene.environment.sky).image->size, uvec2(4, 2));
+  EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, -1)).x, 1.0, 1e-6);
+  EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, 1)).x, 0.0, 1e-6);
+  gltf.json["images"] = {{{"bufferView", 0}}};
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("no file of its own")));
+  gltf.json["images"] = {{{"uri", "../sky.exr"}}};
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("leaves the scene's folder"));
+  skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
+  skies[0]["panorama"] = {{"equirectangular", 2}};
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("equirectangular"));
 }
 
 // Cameras

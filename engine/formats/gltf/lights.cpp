@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
+#include <type_traits>
 
+#include "environment/read_panorama.h"
+#include "formats/gltf/buffers.h"
 #include "formats/gltf/json_lookup.h"
+#include "formats/scene_path.h"
 #include "promin/validate.h"
 
 namespace promin {
@@ -51,6 +55,69 @@ void read_power(const json& source, const std::string& title, Light& light, Load
   }
   if (light.kind == LightKind::kDirectional) light.attenuation = Attenuation::kNone;
   if (light.attenuation == Attenuation::kInverseSquare) light.range = source.value("range", light.range);
+}
+
+GradientSky gradient_of(const json& source) {
+  GradientSky sky;
+  sky.top = vec3(vec3_of(source, "topColor", dvec3(0.0)));
+  sky.horizon = vec3(vec3_of(source, "horizonColor", dvec3(0.0)));
+  sky.bottom = vec3(vec3_of(source, "bottomColor", dvec3(0.0)));
+  sky.top_curve = source.value("topCurve", sky.top_curve);
+  sky.bottom_curve = source.value("bottomCurve", sky.bottom_curve);
+  return sky;
+}
+
+/// The member where it is there and of its type.
+template <typename T>
+std::optional<T> value_of(const json& object, const char* name) {
+  if (!object.is_object()) return std::nullopt;
+  const auto member = object.find(name);
+  if (member == object.end()) return std::nullopt;
+  const bool is_right = std::is_same_v<T, std::string> ? member->is_string() : member->is_number_unsigned();
+  if (!is_right) return std::nullopt;
+  return member->get<T>();
+}
+
+/// The picture of a panorama: of a texture its source's file beside the scene. On nullopt the report holds the reason.
+std::optional<Panorama> read_panorama_sky(const json& document, const json& source, LoadReport& report) {
+  if (source.contains("cubemap") && !source.contains("equirectangular")) {
+    report.warn("the sky is a cube map, only equirectangular panoramas are drawn: there is no sky");
+    return std::nullopt;
+  }
+  const json& textures = elements_of(document, "textures");
+  const json& images = elements_of(document, "images");
+  const auto texture = value_of<size_t>(source, "equirectangular");
+  const auto image = texture ? value_of<size_t>(textures[*texture], "source") : std::nullopt;
+  const bool has_image = image && images.is_array() && *image < images.size();
+  const auto uri = has_image ? value_of<std::string>(images[*image], "uri") : std::nullopt;
+  if (!uri || uri->starts_with("data:")) {
+    report.warn("the sky's panorama has no file of its own: there is no sky");
+    return std::nullopt;
+  }
+  const std::string place = "images[" + std::to_string(*image) + "].uri";
+  const auto file = find_beside_scene(decode_percent(*uri).value_or(*uri), place, false, report);
+  if (!file) {
+    report.warn("the sky's panorama " + quote(*uri) + " is missing: there is no sky");
+    return std::nullopt;
+  }
+  try {
+    return read_panorama(*file);
+  } catch (const InputError& error) {
+    report.warn("the sky's panorama " + quote(*uri) + " cannot be read, " + error.problems().front().what +
+                ": there is no sky");
+    return std::nullopt;
+  }
+}
+
+/// What of a sky with directions is not modelled.
+void warn_about_sky(const json& sky, LoadReport& report) {
+  if (sky.value("ambientSkyContribution", 1.0) < 1.0) {
+    report.warn("ambientSkyContribution is ignored, all of the ambient light is the sky's");
+  }
+  const auto gradient = sky.find("gradient");
+  if (gradient != sky.end() && (gradient->contains("sunAngleMax") || gradient->contains("sunCurve"))) {
+    report.warn("suns are not drawn in the sky, they only light");
+  }
 }
 
 }  // namespace
@@ -101,8 +168,22 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
   const auto& sky = (*extension)["skies"][index];
   const std::string type = sky["type"];
   dvec3 color(0.0);
-  if (type != "plain") {
-    report.warn("the sky is of type " + quote(type) + ", only plain ones are drawn: the background is black");
+  if (type == "gradient" && sky.contains(type)) {
+    scene.environment.sky = gradient_of(sky[type]);
+    warn_about_sky(sky, report);
+    return;
+  }
+  if (type == "panorama" && sky.contains(type)) {
+    if (std::optional<Panorama> panorama = read_panorama_sky(document.json, sky[type], report)) {
+      scene.environment.sky = std::move(*panorama);
+      // Its middle is +Z here.
+      scene.environment.rotation = std::numbers::pi_v<float>;
+      warn_about_sky(sky, report);
+      return;
+    }
+  } else if (type != "plain") {
+    report.warn("the sky is of type " + quote(type) +
+                ", only plain ones, gradients and panoramas are drawn: the background is black");
   } else if (sky.contains("plain")) {
     color = vec3_of(sky["plain"], "color", dvec3(0.0));
   }

@@ -14,7 +14,9 @@ namespace promin {
 /// scale is ignored; the light travels along its -Z. Problems go to the report.
 std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
-/// Sets the scene's background and ambient light from OMI_environment_sky; black and none without it.
+/// Sets the scene's surroundings from OMI_environment_sky: background and ambient light of a plain sky, the sky where
+/// it is a gradient or an equirectangular panorama beside the file; a black background and nothing else without it. A
+/// panorama that cannot be read is a warning.
 void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& report);
 
 }  // namespace promin

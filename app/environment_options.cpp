@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "environment_options.h"
+
+#include "arguments.h"
+#include "environment/read_panorama.h"
+
+namespace promin::app {
+namespace {
+
+constexpr double kMaxRotationDeg = 3600.0;
+constexpr double kMaxIntensity = 1e15;
+
+}  // namespace
+
+void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
+  table.add("--environment", "FILE",
+            "Equirectangular panorama around the scene, .hdr or .exr, its middle at -Z [the scene's own sky]",
+            [&](const OptionValues& w) { options.panorama = w.text(); });
+  table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, in degrees [0]",
+            [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+  table.add("--environment-intensity", "X", "Factor of the sky's radiance [1]",
+            [&](const OptionValues& w) { options.intensity = w.real(0, 0.0, kMaxIntensity); });
+}
+
+EnvironmentChoice::EnvironmentChoice(const EnvironmentOptions& options)
+    : rotation_(static_cast<float>(glm::radians(options.rotation_deg))),
+      intensity_(static_cast<float>(options.intensity)) {
+  if (options.panorama) panorama_ = read_panorama(*options.panorama);
+}
+
+void EnvironmentChoice::apply(Scene& scene) const {
+  Environment& environment = scene.environment;
+  if (panorama_) {
+    environment.sky = *panorama_;
+    environment.rotation = 0.0F;
+    environment.intensity = 1.0F;
+  }
+  environment.rotation += rotation_;
+  environment.intensity *= intensity_;
+}
+
+}  // namespace promin::app

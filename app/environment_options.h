@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "promin/scene.h"
+
+namespace promin::app {
+
+class OptionTable;
+
+/// What the user changes about a scene's surroundings.
+struct EnvironmentOptions {
+  /// A panorama that takes the place of the scene's sky.
+  std::optional<std::filesystem::path> panorama;
+  /// An angle by which the sky is turned about +Y, degrees.
+  double rotation_deg = 0.0;
+  /// A factor of the sky's radiance.
+  double intensity = 1.0;
+};
+
+/// Adds the rows of the options. `options` must outlive the parsing.
+void add_environment_options(OptionTable& table, EnvironmentOptions& options);
+
+/// The options with the panorama read, once however many scenes take them.
+class EnvironmentChoice {
+ public:
+  EnvironmentChoice() = default;
+  /// Throws InputError where the panorama is none.
+  explicit EnvironmentChoice(const EnvironmentOptions& options);
+
+  /// Changes a scene's surroundings; comes before a scene without lights gets some.
+  void apply(Scene& scene) const;
+
+ private:
+  std::optional<Panorama> panorama_;
+  float rotation_ = 0.0F;
+  float intensity_ = 1.0F;
+};
+
+}  // namespace promin::app

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "promin/math.h"
+
+namespace promin {
+
+/// A sky as texels of an octahedron's map (environment/octahedron.h), with a border of one texel around them, so that
+/// interpolation needs no wrap.
+class SkyMap {
+ public:
+  explicit SkyMap(int side) : side_(side), texels_(static_cast<size_t>(side + 2) * static_cast<size_t>(side + 2)) {}
+
+  /// Texels along each side, without the border.
+  int side() const { return side_; }
+  /// A texel, linear RGB; x and y from -1, which is the border, to side().
+  const vec4& at(int x, int y) const { return texels_[index(x, y)]; }
+  vec4& at(int x, int y) { return texels_[index(x, y)]; }
+
+  /// Makes the border of the texels that lie beyond the edges on the sphere.
+  void fill_border();
+
+  /// The interpolated radiance of a direction of any length but 0.
+  vec4 look_up(const vec3& direction) const;
+
+ private:
+  size_t index(int x, int y) const {
+    return static_cast<size_t>(y + 1) * static_cast<size_t>(side_ + 2) + static_cast<size_t>(x + 1);
+  }
+
+  int side_;
+  /// w is unused: four floats are one register.
+  std::vector<vec4> texels_;
+};
+
+/// The solid angle of a part of the map around a place, per area of the map, in steradian.
+double solid_angle_density(const dvec2& place);
+
+/// A map of half the side, at least 2, each texel the mean of four by their solid angles.
+SkyMap halve(const SkyMap& map);
+
+}  // namespace promin
