@@ -35,15 +35,16 @@ vec3 to_shares(const dvec3& color) {
   return vec3(glm::min(color, dvec3(1.0)));
 }
 
-float ior_of(const json& extension, const std::string& title, LoadReport& report) {
+float ior_of(const json& extension, const std::string& place, LoadReport& report) {
   const float ior = extension.value("ior", 1.5F);
   if (ior != 0.0F && ior < 1.0F) {
-    report.refuse("an index of refraction lies between 0 and 1", "material " + title, "use 0 or a number from 1 on");
+    report.refuse("an index of refraction lies between 0 and 1", place + ".extensions.KHR_materials_ior.ior",
+                  "use 0 or a number from 1 on");
   }
   return ior;
 }
 
-MetallicRoughness metallic_roughness_of(const json& source, const std::string& title, LoadReport& report) {
+MetallicRoughness metallic_roughness_of(const json& source, const std::string& place, LoadReport& report) {
   MetallicRoughness material;
   material.base_color = to_shares(base_color_of(source));
   if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
@@ -51,7 +52,7 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
     material.roughness = pbr->value("roughnessFactor", 1.0F);
   }
   if (const json* extension = find_extension(source, "KHR_materials_ior")) {
-    material.ior = ior_of(*extension, title, report);
+    material.ior = ior_of(*extension, place, report);
   }
   if (const json* extension = find_extension(source, "KHR_materials_specular")) {
     material.specular = extension->value("specularFactor", 1.0F);
@@ -86,7 +87,7 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   }
 }
 
-Material read_material(const json& source, const std::string& title, LoadReport& report) {
+Material read_material(const json& source, const std::string& place, LoadReport& report) {
   Material material;
   material.name = source.value("name", "");
   if (const json* phong = find_extension(source, "PROMIN_materials_phong")) {
@@ -95,7 +96,7 @@ Material read_material(const json& source, const std::string& title, LoadReport&
     material.model = Unlit{vec3(base_color_of(source))};
     return material;
   } else {
-    material.model = metallic_roughness_of(source, title, report);
+    material.model = metallic_roughness_of(source, place, report);
   }
   double strength = 1.0;
   if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
@@ -111,9 +112,8 @@ std::vector<Material> read_gltf_materials(const GltfDocument& document, LoadRepo
   std::vector<Material> materials;
   for (const json& source : elements_of(document.json, "materials")) {
     const size_t index = materials.size();
-    const std::string title = title_of(document.json, "materials", index);
-    materials.push_back(read_material(source, title, report));
-    warn_about_what_is_ignored(source, title, report);
+    materials.push_back(read_material(source, std::string("materials[") + std::to_string(index) + "]", report));
+    warn_about_what_is_ignored(source, title_of(document.json, "materials", index), report);
   }
   return materials;
 }
