@@ -49,6 +49,9 @@ GltfBuilder rich_gltf() {
 json& shape(GltfBuilder& gltf, size_t index) {
   return gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"][index];
 }
+json& material_extension(GltfBuilder& gltf, const char* name) {
+  return gltf.json["materials"][0]["extensions"][name];
+}
 json& light(GltfBuilder& gltf) {
   return gltf.json["extensions"]["KHR_lights_punctual"]["lights"][0];
 }
@@ -136,6 +139,26 @@ const BadGltf kBadGltf[] = {
      "accessors[0].count"},
     {"Metallic", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 2; },
      "2 is out of range", "materials[0].pbrMetallicRoughness.metallicFactor"},
+    {"Ior",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
+     },
+     "-1 is out of range", "materials[0].extensions.KHR_materials_ior.ior"},
+    {"IorBelowOne",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_ior") = {{"ior", 0.5}};
+     },
+     "an index of refraction lies between 0 and 1", "materials[0].extensions.KHR_materials_ior.ior"},
+    {"Specular",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_specular") = {{"specularFactor", 2}};
+     },
+     "2 is out of range", "materials[0].extensions.KHR_materials_specular.specularFactor"},
+    {"SpecularColor",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_specular") = {{"specularColorFactor", {1, -1, 1}}};
+     },
+     "-1 is out of range", "materials[0].extensions.KHR_materials_specular.specularColorFactor"},
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; }, "-1 is out of range",
      "extensions.KHR_lights_punctual.lights[0].intensity"},
     {"LightType", [](auto& g) { light(g)["type"] = "area"; }, "\"area\" is none of point|directional|spot",

@@ -155,7 +155,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
       renderer.set_materials(std::vector{make_metallic_roughness(model)});
       for (const float cosine : {0.999F, 0.8F, 0.5F, 0.25F, 0.1F}) {
         const vec3 color = renderer.render(look_along(-direction_at(cosine))).image.pixels[0];
-        EXPECT_NEAR(color.x, 1.0F, 0.01F) << "metallic " << metallic << " roughness " << roughness << " at " << cosine;
+        EXPECT_NEAR(color.x, 1.0F, 0.002F) << "metallic " << metallic << " roughness " << roughness << " at " << cosine;
       }
     }
   }
