@@ -96,7 +96,10 @@ void arrive() {
     }
     begin_path_log(ray, found[i], 0u, paths[i].weight);
     seen[i] = VIEW.background.xyz;
-    if (has(FEATURE_SHOWN_SKY)) seen[i] = radiance_beyond(paths[i].direction, 0.0);
+    if (has(FEATURE_SHOWN_SKY)) {
+      // Not by a branch: it would hang on a uniform alone.
+      seen[i] = mix(seen[i], radiance_beyond(paths[i].direction, 0.0), bvec3(VIEW.background.w != 0.0));
+    }
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
       widen_cone(paths[i], ray, found[i]);

@@ -107,8 +107,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.tree_bounds = packed.tree_bounds;
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
-  constants_.ambient = shading.environment.ambient;
-  constants_.background = shading.environment.background;
+  take_colors(shading.environment);
   Tail tail{pack_materials(shading.materials), lobe_table_for(shading.materials), pack_sky(shading.environment),
             pack_lights(shading.lights)};
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
@@ -134,13 +133,19 @@ void DeviceScene::set_environment(const Environment& environment) {
   Tail tail = tail_;
   tail.sky = pack_sky(environment);
   if (!tail.sky.texels.empty() || !tail_.sky.texels.empty()) write_tail(std::move(tail));
+  take_colors(environment);
+}
+
+void DeviceScene::take_colors(const Environment& environment) {
   constants_.ambient = environment.ambient;
   constants_.background = environment.background;
+  constants_.shows_sky = environment.shows_sky && !std::holds_alternative<std::monostate>(environment.sky);
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + total_bytes(tail_.materials.records, tail_.materials.slots, tail_.lobe_table,
-                                                                                    tail_.sky.texels, tail_.lights.records);
+  const uint64_t tail_bytes = total_bytes(tail_.materials.records, tail_.materials.slots, tail_.lobe_table,
+                                          tail_.sky.texels, tail_.lights.records);
+  return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
 
 std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {

@@ -62,6 +62,8 @@ class DeviceScene {
   const Uploads& uploads() const { return uploads_; }
 
  private:
+  /// Takes over what an environment is without its sky, and whether that is seen.
+  void take_colors(const Environment& environment);
   gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
   /// What is replaced apart, behind the surfaces.

@@ -34,7 +34,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
           .right = vec4(vec3(right), is_orthographic ? 0.0F : cone),
           .up = vec4(vec3(up), 0.0F),
           .ambient = vec4(scene.ambient, 0.0F),
-          .background = vec4(scene.background, 0.0F),
+          .background = vec4(scene.background, scene.shows_sky ? 1.0F : 0.0F),
           .tree_bounds = scene.tree_bounds,
           .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
                               static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),

@@ -144,11 +144,6 @@ const BadGltf kBadGltf[] = {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
      },
      "-1 is out of range", "materials[0].extensions.KHR_materials_ior.ior"},
-    {"IorBelowOne",
-     [](auto& g) {
-       material_extension(g, "KHR_materials_ior") = {{"ior", 0.5}};
-     },
-     "an index of refraction lies between 0 and 1", "materials[0].extensions.KHR_materials_ior.ior"},
     {"Specular",
      [](auto& g) {
        material_extension(g, "KHR_materials_specular") = {{"specularFactor", 2}};

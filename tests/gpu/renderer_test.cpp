@@ -244,6 +244,33 @@ TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
   for (const vec3& pixel : render(scene, view, forced).image.pixels) EXPECT_EQ(pixel, scene.environment.background);
 }
 
+TEST_F(RendererTest, TheSkyIsBehindAllWhereItIsShown) {
+  world::Scene scene;
+  scene.materials.resize(1);
+  // Light that is the same from everywhere, so that any way to hold a sky has it.
+  const vec3 color(0.5F, 0.25F, 0.125F);
+  scene.environment.ambient = color;
+  scene.environment.sky = GradientSky{.top = color, .horizon = color, .bottom = color};
+  scene.environment.background = vec3(2.0F);
+  View view;
+  view.size = uvec2(9, 5);
+  TunedRendererOptions forced;
+  forced.force_all_features = true;
+  for (const TunedRendererOptions& options : {TunedRendererOptions(), forced}) {
+    Renderer renderer = make_renderer(device(), scene, options);
+    for (const vec3& pixel : renderer.render(view).image.pixels) EXPECT_EQ(pixel, vec3(2.0F));
+    Environment shown = scene.environment;
+    shown.shows_sky = true;
+    renderer.set_environment(shown);
+    for (const vec3& pixel : renderer.render(view).image.pixels) {
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(pixel[i], color[i], 2e-3F * color[i]);
+    }
+    shown.sky = std::monostate();
+    renderer.set_environment(shown);
+    for (const vec3& pixel : renderer.render(view).image.pixels) EXPECT_EQ(pixel, vec3(2.0F)) << "there is none";
+  }
+}
+
 /// Mirrors that lose nothing and send 1/1024 each; sources that light neither of them.
 world::Scene make_facing_mirrors(uint32_t light_count) {
   world::Scene scene;
