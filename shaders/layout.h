@@ -177,7 +177,7 @@ struct ViewConstants {
   vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = how much it grows at distance 1
   vec4 up;
   vec4 ambient;
-  vec4 background;
+  vec4 background;  // w = 1 where the sky is seen instead
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading

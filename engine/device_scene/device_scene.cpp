@@ -109,6 +109,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.unbounded_count = packed.unbounded_count;
   constants_.ambient = shading.environment.ambient;
   constants_.background = shading.environment.background;
+  constants_.shows_sky = shading.environment.shows_sky;
   Tail tail{pack_materials(shading.materials), lobe_table_for(shading.materials), pack_sky(shading.environment),
             pack_lights(shading.lights)};
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
@@ -136,6 +137,7 @@ void DeviceScene::set_environment(const Environment& environment) {
   if (!tail.sky.texels.empty() || !tail_.sky.texels.empty()) write_tail(std::move(tail));
   constants_.ambient = environment.ambient;
   constants_.background = environment.background;
+  constants_.shows_sky = environment.shows_sky;
 }
 
 uint64_t DeviceScene::size_bytes() const {

@@ -27,6 +27,7 @@ struct SceneConstants {
   uint32_t light_count = 0;
   vec3 ambient{0.0F};
   vec3 background{0.0F};
+  bool shows_sky = false;
   std::array<vec4, 9> irradiance{};
 };
 
