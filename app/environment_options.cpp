@@ -29,15 +29,16 @@ EnvironmentChoice::EnvironmentChoice(const EnvironmentOptions& options)
   if (options.panorama) panorama_ = read_panorama(*options.panorama);
 }
 
-void EnvironmentChoice::apply(Scene& scene) const {
-  Environment& environment = scene.environment;
-  if (panorama_) {
-    environment.sky = *panorama_;
-    environment.rotation = 0.0F;
-    environment.intensity = 1.0F;
-  }
-  environment.rotation += rotation_;
-  environment.intensity *= intensity_;
+void EnvironmentChoice::replace_sky(Scene& scene) const {
+  if (!panorama_) return;
+  scene.environment.sky = *panorama_;
+  scene.environment.rotation = 0.0F;
+  scene.environment.intensity = 1.0F;
+}
+
+void EnvironmentChoice::adjust_sky(Scene& scene) const {
+  scene.environment.rotation += rotation_;
+  scene.environment.intensity *= intensity_;
 }
 
 }  // namespace promin::app

@@ -32,8 +32,10 @@ class EnvironmentChoice {
   /// Throws InputError where the panorama is none.
   explicit EnvironmentChoice(const EnvironmentOptions& options);
 
-  /// Changes a scene's surroundings; comes before a scene without lights gets some.
-  void apply(Scene& scene) const;
+  /// Puts the panorama around a scene. Comes before a scene without a sky gets one.
+  void replace_sky(Scene& scene) const;
+  /// Turns the scene's sky, whichever it has got, and makes it brighter.
+  void adjust_sky(Scene& scene) const;
 
  private:
   std::optional<Panorama> panorama_;

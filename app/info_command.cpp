@@ -86,8 +86,9 @@ struct SkyDescription {
 
 std::string describe_sky(const Environment& environment) {
   std::string text = std::visit(SkyDescription(), environment.sky);
-  if (environment.rotation != 0.0F)
+  if (environment.rotation != 0.0F) {
     text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
+  }
   if (environment.intensity != 1.0F) text += fmt::format(", times {:.4g}", environment.intensity);
   return text;
 }
@@ -100,14 +101,14 @@ std::string describe_bounds(const Bounds& bounds) {
 
 void print_info(const std::filesystem::path& file, const EnvironmentOptions& environment) {
   Scene scene = load_scene(file);
-  EnvironmentChoice(environment).apply(scene);
+  const EnvironmentChoice surroundings(environment);
   const SceneCounts counts = count_scene(scene);
   print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene.objects.size()));
   print_row("primitives", std::to_string(counts.primitives));
   std::string lights = count_lights(scene.lights);
   // The features and the tree are of the scene as it would be rendered, with the light that stands in.
-  const AssumedLight assumed = light_scene(scene);
+  const AssumedLight assumed = light_up(scene, {}, surroundings);
   if (const std::string light = describe_light(assumed); !light.empty()) lights.append("; assumed: ").append(light);
   const world::Scene flat = world::flatten(scene);
   const PackedScene packed = pack_scene(flat, builder_names().front());

@@ -204,12 +204,11 @@ void render(const RenderOptions& options) {
 
   RunStats stats;
   Scene scene = load_for(tracing, stats, console);
-  EnvironmentChoice(options.view.environment).apply(scene);
   ViewOptions view = options.view;
   view.given_camera = frames.front().camera;
   stats.view = make_view(scene, view, console);
   check_explained_pixel(options, stats.view->size);
-  const AssumedLight assumed = light_up(scene, view.look);
+  const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
   stats.display = choose_display(scene, view.look, view.debug_view);
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
   const std::string assumptions =

@@ -115,8 +115,10 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   return view;
 }
 
-AssumedLight light_up(Scene& scene, const LookOptions& look) {
+AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings) {
+  surroundings.replace_sky(scene);
   AssumedLight assumed = light_scene(scene, look.light);
+  surroundings.adjust_sky(scene);
   if (!look.background) return assumed;
   assumed.has_background = false;
   Environment& environment = scene.environment;

@@ -18,8 +18,9 @@ namespace promin::app {
 /// parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 
-/// Lights the scene as the options ask, and gives it the background that they name. Throws as light_scene does.
-AssumedLight light_up(Scene& scene, const LookOptions& look);
+/// Surrounds and lights the scene as the options ask, and gives it the background that they name. Throws as light_scene
+/// does.
+AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings = {});
 
 /// How pictures of a scene are shown, lit up or not. Debug views are shown as they are.
 DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view);

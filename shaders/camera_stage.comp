@@ -95,11 +95,7 @@ void arrive() {
       continue;
     }
     begin_path_log(ray, found[i], 0u, paths[i].weight);
-    seen[i] = VIEW.background.xyz;
-    if (has(FEATURE_SHOWN_SKY)) {
-      // Not by a branch: it would hang on a uniform alone.
-      seen[i] = mix(seen[i], radiance_beyond(paths[i].direction, 0.0), bvec3(VIEW.background.w != 0.0));
-    }
+    seen[i] = radiance_behind(paths[i].direction);
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
       widen_cone(paths[i], ray, found[i]);

@@ -107,8 +107,14 @@ float perfect_mirror_roughness() {
   return mix(0.0, NO_ENVIRONMENT, has_no_sky().x);
 }
 
+// What a ray brings that leaves the scene without any deflection; the background's w is 1 where it is the sky.
+vec3 radiance_behind(vec3 direction) {
+  if (!has(FEATURE_SHOWN_SKY)) return VIEW.background.xyz;
+  return mix(VIEW.background.xyz, environment_radiance(direction, 0.0), bvec3(VIEW.background.w != 0.0));
+}
+
 // What a ray brings that leaves the scene; `roughness` is the largest of those on its way, or NO_ENVIRONMENT.
 vec3 radiance_beyond(vec3 direction, float roughness) {
-  if (!SEES_ENVIRONMENT || roughness == NO_ENVIRONMENT) return VIEW.background.xyz;
+  if (!SEES_ENVIRONMENT || roughness == NO_ENVIRONMENT) return radiance_behind(direction);
   return environment_radiance(direction, roughness);
 }

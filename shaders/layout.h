@@ -174,7 +174,7 @@ LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 struct ViewConstants {
   vec4 eye;  // w = near: distance of the viewport plane
   vec4 look;   // w = width of a sample's cone of sight at the eye, with TEXTURES
-  vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = how much it grows at distance 1
+  vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = growth of that cone
   vec4 up;
   vec4 ambient;
   vec4 background;  // w = 1 where rays from the camera see the sky instead, else 0

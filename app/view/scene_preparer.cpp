@@ -78,8 +78,7 @@ void ScenePreparer::read() {
   step_ = Step::kReading;
   work_.start([this, request = asked_] {
     const auto scene = std::make_shared<Scene>(load_scene(file_, sources_));
-    environment_.apply(*scene);
-    light_up(*scene, look_);
+    light_up(*scene, look_, environment_);
     return make(put_on_device(scene, request), request);
   });
 }

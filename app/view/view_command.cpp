@@ -98,7 +98,6 @@ void view(const WindowOptions& options) {
   start.file = tracing.scene;
   auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
   const EnvironmentChoice environment(options.view.environment);
-  environment.apply(*scene);
   ViewOptions view_options = options.view;
   if (options.replay) {
     start.replay.emplace(read_camera_path(*options.replay), options.fps);
@@ -106,7 +105,7 @@ void view(const WindowOptions& options) {
   }
   start.view = make_view(*scene, view_options, console);
   const LookOptions& look = options.view.look;
-  const AssumedLight assumed = light_up(*scene, look);
+  const AssumedLight assumed = light_up(*scene, look, environment);
   const DisplayTransform display = choose_display(*scene, look, start.view.mode.debug_view);
   const std::string assumptions = describe_assumptions(*scene, view_options, assumed, display);
   if (!assumptions.empty()) console.note(assumptions);

@@ -29,19 +29,19 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   // A ray's interval is open, but what lies on the viewport itself is drawn.
   const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
   layout::ViewConstants constants{
-          .eye = vec4(camera.eye, before_near),
-          .look = vec4(camera.look, is_orthographic ? cone : 0.0F),
-          .right = vec4(vec3(right), is_orthographic ? 0.0F : cone),
-          .up = vec4(vec3(up), 0.0F),
-          .ambient = vec4(scene.ambient, 0.0F),
-          .background = vec4(scene.background, scene.shows_sky ? 1.0F : 0.0F),
-          .tree_bounds = scene.tree_bounds,
-          .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
-                              static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),
-          .first_index = scene.first_index,
-          .first_lookup = scene.first_lookup,
-          .first_texture = scene.first_texture,
-          .irradiance = {}};
+      .eye = vec4(camera.eye, before_near),
+      .look = vec4(camera.look, is_orthographic ? cone : 0.0F),
+      .right = vec4(vec3(right), is_orthographic ? 0.0F : cone),
+      .up = vec4(vec3(up), 0.0F),
+      .ambient = vec4(scene.ambient, 0.0F),
+      .background = vec4(scene.background, scene.shows_sky ? 1.0F : 0.0F),
+      .tree_bounds = scene.tree_bounds,
+      .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
+                          static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),
+      .first_index = scene.first_index,
+      .first_lookup = scene.first_lookup,
+      .first_texture = scene.first_texture,
+      .irradiance = {}};
   std::ranges::copy(scene.irradiance, constants.irradiance);
   return constants;
 }

@@ -19,10 +19,6 @@ constexpr double kFloorDepth = 0.35;
 /// The part of a lamp's half size within which its edge falls from all to nothing, to both sides of it.
 constexpr double kEdge = 0.15;
 
-constexpr double kLightAzimuthDeg = -35.0;
-constexpr double kLightElevationDeg = 40.0;
-constexpr float kLightPower = 2.0F;
-
 /// A soft rectangle in the sky, in degrees. The azimuth is counted from the viewer to the right; the size as seen from
 /// the scene.
 struct Lamp {
@@ -87,16 +83,6 @@ double studio_radiance(const dvec3& direction) {
                                   : kHorizon + (kFloor - kHorizon) * smoothstep(0.0, kFloorDepth, -direction.y);
   for (const HungLamp& lamp : kLamps) sum += lamp.radiance(direction);
   return sum;
-}
-
-Light make_studio_light(const Studio& studio) {
-  Light light;
-  light.name = "studio";
-  light.kind = LightKind::kDirectional;
-  const double azimuth = static_cast<double>(studio.front) + glm::radians(kLightAzimuthDeg);
-  light.direction = -vec3(direction_of(azimuth, glm::radians(kLightElevationDeg)));
-  light.diffuse = light.specular = vec3(kLightPower);
-  return light;
 }
 
 }  // namespace promin

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "promin/environment.h"
+#include "promin/math.h"
 
 namespace promin {
 

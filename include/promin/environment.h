@@ -5,16 +5,14 @@
 #include <memory>
 #include <variant>
 
-#include "promin/export.h"
 #include "promin/image.h"
-#include "promin/lights.h"
 #include "promin/math.h"
 
 namespace promin {
 
 /// The built-in surroundings for scenes without light (docs/model.md, "Studio"): a grey gradient with three soft lamps
 /// in it, made to show form and gloss. The studio stands by the viewer of whom `front` tells. What casts its shadows is
-/// a light of its own, make_studio_light.
+/// a light of its own, make_studio_light (promin/lighting.h).
 struct Studio {
   /// The azimuth from which the scene is looked at, radians about +Y from +Z towards +X: where its front is. Finite.
   float front = 0.0F;
@@ -57,7 +55,7 @@ struct Environment {
   vec3 background{0.0F};
   /// What surrounds the scene instead of ambient light; rays from the camera see the background all the same, unless
   /// `shows_sky`.
-  std::variant<std::monostate, Studio, GradientSky, Panorama> sky;
+  std::variant<std::monostate, Studio, GradientSky, Panorama> sky{};
   /// Whether rays from the camera see the sky after all, where there is one.
   bool shows_sky = false;
   /// How far the sky is turned about +Y, radians, from +Z towards +X; finite.
@@ -65,9 +63,4 @@ struct Environment {
   /// A factor of the sky's radiance, finite and not negative.
   float intensity = 1.0F;
 };
-
-/// The directional light of a studio, 2 lux from the upper left of its front. Scenes in a studio have it among their
-/// lights.
-PROMIN_EXPORT Light make_studio_light(const Studio& studio);
-
 }  // namespace promin

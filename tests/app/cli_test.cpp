@@ -157,6 +157,43 @@ TEST_F(CliTest, BadScenesAreRefused) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("garbage.gltf", "empty.obj", "scene.blend", "old.exr"));
 }
 
+TEST_F(CliTest, BadPanoramasAreRefused) {
+  write("broken.hdr", "#?RADIANCE");
+  write_image(folder() / "negative.exr", {{4, 2}, std::vector<vec3>(8, vec3(-1.0F))});
+  write_image(folder() / "wide.exr", {{16385, 1}, std::vector<vec3>(16385, vec3(1.0F))});
+  const std::pair<std::string, std::string> cases[] = {{"none.hdr", "no such picture, none.hdr"},
+                                                       {"broken.hdr", "broken.hdr"},
+                                                       {"negative.exr", "negative, beyond 1e15 or not a number"},
+                                                       {"wide.exr", "too large (16385x1 pixels), wide.exr"}};
+  for (const auto& [panorama, part] : cases) {
+    SCOPED_TRACE(panorama);
+    expect_failure(run({"render", "square.gltf", "--environment", panorama, "-o", "a.exr"}), 3, part);
+    expect_failure(run({"info", "square.gltf", "--environment", panorama}), 3, part);
+  }
+  expect_failure(run({"info", "square.gltf", "--environment-intensity", "-1"}), 2, "--environment-intensity takes");
+  expect_failure(run({"render", "square.gltf", "--environment", "wide.exr", "-o", "wide.exr"}), 2, "wide.exr");
+}
+
+TEST_F(CliTest, InfoSaysWhatSurroundsAScene) {
+  write_image(folder() / "sky.exr", {{4, 2}, std::vector<vec3>(8, vec3(1.0F))});
+  const ProcessResult info = run({"info", "triangle.obj", "--environment", "sky.exr", "--environment-rotation", "90",
+                                  "--environment-intensity", "2"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, ContainsRegex("sky +panorama of 4x2, turned by 90 degrees, times 2\n"));
+  EXPECT_THAT(info.out, ContainsRegex("lights +0\n"));
+  EXPECT_THAT(run({"info", "triangle.obj", "--environment-intensity", "3"}).out, ContainsRegex("sky +studio, times 3"));
+}
+
+TEST_F(CliTest, APanoramaLightsAndIsSeen) {
+  write_image(folder() / "sky.exr", {{4, 2}, std::vector<vec3>(8, vec3(0.5F))});
+  const Image image = render({"triangle.obj", "--size", "64", "36", "--environment", "sky.exr",
+                              "--environment-intensity", "2", "--background", "environment"},
+                             "a.exr");
+  EXPECT_EQ(image.at(0, 0), vec3(1.0F));
+  // The grey of OBJ, 0.8, under light of 1 from everywhere.
+  EXPECT_NEAR(image.at(32, 18).x, 0.8F, 1e-3F);
+}
+
 TEST_F(CliTest, UnwritableOutputsAreFoundBeforeTheWork) {
   write("old.exr", "old");
   fs::create_directory(folder() / "folder.exr");

@@ -555,6 +555,7 @@ TEST_F(GltfTest, GradientSkiesAreRead) {
         {{"topColor", {0, 0, 2}}, {"horizonColor", {1, 1, 1}}, {"bottomColor", {0.5, 0.25, 0}}, {"topCurve", 0.5}}}}};
   LoadedScene scene = load(gltf);
   const auto& sky = std::get<GradientSky>(scene.environment.sky);
+  EXPECT_TRUE(scene.environment.shows_sky);
   EXPECT_EQ(sky.top, vec3(0, 0, 2));
   EXPECT_EQ(sky.horizon, vec3(1));
   EXPECT_EQ(sky.bottom, vec3(0.5F, 0.25F, 0));
@@ -582,12 +583,12 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cannot be read")));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(load(gltf).environment.sky));
   // The middle is +Z and the left is +X: of four pixels the first goes from -Z to +X.
-  write_image(folder_ / "my sky.exr", {{4, 2}, std::vector<vec3>(8, vec3(0))});
   Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.0F))};
   picture.at(0, 0) = picture.at(0, 1) = vec3(1, 0, 0);
   write_image(folder_ / "my sky.exr", picture);
   const LoadedScene scene = load(gltf);
   EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_TRUE(scene.environment.shows_sky);
   EXPECT_EQ(std::get<Panorama>(scene.environment.sky).image->size, uvec2(4, 2));
   EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, -1)).x, 1.0, 1e-6);
   EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, 1)).x, 0.0, 1e-6);

@@ -8,6 +8,7 @@
 #include "environment/sky_radiance.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "promin/lighting.h"
 #include "promin/renderer.h"
 #include "render/renderer_impl.h"
 
@@ -65,6 +66,24 @@ Panorama make_panorama(uvec2 size, const std::function<vec3(uint32_t, uint32_t)>
   return {image};
 }
 
+/// The directions of the patches and their colours.
+struct Patch {
+  vec3 axis;
+  vec3 color;
+};
+constexpr Patch kPatches[] = {{{1, 0, 0}, {1, 0, 0}},  {{-1, 0, 0}, {0, 1, 1}}, {{0, 1, 0}, {0, 1, 0}},
+                              {{0, -1, 0}, {1, 0, 1}}, {{0, 0, 1}, {0, 0, 1}},  {{0, 0, -1}, {1, 1, 0}}};
+
+/// A picture as a person would draw it: top and bottom rows, and in between what is behind, left, ahead, right.
+Panorama make_patches() {
+  return make_panorama({64, 32}, [](uint32_t x, uint32_t y) {
+    if (y < 8) return kPatches[2].color;
+    if (y >= 24) return kPatches[3].color;
+    const uint32_t quarter = (x + 8) / 16 % 4;
+    return kPatches[quarter == 0 ? 4 : quarter == 1 ? 1 : quarter == 2 ? 5 : 0].color;
+  });
+}
+
 class SkyPictureTest : public test::DeviceTest {
  protected:
   Image render(const world::Scene& scene, const View& view, const TunedRendererOptions& options = {}) const {
@@ -97,7 +116,7 @@ world::Scene make_studio_scene() {
   scene.environment.sky = Studio{0.3F};
   scene.environment.ambient = vec3(0.125F);
   scene.environment.background = vec3(0.25F);
-  scene.lights = {make_studio_light(Studio{0.3F})};
+  scene.lights = {make_studio_light(0.3F)};
   return scene;
 }
 
@@ -123,6 +142,22 @@ TEST_F(SkyPictureTest, StorageTexelsAndSpecialisationChangeNoBit) {
   EXPECT_TRUE(has_same_bits(render(bare, make_studio_view(), forced), render(bare, make_studio_view())));
 }
 
+TEST_F(SkyPictureTest, CamerasSeeTheSkyWhereItIsShown) {
+  world::Scene scene;
+  scene.environment.sky = make_patches();
+  scene.environment.background = vec3(0.25F);
+  TunedRendererOptions forced;
+  forced.force_all_features = true;
+  for (const Patch& patch : kPatches) {
+    scene.environment.shows_sky = true;
+    View view = look_from(-patch.axis);
+    EXPECT_LT(glm::distance(render(scene, view).pixels[0], patch.color), 1e-3F);
+    scene.environment.shows_sky = false;
+    EXPECT_EQ(render(scene, view).pixels[0], scene.environment.background);
+    if (patch.axis.x > 0.0F) EXPECT_EQ(render(scene, view, forced).pixels[0], scene.environment.background);
+  }
+}
+
 TEST_F(SkyPictureTest, ASkyIsReplacedWithoutATree) {
   const world::Scene scene = make_studio_scene();
   world::Scene bare = scene;
@@ -133,24 +168,6 @@ TEST_F(SkyPictureTest, ASkyIsReplacedWithoutATree) {
   EXPECT_TRUE(has_same_bits(renderer.render(make_studio_view()).image, render(scene, make_studio_view())));
   renderer.set_environment(bare.environment);
   EXPECT_TRUE(has_same_bits(renderer.render(make_studio_view()).image, before));
-}
-
-/// The directions of the patches and their colours.
-struct Patch {
-  vec3 axis;
-  vec3 color;
-};
-constexpr Patch kPatches[] = {{{1, 0, 0}, {1, 0, 0}},  {{-1, 0, 0}, {0, 1, 1}}, {{0, 1, 0}, {0, 1, 0}},
-                              {{0, -1, 0}, {1, 0, 1}}, {{0, 0, 1}, {0, 0, 1}},  {{0, 0, -1}, {1, 1, 0}}};
-
-/// A picture as a person would draw it: top and bottom rows, and in between what is behind, left, ahead, right.
-Panorama make_patches() {
-  return make_panorama({64, 32}, [](uint32_t x, uint32_t y) {
-    if (y < 8) return kPatches[2].color;
-    if (y >= 24) return kPatches[3].color;
-    const uint32_t quarter = (x + 8) / 16 % 4;
-    return kPatches[quarter == 0 ? 4 : quarter == 1 ? 1 : quarter == 2 ? 5 : 0].color;
-  });
 }
 
 TEST_F(SkyPictureTest, MirrorsSeeEachPatchWhereItIs) {

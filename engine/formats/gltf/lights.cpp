@@ -170,12 +170,14 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
   dvec3 color(0.0);
   if (type == "gradient" && sky.contains(type)) {
     scene.environment.sky = gradient_of(sky[type]);
+    scene.environment.shows_sky = true;
     warn_about_sky(sky, report);
     return;
   }
   if (type == "panorama" && sky.contains(type)) {
     if (std::optional<Panorama> panorama = read_panorama_sky(document.json, sky[type], report)) {
       scene.environment.sky = std::move(*panorama);
+      scene.environment.shows_sky = true;
       // Its middle is +Z here.
       scene.environment.rotation = std::numbers::pi_v<float>;
       warn_about_sky(sky, report);
