@@ -59,10 +59,10 @@ world::Scene make_scene_of_everything(uint32_t sphere_count) {
   scene.materials[6].model = Unlit{vec3(0.2F, 0.5F, 0.3F)};
   scene.objects = {{"floor", world::Plane{}, 0},
                    {"ball", world::Sphere{vec3(0, 1, 0), 1}, 1},
-                   {"can", world::Cylinder{vec3(2.2F, 0.8F, 0), glm::normalize(vec3(0.3F, 1, 0.2F)), 0.7F, 0.5F}, 2},
+                   {"can", world::Cylinder{vec3(2.2F, 0.8F, 0), glm::normalize(vec3(0.3F, 1, 0.2F)), 0.7F, 0.5F}, 5},
                    {"cone", world::Cone{vec3(-2.2F, 0.8F, 0), vec3(0, 1, 0), 0.8F, 0.7F, 0.0F}, 3},
                    {"frustum", world::Cone{vec3(-0.8F, 0.4F, 2), vec3(0, 1, 0), 0.4F, 0.6F, 0.3F}, 2},
-                   {"gem", make_smooth_mesh(vec3(1.2F, 0.6F, 1.8F), 0.6F), 3}};
+                   {"gem", make_smooth_mesh(vec3(1.2F, 0.6F, 1.8F), 0.6F), 4}};
   std::mt19937 generator(1);
   // std::uniform_real_distribution may differ between libraries; the generator's own numbers do not.
   const auto uniform = [&] { return static_cast<float>(generator() >> 8) * 0x1p-23F - 1.0F; };
