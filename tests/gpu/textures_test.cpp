@@ -262,7 +262,7 @@ TEST_F(TexturesTest, EveryWayOfTracingGivesTheSameBits) {
   }
   scene.materials[0].emissive_texture.texture = 0;
   scene.materials[0].emissive = vec3(0.5F);
-  scene.add("ball", Sphere{0.5F}, 0);
+  scene.add("ball", Sphere{.radius = 0.5}, 0);
   View view = make_board_view({96, 64}, 3);
   view.camera.projection = Projection::kPerspective;
   view.camera.eye = vec3(0.5F, 0.25F, 3.0F);

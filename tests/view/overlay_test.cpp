@@ -21,7 +21,7 @@ class OverlayTest : public test::DeviceTest {
   void SetUp() override {
     picture_.emplace(
         device(),
-        upload_scene(device(), pack_scene(scene_, "sah"), {scene_.materials, scene_.lights, scene_.environment}),
+        upload_scene(device(), pack_scene(scene_, "sah"), {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
         features_of(scene_), 1.0);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;

@@ -21,7 +21,7 @@ class ProgressivePictureTest : public test::DeviceTest {
   ProgressivePicture make_picture() const {
     const PackedScene packed = pack_scene(scene_, "sah");
     ProgressivePicture picture(device(),
-                               upload_scene(device(), packed, {scene_.materials, scene_.lights, scene_.environment}),
+                               upload_scene(device(), packed, {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
                                features_of(scene_), 1.0);
     picture.resize(kSize);
     return picture;
