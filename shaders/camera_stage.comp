@@ -10,10 +10,10 @@
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
 #include "bindings.glsl"
-#include "film.glsl"
 #include "math.glsl"
 #include "stream.glsl"
 #include "ray.glsl"
+#include "film.glsl"
 #include "make_ray.glsl"
 #include "primitives.glsl"
 #include "packet.glsl"
