@@ -154,7 +154,9 @@ TEST_F(SkyPictureTest, CamerasSeeTheSkyWhereItIsShown) {
     EXPECT_LT(glm::distance(render(scene, view).pixels[0], patch.color), 1e-3F);
     scene.environment.shows_sky = false;
     EXPECT_EQ(render(scene, view).pixels[0], scene.environment.background);
-    if (patch.axis.x > 0.0F) EXPECT_EQ(render(scene, view, forced).pixels[0], scene.environment.background);
+    if (patch.axis.x <= 0.0F) continue;
+    // With all features, which take long to compile, once.
+    EXPECT_EQ(render(scene, view, forced).pixels[0], scene.environment.background);
   }
 }
 
