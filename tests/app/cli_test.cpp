@@ -536,8 +536,10 @@ TEST_F(CliTest, TheDefaultSizeFollowsTheCamera) {
 }
 
 TEST_F(CliTest, LongWorkTellsItsProgressInPlainLines) {
-  Process program(PROMIN_EXECUTABLE, {"render", "square.gltf", "--size", "4000", "4000", "-s", "4096", "-o", "a.exr"},
-                  options_);
+  // Nothing is left to assume.
+  const OptionValues arguments = {"render", "square.gltf", "--size", "4000",         "4000", "-s", "4096", "-o",
+                                  "a.exr",  "--light",     "none",   "--background", "0",    "0",  "0"};
+  Process program(PROMIN_EXECUTABLE, arguments, options_);
   for (int i = 0; i < 600 && program.err().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
   program.send(SIGTERM);
   const ProcessResult result = program.wait();
