@@ -106,8 +106,8 @@ vk::raii::BufferView Buffer::make_texel_view() const {
 
 vk::raii::BufferView Buffer::make_word_view(vk::DeviceSize offset_bytes, vk::DeviceSize byte_count) const {
   const vk::DeviceSize most_bytes = device_->limits().maxTexelBufferElements * sizeof(uint32_t);
-  return {device_->handle(), vk::BufferViewCreateInfo({}, *buffer_, vk::Format::eR32Uint, offset_bytes,
-                                                      std::min(byte_count, most_bytes))};
+  return {device_->handle(),
+          vk::BufferViewCreateInfo({}, *buffer_, vk::Format::eR32Uint, offset_bytes, std::min(byte_count, most_bytes))};
 }
 
 void Buffer::write(std::span<const std::byte> data, vk::DeviceSize offset_bytes) {

@@ -171,8 +171,9 @@ gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
 void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
   vk::raii::BufferView texels = buffer.make_texel_view();
   // Where there are no images it is of words that nothing reads.
-  vk::raii::BufferView image_texels = buffer.make_word_view(image_words_bytes_ == 0 ? 0 : image_words_offset_,
-                                                            std::max<vk::DeviceSize>(image_words_bytes_, sizeof(uint32_t)));
+  vk::raii::BufferView image_texels =
+      buffer.make_word_view(image_words_bytes_ == 0 ? 0 : image_words_offset_,
+                            std::max<vk::DeviceSize>(image_words_bytes_, sizeof(uint32_t)));
   shading_texels_ = std::move(texels);
   image_texels_ = std::move(image_texels);
   shading_.emplace(std::move(buffer));

@@ -57,7 +57,8 @@ class MaterialPacker {
     const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
     const dvec3 at_normal =
         glm::min(slope * slope * dvec3(m.specular_color), dvec3(1.0)) * static_cast<double>(m.specular);
-    return {vec4(m.base_color, m.metallic), vec4(vec3(at_normal), m.specular),
+    return {vec4(m.base_color, m.metallic),
+            vec4(vec3(at_normal), m.specular),
             vec4(m.roughness, m.normal_scale, m.occlusion_strength, add(material.emissive_texture)),
             vec4(add(m.base_color_texture), add(m.metallic_roughness_texture), add(m.normal_texture),
                  add(m.occlusion_texture)),

@@ -95,7 +95,8 @@ class Validation {
   void check_images(const Scene& scene) {
     for (size_t i = 0; i < scene.images.size(); ++i) {
       const std::string place = place_of("images", i);
-      if (!check(scene.images[i] != nullptr, "there is no image", place, "give an empty one where it is absent")) continue;
+      if (!check(scene.images[i] != nullptr, "there is no image", place, "give an empty one where it is absent"))
+        continue;
       const TextureImage& image = *scene.images[i];
       check(static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal), "the use is none of ImageUse",
             place + ".use", "name one that there is");
@@ -109,7 +110,8 @@ class Validation {
     for (size_t i = 0; i < scene.textures.size(); ++i) {
       const Texture& texture = scene.textures[i];
       const std::string place = place_of("textures", i);
-      check(texture.image < scene.images.size(), "the image is out of range", place + ".image", "name one that there is");
+      check(texture.image < scene.images.size(), "the image is out of range", place + ".image",
+            "name one that there is");
       for (const TextureWrap wrap : {texture.wrap_u, texture.wrap_v}) {
         check(static_cast<uint32_t>(wrap) <= static_cast<uint32_t>(TextureWrap::kClampToEdge),
               "the wrap is none of TextureWrap", place, "name one that there is");
@@ -121,7 +123,8 @@ class Validation {
   void check_slot(const TextureSlot& slot, size_t texture_count, const std::string& place) {
     if (!slot.exists()) return;
     check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "name one that there is");
-    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set", "take one of these");
+    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set",
+          "take one of these");
     check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
   }
 
@@ -355,7 +358,8 @@ class Validation {
         mesh.uvs, [](const vec4& uv) { return is_in_range(dvec3(uv)) && std::abs(uv.w) <= kMaxCoordinate; },
         "a texture coordinate is not finite or beyond 1e15", place + ".uvs", "use smaller ones");
     check_each(
-        mesh.tangents, [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },
+        mesh.tangents,
+        [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },
         "a tangent has no length, is not finite or has a side that is neither 1 nor -1", place + ".tangents",
         "leave the tangents out, or give each a direction and a side");
     check_each(

@@ -100,7 +100,8 @@ class PngReader {
 class JpegReader {
  public:
   explicit JpegReader(std::span<const std::byte> file)
-      : handle_(tjInitDecompress(), tjDestroy), data_(reinterpret_cast<const unsigned char*>(file.data())),
+      : handle_(tjInitDecompress(), tjDestroy),
+        data_(reinterpret_cast<const unsigned char*>(file.data())),
         bytes_(file.size()) {
     if (!handle_) throw std::bad_alloc();
   }

@@ -120,8 +120,8 @@ void write_image(const TextureImage& image, const PlacedImage& placed, std::span
       });
     } else {
       const Level finer = std::move(level);
-      level = make_coarser(finer.size,
-                           [&](uint32_t x, uint32_t y) { return finer.texels[size_t{y} * finer.size.x + x]; });
+      level =
+          make_coarser(finer.size, [&](uint32_t x, uint32_t y) { return finer.texels[size_t{y} * finer.size.x + x]; });
     }
     words[i] = place;
     for (const vec4& texel : level.texels) words[place++] = encode(texel, image.use);

@@ -10,8 +10,8 @@
 
 namespace promin {
 
-// The models that a material may follow (docs/model.md). All factors are linear RGB, finite and not negative; nothing is
-// clamped to 1 unless it is said.
+// The models that a material may follow (docs/model.md). All factors are linear RGB, finite and not negative; nothing
+// is clamped to 1 unless it is said.
 
 /// Phong's model (docs/model.md, "Phong"). The default is a matt light grey.
 struct Phong {

@@ -70,8 +70,9 @@ class TexturesTest : public DeviceTest {
 TEST_F(TexturesTest, AConstantTextureIsAFactor) {
   for (const uint32_t code : {0U, 1U, 10U, 11U, 128U, 254U, 255U}) {
     for (const ImageUse use : {ImageUse::kColor, ImageUse::kData}) {
-      Scene scene = make_board(make_image({5, 3}, [&](uint32_t, uint32_t) { return grey(code); }, use), vec2(-1.5F),
-                               vec2(2.25F));
+      Scene scene = make_board(make_image(
+                                   {5, 3}, [&](uint32_t, uint32_t) { return grey(code); }, use),
+                               vec2(-1.5F), vec2(2.25F));
       const Image image = render(scene, make_board_view({16, 16}));
       const double number = code / 255.0;
       const double expected = use == ImageUse::kColor ? decode_srgb(number) : number;
@@ -103,8 +104,8 @@ TEST_F(TexturesTest, EdgesRepeatMirrorOrHold) {
                 {TextureWrap::kClampToEdge, "00000000012333333333"}};
   for (const auto& [wrap, row] : kCases) {
     for (const bool is_linear : {false, true}) {
-      Scene scene = make_board(make_image({4, 1}, [](uint32_t x, uint32_t) { return grey(60 * x); }), vec2(-2, 0),
-                               vec2(3, 1));
+      Scene scene =
+          make_board(make_image({4, 1}, [](uint32_t x, uint32_t) { return grey(60 * x); }), vec2(-2, 0), vec2(3, 1));
       scene.textures[0].wrap_u = wrap;
       scene.textures[0].is_magnified_linearly = is_linear;
       View view = make_board_view({20, 20});
@@ -150,8 +151,8 @@ TEST_F(TexturesTest, SetsAndTransformsAreFollowed) {
 
 TEST_F(TexturesTest, SmallTexelsAreAveraged) {
   // A checkerboard of 256 texels a side in 16 pixels: each covers 16 * 16 of them, light and dark alike.
-  const TextureImage checkers =
-      make_image({256, 256}, [](uint32_t x, uint32_t y) { return grey((x + y) % 2 == 0 ? 255 : 0); }, ImageUse::kColor);
+  const TextureImage checkers = make_image(
+      {256, 256}, [](uint32_t x, uint32_t y) { return grey((x + y) % 2 == 0 ? 255 : 0); }, ImageUse::kColor);
   Scene scene = make_board(checkers);
   for (const uint32_t samples : {1U, 4U}) {
     const Image image = render(scene, make_board_view({16, 16}, samples));
@@ -232,7 +233,8 @@ TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
 TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {
   // +X of the texture goes along +u, +Y against +v, as images have their first row at v = 0; the board's v goes up.
   const auto shaded = [&](uint32_t texel, bool has_tangents, float turn) {
-    Scene scene = make_lit_board(make_image({1, 1}, [&](uint32_t, uint32_t) { return texel; }, ImageUse::kNormal));
+    Scene scene = make_lit_board(make_image(
+        {1, 1}, [&](uint32_t, uint32_t) { return texel; }, ImageUse::kNormal));
     Mesh& mesh = std::get<Mesh>(scene.geometries[0]);
     if (has_tangents) mesh.tangents.assign(4, vec4(1, 0, 0, -1));
     if (turn != 0.0F) mesh.normals.assign(4, vec3(turn, 0, std::sqrt(1.0F - turn * turn)));

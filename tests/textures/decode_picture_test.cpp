@@ -71,12 +71,10 @@ TEST(DecodePicture, PngOfEveryKindBecomesRgba) {
   EXPECT_THAT(decode_picture(make_png({2, 1}, PNG_COLOR_TYPE_GRAY, 1, {0x40})).texels,
               ElementsAre(0xFF000000U, 0xFFFFFFFFU));
   EXPECT_THAT(decode_picture(make_png({1, 1}, PNG_COLOR_TYPE_GRAY_ALPHA, 8, {9, 5})).texels, ElementsAre(0x05090909U));
-  EXPECT_THAT(decode_picture(make_png({1, 1}, PNG_COLOR_TYPE_GRAY, 16, {0x80, 0x7F})).texels,
-              ElementsAre(0xFF808080U))
+  EXPECT_THAT(decode_picture(make_png({1, 1}, PNG_COLOR_TYPE_GRAY, 16, {0x80, 0x7F})).texels, ElementsAre(0xFF808080U))
       << "16 bits are rounded: 255 * 0x807F / 65535 = 127.996";
-  EXPECT_THAT(
-      decode_picture(make_png({2, 1}, PNG_COLOR_TYPE_PALETTE, 8, {1, 0}, {{10, 20, 30}, {40, 50, 60}})).texels,
-      ElementsAre(0xFF3C3228U, 0xFF1E140AU));
+  EXPECT_THAT(decode_picture(make_png({2, 1}, PNG_COLOR_TYPE_PALETTE, 8, {1, 0}, {{10, 20, 30}, {40, 50, 60}})).texels,
+              ElementsAre(0xFF3C3228U, 0xFF1E140AU));
 }
 
 TEST(DecodePicture, Jpeg) {

@@ -19,10 +19,10 @@ namespace {
 class OverlayTest : public test::DeviceTest {
  protected:
   void SetUp() override {
-    picture_.emplace(
-        device(),
-        upload_scene(device(), pack_scene(scene_, "sah"), {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
-        features_of(scene_), 1.0);
+    picture_.emplace(device(),
+                     upload_scene(device(), pack_scene(scene_, "sah"),
+                                  {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
+                     features_of(scene_), 1.0);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().DisplaySize = ImVec2(1000.0F, 1000.0F);

@@ -20,9 +20,10 @@ class ProgressivePictureTest : public test::DeviceTest {
  protected:
   ProgressivePicture make_picture() const {
     const PackedScene packed = pack_scene(scene_, "sah");
-    ProgressivePicture picture(device(),
-                               upload_scene(device(), packed, {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
-                               features_of(scene_), 1.0);
+    ProgressivePicture picture(
+        device(),
+        upload_scene(device(), packed, {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
+        features_of(scene_), 1.0);
     picture.resize(kSize);
     return picture;
   }

@@ -94,10 +94,10 @@ class ContentHash {
     add(slot.to_v);
   }
   void add(const Texture& texture) {
-    for (const uint64_t word : {uint64_t{texture.image}, static_cast<uint64_t>(texture.wrap_u),
-                                static_cast<uint64_t>(texture.wrap_v), uint64_t{texture.is_magnified_linearly},
-                                uint64_t{texture.is_minified_linearly}, uint64_t{texture.has_levels},
-                                uint64_t{texture.are_levels_linear}}) {
+    for (const uint64_t word :
+         {uint64_t{texture.image}, static_cast<uint64_t>(texture.wrap_u), static_cast<uint64_t>(texture.wrap_v),
+          uint64_t{texture.is_magnified_linearly}, uint64_t{texture.is_minified_linearly}, uint64_t{texture.has_levels},
+          uint64_t{texture.are_levels_linear}}) {
       add(word);
     }
   }

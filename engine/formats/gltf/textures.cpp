@@ -113,7 +113,7 @@ void GltfTextures::read_file(size_t index, Source& source) {
   if (image.contains("bufferView")) {
     const json& view = document_.json["bufferViews"][image["bufferView"].get<size_t>()];
     source.file = document_.buffers.bytes[view["buffer"].get<size_t>()].subspan(view.value("byteOffset", size_t{0}),
-                                                                               view["byteLength"].get<size_t>());
+                                                                                view["byteLength"].get<size_t>());
     return;
   }
   if (!image.contains("uri")) {
