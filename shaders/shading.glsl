@@ -54,7 +54,10 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
                         weights.y * lift_to_curve(point.position, corner1(p), n1 * side) +
                         weights.z * lift_to_curve(point.position, corner2(p), n2 * side);
   point.shadow_position = lifted;
-  if (has(FEATURE_TEXTURES)) point.curvature = side * curvature_of(p, n0, n1, n2);
+  if (has(FEATURE_TEXTURES)) {
+    precise float curvature = side * curvature_of(p, n0, n1, n2);
+    point.curvature = curvature;
+  }
 }
 
 // The area of texture coordinates over that of the triangle, for coordinates at its corners.
@@ -62,7 +65,8 @@ float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
   precise vec2 ab = b - a;
   precise vec2 ac = c - a;
   precise float double_area = abs(ab.x * ac.y - ab.y * ac.x);
-  return double_area / max(area, SMALLEST_NORMAL);
+  precise float ratio = double_area / max(area, SMALLEST_NORMAL);
+  return ratio;
 }
 
 // The normal, turned by a texture of normals: `tangent` and its bitangent span the plane that the texture is painted on.

@@ -5,7 +5,7 @@
 // (Akenine-Moller and others, "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems ch. 20).
 
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer ImageWords { uint image_words[]; };
-layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Slots { vec4 slot_vectors[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Slots { TextureSlotRecord slots[]; };
 layout(set = 0, binding = BINDING_TEXTURE_TEXELS) uniform usamplerBuffer image_texels;
 
 uint load_image_word(uint index) {
@@ -13,13 +13,11 @@ uint load_image_word(uint index) {
   return texelFetch(image_texels, int(index)).x;
 }
 
+// They are numbered from 1 on.
 TextureSlotRecord load_slot(uint number) {
-  // The view of slots begins at a multiple of their own size.
-  uint first = TEXTURE_SLOT_TEXELS * (VIEW.first_texture.z + number - 1u);
-  if (FETCHES_TEXELS == 0u) {
-    return TextureSlotRecord(slot_vectors[first], slot_vectors[first + 1u],
-                             floatBitsToUint(slot_vectors[first + 2u]));
-  }
+  uint index = VIEW.first_texture.z + number - 1u;
+  if (FETCHES_TEXELS == 0u) return slots[index];
+  uint first = TEXTURE_SLOT_TEXELS * index;
   return TextureSlotRecord(shading_vector(first), shading_vector(first + 1u),
                            texelFetch(shading_texels, int(first + 2u)));
 }
@@ -99,8 +97,8 @@ vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) 
 
 // What of a surface's texture coordinates lookups need.
 struct TexturePlace {
-  vec4 uvs;               // of both sets
-  vec2 log_coverage;      // of each: log2 of the area of coordinates that a pixel covers
+  vec4 uvs;           // of both sets
+  vec2 log_coverage;  // of each: log2 of the area of coordinates that a pixel covers
 };
 
 // A lookup at the level whose texels are as large as the pixel. Where levels are interpolated and a pixel has four

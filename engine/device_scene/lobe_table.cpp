@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kSide = layout::LOBE_TABLE_SIDE;
 
-constexpr std::array<uint32_t, kSide* kSide> kEntries = {
+constexpr std::array<uint32_t, kSide * kSide> kEntries = {
 #include "device_scene/lobe_table.def"
 };
 

@@ -46,11 +46,13 @@ struct MetallicRoughness {
   TextureSlot base_color_texture = {};
   /// Factors of roughness (green) and metallic (blue).
   TextureSlot metallic_roughness_texture = {};
-  /// Normals in the tangent space of the mesh, their x and y times `normal_scale`.
+  /// Normals in the tangent space of the mesh.
   TextureSlot normal_texture = {};
+  /// Factor of x and y of these normals, finite.
   float normal_scale = 1.0F;
-  /// Dims what the environment brings (red): 1 + occlusion_strength * (texture - 1), strength 0...1.
+  /// Dims what the environment brings (red): 1 + occlusion_strength * (texture - 1).
   TextureSlot occlusion_texture = {};
+  /// 0...1.
   float occlusion_strength = 1.0F;
 };
 

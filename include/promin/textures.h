@@ -43,14 +43,17 @@ enum class TextureWrap : uint32_t { kRepeat = 0, kMirroredRepeat = 1, kClampToEd
 struct Texture {
   /// Index into Scene::images.
   uint32_t image = 0;
-  /// Beyond the edges at u = 0 and 1, and at v = 0 and 1.
+  /// Beyond the edges at u = 0 and 1.
   TextureWrap wrap_u = TextureWrap::kRepeat;
+  /// Beyond the edges at v = 0 and 1.
   TextureWrap wrap_v = TextureWrap::kRepeat;
-  /// Whether texels are interpolated where they are larger than pixels, and where they are smaller.
+  /// Whether texels are interpolated where they are larger than pixels.
   bool is_magnified_linearly = true;
+  /// Whether they are where they are smaller.
   bool is_minified_linearly = true;
-  /// Whether smaller levels stand in where texels are smaller than pixels, and whether they are interpolated.
+  /// Whether smaller levels stand in where texels are smaller than pixels.
   bool has_levels = true;
+  /// Whether levels are interpolated.
   bool are_levels_linear = true;
 };
 
@@ -62,8 +65,9 @@ struct TextureSlot {
   uint32_t texture = kNone;
   /// Which of the mesh's texture coordinates, 0 or 1.
   uint32_t uv_set = 0;
-  /// u = to_u . (s, t, 1) and v = to_v . (s, t, 1) of the coordinates (s, t) of the mesh.
+  /// u = to_u . (s, t, 1) of the coordinates (s, t) of the mesh, finite.
   vec3 to_u{1.0F, 0.0F, 0.0F};
+  /// v likewise.
   vec3 to_v{0.0F, 1.0F, 0.0F};
 
   /// Whether there is a texture.

@@ -453,15 +453,79 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
 }
 
 TEST_F(GltfTest, WhatAMaterialLosesIsSaidByItsName) {
-  GltfBuilder gltf = material_gltf({{"name", "glass"},
-                                    {"alphaMode", "BLEND"},
-                                    {"normalTexture", {{"index", 0}}},
-                                    {"extensions", {{"KHR_materials_transmission", json::object()}}}});
+  GltfBuilder gltf = material_gltf(
+      {{"name", "glass"}, {"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_transmission", json::object()}}}});
   gltf.json["extensionsUsed"] = {"KHR_materials_transmission", "KHR_texture_transform"};
   gltf.add_node({{"mesh", 0}});
-  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"glass\": its textures are ignored, its factors are used",
-                                               "material \"glass\": alphaMode BLEND is drawn opaque",
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"glass\": alphaMode BLEND is drawn opaque",
                                                "material \"glass\": KHR_materials_transmission is ignored"));
+}
+
+TEST_F(GltfTest, PhongMaterialsHaveNoTextures) {
+  GltfBuilder gltf = material_gltf({{"name", "old"},
+                                    {"normalTexture", {{"index", 0}}},
+                                    {"extensions", {{"PROMIN_materials_phong", json::object()}}}});
+  gltf.json["images"] = {{{"uri", "missing.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"old\": its textures are ignored, its factors are used"));
+}
+
+/// A PNG of one pixel: 80 hexadecimal of red, 40 of green, 20 of blue.
+const std::string kPixel =
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNocFAAAAIkAOGVpLGLAAAAAElFTkSuQmCC";
+
+TEST_F(GltfTest, TexturesAreTakenAsTheyAre) {
+  GltfBuilder gltf =
+      material_gltf({{"pbrMetallicRoughness",
+                      {{"baseColorTexture",
+                        {{"index", 1},
+                         {"texCoord", 1},
+                         {"extensions",
+                          {{"KHR_texture_transform",
+                            {{"offset", {0.5, 0.25}}, {"rotation", 1.5707963267948966}, {"scale", {2, 4}}}}}}}},
+                       {"metallicRoughnessTexture", {{"index", 0}}}}},
+                     {"normalTexture", {{"index", 0}, {"scale", -0.5}}},
+                     {"occlusionTexture", {{"index", 0}, {"strength", 0.25}}},
+                     {"emissiveTexture", {{"index", 0}}}});
+  gltf.json["images"] = {{{"uri", kPixel}, {"name", "pixel"}}};
+  gltf.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9985}}};
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 0}, {"sampler", 0}}};
+  const LoadedScene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const auto model = model_of<MetallicRoughness>(scene);
+  const auto texture_of = [&](const TextureSlot& slot) { return scene.textures.at(slot.texture); };
+  const auto use_of = [&](const TextureSlot& slot) { return scene.images.at(texture_of(slot).image)->use; };
+  EXPECT_EQ(use_of(model.base_color_texture), ImageUse::kColor);
+  EXPECT_EQ(use_of(model.metallic_roughness_texture), ImageUse::kData);
+  EXPECT_EQ(use_of(model.normal_texture), ImageUse::kNormal);
+  EXPECT_EQ(use_of(scene.materials[0].emissive_texture), ImageUse::kColor);
+  EXPECT_EQ(scene.images.size(), 3U) << "one for each use";
+  EXPECT_EQ(model.normal_scale, -0.5F);
+  EXPECT_EQ(model.occlusion_strength, 0.25F);
+  EXPECT_EQ(model.base_color_texture.uv_set, 1U);
+  expect_near(model.base_color_texture.to_u, {0, 4, 0.5F});
+  expect_near(model.base_color_texture.to_v, {-2, 0, 0.25F});
+  const Texture texture = texture_of(model.base_color_texture);
+  EXPECT_EQ(texture.wrap_u, TextureWrap::kClampToEdge);
+  EXPECT_EQ(texture.wrap_v, TextureWrap::kMirroredRepeat);
+  EXPECT_FALSE(texture.is_magnified_linearly);
+  EXPECT_TRUE(texture.is_minified_linearly);
+  EXPECT_TRUE(texture.has_levels);
+  EXPECT_FALSE(texture.are_levels_linear);
+  EXPECT_TRUE(texture_of(model.normal_texture).are_levels_linear) << "the default";
+  EXPECT_EQ(scene.images[0]->name, "pixel");
+  EXPECT_EQ(scene.images[0]->texels, std::vector<uint32_t>{0xFF204080});
+}
+
+TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
+  GltfBuilder gltf = material_gltf({{"normalTexture", {{"index", 0}}}, {"emissiveTexture", {{"index", 1}}}});
+  gltf.json["images"] = {{{"uri", "missing.png"}, {"name", "bumps"}}, {{"uri", "data:;base64,AAAA"}}};
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  const LoadedScene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, ElementsAre("image \"bumps\" is ignored: \"missing.png\" does not exist",
+                                          "image images[1] is ignored: it is neither PNG nor JPEG"));
+  for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
 }
 
 // Lights and sky
@@ -662,7 +726,7 @@ GltfBuilder two_buffer_gltf(const json& second_buffer) {
   document["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 24}});
   document["accessors"].push_back(
       {{"bufferView", document["bufferViews"].size() - 1}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}});
-  document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = document["accessors"].size() - 1;
+  document["meshes"][0]["primitives"][0]["attributes"]["_MINE"] = document["accessors"].size() - 1;
   return gltf;
 }
 
