@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "environment/read_panorama.h"
 
-#include <cmath>
-
 #include "core/file.h"
+#include "core/srgb.h"
 #include "image/read_image.h"
 #include "promin/error.h"
 #include "promin/validate.h"
@@ -17,10 +16,9 @@ bool holds_radiance(const std::filesystem::path& file) {
   return ending == ".hdr" || ending == ".exr";
 }
 
-/// sRGB's transfer curve to linear light (IEC 61966-2-1).
-float decode_srgb(float encoded) {
-  const double x = encoded;
-  return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+vec3 to_linear(const vec3& codes) {
+  const auto channel = [&](int i) { return static_cast<float>(srgb_to_linear(static_cast<double>(codes[i]))); };
+  return {channel(0), channel(1), channel(2)};
 }
 
 }  // namespace
@@ -28,7 +26,7 @@ float decode_srgb(float encoded) {
 Panorama read_panorama(const std::filesystem::path& file) {
   Image image = read_image_within(file, {Panorama::kMaxWidth, Panorama::kMaxHeight});
   if (!holds_radiance(file)) {
-    for (vec3& pixel : image.pixels) pixel = {decode_srgb(pixel.x), decode_srgb(pixel.y), decode_srgb(pixel.z)};
+    for (vec3& pixel : image.pixels) pixel = to_linear(pixel);
   }
   Environment environment;
   Panorama panorama = {std::make_shared<const Image>(std::move(image))};

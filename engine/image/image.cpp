@@ -11,6 +11,7 @@
 #include <new>
 
 #include "core/file.h"
+#include "core/srgb.h"
 #include "image/open_pictures.h"
 #include "image/read_image.h"
 #include "promin/error.h"
@@ -139,8 +140,7 @@ bool has_named_channels(const fs::path& file) {
 float encode_srgb(float linear) {
   if (!(linear > 0.0F)) return 0.0F;
   if (linear >= 1.0F) return 1.0F;
-  const double x = linear;
-  return static_cast<float>(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055);
+  return static_cast<float>(linear_to_srgb(static_cast<double>(linear)));
 }
 
 void write_image(const fs::path& file, const Image& image, const Metadata& metadata,

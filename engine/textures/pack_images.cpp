@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/parallel.h"
+#include "core/srgb.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -20,20 +21,12 @@ struct Level {
   std::vector<vec4> texels;
 };
 
-/// IEC 61966-2-1.
-double decode_srgb(double code) {
-  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
-}
-double encode_srgb(double light) {
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
-}
-
 /// The numbers that bytes stand for, in red, green and blue.
 std::array<float, 256> make_numbers(ImageUse use) {
   std::array<float, 256> numbers{};
   for (size_t i = 0; i < numbers.size(); ++i) {
     const double code = static_cast<double>(i) / 255.0;
-    numbers[i] = static_cast<float>(use == ImageUse::kColor ? decode_srgb(code) : code);
+    numbers[i] = static_cast<float>(use == ImageUse::kColor ? srgb_to_linear(code) : code);
   }
   return numbers;
 }
@@ -46,7 +39,7 @@ uint32_t encode(const vec4& texel, ImageUse use) {
   uint32_t word = to_byte(static_cast<double>(texel.a)) << 24;
   for (int i = 0; i < 3; ++i) {
     const auto light = static_cast<double>(texel[i]);
-    word |= to_byte(use == ImageUse::kColor ? encode_srgb(light) : light) << (8 * i);
+    word |= to_byte(use == ImageUse::kColor ? linear_to_srgb(light) : light) << (8 * i);
   }
   return word;
 }
