@@ -37,14 +37,22 @@ Placed place(const Records& records, uint64_t offset) {
   return {std::as_bytes(std::span(records)), first * kStride, static_cast<uint32_t>(first)};
 }
 
+/// Whether these are the same bytes in host memory, which are not changed once they are packed, in the same place.
+bool is_same(const Placed& a, const Placed& b) {
+  return a.bytes.data() == b.bytes.data() && a.bytes.size() == b.bytes.size() && a.offset == b.offset;
+}
+
 void write(gpu::Buffer& buffer, const Placed& placed) {
   if (!placed.bytes.empty()) buffer.write(placed.bytes, placed.offset);
 }
 
-/// The table of lobes, where a material looks it up.
-std::vector<uvec4> lobe_table_for(std::span<const Material> materials) {
-  const auto looks_it_up = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
-  return std::ranges::any_of(materials, looks_it_up) ? make_lobe_table() : std::vector<uvec4>();
+bool look_up_lobes(std::span<const Material> materials) {
+  const auto looks_them_up = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
+  return std::ranges::any_of(materials, looks_them_up);
+}
+
+bool are_skies_equal(const Environment& a, const Environment& b) {
+  return a.sky == b.sky && a.rotation == b.rotation && a.intensity == b.intensity;
 }
 
 /// At least what Vulkan lets a device ask of where a view of texels begins.
@@ -75,8 +83,8 @@ DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   PlacedTail placed;
   placed.materials = place(tail.materials.records, head_bytes_);
   placed.texture_slots = place(tail.materials.slots, placed.materials.end());
-  placed.lobe_table = place(tail.lobe_table, placed.texture_slots.end());
-  placed.sky = place(tail.sky.texels, placed.lobe_table.end());
+  placed.lobe_table = place(*tail.lobe_table, placed.texture_slots.end());
+  placed.sky = place(tail.sky->texels, placed.lobe_table.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
   return placed;
 }
@@ -108,8 +116,8 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
   take_colors(shading.environment);
-  Tail tail{pack_materials(shading.materials), lobe_table_for(shading.materials), pack_sky(shading.environment),
-            pack_lights(shading.lights)};
+  Tail tail{pack_materials(shading.materials), lobe_table_for(shading.materials),
+            std::make_shared<const PackedSky>(pack_sky(shading.environment)), pack_lights(shading.lights)};
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : {surfaces, normals, colors, uvs, tangents, image_words}) write(*shading_, placed);
   write_tail(std::move(tail));
@@ -130,21 +138,30 @@ void DeviceScene::set_lights(std::span<const Light> lights) {
 }
 
 void DeviceScene::set_environment(const Environment& environment) {
-  Tail tail = tail_;
-  tail.sky = pack_sky(environment);
-  if (!tail.sky.texels.empty() || !tail_.sky.texels.empty()) write_tail(std::move(tail));
+  if (!are_skies_equal(environment, environment_)) {
+    Tail tail = tail_;
+    tail.sky = std::make_shared<const PackedSky>(pack_sky(environment));
+    write_tail(std::move(tail));
+  }
   take_colors(environment);
+}
+
+std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_table_for(std::span<const Material> materials) const {
+  if (!look_up_lobes(materials)) return std::make_shared<const std::vector<uvec4>>();
+  // It is one and the same for all scenes.
+  return tail_.lobe_table->empty() ? std::make_shared<const std::vector<uvec4>>(make_lobe_table()) : tail_.lobe_table;
 }
 
 void DeviceScene::take_colors(const Environment& environment) {
   constants_.ambient = environment.ambient;
   constants_.background = environment.background;
-  constants_.shows_sky = environment.shows_sky && !std::holds_alternative<std::monostate>(environment.sky);
+  constants_.shows_sky = environment.shows_sky && environment.has_sky();
+  environment_ = environment;
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail_bytes = total_bytes(tail_.materials.records, tail_.materials.slots, tail_.lobe_table,
-                                          tail_.sky.texels, tail_.lights.records);
+  const uint64_t tail_bytes = total_bytes(tail_.materials.records, tail_.materials.slots, *tail_.lobe_table,
+                                          tail_.sky->texels, tail_.lights.records);
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
 
@@ -188,20 +205,24 @@ PackedMaterials DeviceScene::pack_materials(std::span<const Material> materials)
 
 void DeviceScene::write_tail(Tail tail) {
   const PlacedTail placed = place_tail(tail);
-  if (shading_->size_bytes() < placed.end()) {
+  const PlacedTail last = place_tail(tail_);
+  const bool needs_larger = shading_->size_bytes() < placed.end();
+  if (needs_larger) {
     gpu::Buffer larger = make_shading_buffer(placed.end());
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  for (const Placed& part : {placed.materials, placed.texture_slots, placed.lobe_table, placed.sky, placed.lights}) {
-    write(*shading_, part);
-    uploads_.shading += part.bytes.size();
+  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::lobe_table, &PlacedTail::sky,
+                          &PlacedTail::lights}) {
+    if (!needs_larger && is_same(placed.*part, last.*part)) continue;
+    write(*shading_, placed.*part);
+    uploads_.shading += (placed.*part).bytes.size();
   }
   constants_.first_index.x = placed.materials.first_index;
   constants_.first_index.y = placed.lights.first_index;
-  constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky.side, 0);
+  constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky->side, 0);
   constants_.first_texture.z = placed.texture_slots.first_index;
-  constants_.irradiance = tail.sky.irradiance;
+  constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());
   tail_ = std::move(tail);
 }

@@ -69,16 +69,18 @@ class DeviceScene {
   /// What is replaced apart, behind the surfaces.
   struct Tail {
     PackedMaterials materials;
-    /// Empty where no material looks it up.
-    std::vector<uvec4> lobe_table;
-    PackedSky sky;
+    /// Empty where no material looks it up. It and the sky are large, and shared by the tails that do not change them.
+    std::shared_ptr<const std::vector<uvec4>> lobe_table = std::make_shared<const std::vector<uvec4>>();
+    std::shared_ptr<const PackedSky> sky = std::make_shared<const PackedSky>();
     PackedLights lights;
   };
   /// Where the parts of a tail lie.
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
   PackedMaterials pack_materials(std::span<const Material> materials) const;
-  /// Copies the tail, into a larger buffer where it needs one. Where that cannot be made nothing changes.
+  std::shared_ptr<const std::vector<uvec4>> lobe_table_for(std::span<const Material> materials) const;
+  /// Copies what of the tail is new, or all of it into a larger buffer where it needs one. Where that cannot be made
+  /// nothing changes.
   void write_tail(Tail tail);
 
   const gpu::Device* device_;
@@ -97,6 +99,8 @@ class DeviceScene {
   std::vector<Texture> textures_;
   std::vector<PlacedImage> images_;
   Tail tail_;
+  /// The last that was set.
+  Environment environment_;
   SceneConstants constants_;
   uint32_t stack_size_;
   bool fetches_texels_ = false;
