@@ -36,10 +36,7 @@ vec4 load_vertex4(uint index) {
   return shading_vector(index);
 }
 
-vec3 load_vertex(uint index) {
-  if (FETCHES_TEXELS == 0u) return vertices[index].xyz;
-  return shading_vector(index).xyz;
-}
+vec3 load_vertex(uint index) { return load_vertex4(index).xyz; }
 
 // What a lobe of this roughness does with light from all around, as seen from an eye at the angle of this cosine: the
 // shares x = E1, of what it would reflect if all light were, and y = B, of what Schlick's factor would add

@@ -23,6 +23,7 @@ TextureSlotRecord load_slot(uint number) {
 }
 
 uint flags_of(TextureSlotRecord slot) { return floatBitsToUint(slot.to_u.w); }
+uint wrap_of(TextureSlotRecord slot, uint shift) { return (flags_of(slot) >> shift) & TEXTURE_WRAP_MASK; }
 bool has_flag(TextureSlotRecord slot, uint flag) { return (flags_of(slot) & flag) != 0u; }
 
 // log2 of a positive number, off by at most 1e-3, which is a thousandth of a level.
@@ -66,20 +67,17 @@ struct Level {
 };
 
 vec4 load_texel(TextureSlotRecord slot, Level level, ivec2 place) {
-  uint flags = flags_of(slot);
-  uint x = wrap_texel(place.x, level.size.x, (flags >> TEXTURE_WRAP_U_SHIFT) & TEXTURE_WRAP_MASK);
-  uint y = wrap_texel(place.y, level.size.y, (flags >> TEXTURE_WRAP_V_SHIFT) & TEXTURE_WRAP_MASK);
+  uint x = wrap_texel(place.x, level.size.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT));
+  uint y = wrap_texel(place.y, level.size.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT));
   uint word = load_image_word(level.first + y * level.size.x + x);
   precise vec4 numbers = vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu) * (1.0 / 255.0);
-  if ((flags & TEXTURE_IS_SRGB) != 0u) numbers.xyz = decode_srgb(numbers.xyz);
+  if (has_flag(slot, TEXTURE_IS_SRGB)) numbers.xyz = decode_srgb(numbers.xyz);
   return numbers;
 }
 
 vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) {
   Level level = Level(slot.image.x + load_image_word(slot.image.x + number), max(slot.image.yz >> number, uvec2(1u)));
-  uint flags = flags_of(slot);
-  vec2 wrapped = vec2(wrap(uv.x, (flags >> TEXTURE_WRAP_U_SHIFT) & TEXTURE_WRAP_MASK),
-                      wrap(uv.y, (flags >> TEXTURE_WRAP_V_SHIFT) & TEXTURE_WRAP_MASK));
+  vec2 wrapped = vec2(wrap(uv.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT)), wrap(uv.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT)));
   precise vec2 place = wrapped * vec2(level.size) - (is_linear ? 0.5 : 0.0);
   vec2 corner = floor(place);
   ivec2 first = ivec2(corner);
