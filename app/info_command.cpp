@@ -86,7 +86,7 @@ struct SkyDescription {
 
 std::string describe_sky(const Environment& environment) {
   std::string text = std::visit(SkyDescription(), environment.sky);
-  if (std::holds_alternative<std::monostate>(environment.sky)) return text;
+  if (!environment.has_sky()) return text;
   if (environment.rotation != 0.0F) {
     text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
   }

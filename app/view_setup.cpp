@@ -122,8 +122,7 @@ AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentCh
   if (!look.background) return assumed;
   assumed.has_background = false;
   Environment& environment = scene.environment;
-  const bool has_sky = !std::holds_alternative<std::monostate>(environment.sky);
-  environment.shows_sky = look.background->is_environment && has_sky;
+  environment.shows_sky = look.background->is_environment && environment.has_sky();
   // Without a sky what surrounds the scene is its ambient light.
   environment.background = look.background->is_environment ? environment.ambient : look.background->color;
   return assumed;

@@ -62,7 +62,7 @@ struct Radiance {
 }  // namespace
 
 dvec3 sky_radiance(const Environment& environment, const dvec3& direction) {
-  if (std::holds_alternative<std::monostate>(environment.sky)) return dvec3(environment.ambient);
+  if (!environment.has_sky()) return dvec3(environment.ambient);
   const dvec3 own = turn_back(glm::normalize(direction), static_cast<double>(environment.rotation));
   return static_cast<double>(environment.intensity) * std::visit(Radiance{own}, environment.sky);
 }

@@ -34,8 +34,8 @@ bool has_any(const std::vector<Material>& materials) {
   return std::ranges::any_of(materials, is_one);
 }
 
-bool has_sky(const Environment& environment) {
-  return !std::holds_alternative<std::monostate>(environment.sky) || environment.ambient != vec3(0.0F);
+bool is_surrounded(const Environment& environment) {
+  return environment.has_sky() || environment.ambient != vec3(0.0F);
 }
 
 bool is_of_phong(const Scene& scene) {
@@ -86,7 +86,7 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
   if (choice == LightChoice::kAuto) choice = scene.is_classic ? LightChoice::kHeadlight : LightChoice::kStudio;
   AssumedLight assumed;
   Environment& environment = scene.environment;
-  const bool had_sky = has_sky(environment);
+  const bool had_sky = is_surrounded(environment);
   const float unexposed = std::exp2(-exposure_of(scene));
 
   if (!scene.is_classic && !had_sky && environment.background == vec3(0.0F)) {

@@ -16,6 +16,9 @@ namespace promin {
 struct Studio {
   /// The azimuth from which the scene is looked at, radians about +Y from +Z towards +X: where its front is. Finite.
   float front = 0.0F;
+
+  /// Whether both look the same.
+  bool operator==(const Studio&) const = default;
 };
 
 /// A gradient of colours, linear RGB, finite and not negative, over the elevation (OMI_environment_sky): from `horizon`
@@ -32,6 +35,9 @@ struct GradientSky {
   float top_curve = 0.15F;
   /// The curve from horizon to bottom, > 0 and finite.
   float bottom_curve = 0.02F;
+
+  /// Whether both look the same.
+  bool operator==(const GradientSky&) const = default;
 };
 
 /// A picture of all directions: the top row is at +Y, the middle of a row at -Z, a quarter to the right of it is +X,
@@ -44,6 +50,9 @@ struct Panorama {
 
   /// Shared, because skies are copied; not null, and not empty.
   std::shared_ptr<const Image> image;
+
+  /// Whether both show the same picture; one of the same pixels is another.
+  bool operator==(const Panorama&) const = default;
 };
 
 /// What there is beside objects and lights.
@@ -62,5 +71,8 @@ struct Environment {
   float rotation = 0.0F;
   /// A factor of the sky's radiance, finite and not negative.
   float intensity = 1.0F;
+
+  /// Whether a sky surrounds the scene.
+  bool has_sky() const { return !std::holds_alternative<std::monostate>(sky); }
 };
 }  // namespace promin
