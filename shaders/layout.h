@@ -13,8 +13,10 @@ using glm::uvec4;
 using glm::vec4;
 using uint = uint32_t;
 #define LAYOUT_CONSTANT inline constexpr uint
+#define LAYOUT_FLOAT inline constexpr float
 #else
 #define LAYOUT_CONSTANT const uint
+#define LAYOUT_FLOAT const float
 #endif
 
 // Features: what a scene may use, and what a caller may ask of a pipeline whatever the scene. Each is the number of a
@@ -134,6 +136,8 @@ struct MaterialRecord {
   vec4 emissive;  // w = bits of MATERIAL_*
 };
 LAYOUT_CONSTANT MATERIAL_TEXELS = 5u;
+// From this roughness on a metallic-roughness material shows the environment alone, no mirror ray.
+LAYOUT_FLOAT ROUGHEST_MIRROR = 0.4f;
 
 // A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
 struct TextureSlotRecord {
@@ -264,6 +268,7 @@ static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIM
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
 static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS && sizeof(TextureSlotRecord) == 16 * TEXTURE_SLOT_TEXELS);
 #undef LAYOUT_CONSTANT
+#undef LAYOUT_FLOAT
 #undef LAYOUT_FEATURE
 }  // namespace promin::layout
 #endif

@@ -9,14 +9,12 @@
 #include "core/rounding.h"
 #include "layout.h"
 #include "scene/light_kinds.h"
+#include "scene/texture_slots.h"
 
 namespace promin {
 namespace {
 
 using namespace layout;
-
-/// From this roughness on a metallic-roughness material shows the environment alone (ROUGHEST_MIRROR of its shader).
-constexpr float kRoughestMirror = 0.4F;
 
 /// The name of the feature of each bit that a scene may bring; empty for all other bits.
 constexpr auto kSceneFeatures = [] {
@@ -90,20 +88,12 @@ struct MaterialFeatures {
   FeatureMask operator()(const MetallicRoughness& material) const {
     FeatureMask features = FEATURE_METALLIC_ROUGHNESS;
     // A texture makes it smoother, never rougher.
-    if (material.roughness < kRoughestMirror || material.metallic_roughness_texture.exists()) {
+    if (material.roughness < ROUGHEST_MIRROR || material.metallic_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;
     }
-    for (const TextureSlot& slot : {material.base_color_texture, material.metallic_roughness_texture,
-                                    material.normal_texture, material.occlusion_texture}) {
-      if (slot.exists()) features |= FEATURE_TEXTURES;
-    }
     return features;
   }
-  FeatureMask operator()(const Unlit& material) const {
-    FeatureMask features = FEATURE_UNLIT;
-    if (material.color_texture.exists()) features |= FEATURE_TEXTURES;
-    return features;
-  }
+  FeatureMask operator()(const Unlit& /*material*/) const { return FEATURE_UNLIT; }
 };
 
 FeatureMask feature_of(LightKind kind) {
@@ -133,8 +123,9 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
   for (size_t i = 0; i < materials.size(); ++i) {
     if (!is_shown[i]) continue;
     features |= std::visit(MaterialFeatures(), materials[i].model);
-    const bool is_pbr = std::holds_alternative<MetallicRoughness>(materials[i].model);
-    if (is_pbr && materials[i].emissive_texture.exists()) features |= FEATURE_TEXTURES;
+    for_each_slot(materials[i], [&](const TextureSlot& slot, const char*) {
+      if (slot.exists()) features |= FEATURE_TEXTURES;
+    });
   }
   return features;
 }
@@ -150,7 +141,7 @@ FeatureMask light_features(std::span<const Light> lights) {
 }
 
 FeatureMask environment_features(const Environment& environment) {
-  if (std::holds_alternative<std::monostate>(environment.sky)) return {};
+  if (!environment.has_sky()) return {};
   FeatureMask features = FEATURE_SKY;
   if (environment.shows_sky) features |= FEATURE_SHOWN_SKY;
   return features;

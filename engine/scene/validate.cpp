@@ -7,6 +7,7 @@
 
 #include "core/rounding.h"
 #include "scene/limits.h"
+#include "scene/texture_slots.h"
 #include "shapes/shapes.h"
 
 namespace promin {
@@ -128,23 +129,11 @@ class Validation {
     check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
   }
 
-  void check_slots(const Phong& /*model*/, size_t /*texture_count*/, const std::string& /*place*/) {}
-  void check_slots(const MetallicRoughness& model, size_t texture_count, const std::string& place) {
-    check_slot(model.base_color_texture, texture_count, place + ".base_color_texture");
-    check_slot(model.metallic_roughness_texture, texture_count, place + ".metallic_roughness_texture");
-    check_slot(model.normal_texture, texture_count, place + ".normal_texture");
-    check_slot(model.occlusion_texture, texture_count, place + ".occlusion_texture");
-  }
-  void check_slots(const Unlit& model, size_t texture_count, const std::string& place) {
-    check_slot(model.color_texture, texture_count, place + ".color_texture");
-  }
-
   void check_slots(const Scene& scene) {
     for (size_t i = 0; i < scene.materials.size(); ++i) {
-      const Material& material = scene.materials[i];
-      const std::string place = place_of("materials", i);
-      std::visit([&](const auto& model) { check_slots(model, scene.textures.size(), place); }, material.model);
-      check_slot(material.emissive_texture, scene.textures.size(), place + ".emissive_texture");
+      for_each_slot(scene.materials[i], [&](const TextureSlot& slot, const char* name) {
+        check_slot(slot, scene.textures.size(), place_of("materials", i) + "." + name);
+      });
     }
   }
 

@@ -10,7 +10,6 @@ const float LEAST_ALPHA = 0.002;                 // of sources, whose images wou
 const float INVERSE_PI = 0.318309886;
 // Between these roughnesses reflected objects fade into the environment alone.
 const float SHARPEST_BLUR = 0.1;
-const float ROUGHEST_MIRROR = 0.4;
 // A mirror ray of less weight is not traced.
 const float LEAST_MIRROR_WEIGHT = 1.0 / 256.0;
 

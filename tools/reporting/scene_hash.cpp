@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/hash.h"
+#include "scene/texture_slots.h"
 
 namespace promin::report {
 namespace {
@@ -77,17 +78,10 @@ class ContentHash {
     add(material.base_color);
     for (const float value : {material.metallic, material.roughness, material.ior, material.specular}) add(value);
     add(material.specular_color);
-    for (const TextureSlot& slot : {material.base_color_texture, material.metallic_roughness_texture,
-                                    material.normal_texture, material.occlusion_texture}) {
-      add(slot);
-    }
     add(material.normal_scale);
     add(material.occlusion_strength);
   }
-  void add(const Unlit& unlit) {
-    add(unlit.color);
-    add(unlit.color_texture);
-  }
+  void add(const Unlit& unlit) { add(unlit.color); }
   void add(const TextureSlot& slot) {
     add(uint64_t{slot.texture} << 32 | slot.uv_set);
     add(slot.to_u);
@@ -109,7 +103,7 @@ class ContentHash {
   void add(const Material& material) {
     std::visit([&](const auto& model) { add(model); }, material.model);
     add(material.emissive);
-    add(material.emissive_texture);
+    for_each_slot(material, [this](const TextureSlot& slot, const char*) { add(slot); });
   }
   void add(const Light& light) {
     add(static_cast<uint64_t>(light.kind));

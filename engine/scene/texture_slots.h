@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "promin/materials.h"
+
+namespace promin {
+
+// The textures of materials, each once: `visit(slot, name)` gets the slot and the name of its member.
+
+template <typename Visit>
+void for_each_slot(const Phong& /*model*/, const Visit& /*visit*/) {}
+
+template <typename Visit>
+void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
+  visit(model.base_color_texture, "base_color_texture");
+  visit(model.metallic_roughness_texture, "metallic_roughness_texture");
+  visit(model.normal_texture, "normal_texture");
+  visit(model.occlusion_texture, "occlusion_texture");
+}
+
+template <typename Visit>
+void for_each_slot(const Unlit& model, const Visit& visit) {
+  visit(model.color_texture, "color_texture");
+}
+
+/// Those of the material's model, and of what it sends by itself.
+template <typename Visit>
+void for_each_slot(const Material& material, const Visit& visit) {
+  std::visit([&](const auto& model) { for_each_slot(model, visit); }, material.model);
+  visit(material.emissive_texture, "emissive_texture");
+}
+
+}  // namespace promin
