@@ -93,7 +93,11 @@ std::string to_json(const RunStats& stats) {
         {"trace", stats.median_trace_ms()},
         {"write", stats.write_ms},
         {"total", stats.total_ms}}},
-      {"rays", {{"primary", stats.rays.primary}, {"shadow", stats.rays.shadow}, {"reflection", stats.rays.reflection}}},
+      {"rays",
+       {{"primary", stats.rays.primary},
+        {"shadow", stats.rays.shadow},
+        {"reflection", stats.rays.reflection},
+        {"passed", stats.rays.passed}}},
       {"mrays_per_s", stats.mrays_per_s()},
   };
   if (stats.frames.empty()) {

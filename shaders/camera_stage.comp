@@ -43,6 +43,10 @@ Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
 vec3 seen[PACKET_SIZE];  // from the hit, so far
 vec3 contributions[PACKET_SIZE];
+// With FEATURE_BLENDING, of the shadow rays:
+float arriving[PACKET_SIZE];  // the share of the light that they let through so far
+Hit blockers[PACKET_SIZE];    // what they have met last
+uint pass_count = 0u;
 
 // The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
@@ -63,12 +67,16 @@ bool begin_packet() {
     is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
     is_any_inside = is_any_inside || is_inside[i];
     packet[i] = camera_ray(pixel, sample_at_hand());
+    forget_passed(i);
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
     uint index = pixel.y * window_size().x + pixel.x;
     paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
-                    CAMERA.look.w, CAMERA.right.w);
+                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u);
   }
+  passes_backs = true;
+  sight_width = CAMERA.look.w;
+  sight_spread = CAMERA.right.w;
   return is_any_inside;
 }
 
@@ -100,7 +108,10 @@ void arrive() {
       is_lit[i] = true;
       widen_cone(paths[i], ray, found[i]);
       points[i] = make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width);
-      seen[i] = own_light(points[i], paths[i].direction, leads_on(points[i], 0u));
+      bool is_opaque = coverage_of(paths[i], points[i]) == 1.0;
+      seen[i] = own_light(points[i], paths[i].direction, is_opaque && leads_on(points[i], 0u));
+      paths[i].passed_t = found[i].t;
+      paths[i].passed_order = found[i].order;
     }
     log_own_light(seen[i]);
   }
@@ -111,6 +122,9 @@ void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     contributions[i] = vec3(0.0);
     packet[i].tmax = -1.0;
+    arriving[i] = 1.0;
+    blockers[i].primitive = NO_PRIMITIVE;
+    forget_passed(i);
     if (!is_lit[i]) continue;
     // Points and rays are copied, here and elsewhere, because glslang 12 fails over packets made of points made of
     // packets.
@@ -124,12 +138,38 @@ void aim_at_source(LightRecord light) {
   }
 }
 
+// Sends the shadow rays that have met a surface that blends on behind it. Whether there are any.
+bool go_through_layers(uint layers) {
+  bool is_any_left = false;
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    Hit hit = found[i];
+    // Rays that are through, or blocked, take no part any more.
+    packet[i].tmin = INFINITY;
+    if (hit.primitive == NO_PRIMITIVE) continue;
+    blockers[i] = hit;
+    float coverage = layers < MOST_LAYERS ? coverage_of_hit(hit, packet[i].direction) : 1.0;
+    precise float left = arriving[i] * (1.0 - coverage);
+    arriving[i] = left >= LEAST_SHARE_BEHIND ? left : 0.0;
+    if (!(arriving[i] > 0.0)) continue;
+    pass(i, hit.t, hit.order);
+    is_any_left = true;
+    ++pass_count;
+  }
+  return is_any_left;
+}
+
 void add_contributions(uint source) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     if (!is_lit[i]) continue;
     begin_source_log(source);
+    if (has(FEATURE_BLENDING)) {
+      packet[i].tmin = 0.0;
+      found[i] = blockers[i];
+    }
     if (packet[i].tmax >= 0.0) log_shadow_ray(packet[i], found[i]);
-    vec3 contribution = found[i].primitive == NO_PRIMITIVE ? contributions[i] : vec3(0.0);
+    precise vec3 contribution =
+        has(FEATURE_BLENDING) ? arriving[i] * contributions[i]
+                              : (found[i].primitive == NO_PRIMITIVE ? contributions[i] : vec3(0.0));
     end_source_log(contribution);
     precise vec3 sum = seen[i] + contribution;
     seen[i] = sum;
@@ -144,6 +184,7 @@ void put_path(Path path) {
   pixels[record + RECORD_ORIGIN] = uvec4(floatBitsToUint(path.origin), path.pixel);
   pixels[record + RECORD_DIRECTION].xyz = floatBitsToUint(path.direction);
   if (SEES_ENVIRONMENT) pixels[record + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
+  store_passed(number, path);
   if (has(FEATURE_TEXTURES)) {
     pixels[record + RECORD_RADIANCE].w = floatBitsToUint(path.cone_width);
     pixels[record + RECORD_SEEN].w = floatBitsToUint(path.cone_spread);
@@ -152,17 +193,24 @@ void put_path(Path path) {
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
   words[path_list(turn) + number] = number;
-  ++ray_count.z;
 }
 
 void leave() {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     if (!is_inside[i]) continue;
     Path path = paths[i];
-    add_radiance(path, seen[i]);
+    float coverage = is_lit[i] ? coverage_of(path, points[i]) : 1.0;
+    add_radiance(path, seen[i], coverage);
     if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance);
-    if (is_lit[i] && leads_on(points[i], 0u) && bounce(path, points[i])) {
+    if (has(FEATURE_BLENDING) && coverage < 1.0) {
+      uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
+      path.cone_width = CAMERA.look.w;
+      go_through(path, camera_ray(pixel, sample_at_hand()), path.passed_t, path.passed_order, coverage);
       put_path(path);
+      ++pass_count;
+    } else if (is_lit[i] && leads_on(points[i], 0u) && bounce(path, points[i])) {
+      put_path(path);
+      ++ray_count.z;
     } else {
       finish_path(path);
     }
@@ -174,10 +222,19 @@ void leave() {
 void trace_pixels() {
   uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
   uint source = 0u;
+  uint layers = 0u;
   bool is_first_turn = true;
   for (;;) {
-    trace_packet(!is_first_turn);
+    // Of what blends the nearest comes first.
+    trace_packet(!is_first_turn && !has(FEATURE_BLENDING));
+    passes_backs = false;
+    sight_width = 0.0;
+    sight_spread = 0.0;
     if (!is_first_turn) {
+      if (has(FEATURE_BLENDING) && go_through_layers(layers)) {
+        ++layers;
+        continue;
+      }
       add_contributions(source);
       ++source;
     }
@@ -188,6 +245,7 @@ void trace_pixels() {
     }
     if (source >= sources) break;
     aim_at_source(load_light(VIEW.first_index.y + source));
+    layers = 0u;
   }
 }
 
@@ -198,5 +256,6 @@ void main() {
     trace_pixels();
     leave();
   }
+  add_passes(pass_count);
   add_counts(ray_count, were_loops_cut());
 }

@@ -12,6 +12,7 @@
 #include "make_ray.glsl"
 #include "primitives.glsl"
 #include "packet.glsl"
+#include "no_cutouts.glsl"
 #include "packet_triangles.glsl"
 #include "family.glsl"
 #include "node_boxes.glsl"

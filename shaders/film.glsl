@@ -5,17 +5,22 @@
 // `pixels` holds, for each pixel, the bits of its sum over samples and the `order` of what it shows. With FEATURE_AOVS
 // the bits of each pixel's geometric normal and depth follow, and then the stream of paths that camera_stage.comp
 // leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y = shadow, z = reflection) and
-// how often loops were cut (w). Each lane of a workgroup has a counter of its own, because all lanes would queue for a
+// how often loops were cut (w), `pass_counts` how often rays passed through a surface that blends (x). Each lane of a workgroup has a counter of its own, because all lanes would queue for a
 // single one, and a sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per subgroup and
 // leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   Dispatch dispatch;
   StreamState film_stream;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
+  uvec4 pass_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 pixels[];
 };
 
 #include "dispatch.glsl"
+
+void add_passes(uint count) {
+  if (has(FEATURE_BLENDING) && count > 0u) atomicAdd(pass_counts[gl_LocalInvocationIndex].x, count);
+}
 
 // Adds this lane's counts. Call it last in main().
 void add_counts(uvec3 rays, bool is_cut) {

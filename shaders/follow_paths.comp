@@ -37,6 +37,10 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
 uint shadow_ray_count = 0u;
 uint mirror_ray_count = 0u;
+uint pass_count = 0u;
+
+// Of the path's ray, the number of mirrors that it comes from.
+uint bounces_of(Path path) { return has(FEATURE_BLENDING) ? path.bounces : turn / turns_of_bounce() + 1u; }
 
 // Adds the sources of the last turn to what is seen.
 vec3 add_contributions(uint path, vec3 seen) {
@@ -44,7 +48,8 @@ vec3 add_contributions(uint path, vec3 seen) {
   for (uint source = 0u; source < sources; ++source) {
     vec3 unshadowed = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).xyz;
     bool is_blocked = load_word(ask_of_source(path, source)) == ASK_BLOCKED;
-    vec3 contribution = is_blocked ? vec3(0.0) : unshadowed;
+    precise vec3 contribution = is_blocked ? vec3(0.0) : unshadowed;
+    if (has(FEATURE_BLENDING)) contribution *= load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).w;
     precise vec3 sum = seen + contribution;
     seen = sum;
     if (has(FEATURE_RAY_LOG)) log_sum(entry_of_source(source), contribution);
@@ -60,6 +65,9 @@ void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
     LightSample sampled = sample_light(light, point.position);
     vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
     store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
+    if (has(FEATURE_BLENDING)) {
+      pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(1.0);
+    }
     begin_source_log(first_source(turn) + source);
     end_source_log(contribution);
     uint asked = ASK_NOTHING;
@@ -92,11 +100,11 @@ vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
 
 // Asks for the path's mirror ray, or else for the turn after the shadow rays that it waits for.
 uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
-  uint bounces = turn / turns_of_bounce() + 1u;
-  if (!leads_on(point, bounces) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+  if (!leads_on(point, bounces_of(path)) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
   store_vector(record_of_weight(number, turn + 1u), path.weight);
   store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
   store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
+  store_passed(number, path);
   if (SEES_ENVIRONMENT) pixels[record_of_path(number) + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
   if (has(FEATURE_TEXTURES)) {
     pixels[record_of_path(number) + RECORD_RADIANCE].w = floatBitsToUint(path.cone_width);
@@ -106,12 +114,26 @@ uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
 
+// Asks for the path's ray from behind what it has met on.
+uint ask_through(uint number, inout Path path, Ray ray, Hit hit, float coverage) {
+  precise vec3 weight = coverage * path.weight;
+  store_vector(record_of_weight(number, turn), weight);
+  go_through(path, ray, hit.t, hit.order, coverage);
+  store_vector(record_of_weight(number, turn + 1u), path.weight);
+  store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
+  store_passed(number, path);
+  ++pass_count;
+  return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
+}
+
 // Shades what the path's ray has met. Returns what the path asks for.
 uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
-  begin_path_log(ray, hit, turn / turns_of_bounce() + 1u, path.weight);
+  uint bounces = bounces_of(path);
+  begin_path_log(ray, hit, bounces, path.weight);
   if (hit.primitive == NO_PRIMITIVE) {
-    vec3 beyond = radiance_beyond(ray.direction, path.roughness);
-    add_radiance(path, beyond);
+    vec3 beyond = has(FEATURE_BLENDING) && bounces == 0u ? radiance_behind(normalize3(ray.direction))
+                                                         : radiance_beyond(ray.direction, path.roughness);
+    add_radiance(path, beyond, 1.0);
     log_own_light(beyond);
     end_path_log(path.radiance);
     finish_path(path);
@@ -120,7 +142,8 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   path.direction = normalize3(ray.direction);
   widen_cone(path, ray, hit);
   ShadingPoint point = make_shading_point(ray, path.direction, hit, path.cone_width);
-  vec3 own = own_light(point, path.direction, leads_on(point, turn / turns_of_bounce() + 1u));
+  float coverage = coverage_of(path, point);
+  vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
   log_own_light(own);
   if (begins_bounce(turn)) seen = own;
   if (has(FEATURE_SHADOWS)) {
@@ -132,12 +155,16 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   store_vector(record_of_path(number) + RECORD_SEEN, seen);
   if (begins_bounce(turn + 1u)) {
     end_path_log(path.radiance);
+    if (has(FEATURE_BLENDING) && coverage < 1.0) return ask_through(number, path, ray, hit, coverage);
     return ask_mirror(number, path, point);
   }
   // The same ray once more.
   store_vector(record_of_weight(number, turn + 1u), path.weight);
   return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
 }
+
+// The word of the path at hand that store_passed keeps beside what it has passed.
+uint path_progress;
 
 void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   uint record = record_of_path(number);
@@ -148,6 +175,12 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   if (has(FEATURE_TEXTURES)) {
     path.cone_width = load_record(record + RECORD_RADIANCE).w;
     path.cone_spread = load_record(record + RECORD_SEEN).w;
+  }
+  if (has(FEATURE_BLENDING)) {
+    path.passed_t = passed_t[0];
+    path.passed_order = passed_order[0];
+    path.layers = path_progress >> LAYERS_SHIFT;
+    path.bounces = path_progress & ((1u << LAYERS_SHIFT) - 1u);
   }
   path.roughness = SEES_ENVIRONMENT ? load_record(record + RECORD_DIRECTION).w : NO_ENVIRONMENT;
   vec3 seen = vec3(0.0);
@@ -170,6 +203,20 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   words[ask_of_path(number)] = asked;
 }
 
+// What the path's ray sees, beside its origin and direction.
+void prepare_sight(uint number) {
+  passes_backs = true;
+  if (has(FEATURE_HOLES)) {
+    sight_width = load_record(record_of_path(number) + RECORD_RADIANCE).w;
+    sight_spread = load_record(record_of_path(number) + RECORD_SEEN).w;
+  }
+  if (!has(FEATURE_BLENDING)) return;
+  forget_passed(0u);
+  float t = load_record(record_of_weight(number, 0u)).w;
+  if (t >= 0.0) pass(0u, t, floatBitsToUint(load_record(record_of_weight(number, 1u)).w));
+  path_progress = floatBitsToUint(load_record(record_of_path(number) + RECORD_SHADOW_ORIGIN).w);
+}
+
 void main() {
   begin_stream();
   uint place = group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
@@ -179,8 +226,12 @@ void main() {
     Ray ray = make_ray(load_record(record_of_path(path) + RECORD_ORIGIN).xyz,
                        load_record(record_of_path(path) + RECORD_DIRECTION).xyz, 0.0, has_ray ? INFINITY : 0.0);
     step_counts = uvec2(0u);
-    Hit hit = trace(ray, false);
+    packet[0] = ray;
+    prepare_sight(path);
+    trace_packet(false);
+    Hit hit = found[0];
     follow(path, has_ray, ray, hit);
   }
+  add_passes(pass_count);
   add_counts(uvec3(0u, shadow_ray_count, mirror_ray_count), were_loops_cut());
 }

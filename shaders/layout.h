@@ -133,9 +133,19 @@ struct MaterialRecord {
   vec4 b;
   vec4 c;
   vec4 d;
-  vec4 emissive;  // w = bits of MATERIAL_*
+  vec4 cover;     // x = alpha; y = the least alpha that is there; numbers of texture slots: z = of colour and alpha,
+                  // w = of emissive
+  vec4 emissive;  // w = bits: MATERIAL_* and flags
 };
-LAYOUT_CONSTANT MATERIAL_TEXELS = 5u;
+LAYOUT_CONSTANT MATERIAL_TEXELS = 6u;
+LAYOUT_CONSTANT MATERIAL_MODEL_MASK = 0xFFu;
+LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;    // where the texture's alpha says so
+LAYOUT_CONSTANT MATERIAL_IS_ONE_SIDED = 0x200u;
+LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;       // with what is behind, by alpha
+// A ray passes through so many surfaces that blend; the next counts as opaque.
+LAYOUT_CONSTANT MOST_LAYERS = 64u;
+// Where less than this is seen of what is behind a surface, it counts as opaque.
+LAYOUT_FLOAT LEAST_SHARE_BEHIND = 0.0009765625f;
 // From this roughness on a metallic-roughness material shows the environment alone, no mirror ray.
 LAYOUT_FLOAT ROUGHEST_MIRROR = 0.4f;
 
@@ -220,7 +230,7 @@ LAYOUT_CONSTANT STREAM_BIN_BITS = 9u;  // of the bins by which rays are sorted (
 LAYOUT_CONSTANT STREAM_BINS = 1u << STREAM_BIN_BITS;
 LAYOUT_CONSTANT STREAM_LANES = 64u;
 // Where the pixels of a film lie in its texels.
-LAYOUT_CONSTANT FILM_HEAD_TEXELS = 5u + 6u + 64u;
+LAYOUT_CONSTANT FILM_HEAD_TEXELS = 5u + 6u + 64u + 64u;
 
 // The number is more than one, and the compiler does not know it (loop_check.glsl).
 LAYOUT_CONSTANT LOOP_CHECK_TURNS = 2u;
@@ -262,7 +272,7 @@ LAYOUT_CONSTANT LOG_SOURCE = 1u;
 static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 80 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 320);
+static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 320);
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);

@@ -11,7 +11,7 @@
 #define PROMIN_MATERIAL_SOURCES
 #include "promin/kinds/materials.def"
 
-uint model_of(ShadingPoint point) { return floatBitsToUint(point.material.emissive.w); }
+uint model_of(ShadingPoint point) { return flags_of(point.material) & MATERIAL_MODEL_MASK; }
 
 // The function of the point's model.
 #define RETURN_BY_MODEL(KIND, FEATURE, CALL) \

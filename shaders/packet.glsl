@@ -16,6 +16,34 @@ float shifts[PACKET_SIZE];
 // Inverse direction of one of the rays that take part: all have its signs. By who calls descend.
 vec3 octant;
 
+// How the packet's rays see. By the entry point; shadow rays see backs, and textures at their finest level.
+bool passes_backs = false;  // with FEATURE_ONE_SIDED
+float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
+float sight_spread = 0.0;   // and how much it grows at a distance of 1
+// With FEATURE_BLENDING: what a ray has passed counts no more, which is all that is nearer than this, and at this t what
+// has no higher order. By the entry point.
+float passed_t[PACKET_SIZE];
+uint passed_order[PACKET_SIZE];
+
+// The ray from its beginning on.
+void forget_passed(uint slot) {
+  passed_t[slot] = -1.0;
+  passed_order[slot] = 0u;
+}
+
+// The ray from behind what it has met on; the same ray, so that it meets all else at the same t as before.
+void pass(uint slot, float t, uint order) {
+  passed_t[slot] = t;
+  passed_order[slot] = order;
+  // What lies at the same t is not passed yet.
+  packet[slot].tmin = t > 0.0 ? uintBitsToFloat(floatBitsToUint(t) - 1u) : 0.0;
+}
+
+// Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, or its back
+// where that is not shown (cutouts.glsl; cast.comp has rays that see geometry alone).
+bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing);
+bool may_have_holes(uint index);
+
 // What the invocation's rays took: x = node steps, y = primitive tests. The entry point sets it to zero.
 uvec2 step_counts;
 
@@ -29,9 +57,21 @@ bool any_takes_part() {
   return result;
 }
 
+// A ray as a solid of this order takes it: of the surfaces of one that it has passed the next is sought.
+Ray ray_past(uint slot, uint order) {
+  Ray ray = packet[slot];
+  if (has(FEATURE_BLENDING) && order <= passed_order[slot] && passed_t[slot] > 0.0) {
+    ray.tmin = shifts[slot] > 0.0 ? shifted_tmin(passed_t[slot], shifts[slot]) : passed_t[slot];
+  }
+  return ray;
+}
+
 // Takes the crossing if it is nearer, or as near and of a lower number: the hit does not depend on the tree.
 void keep_nearest(uint slot, Crossing crossing, uint primitive, uint order, bool asks_for_any) {
   precise float t = crossing.t + shifts[slot];
+  if (has(FEATURE_BLENDING)) {
+    if (t < passed_t[slot] || (t == passed_t[slot] && order <= passed_order[slot])) return;
+  }
   if (crossing.t > packet[slot].tmin && (t < limits[slot] || (t == limits[slot] && order < found[slot].order))) {
     found[slot] = Hit(t, crossing.u, crossing.v, crossing.part, primitive, order);
     limits[slot] = asks_for_any ? -1.0 : t;

@@ -15,14 +15,24 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
     ShearedTriangle of_next = sheared[0];
     float shear_z = packet[0].shear.z;
     float tmin = packet[0].tmin;
+    vec3 direction = packet[0].direction;
+    float limit = limits[0];
+    float shift = shifts[0];
     [[unroll]] for (uint slot = 1u; slot < PACKET_SIZE; ++slot) {
       if (of_next.may_be_met || !sheared[slot].may_be_met) continue;
       next = slot;
       of_next = sheared[slot];
       shear_z = packet[slot].shear.z;
       tmin = packet[slot].tmin;
+      direction = packet[slot].direction;
+      limit = limits[slot];
+      shift = shifts[slot];
     }
     Crossing crossing = cross_triangle(of_next, shear_z, tmin);
+    if (has(FEATURE_HOLES) || has(FEATURE_ONE_SIDED)) {
+      precise float t = crossing.t + shift;
+      if (crossing.t > tmin && t <= limit && is_cut_out(direction, p, index, crossing)) crossing = NO_CROSSING;
+    }
     may_another_be_met = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
       if (slot == next) {
@@ -44,6 +54,7 @@ bool glance_at_triangle(Primitive p, uint index) {
     bool may_be_met = sheared.may_be_met && limits[slot] >= 0.0;
     // The limit of a ray that has moved along itself is not told to the last bit.
     bool is_met = may_be_met && glance.is_met && shifts[slot] == 0.0;
+    if (has(FEATURE_HOLES) && is_met && may_have_holes(index)) is_met = false;
     needs_second_look = needs_second_look || (may_be_met && !is_met && !glance.is_missed);
     if (is_met) {
       found[slot].primitive = index;

@@ -12,6 +12,11 @@ struct Path {
   float roughness;  // the largest of the surfaces on its way, or NO_ENVIRONMENT
   float cone_width;   // of the cone that its pixel sees, with FEATURE_TEXTURES,
   float cone_spread;  // and how much it grows at a distance of 1
+  // With FEATURE_BLENDING:
+  uint bounces;  // so far
+  uint layers;   // surfaces that it passed through so far
+  float passed_t;  // where its next ray has come from behind a surface: t and order of that, or -1
+  uint passed_order;
 };
 
 // Follows the path's cone to where its ray is met.
@@ -21,9 +26,31 @@ void widen_cone(inout Path path, Ray ray, Hit hit) {
   path.cone_width = width;
 }
 
-void add_radiance(inout Path path, vec3 seen) {
-  precise vec3 sum = path.radiance + path.weight * seen;
+// Adds what is seen of a point that covers so much of what is behind it.
+void add_radiance(inout Path path, vec3 seen, float coverage) {
+  precise vec3 weight = path.weight;
+  if (has(FEATURE_BLENDING)) weight = coverage * weight;
+  precise vec3 sum = path.radiance + weight * seen;
   path.radiance = sum;
+}
+
+// How much of what is behind it the point covers; where it is not 1 the ray goes on through it.
+float coverage_of(Path path, ShadingPoint point) {
+  if (!has(FEATURE_BLENDING) || (flags_of(point.material) & MATERIAL_BLENDS) == 0u) return 1.0;
+  float alpha = clamp(point.material.cover.x, 0.0, 1.0);
+  precise vec3 behind = (1.0 - alpha) * path.weight;
+  return path.layers < MOST_LAYERS && max_abs(behind) >= LEAST_SHARE_BEHIND ? alpha : 1.0;
+}
+
+// Turns the path into the same ray from behind the hit on; its direction is as traced, not unit.
+void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
+  precise vec3 weight = (1.0 - coverage) * path.weight;
+  path.weight = weight;
+  path.origin = ray.origin;
+  path.direction = ray.direction;
+  path.passed_t = t;
+  path.passed_order = order;
+  ++path.layers;
 }
 
 // Whether a mirror ray leads on from the point, the path's bounce of this number.
@@ -44,8 +71,19 @@ bool bounce(inout Path path, ShadingPoint point) {
     path.cone_spread = spread;
   }
   path.direction = reflect_direction(path.direction, point.normal, point.geometric_normal);
+  ++path.bounces;
+  path.passed_t = -1.0;
+  path.passed_order = 0u;
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
   return true;
+}
+
+// Keeps in the stream what tells a path that may go through surfaces from others.
+void store_passed(uint number, Path path) {
+  if (!has(FEATURE_BLENDING)) return;
+  pixels[record_of_weight(number, 0u)].w = floatBitsToUint(path.passed_t);
+  pixels[record_of_weight(number, 1u)].w = path.passed_order;
+  pixels[record_of_path(number) + RECORD_SHADOW_ORIGIN].w = path.layers << LAYERS_SHIFT | path.bounces;
 }
 
 // Adds the path's radiance to its pixel, as one sample.

@@ -7,6 +7,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
   Dispatch logged_dispatch;
   StreamState logged_stream;
   uvec4 logged_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
+  uvec4 logged_pass_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 logged_pixel;
   uvec4 log_count;  // x = number of entries
   RayLog logs[];

@@ -18,6 +18,7 @@ struct ShadingPoint {
 
 #include "materials.glsl"
 #include "textures.glsl"
+#include "cutouts.glsl"
 
 // Lifts the point onto the curved surface that the vertex normals suggest, so that its own coarse polygon does not
 // shadow what is shaded as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
@@ -60,15 +61,6 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   }
 }
 
-// The area of texture coordinates over that of the triangle, for coordinates at its corners.
-float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
-  precise vec2 ab = b - a;
-  precise vec2 ac = c - a;
-  precise float double_area = abs(ab.x * ac.y - ab.y * ac.x);
-  precise float ratio = double_area / max(area, SMALLEST_NORMAL);
-  return ratio;
-}
-
 // The normal, turned by a texture of normals: `tangent` and its bitangent span the plane that the texture is painted on.
 vec3 turned_normal(vec3 normal, vec3 texel, float scale, vec4 tangent, float side, vec3 direction) {
   precise vec2 scaled = (2.0 * texel.xy - 1.0) * scale;
@@ -102,29 +94,37 @@ vec4 tangent_of(Primitive p, vec2 a, vec2 b, vec2 c) {
 
 void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 weights, vec3 wound_normal,
                     bool is_flipped, vec3 direction, float cone_width) {
-  vec4 uv0 = load_vertex4(VIEW.first_texture.x + corners.x);
-  vec4 uv1 = load_vertex4(VIEW.first_texture.x + corners.y);
-  vec4 uv2 = load_vertex4(VIEW.first_texture.x + corners.z);
-  precise vec4 uvs = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
-  precise vec3 e1 = corner1(p) - corner0(p);
-  precise vec3 e2 = corner2(p) - corner0(p);
-  float area = length3(cross3(e1, e2));
-  // Seen at an angle the cone covers an ellipse; the mean of its axes' logarithms is taken.
-  float facing = max(abs(dot3(wound_normal, direction)), 1.0 / 64.0);
-  precise float footprint = max(cone_width * cone_width, SMALLEST_NORMAL) / facing;
-  precise vec2 coverage =
-      footprint * vec2(coordinates_per_area(uv0.xy, uv1.xy, uv2.xy, area),
-                       coordinates_per_area(uv0.zw, uv1.zw, uv2.zw, area));
-  TexturePlace place = TexturePlace(uvs, vec2(log2_about(max(coverage.x, SMALLEST_NORMAL)),
-                                              log2_about(max(coverage.y, SMALLEST_NORMAL))));
+  CornerUvs uvs = load_corner_uvs(corners.xyz);
+  TexturePlace place = texture_place(p, uvs, weights, dot3(wound_normal, direction), cone_width);
   // Nested members are not written to one by one: glslang dies over that.
   MaterialRecord material = point.material;
-  uint base = slot_number(material.d.x);
+  bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
+  bool is_metallic_roughness = has(FEATURE_METALLIC_ROUGHNESS) && model_of(point) == MATERIAL_METALLIC_ROUGHNESS;
+  uint base = slot_number(material.cover.z);
   if (base != 0u) {
-    precise vec3 color = material.a.xyz * look_up(base, place).xyz;
+    vec4 texel = look_up(base, place);
+    precise vec3 color = material.a.xyz * texel.xyz;
     material.a = vec4(color, material.a.w);
+    precise float alpha = material.cover.x * texel.w;
+    material.cover = vec4(alpha, material.cover.yzw);
+    if (is_phong) {
+      precise vec3 diffuse = material.b.xyz * texel.xyz;
+      material.b = vec4(diffuse, material.b.w);
+    }
   }
-  if (has(FEATURE_METALLIC_ROUGHNESS) && model_of(point) == MATERIAL_METALLIC_ROUGHNESS) {
+  uint emissive = slot_number(material.cover.w);
+  if (emissive != 0u) {
+    precise vec3 color = material.emissive.xyz * look_up(emissive, place).xyz;
+    material.emissive = vec4(color, material.emissive.w);
+  }
+  if (is_phong) {
+    uint specular = slot_number(material.d.w);
+    if (specular != 0u) {
+      precise vec3 color = material.c.xyz * look_up(specular, place).xyz;
+      material.c = vec4(color, material.c.w);
+    }
+  }
+  if (is_metallic_roughness) {
     uint metallic_roughness = slot_number(material.d.y);
     if (metallic_roughness != 0u) {
       precise vec2 factors = vec2(material.c.x, material.a.w) * look_up(metallic_roughness, place).yz;
@@ -136,26 +136,21 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
       precise float left = 1.0 + material.c.z * (look_up(occlusion, place).x - 1.0);
       point.occlusion = left;
     }
-    uint emissive = slot_number(material.c.w);
-    if (emissive != 0u) {
-      precise vec3 color = material.emissive.xyz * look_up(emissive, place).xyz;
-      material.emissive = vec4(color, material.emissive.w);
+  }
+  uint normal = slot_number(is_phong ? material.b.w : material.d.z);
+  if ((is_phong || is_metallic_roughness) && normal != 0u) {
+    vec4 tangent;
+    if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
+      precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
+                         weights.y * load_vertex4(VIEW.first_texture.y + corners.y) +
+                         weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
+      tangent = vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
+    } else {
+      bool is_second = has_flag(load_slot(normal), TEXTURE_UV_SET);
+      tangent = is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
     }
-    uint normal = slot_number(material.d.z);
-    if (normal != 0u) {
-      vec4 tangent;
-      if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
-        precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
-                           weights.y * load_vertex4(VIEW.first_texture.y + corners.y) +
-                           weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
-        tangent = vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
-      } else {
-        bool is_second = has_flag(load_slot(normal), TEXTURE_UV_SET);
-        tangent = is_second ? tangent_of(p, uv0.zw, uv1.zw, uv2.zw) : tangent_of(p, uv0.xy, uv1.xy, uv2.xy);
-      }
-      point.normal = turned_normal(point.normal, look_up(normal, place).xyz, material.c.y, tangent,
-                                   is_flipped ? -1.0 : 1.0, direction);
-    }
+    point.normal = turned_normal(point.normal, look_up(normal, place).xyz, is_phong ? 1.0 : material.c.y, tangent,
+                                 is_flipped ? -1.0 : 1.0, direction);
   }
   point.material = material;
 }
@@ -180,10 +175,14 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_wid
     apply_vertex_normals(point, p, record.corners_material.xyz, weights, is_flipped);
   }
   if (has(FEATURE_VERTEX_COLORS) && (record.corners_material.w & SURFACE_IS_COLORED) != 0u) {
-    precise vec3 color = weights.x * load_vertex(VIEW.first_index.w + record.corners_material.x) +
-                         weights.y * load_vertex(VIEW.first_index.w + record.corners_material.y) +
-                         weights.z * load_vertex(VIEW.first_index.w + record.corners_material.z);
-    point.color = color;
+    vec4 color = load_vertex_color(record.corners_material.xyz, weights);
+    point.color = color.xyz;
+    if (has(FEATURE_HOLES)) {
+      MaterialRecord material = point.material;
+      precise float alpha = material.cover.x * color.w;
+      material.cover = vec4(alpha, material.cover.yzw);
+      point.material = material;
+    }
   }
   point.lobe_shares = vec2(1.0, 0.0);
   point.occlusion = 1.0;

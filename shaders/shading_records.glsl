@@ -21,8 +21,10 @@ MaterialRecord load_material(uint index) {
   if (FETCHES_TEXELS == 0u) return materials[index];
   uint first = MATERIAL_TEXELS * index;
   return MaterialRecord(shading_vector(first), shading_vector(first + 1u), shading_vector(first + 2u),
-                        shading_vector(first + 3u), shading_vector(first + 4u));
+                        shading_vector(first + 3u), shading_vector(first + 4u), shading_vector(first + 5u));
 }
+
+uint flags_of(MaterialRecord material) { return floatBitsToUint(material.emissive.w); }
 
 LightRecord load_light(uint index) {
   if (FETCHES_TEXELS == 0u) return lights[index];
@@ -37,6 +39,14 @@ vec4 load_vertex4(uint index) {
 }
 
 vec3 load_vertex(uint index) { return load_vertex4(index).xyz; }
+
+// Interpolated between a triangle's corners.
+vec4 load_vertex_color(uvec3 corners, vec3 weights) {
+  precise vec4 color = weights.x * load_vertex4(VIEW.first_index.w + corners.x) +
+                       weights.y * load_vertex4(VIEW.first_index.w + corners.y) +
+                       weights.z * load_vertex4(VIEW.first_index.w + corners.z);
+  return color;
+}
 
 // What a lobe of this roughness does with light from all around, as seen from an eye at the angle of this cosine: the
 // shares x = E1, of what it would reflect if all light were, and y = B, of what Schlick's factor would add

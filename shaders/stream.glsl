@@ -10,11 +10,14 @@
 // Of each path there are 7 records, and one for each source of a turn:
 const uint RECORD_ORIGIN = 0u;     // xyz of its ray, w = pixel
 const uint RECORD_DIRECTION = 1u;  // xyz, unit; w = roughness of the path
-const uint RECORD_WEIGHTS = 2u;    // xyz = weight of what the ray sees; two records, by the parity of the ray's turn
+const uint RECORD_WEIGHTS = 2u;    // xyz = weight of what the ray sees; two records, by the parity of the ray's turn;
+                                   // of a ray that goes on: w = t of the surface that it passed, and that one's order
 const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the point that it has reached; w = width of its cone
 const uint RECORD_SEEN = 5u;       // xyz = light that this point sends, so far; w = spread of its cone
-const uint RECORD_SHADOW_ORIGIN = 6u;
-const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between
+const uint RECORD_SHADOW_ORIGIN = 6u;  // w = bounces so far, and from LAYERS_SHIFT on surfaces that it passed
+const uint LAYERS_SHIFT = 16u;
+const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between; with FEATURE_BLENDING
+                                      // w = the share of it that arrives
 
 // Then come words: what each path asks for, a word for its own ray and one for each source; the list of the paths of
 // even turns and that of odd ones; the list of shadow rays; and of paths and shadow rays the bins: how many are in
@@ -29,6 +32,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer StreamWords {
   Dispatch stream_dispatch;
   StreamState stream;
   uvec4 stream_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
+  uvec4 stream_pass_counts[BLOCK_SIZE * BLOCK_SIZE];
   uint words[];
 };
 

@@ -99,6 +99,41 @@ struct TexturePlace {
   vec2 log_coverage;  // of each: log2 of the area of coordinates that a pixel covers
 };
 
+// Both sets of texture coordinates at a triangle's corners.
+struct CornerUvs {
+  vec4 a;
+  vec4 b;
+  vec4 c;
+};
+
+CornerUvs load_corner_uvs(uvec3 corners) {
+  return CornerUvs(load_vertex4(VIEW.first_texture.x + corners.x), load_vertex4(VIEW.first_texture.x + corners.y),
+                   load_vertex4(VIEW.first_texture.x + corners.z));
+}
+
+// The area of texture coordinates over that of the triangle, for coordinates at its corners.
+float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
+  precise vec2 ab = b - a;
+  precise vec2 ac = c - a;
+  precise float double_area = abs(ab.x * ac.y - ab.y * ac.x);
+  precise float ratio = double_area / max(area, SMALLEST_NORMAL);
+  return ratio;
+}
+
+// Of a point of a triangle: `facing` is the cosine between its normal and the ray, `cone_width` that of the ray's cone.
+TexturePlace texture_place(Primitive p, CornerUvs corners, vec3 weights, float facing, float cone_width) {
+  precise vec4 uvs = weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
+  precise vec3 e1 = corner1(p) - corner0(p);
+  precise vec3 e2 = corner2(p) - corner0(p);
+  float area = length3(cross3(e1, e2));
+  // Seen at an angle the cone covers an ellipse; the mean of its axes' logarithms is taken.
+  precise float footprint = max(cone_width * cone_width, SMALLEST_NORMAL) / max(abs(facing), 1.0 / 64.0);
+  precise vec2 coverage = footprint * vec2(coordinates_per_area(corners.a.xy, corners.b.xy, corners.c.xy, area),
+                                           coordinates_per_area(corners.a.zw, corners.b.zw, corners.c.zw, area));
+  return TexturePlace(uvs, vec2(log2_about(max(coverage.x, SMALLEST_NORMAL)),
+                                log2_about(max(coverage.y, SMALLEST_NORMAL))));
+}
+
 // A lookup at the level whose texels are as large as the pixel. Where levels are interpolated and a pixel has four
 // samples or more, each sample takes one level: their mean is that of both.
 vec4 look_up(uint number, TexturePlace place) {

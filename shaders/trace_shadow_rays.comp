@@ -23,10 +23,35 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "traversal.glsl"
 #include "ray_log.glsl"
 #include "shading_records.glsl"
+#include "textures.glsl"
+#include "cutouts.glsl"
 #include "lights.glsl"
 #include "turns.glsl"
 #include "group_rows.glsl"
 #include "loop_check.glsl"
+
+// The nearest first, so that the product does not hang on the tree. What blocks the ray, or the last surface that it has
+// gone through.
+Hit go_through_layers(uint record) {
+  float arriving = 1.0;
+  Hit last = Hit(INFINITY, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
+  uint layers = 0u;
+  forget_passed(0u);
+  for (;;) {
+    trace_packet(false);
+    if (found[0].primitive == NO_PRIMITIVE) break;
+    last = found[0];
+    float coverage = layers < MOST_LAYERS ? coverage_of_hit(last, packet[0].direction) : 1.0;
+    precise float left = arriving * (1.0 - coverage);
+    arriving = left >= LEAST_SHARE_BEHIND ? left : 0.0;
+    if (!(arriving > 0.0)) break;
+    pass(0u, last.t, last.order);
+    ++layers;
+  }
+  pixels[record].w = floatBitsToUint(arriving);
+  add_passes(layers);
+  return last;
+}
 
 void main() {
   begin_stream();
@@ -38,7 +63,16 @@ void main() {
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn - 1u) + source);
   Ray ray = shadow_ray(load_record(record_of_path(path) + RECORD_SHADOW_ORIGIN).xyz, light);
   step_counts = uvec2(0u);
-  Hit blocker = trace(ray, true);
+  packet[0] = ray;
+  Hit blocker;
+  if (has(FEATURE_BLENDING)) {
+    blocker = go_through_layers(record_of_source(path, source) + RECORD_CONTRIBUTION);
+    words[ask_of_source(path, source)] = ASK_NOTHING;
+    if (has(FEATURE_RAY_LOG)) log_answer(entry_of_source(source), ray, blocker);
+    add_counts(uvec3(0u), were_loops_cut());
+    return;
+  }
+  blocker = trace(ray, true);
   words[ask_of_source(path, source)] = blocker.primitive == NO_PRIMITIVE ? ASK_NOTHING : ASK_BLOCKED;
   if (has(FEATURE_RAY_LOG)) log_answer(entry_of_source(source), ray, blocker);
   add_counts(uvec3(0u), were_loops_cut());

@@ -70,7 +70,7 @@ uint step_together(uint current) {
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                             \
   void intersect_packet_with_##PREFIX(Primitive p, uint index, bool asks_for_any) {              \
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {                                \
-      keep_nearest(slot, intersect_##PREFIX(packet[slot], p), index, order_of(p), asks_for_any); \
+      keep_nearest(slot, intersect_##PREFIX(ray_past(slot, order_of(p)), p), index, order_of(p), asks_for_any); \
     }                                                                                            \
   }
 #include "promin/kinds/primitives.def"

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "scene/alpha.h"
+#include "scene/texture_slots.h"
 
 namespace promin {
 namespace {
@@ -28,14 +32,17 @@ static_assert(static_cast<uint>(TextureWrap::kRepeat) == WRAP_REPEAT &&
               static_cast<uint>(TextureWrap::kMirroredRepeat) == WRAP_MIRRORED &&
               static_cast<uint>(TextureWrap::kClampToEdge) == WRAP_CLAMP);
 
+constexpr float kLeastAlpha = std::numeric_limits<float>::min();
+
 /// Packs a model's numbers into the places that its shader file gives them.
 class MaterialPacker {
  public:
   explicit MaterialPacker(const TextureTables& tables) : tables_(tables) {}
 
   void add(const Material& material) {
-    MaterialRecord record = std::visit([&](const auto& model) { return pack(model, material); }, material.model);
-    record.emissive = vec4(material.emissive, std::bit_cast<float>(std::visit(ModelNumber(), material.model)));
+    MaterialRecord record = std::visit([&](const auto& model) { return pack(model); }, material.model);
+    record.cover = pack_cover(material);
+    record.emissive = vec4(material.emissive, std::bit_cast<float>(flags_of(material)));
     packed_.records.push_back(record);
   }
   PackedMaterials take() { return std::move(packed_); }
@@ -49,23 +56,37 @@ class MaterialPacker {
 #include "promin/kinds/materials.def"
   };
 
-  MaterialRecord pack(const Phong& m, const Material&) {
-    return {vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F), {}};
+  static uint flags_of(const Material& material) {
+    return std::visit(ModelNumber(), material.model) |
+           flag(has_holes(material), MATERIAL_HAS_HOLES) |
+           flag(blends(material), MATERIAL_BLENDS) | flag(!material.is_double_sided, MATERIAL_IS_ONE_SIDED);
   }
-  MaterialRecord pack(const MetallicRoughness& m, const Material& material) {
+
+  vec4 pack_cover(const Material& material) {
+    // Of what blends, what has no alpha at all is not there.
+    const float least = material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : kLeastAlpha;
+    return {is_absent(material) ? 0.0F : material.alpha, least, add(base_slot(material)),
+            add(material.emissive_texture)};
+  }
+
+  MaterialRecord pack(const Phong& m) {
+    return {
+        vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F), {}, {}};
+  }
+  MaterialRecord pack(const MetallicRoughness& m) {
     // KHR_materials_ior: 0 stands for a dielectric that reflects all.
     const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
     const dvec3 at_normal =
         glm::min(slope * slope * dvec3(m.specular_color), dvec3(1.0)) * static_cast<double>(m.specular);
     return {vec4(m.base_color, m.metallic),
             vec4(vec3(at_normal), m.specular),
-            vec4(m.roughness, m.normal_scale, m.occlusion_strength, add(material.emissive_texture)),
-            vec4(add(m.base_color_texture), add(m.metallic_roughness_texture), add(m.normal_texture),
-                 add(m.occlusion_texture)),
+            vec4(m.roughness, m.normal_scale, m.occlusion_strength, 0.0F),
+            vec4(0.0F, add(m.metallic_roughness_texture), add(m.normal_texture), add(m.occlusion_texture)),
+            {},
             {}};
   }
-  MaterialRecord pack(const Unlit& m, const Material&) {
-    return {vec4(m.color, 0.0F), {}, {}, vec4(add(m.color_texture), 0.0F, 0.0F, 0.0F), {}};
+  MaterialRecord pack(const Unlit& m) {
+    return {vec4(m.color, 0.0F), {}, {}, {}, {}, {}};
   }
 
   /// The bits of the slot's number, 0 where there is no texture or no image.

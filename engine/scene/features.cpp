@@ -8,6 +8,7 @@
 
 #include "core/rounding.h"
 #include "layout.h"
+#include "scene/alpha.h"
 #include "scene/light_kinds.h"
 #include "scene/texture_slots.h"
 
@@ -126,6 +127,9 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
     for_each_slot(materials[i], [&](const TextureSlot& slot, const char*) {
       if (slot.exists()) features |= FEATURE_TEXTURES;
     });
+    if (has_holes(materials[i])) features |= FEATURE_HOLES;
+    if (blends(materials[i])) features |= FEATURE_BLENDING;
+    if (!materials[i].is_double_sided) features |= FEATURE_ONE_SIDED;
   }
   return features;
 }

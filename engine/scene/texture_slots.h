@@ -6,6 +6,20 @@
 
 namespace promin {
 
+/// The texture of the colour and of alpha.
+inline const TextureSlot& base_slot(const MetallicRoughness& model) {
+  return model.base_color_texture;
+}
+inline const TextureSlot& base_slot(const Unlit& model) {
+  return model.color_texture;
+}
+inline TextureSlot base_slot(const Phong& /*model*/) {
+  return {};
+}
+inline TextureSlot base_slot(const Material& material) {
+  return std::visit([](const auto& model) -> TextureSlot { return base_slot(model); }, material.model);
+}
+
 // The textures of materials, each once: `visit(slot, name)` gets the slot and the name of its member.
 
 template <typename Visit>

@@ -90,6 +90,11 @@ class Validation {
       const std::string place = place_of("materials", i);
       std::visit([&](const auto& model) { check_model(model, place); }, material.model);
       check_color(material.emissive, place + ".emissive");
+      check(static_cast<uint32_t>(material.alpha_mode) <= static_cast<uint32_t>(AlphaMode::kBlend),
+            "the mode of alpha is none of AlphaMode", place + ".alpha_mode", "name one that there is");
+      check_share(material.alpha, place + ".alpha");
+      check(std::isfinite(material.alpha_cutoff) && material.alpha_cutoff >= 0.0F,
+            "the cutoff of alpha is not finite or negative", place + ".alpha_cutoff", "use a number from 0 on");
     }
   }
 

@@ -25,12 +25,14 @@ using Stage = vk::PipelineStageFlagBits;
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 
-Counters lanes_of(std::span<const std::byte> counters) {
-  Counters lanes;
+/// Rays and cut loops, then passes (shaders/film.glsl).
+std::array<Counters, 2> lanes_of(std::span<const std::byte> counters) {
+  std::array<Counters, 2> lanes;
   assert(counters.size() >= sizeof lanes);
   std::memcpy(lanes.data(), counters.data(), sizeof lanes);
   return lanes;
 }
+static_assert(offsetof(FilmHead, pass_counts) == offsetof(FilmHead, ray_counts) + sizeof(Counters));
 
 uint32_t pick_packet_size(const gpu::DeviceProfile& profile, FeatureMask features, const FilmOptions& options) {
   if (options.packet_size) return *options.packet_size;
@@ -43,7 +45,7 @@ uint32_t pick_packet_size(const gpu::DeviceProfile& profile, FeatureMask feature
 }  // namespace
 
 const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
-const vk::DeviceSize Film::kCountersBytes = sizeof(Counters);
+const vk::DeviceSize Film::kCountersBytes = 2 * sizeof(Counters);
 
 PictureShaders picture_shaders() {
   return {k_camera_stage_spirv, k_trace_shadow_rays_spirv, k_follow_paths_spirv};
@@ -143,10 +145,12 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
   const StreamShape shape = stream_shape(capacity_);
-  const bool takes_stream = stream_ && piece.bounces > 0;
+  const uint32_t layers = features_.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
+  const uint32_t steps = piece.bounces + layers;
+  const bool takes_stream = stream_ && steps > 0;
   if (takes_stream) stream_->record_begin(commands, *buffer_, shape);
   kernel_->record(commands, piece.dispatch, *buffer_, piece.group_count);
-  if (takes_stream) stream_->record_turns(commands, *buffer_, shape, piece.bounces);
+  if (takes_stream) stream_->record_turns(commands, *buffer_, shape, steps);
 }
 
 void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
@@ -196,7 +200,9 @@ uint32_t Film::records_per_pixel() const {
 }
 
 bool Film::has_stream() const {
-  return features_.has_any(layout::FEATURE_MIRRORS);
+  FeatureMask leading_on = layout::FEATURE_MIRRORS;
+  leading_on |= layout::FEATURE_BLENDING;
+  return features_.has_any(leading_on);
 }
 
 bool Film::fetches_film_texels() const {
@@ -228,12 +234,15 @@ void average_samples(std::span<const uvec4> records, uint32_t samples, std::span
 
 RayCounts sum_counts(std::span<const std::byte> counters) {
   RayCounts sum;
-  for (const uvec4& lane : lanes_of(counters)) sum += {lane.x, lane.y, lane.z};
+  const auto [rays, passes] = lanes_of(counters);
+  for (size_t lane = 0; lane < rays.size(); ++lane) {
+    sum += {rays[lane].x, rays[lane].y, rays[lane].z, passes[lane].x};
+  }
   return sum;
 }
 
 bool were_loops_cut(std::span<const std::byte> counters) {
-  const Counters lanes = lanes_of(counters);
+  const Counters lanes = lanes_of(counters)[0];
   return std::any_of(lanes.begin(), lanes.end(), [](const uvec4& lane) { return lane.w != 0; });
 }
 

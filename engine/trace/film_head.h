@@ -16,6 +16,7 @@ struct FilmHead {
   layout::Dispatch dispatch{};
   layout::StreamState stream{};
   Counters ray_counts{};
+  Counters pass_counts{};
 };
 static_assert(sizeof(FilmHead) == layout::FILM_HEAD_TEXELS * sizeof(uvec4));
 

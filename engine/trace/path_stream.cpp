@@ -36,6 +36,13 @@ std::vector<gpu::SpecializationConstant> with_query(std::span<const gpu::Special
   return all;
 }
 
+/// A log tells where shadow rays are blocked, and they go through what blends one surface after the other.
+bool needs_nearest_blocker(FeatureMask features) {
+  FeatureMask nearest = layout::FEATURE_RAY_LOG;
+  nearest |= layout::FEATURE_BLENDING;
+  return features.has_any(nearest);
+}
+
 void wait_for_last(const vk::raii::CommandBuffer& commands) {
   const vk::MemoryBarrier barrier(Access::eShaderRead | Access::eShaderWrite | Access::eTransferWrite,
                                   Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);
@@ -71,9 +78,7 @@ PathStream::PathStream(const gpu::Device& device, FeatureMask features,
     : most_group_rows_(device.profile().most_group_rows),
       place_(device, k_place_rays_spirv, constants, buffers),
       list_(device, k_list_rays_spirv, constants, buffers),
-      // A log tells where shadow rays are blocked.
-      shadow_(device, shaders.trace_shadow_rays, with_query(constants, !features.has_any(layout::FEATURE_RAY_LOG)),
-              buffers),
+      shadow_(device, shaders.trace_shadow_rays, with_query(constants, !needs_nearest_blocker(features)), buffers),
       follow_(device, shaders.follow_paths, with_query(constants, false), buffers) {}
 
 void PathStream::bind(const gpu::BoundBuffer& buffer) {
@@ -95,13 +100,13 @@ void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu
 }
 
 void PathStream::record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film,
-                              const StreamShape& shape, uint32_t bounces) const {
+                              const StreamShape& shape, uint32_t steps) const {
   const auto dispatch = [&](const gpu::ComputePipeline& pipeline, size_t groups) {
     wait_for_last(commands);
     pipeline.dispatch_indirect(commands, film, offsetof(FilmHead, stream) + groups);
   };
-  // The last turn adds what the shadow rays of the last bounce let through.
-  const uint64_t turns = uint64_t{bounces} * shape.turns_of_bounce + 1;
+  // The last turn adds what the shadow rays of the last step let through.
+  const uint64_t turns = uint64_t{steps} * shape.turns_of_bounce + 1;
   for (uint64_t turn = 0; turn < turns; ++turn) {
     wait_for_last(commands);
     place_.dispatch(commands, uvec2(1));

@@ -47,9 +47,9 @@ class PathStream {
 
   /// Records that the stream is emptied, before the camera stage puts paths there.
   void record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape) const;
-  /// Records all turns that paths of so many bounces take.
+  /// Records all turns that paths of so many steps take: bounces, and surfaces that they go through.
   void record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape,
-                    uint32_t bounces) const;
+                    uint32_t steps) const;
   /// Records a workgroup of each kernel, after record_begin. They have nothing to do, but drivers compile late.
   void record_warm_up(const vk::raii::CommandBuffer& commands) const;
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <variant>
 
@@ -64,6 +65,16 @@ struct Unlit {
   TextureSlot color_texture = {};
 };
 
+/// What alpha does (glTF 2.0, section 3.9.4). Casts see geometry whatever its alpha.
+enum class AlphaMode : uint32_t {
+  /// Nothing.
+  kOpaque = 0,
+  /// What has less than the cutoff is not there; the rest is opaque.
+  kMask = 1,
+  /// Of the light from behind 1 - alpha is seen through the surface, and falls through it.
+  kBlend = 2,
+};
+
 /// What an object's surface is made of.
 struct Material {
   /// For people; empty where there is none.
@@ -74,6 +85,16 @@ struct Material {
   vec3 emissive{0.0F};
   /// Factors of it; of metallic-roughness materials alone.
   TextureSlot emissive_texture = {};
+  /// What alpha does.
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  /// How much of what is behind it the surface covers, 0...1; the alpha of the model's base colour texture is a factor
+  /// of it.
+  float alpha = 1.0F;
+  /// From which alpha on a masked surface is there, finite and not negative.
+  float alpha_cutoff = 0.5F;
+  /// Whether rays from the camera and from mirrors see both sides of triangles, or only the front, around which the
+  /// corners go counterclockwise. Other shapes are seen from both sides, and shadows fall from either.
+  bool is_double_sided = true;
 
   /// The model of a Phong material. Throws std::bad_variant_access where it is another.
   Phong& phong() { return std::get<Phong>(model); }

@@ -14,7 +14,9 @@ struct RayCounts {
   uint64_t shadow = 0;
   /// From mirrors.
   uint64_t reflection = 0;
-  /// All of them.
+  /// How often any of these went through a surface that blends (AlphaMode::kBlend).
+  uint64_t passed = 0;
+  /// All rays, each once, however often it went through a surface.
   uint64_t total() const { return primary + shadow + reflection; }
 
   /// Adds those of another picture.
@@ -22,6 +24,7 @@ struct RayCounts {
     primary += other.primary;
     shadow += other.shadow;
     reflection += other.reflection;
+    passed += other.passed;
     return *this;
   }
 };

@@ -140,17 +140,22 @@ Crossing intersect_triangle(Ray ray, Primitive p) {
   return cross_triangle(shear_triangle(ray, p), ray.shear.z, ray.tmin);
 }
 
+// As wound, unit. The edges are scaled first, so that the product of the smallest admissible ones does not underflow.
+vec3 triangle_normal(Primitive p) {
+  precise vec3 edge1 = corner1(p) - corner0(p);
+  precise vec3 edge2 = corner2(p) - corner0(p);
+  float scale = power_of_two_inverse(max(max_abs(edge1), max_abs(edge2)));
+  precise vec3 scaled1 = edge1 * scale;
+  precise vec3 scaled2 = edge2 * scale;
+  return normalize3(cross3(scaled1, scaled2));
+}
+
 // P comes from the corners, not from the ray, so that the error does not grow with the ray's length.
 SurfacePoint triangle_surface(Ray ray, Primitive p, Hit hit) {
   precise vec3 edge1 = corner1(p) - corner0(p);
   precise vec3 edge2 = corner2(p) - corner0(p);
   float size = max(max_abs(edge1), max_abs(edge2));
   precise vec3 position = corner0(p) + (hit.u * edge1 + hit.v * edge2);
-  // The edges are scaled first, so that the product of the smallest admissible ones does not underflow.
-  float scale = power_of_two_inverse(size);
-  precise vec3 scaled1 = edge1 * scale;
-  precise vec3 scaled2 = edge2 * scale;
-  vec3 normal = normalize3(cross3(scaled1, scaled2));
   precise float lift = 8.0 * UNIT_ROUNDOFF * (max_abs(position) + size);
-  return SurfacePoint(position, normal, lift);
+  return SurfacePoint(position, triangle_normal(p), lift);
 }

@@ -97,6 +97,10 @@ TEST_F(OraclePictureTest, EverythingAgreesWithTheOracle) {
   EXPECT_TRUE(compare(test::make_scene_of_everything(), test::make_view(uvec2(96, 72))).passes());
 }
 
+TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
+  EXPECT_TRUE(compare(test::make_scene_of_alpha(), test::make_view(uvec2(96, 72))).passes());
+}
+
 // Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is
 // rounded, for device and oracle alike; colour is not asked, as secondary rays start farther off the surface there.
 TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {

@@ -91,6 +91,46 @@ world::Scene make_scene_of_everything(uint32_t sphere_count) {
   return scene;
 }
 
+world::Scene make_scene_of_alpha() {
+  world::Scene scene = make_scene_of_everything(40);
+  const auto add = [&](const world::Shape& shape, Material material) {
+    scene.objects.push_back({"", shape, static_cast<uint32_t>(scene.materials.size())});
+    scene.materials.push_back(std::move(material));
+  };
+  const auto make_pane = [](const vec3& center, float turn) {
+    const vec3 along(std::cos(turn), 0, std::sin(turn));
+    const vec3 up(0.0F, 1.0F, 0.0F);
+    Mesh mesh;
+    mesh.positions = {center - along - up, center + along - up, center + along + up, center - along + up};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+  };
+  const auto blending = [](Material material, float alpha) {
+    material.alpha_mode = AlphaMode::kBlend;
+    material.alpha = alpha;
+    return material;
+  };
+  for (uint32_t i = 0; i < 6; ++i) {
+    const float x = -1.5F + 0.6F * static_cast<float>(i);
+    const vec3 center(x, 1.3F, 3.0F + 0.2F * static_cast<float>(i));
+    add(make_pane(center, 0.3F * static_cast<float>(i)),
+        blending(scene.materials[i], 0.15F + 0.1F * static_cast<float>(i)));
+    // In the same place.
+    if (i == 2) add(make_pane(center, 0.6F), blending(scene.materials[4], 0.5F));
+  }
+  add(world::Sphere{vec3(0.6F, 1.4F, 2.6F), 0.5F}, blending(scene.materials[4], 0.3F));
+  add(world::Cylinder{vec3(-1.4F, 0.6F, 2.9F), vec3(0, 1, 0), 0.5F, 0.3F}, blending(scene.materials[1], 0.6F));
+  Material one_sided = scene.materials[2];
+  one_sided.is_double_sided = false;
+  add(make_pane(vec3(2.2F, 1.4F, 2.5F), 0.4F), one_sided);
+  add(make_pane(vec3(-2.4F, 1.4F, 2.5F), 2.9F), one_sided);
+  Material absent = scene.materials[0];
+  absent.alpha_mode = AlphaMode::kMask;
+  absent.alpha = 0.4F;
+  add(make_pane(vec3(0, 2, 5), 0.1F), absent);
+  return scene;
+}
+
 View make_view(uvec2 size) {
   View view;
   view.size = size;

@@ -14,7 +14,11 @@ namespace promin::test {
 /// `sphere_count` small spheres so that the tree has some depth. The same scene for the same count.
 world::Scene make_scene_of_everything(uint32_t sphere_count = 200);
 
-/// A view of that scene.
+/// The same with panes that blend, alone, in rows and in one place, solids that do, surfaces of one side and absent
+/// ones.
+world::Scene make_scene_of_alpha();
+
+/// A view of these scenes.
 View make_view(uvec2 size);
 
 /// Rays towards that scene from all around it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <variant>
 
 #include "core/rounding.h"
@@ -26,7 +27,9 @@ std::array<Real, 2> solve_quadratic(Real a, Real b, Real c) {
 /// Collects what one ray meets and keeps the nearest.
 class Search {
  public:
-  explicit Search(const Ray& ray) : ray_(ray) { ray_.tmin = std::max(Real(0), ray.tmin); }
+  Search(const world::Scene& scene, const Ray& ray, const Sight& sight) : scene_(scene), ray_(ray), sight_(sight) {
+    ray_.tmin = std::max(Real(0), ray.tmin);
+  }
 
   void visit(int32_t object, const world::Shape& shape) {
     object_ = object;
@@ -37,8 +40,19 @@ class Search {
  private:
   void offer(Real t, int32_t primitive, Real u, Real v, const Vector& normal) {
     if (!(t > ray_.tmin && t < ray_.tmax && t < nearest_.t)) return;
-    nearest_ = {t, object_, primitive, u, v, glm::normalize(normal)};
+    const Hit hit{t, object_, primitive, u, v, glm::normalize(normal)};
+    if (!is_passed(hit)) nearest_ = hit;
   }
+  bool is_passed(const Hit& hit) const {
+    const Hit& passed = sight_.passed;
+    if (hit.t < passed.t) return true;
+    if (hit.t == passed.t && std::tie(hit.object, hit.primitive) <= std::tie(passed.object, passed.primitive)) {
+      return true;
+    }
+    const bool is_back = glm::dot(hit.normal, ray_.direction) > 0;
+    return is_back && sight_.passes_backs && is_triangle() && !material_of(scene_, hit).is_double_sided;
+  }
+  bool is_triangle() const { return std::holds_alternative<Mesh>(scene_.objects[static_cast<size_t>(object_)].shape); }
   void offer(Real t, const Vector& normal) { offer(t, 0, 0, 0, normal); }
 
   void intersect(const world::NotDrawn&) {}
@@ -187,7 +201,9 @@ class Search {
     if (v >= 0 && u + v <= 1 && normal != Vector(0)) offer(glm::dot(q, e2) / det, primitive, u, v, normal);
   }
 
+  const world::Scene& scene_;
   Ray ray_;
+  Sight sight_;
   int32_t object_ = 0;
   Hit nearest_;
 };
@@ -208,11 +224,18 @@ bool can_hit(const Ray& ray) {
   return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Vector(0) && ray.tmin < ray.tmax;
 }
 
-Hit find_nearest_hit(const world::Scene& scene, const Ray& ray) {
+Hit find_nearest_hit(const world::Scene& scene, const Ray& ray, const Sight& sight) {
   if (!can_hit(ray)) return {};
-  Search search(ray);
+  Search search(scene, ray, sight);
   for (size_t i = 0; i < scene.objects.size(); ++i) search.visit(static_cast<int32_t>(i), scene.objects[i].shape);
   return search.nearest();
+}
+
+const Material& material_of(const world::Scene& scene, const Hit& hit) {
+  const world::Object& object = scene.objects[static_cast<size_t>(hit.object)];
+  const Mesh* mesh = std::get_if<Mesh>(&object.shape);
+  const bool is_of_object = mesh == nullptr || mesh->triangle_materials.empty();
+  return scene.materials[is_of_object ? object.material : mesh->triangle_materials[static_cast<size_t>(hit.primitive)]];
 }
 
 bool is_occluded(const world::Scene& scene, const Ray& ray) {

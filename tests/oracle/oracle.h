@@ -48,8 +48,19 @@ Vector axis_of(const world::Box& box, int i);
 /// Whether a ray may meet anything at all: see Ray.
 bool can_hit(const Ray& ray);
 
+/// What a ray of a picture sees otherwise than one that is cast.
+struct Sight {
+  /// Whether backs of triangles are passed by, where their material does not show them.
+  bool passes_backs = false;
+  /// What it has passed already: all that is nearer, and of what is as near all up to this hit.
+  Hit passed{.t = -1};
+};
+
 /// The nearest hit; of hits at the same t the one with the lower (object, primitive).
-Hit find_nearest_hit(const world::Scene& scene, const Ray& ray);
+Hit find_nearest_hit(const world::Scene& scene, const Ray& ray, const Sight& sight = {});
+
+/// The material of what was hit.
+const Material& material_of(const world::Scene& scene, const Hit& hit);
 
 /// Whether anything is met at all.
 bool is_occluded(const world::Scene& scene, const Ray& ray);

@@ -78,11 +78,10 @@ SurfacePoint make_surface_point(const world::Scene& scene, const Ray& ray, const
   point.geometric_normal = point.normal = side * hit.normal;
   point.shadow_position = point.position;
   point.lift = lift_of(object.shape, ray, hit, point.position);
-  point.material = &scene.materials[object.material];
+  point.material = &material_of(scene, hit);
   if (const Mesh* mesh = std::get_if<Mesh>(&object.shape)) {
     const auto triangle = static_cast<size_t>(hit.primitive);
     const Corners corners{mesh->triangles[triangle], {1 - hit.u - hit.v, hit.u, hit.v}};
-    if (!mesh->triangle_materials.empty()) point.material = &scene.materials[mesh->triangle_materials[triangle]];
     if (!mesh->normals.empty()) apply_vertex_normals(*mesh, corners, side, point);
     if (!mesh->colors.empty()) point.vertex_color = corners.interpolate(mesh->colors);
   }
@@ -118,10 +117,29 @@ Illumination illuminate(const Light& light, const Vector& position) {
   return result;
 }
 
-bool is_in_shadow(const world::Scene& scene, const SurfacePoint& point, const Light& light, const Vector& to_light) {
+/// A ray goes through so many surfaces that blend, and on where it sees so much of what is behind them.
+constexpr uint32_t kMostLayers = 64;
+constexpr Real kLeastShareBehind = 1.0L / 1024;
+
+/// How much of what is behind it the material covers, as there are no textures here (glTF 2.0, 3.9.4).
+Real coverage_of(const Material& material) {
+  if (material.alpha_mode == AlphaMode::kBlend) return material.alpha;
+  return material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff ? 0 : 1;
+}
+
+/// The share of the source's light that reaches the point.
+Real arriving_share(const world::Scene& scene, const SurfacePoint& point, const Light& light, const Vector& to_light) {
   const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
-  if (!has_place(light.kind)) return is_occluded(scene, {origin, to_light});
-  return is_occluded(scene, {origin, Vector(light.position) - origin, 0, 1});
+  const Ray ray = has_place(light.kind) ? Ray{origin, Vector(light.position) - origin, 0, 1} : Ray{origin, to_light};
+  Real share = 1;
+  Sight sight;
+  for (uint32_t layer = 0; share > 0; ++layer) {
+    sight.passed = find_nearest_hit(scene, ray, sight);
+    if (!sight.passed.exists()) return share;
+    share *= layer < kMostLayers ? 1 - coverage_of(material_of(scene, sight.passed)) : 0;
+    if (share < kLeastShareBehind) share = 0;
+  }
+  return share;
 }
 
 /// How far a device may have the point and the directions from it, because it rounds: lengths in scene units, and
@@ -261,8 +279,8 @@ Radiance shade(const world::Scene& scene, const SurfacePoint& point, const Surfa
     const Illumination illumination = illuminate(light, point.position);
     const Real cosine = glm::dot(point.normal, illumination.to_light);
     if (!(cosine > 0) || !(illumination.strength > 0)) continue;
-    if (is_in_shadow(scene, point, light, illumination.to_light)) continue;
-    sum.add(Vector(illumination.strength), surface.contribution(light, illumination));
+    const Real share = arriving_share(scene, point, light, illumination.to_light);
+    if (share > 0) sum.add(Vector(share * illumination.strength), surface.contribution(light, illumination));
   }
   return sum;
 }
@@ -310,14 +328,29 @@ PointError error_at(const world::Scene& scene, const Ray& ray, const Hit& hit, c
 /// A mirror ray of less weight is not traced where the environment can stand for what it would bring.
 constexpr Real kLeastMirrorWeight = 1.0L / 256;
 
-/// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). `bounces` are left. A ray that
-/// leaves the scene brings `beyond`.
-Radiance radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray,
-                  const Vector& beyond, uint32_t bounces) {
-  if (!hit.exists()) return {beyond};
+/// Where a ray is on its way from the eye.
+struct Way {
+  /// What it would bring where it leaves the scene.
+  Vector beyond{0};
+  /// How many mirrors may follow.
+  uint32_t bounces = 0;
+  /// How many surfaces it went through.
+  uint32_t layers = 0;
+  /// The largest part of what it brings that a pixel sees.
+  Real weight = 1;
+};
+
+/// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends brings
+/// alpha of what it sends, with the environment instead of a mirror ray, and 1 - alpha of what is behind.
+Radiance radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray, const Way& way) {
+  if (!hit.exists()) return {way.beyond};
   const SurfacePoint point = make_surface_point(scene, ray, hit);
   const Vector direction = glm::normalize(ray.direction);
   const PointError error = error_at(scene, ray, hit, of_ray);
+  const Real coverage = coverage_of(*point.material);
+  const Real behind = way.weight * (1 - coverage);
+  const bool goes_on = coverage < 1 && way.layers < kMostLayers && behind >= kLeastShareBehind;
+  const uint32_t bounces = goes_on ? 0 : way.bounces;
   const auto follow = [&](const auto& model) {
     const auto surface = make_surface(model, point, -direction, error);
     Radiance sum = shade(scene, point, surface);
@@ -333,11 +366,19 @@ Radiance radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, con
     }
     const Ray next{point.position + point.lift * point.geometric_normal, mirror(point, direction)};
     const RayError of_next{error.position, of_ray.direction + 2 * error.normal};
-    sum.add(weight, radiance(scene, next, find_nearest_hit(scene, next), of_next,
-                             surface.kMirrorsBackground ? beyond : ambient, bounces - 1));
+    const Way on{surface.kMirrorsBackground ? way.beyond : ambient, bounces - 1, way.layers,
+                 way.weight * std::max({weight.x, weight.y, weight.z})};
+    sum.add(weight, radiance(scene, next, find_nearest_hit(scene, next, {.passes_backs = true}), of_next, on));
     return sum;
   };
-  return std::visit(follow, point.material->model);
+  const Radiance seen = std::visit(follow, point.material->model);
+  if (!goes_on) return seen;
+  Radiance blended;
+  blended.add(Vector(coverage), seen);
+  const Hit next = find_nearest_hit(scene, ray, {.passes_backs = true, .passed = hit});
+  blended.add(Vector(1 - coverage),
+              radiance(scene, ray, next, of_ray, {way.beyond, way.bounces, way.layers + 1, behind}));
+  return blended;
 }
 
 }  // namespace
@@ -379,9 +420,9 @@ Picture render(const world::Scene& scene, const View& view) {
     for (uint32_t x = 0; x < view.size.x; ++x) {
       Pixel& pixel = picture.pixels[row * view.size.x + x];
       pixel.ray = camera_ray(view.camera, view.size, x, y);
-      pixel.hit = find_nearest_hit(lit, pixel.ray);
+      pixel.hit = find_nearest_hit(lit, pixel.ray, {.passes_backs = true});
       const Radiance seen = radiance(lit, pixel.ray, pixel.hit, {0, kCameraRayError},
-                                     Vector(scene.environment.background), view.max_depth);
+                                     {Vector(scene.environment.background), view.max_depth});
       pixel.color = seen.color;
       pixel.highlight_error = seen.error;
     }

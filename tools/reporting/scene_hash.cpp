@@ -103,6 +103,9 @@ class ContentHash {
   void add(const Material& material) {
     std::visit([&](const auto& model) { add(model); }, material.model);
     add(material.emissive);
+    add(static_cast<uint64_t>(material.alpha_mode) << 1 | uint64_t{material.is_double_sided});
+    add(material.alpha);
+    add(material.alpha_cutoff);
     for_each_slot(material, [this](const TextureSlot& slot, const char*) { add(slot); });
   }
   void add(const Light& light) {

@@ -87,8 +87,9 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   if (is_classic && (has_texture(source) || (pbr != source.end() && has_texture(*pbr)))) {
     report.warn("material " + title + ": its textures are ignored, its factors are used");
   }
-  const std::string alpha_mode = source.value("alphaMode", "OPAQUE");
-  if (alpha_mode != "OPAQUE") report.warn("material " + title + ": alphaMode " + alpha_mode + " is drawn opaque");
+  if (is_classic && source.value("alphaMode", "OPAQUE") != "OPAQUE") {
+    report.warn("material " + title + ": its alphaMode is ignored, it is drawn opaque");
+  }
   if (!source.contains("extensions")) return;
   for (const auto& [name, value] : source["extensions"].items()) {
     if (std::ranges::find(kKnown, name) == kKnown.end()) {
@@ -105,6 +106,17 @@ Unlit unlit_of(const json& source, GltfTextures& textures) {
   return unlit;
 }
 
+void read_alpha(const json& source, Material& material) {
+  const std::string mode = source.value("alphaMode", "OPAQUE");
+  if (mode == "MASK") material.alpha_mode = AlphaMode::kMask;
+  if (mode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
+  if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
+    material.alpha = std::min(static_cast<float>(vec4_of(*pbr, "baseColorFactor", dvec4(1.0)).w), 1.0F);
+  }
+  material.alpha_cutoff = source.value("alphaCutoff", 0.5F);
+  material.is_double_sided = source.value("doubleSided", false);
+}
+
 Material read_material(const json& source, const std::string& title, GltfTextures& textures, LoadReport& report) {
   Material material;
   material.name = source.value("name", "");
@@ -112,10 +124,12 @@ Material read_material(const json& source, const std::string& title, GltfTexture
     material.model = phong_of(*phong, base_color_of(source));
   } else if (find_extension(source, "KHR_materials_unlit") != nullptr) {
     material.model = unlit_of(source, textures);
+    read_alpha(source, material);
     return material;
   } else {
     material.model = metallic_roughness_of(source, title, textures, report);
     material.emissive_texture = textures.read_slot(source, "emissiveTexture", ImageUse::kColor);
+    read_alpha(source, material);
   }
   double strength = 1.0;
   if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
@@ -141,6 +155,7 @@ Material default_gltf_material() {
   Material material;
   material.name = "glTF default";
   material.model = MetallicRoughness{};
+  material.is_double_sided = false;
   return material;
 }
 

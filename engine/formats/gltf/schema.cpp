@@ -135,6 +135,8 @@ constexpr JsonRule kRules[] = {
     number("materials[].occlusionTexture.strength", 0.0, 1.0),
     PROMIN_TEXTURE_INFO("materials[].emissiveTexture"),
     choice("materials[].alphaMode", "OPAQUE|MASK|BLEND"),
+    number("materials[].alphaCutoff", 0.0, kMaxScalar),
+    boolean("materials[].doubleSided"),
     object("materials[].extensions"),
     object("materials[].extensions.*"),
     factor("materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"),

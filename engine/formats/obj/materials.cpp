@@ -73,8 +73,10 @@ std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& fil
     dvec3 numbers(0.0);
     int count = 0;
     for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
-      // An opacity that is no number ("-halo 0.5") is taken for 0, a transparency for 1.
-      const double number = parse_number(word).value_or(is_factor ? -1.0 : keyword == "d" ? 0.0 : 1.0);
+      // The opacity of what is seen edge-on, which is drawn as that of all.
+      if (keyword == "d" && word == "-halo") word = take_word(rest);
+      // An opacity that is no number counts as opaque.
+      const double number = parse_number(word).value_or(is_factor ? -1.0 : keyword == "d" ? 1.0 : 0.0);
       if (count < 3) numbers[count] = number;
       if (!is_factor || (number >= 0.0 && number <= kMaxCoordinate)) continue;
       report.refuse(quote(word) + " is no factor of light", "mtllib " + file + " " + lines.place(),
@@ -84,6 +86,12 @@ std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& fil
   }
   materials.erase(materials.begin());
   return materials;
+}
+
+/// Where a material has both, d holds.
+float opacity_of(const MtlMaterial& source) {
+  const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
+  return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
 Material make_material(const MtlMaterial& source) {
@@ -104,17 +112,18 @@ Material make_material(const MtlMaterial& source) {
     phong.shininess = static_cast<float>(source.find("Ns", 0.0).x);
   }
   if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
+  material.alpha = opacity_of(source);
+  if (material.alpha < 1.0F) material.alpha_mode = AlphaMode::kBlend;
   return material;
 }
 
 void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
   const std::array<double, 4> kTransparent = {4, 6, 7, 9};
-  // Where a material has both, d holds.
-  const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
-  if (static_cast<float>(opacity) < 1.0F ||
+  if (opacity_of(source) == 1.0F &&
       std::find(kTransparent.begin(), kTransparent.end(), source.illum()) != kTransparent.end()) {
-    report.warn(title + " is transparent, it is drawn opaque");
+    report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(source.illum())) +
+                "), it is drawn opaque");
   }
   if (source.illum() == 10.0) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
 }

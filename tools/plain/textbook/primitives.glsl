@@ -25,6 +25,7 @@ struct SurfacePoint {
 vec3 corner0(Primitive p) { return p.a.xyz; }
 vec3 corner1(Primitive p) { return vec3(p.a.w, p.b.xy); }
 vec3 corner2(Primitive p) { return vec3(p.b.zw, uintBitsToFloat(p.c.x)); }
+vec3 triangle_normal(Primitive p) { return normalize(cross(corner1(p) - corner0(p), corner2(p) - corner0(p))); }
 
 // The ray's origin from `center`; with RECENTRED moved along the ray by the t that is returned.
 real recentre(Ray ray, vec3 center, out real3 origin) {

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What rays pass by: holes that alpha of textures and vertices makes, and backs that a material does not show (docs/model.md,
+// "Alpha"). A hole is told where a triangle is intersected, for every ray of a picture, so that which hit is the nearest
+// depends neither on the tree nor on how often a triangle lies in it.
+
+MaterialRecord material_of(SurfaceRecord surface) {
+  return load_material(VIEW.first_index.x + (surface.corners_material.w & SURFACE_MATERIAL_MASK));
+}
+
+bool has_holes(MaterialRecord material, SurfaceRecord surface) {
+  uint flags = surface.corners_material.w;
+  return (flags_of(material) & MATERIAL_HAS_HOLES) != 0u && (flags & (SURFACE_HAS_UVS | SURFACE_IS_COLORED)) != 0u;
+}
+
+bool may_have_holes(uint index) {
+  SurfaceRecord surface = load_surface(index);
+  return has_holes(material_of(surface), surface);
+}
+
+// The material's, by the vertices' and the texture's.
+float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3 weights, float facing,
+               float cone_width) {
+  precise float alpha = material.cover.x;
+  if (has(FEATURE_VERTEX_COLORS) && (surface.corners_material.w & SURFACE_IS_COLORED) != 0u) {
+    alpha *= load_vertex_color(surface.corners_material.xyz, weights).w;
+  }
+  uint slot = slot_number(material.cover.z);
+  if (has(FEATURE_TEXTURES) && slot != 0u && (surface.corners_material.w & SURFACE_HAS_UVS) != 0u) {
+    CornerUvs uvs = load_corner_uvs(surface.corners_material.xyz);
+    alpha *= look_up(slot, texture_place(p, uvs, weights, facing, cone_width)).w;
+  }
+  return alpha;
+}
+
+bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing) {
+  SurfaceRecord surface = load_surface(index);
+  MaterialRecord material = material_of(surface);
+  // As shading has it.
+  float facing = dot3(triangle_normal(p), direction);
+  if (has(FEATURE_ONE_SIDED) && passes_backs && facing > 0.0 && (flags_of(material) & MATERIAL_IS_ONE_SIDED) != 0u) {
+    return true;
+  }
+  if (!has(FEATURE_HOLES) || !has_holes(material, surface)) return false;
+  float size = length3(direction);
+  precise float cone_width = sight_width + sight_spread * (crossing.t * size);
+  precise vec3 weights = vec3(1.0 - crossing.u - crossing.v, crossing.u, crossing.v);
+  precise float cosine = facing / size;
+  return alpha_at(material, p, surface, weights, cosine, cone_width) < material.cover.y;
+}
+
+// How much of the light from behind a hit covers: 1 unless its material blends.
+float coverage_of_hit(Hit hit, vec3 direction) {
+  SurfaceRecord surface = load_surface(hit.primitive);
+  MaterialRecord material = material_of(surface);
+  if ((flags_of(material) & MATERIAL_BLENDS) == 0u) return 1.0;
+  if (!has(FEATURE_HOLES) || !has_holes(material, surface)) return material.cover.x;
+  Primitive p = load_primitive(hit.primitive);
+  precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
+  return clamp(alpha_at(material, p, surface, weights, 1.0, 0.0), 0.0, 1.0);
+}

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Alpha and sides (docs/model.md, "Alpha"): holes, what blends, and backs that are not shown. Boards are unlit and fill
+// the picture, so that its pixels are closed forms.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "promin/caster.h"
+#include "promin/setup_stats.h"
+#include "promin/validate.h"
+#include "render/renderer_impl.h"
+
+namespace promin::test {
+namespace {
+
+Mesh make_board(float z) {
+  Mesh mesh;
+  mesh.positions = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.uvs = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 1, 0, 0}};
+  return mesh;
+}
+
+Material make_unlit(const vec3& color, float alpha = 1.0F, AlphaMode mode = AlphaMode::kBlend) {
+  Material material;
+  material.model = Unlit{color, {}};
+  material.alpha = alpha;
+  material.alpha_mode = mode;
+  return material;
+}
+
+/// A white surface that sends the light that it gets.
+Material make_matt() {
+  Material material;
+  material.phong() = Phong{.ambient = vec3(0.0F), .diffuse = vec3(1.0F)};
+  return material;
+}
+
+void add_board(Scene& scene, float z, const Material& material) {
+  scene.materials.push_back(material);
+  scene.add("board", make_board(z), static_cast<uint32_t>(scene.materials.size() - 1));
+}
+
+/// An image of which each texel has this alpha, named by its number from v = 0 on.
+void add_alpha_texture(Scene& scene, const uvec2& size, const std::vector<uint32_t>& alphas) {
+  auto image = std::make_shared<TextureImage>();
+  image->size = size;
+  image->use = ImageUse::kData;
+  for (const uint32_t alpha : alphas) image->texels.push_back(alpha << 24 | 0xFFFFFFU);
+  scene.images.push_back(image);
+  Texture texture{.image = static_cast<uint32_t>(scene.images.size() - 1)};
+  texture.is_magnified_linearly = texture.has_levels = false;
+  scene.textures.push_back(texture);
+}
+
+/// From z = 2 towards -z; what lies at z > 2 is behind it.
+View make_board_view(const uvec2& size) {
+  View view;
+  view.camera.eye = vec3(0, 0, 2);
+  view.camera.projection = Projection::kOrthographic;
+  view.camera.ymag = 1.0F;
+  view.size = size;
+  return view;
+}
+
+class AlphaTest : public DeviceTest {
+ protected:
+  RenderResult trace(const Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
+    EXPECT_THAT(validate(scene), testing::IsEmpty());
+    return make_renderer(device(), scene, options).render(view);
+  }
+  std::vector<float> reds(const Scene& scene, const uvec2& size) {
+    std::vector<float> result;
+    for (const vec3& pixel : trace(scene, make_board_view(size)).image.pixels) result.push_back(pixel.r);
+    return result;
+  }
+};
+
+TEST_F(AlphaTest, AMaskIsThereFromItsCutoffOn) {
+  for (const uint32_t cutoff : {64U, 128U, 191U}) {
+    Scene scene;
+    add_alpha_texture(scene, {4, 1}, {0, cutoff - 1, cutoff, 255});
+    Material mask = make_unlit(vec3(0.25F), 1.0F, AlphaMode::kMask);
+    mask.alpha_cutoff = static_cast<float>(cutoff) / 255.0F;
+    std::get<Unlit>(mask.model).color_texture.texture = 0;
+    add_board(scene, 0.0F, mask);
+    add_board(scene, -1.0F, make_unlit(vec3(0.5F)));
+    EXPECT_THAT(reds(scene, {4, 1}), testing::ElementsAre(0.5F, 0.5F, 0.25F, 0.25F)) << cutoff;
+  }
+}
+
+TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
+  Scene scene;
+  add_board(scene, 0.0F, make_unlit(vec3(0.25F), 0.49F, AlphaMode::kMask));
+  scene.materials.push_back(scene.materials[0]);
+  scene.add("ball", Sphere{.radius = 0.5}, 1);
+  add_board(scene, -1.0F, make_unlit(vec3(0.5F)));
+  EXPECT_THAT(reds(scene, {4, 4}), testing::Each(0.5F));
+}
+
+TEST_F(AlphaTest, AnOpaqueMaterialHasNoAlpha) {
+  Scene scene;
+  add_alpha_texture(scene, {2, 1}, {0, 128});
+  Material opaque = make_unlit(vec3(0.25F), 0.0F, AlphaMode::kOpaque);
+  std::get<Unlit>(opaque.model).color_texture.texture = 0;
+  add_board(scene, 0.0F, opaque);
+  EXPECT_THAT(reds(scene, {2, 1}), testing::Each(0.25F));
+}
+
+TEST_F(AlphaTest, WhatBlendsIsOverWhatIsBehind) {
+  Scene scene;
+  scene.environment.background = vec3(1.0F);
+  add_alpha_texture(scene, {3, 1}, {0, 51, 255});
+  Material pane = make_unlit(vec3(0.0F), 0.5F);
+  std::get<Unlit>(pane.model).color_texture.texture = 0;
+  add_board(scene, -1.0F, make_unlit(vec3(0.25F), 0.75F));
+  add_board(scene, 0.0F, pane);
+  const double behind = 0.75 * 0.25 + 0.25;
+  const std::vector<float> pixels = reds(scene, {3, 1});
+  EXPECT_NEAR(pixels[0], behind, 1e-7);
+  EXPECT_NEAR(pixels[1], 0.9 * behind, 1e-7);
+  EXPECT_NEAR(pixels[2], 0.5 * behind, 1e-7);
+}
+
+TEST_F(AlphaTest, LayersAtTheSamePlaceAllCount) {
+  // In the order of their numbers, whichever triangle the tree has first.
+  Scene scene;
+  scene.environment.background = vec3(1.0F);
+  for (const float color : {0.0F, 0.25F, 0.5F}) add_board(scene, 0.0F, make_unlit(vec3(color), 0.5F));
+  const double expected = 0.5 * 0.0 + 0.5 * (0.5 * 0.25 + 0.5 * (0.5 * 0.5 + 0.5 * 1.0));
+  TunedRendererOptions options;
+  for (const std::string_view builder : builder_names()) {
+    options.builder = builder;
+    const Image image = trace(scene, make_board_view({5, 5}), options).image;
+    for (const vec3& pixel : image.pixels) EXPECT_NEAR(pixel.r, expected, 1e-7) << builder;
+  }
+}
+
+TEST_F(AlphaTest, BothSidesOfASolidCount) {
+  Scene scene;
+  scene.environment.background = vec3(1.0F);
+  scene.materials = {make_unlit(vec3(0.0F), 0.5F)};
+  scene.add("ball", Sphere{.radius = 3.0}, 0);
+  View view = make_board_view({2, 2});
+  view.camera.eye.z = 5.0F;
+  const RenderResult result = trace(scene, view);
+  for (const vec3& pixel : result.image.pixels) EXPECT_NEAR(pixel.r, 0.25, 1e-7);
+  EXPECT_EQ(result.rays.primary, 4U);
+  EXPECT_EQ(result.rays.passed, 8U);
+  EXPECT_EQ(result.rays.total(), 4U);
+}
+
+TEST_F(AlphaTest, TheLastLayerCountsAsOpaque) {
+  Scene scene;
+  scene.environment.background = vec3(1.0F);
+  for (uint32_t i = 0; i < layout::MOST_LAYERS; ++i) {
+    add_board(scene, -0.01F * static_cast<float>(i), make_unlit(vec3(0.0F), 0.01F));
+  }
+  EXPECT_NEAR(reds(scene, {1, 1})[0], std::pow(0.99, layout::MOST_LAYERS), 1e-5);
+  add_board(scene, -1.0F, make_unlit(vec3(0.0F), 0.01F));
+  EXPECT_EQ(reds(scene, {1, 1})[0], 0.0F);
+}
+
+TEST_F(AlphaTest, WhatIsFaintIsNotFollowed) {
+  for (const bool is_faint : {false, true}) {
+    Scene scene;
+    scene.environment.background = vec3(1.0F);
+    const float alpha = is_faint ? 1.0F - 1.0F / 1025.0F : 1.0F - 1.0F / 1023.0F;
+    add_board(scene, 0.0F, make_unlit(vec3(0.5F), alpha));
+    const RenderResult result = trace(scene, make_board_view({1, 1}));
+    EXPECT_EQ(result.rays.passed, is_faint ? 0U : 1U);
+    EXPECT_EQ(result.image.pixels[0].r == 0.5F, is_faint);
+  }
+}
+
+TEST_F(AlphaTest, VerticesHaveAlpha) {
+  for (const AlphaMode mode : {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend}) {
+    Scene scene;
+    scene.environment.background = vec3(1.0F);
+    scene.materials = {make_unlit(vec3(0.0F), 1.0F, mode)};
+    Mesh mesh = make_board(0.0F);
+    mesh.colors.assign(4, vec4(1, 1, 1, 0.25F));
+    scene.add("board", mesh, 0);
+    const float expected = mode == AlphaMode::kOpaque ? 0.0F : (mode == AlphaMode::kMask ? 1.0F : 0.75F);
+    EXPECT_THAT(reds(scene, {3, 3}), testing::Each(testing::FloatEq(expected)));
+  }
+}
+
+TEST_F(AlphaTest, ShadowsHaveHolesAndLetThrough) {
+  for (const AlphaMode mode : {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend}) {
+    Scene scene;
+    add_alpha_texture(scene, {4, 1}, {0, 51, 204, 255});
+    add_board(scene, 0.0F, make_matt());
+    // Behind the camera, before the light.
+    Material curtain = make_unlit(vec3(1.0F), 1.0F, mode);
+    std::get<Unlit>(curtain.model).color_texture.texture = 0;
+    curtain.is_double_sided = false;
+    add_board(scene, 3.0F, curtain);
+    Light sun;
+    sun.kind = LightKind::kDirectional;
+    sun.direction = vec3(0, 0, -1);
+    sun.diffuse = vec3(1.0F);
+    scene.lights = {sun};
+    const std::vector<float> pixels = reds(scene, {4, 1});
+    if (mode == AlphaMode::kOpaque) EXPECT_THAT(pixels, testing::Each(0.0F));
+    if (mode == AlphaMode::kMask) EXPECT_THAT(pixels, testing::ElementsAre(1.0F, 1.0F, 0.0F, 0.0F));
+    if (mode != AlphaMode::kBlend) continue;
+    for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(pixels[i], (std::array{1.0, 0.8, 0.2, 0.0})[i], 1e-6);
+  }
+}
+
+TEST_F(AlphaTest, BacksAreSeenWhereTheMaterialShowsThem) {
+  for (const bool is_double_sided : {true, false}) {
+    Scene scene;
+    scene.environment.background = vec3(1.0F);
+    Material board = make_unlit(vec3(0.25F), 1.0F, AlphaMode::kOpaque);
+    board.is_double_sided = is_double_sided;
+    add_board(scene, 0.0F, board);
+    View view = make_board_view({4, 4});
+    EXPECT_THAT(reds(scene, {4, 4}), testing::Each(0.25F));
+    view.camera.eye.z = -2.0F;
+    view.camera.look = vec3(0, 0, 1);
+    const Image back = trace(scene, view).image;
+    for (const vec3& pixel : back.pixels) EXPECT_EQ(pixel.r, is_double_sided ? 0.25F : 1.0F);
+  }
+}
+
+TEST_F(AlphaTest, MirrorsSeeBacksAsTheCameraDoes) {
+  for (const bool is_double_sided : {true, false}) {
+    Scene scene;
+    Material mirror = make_matt();
+    mirror.phong() = Phong{.ambient = vec3(0), .diffuse = vec3(0), .reflection = vec3(1)};
+    add_board(scene, 0.0F, mirror);
+    scene.environment.background = vec3(1.0F);
+    Material behind_camera = make_unlit(vec3(0.25F), 1.0F, AlphaMode::kOpaque);
+    behind_camera.is_double_sided = is_double_sided;
+    add_board(scene, 3.0F, behind_camera);
+    // Its front faces away from the mirror.
+    EXPECT_THAT(reds(scene, {2, 2}), testing::Each(is_double_sided ? 0.25F : 1.0F));
+  }
+}
+
+TEST_F(AlphaTest, CastsSeeGeometry) {
+  Scene scene;
+  Material absent = make_unlit(vec3(1.0F), 0.0F, AlphaMode::kMask);
+  absent.is_double_sided = false;
+  add_board(scene, 0.0F, absent);
+  Caster caster(device(), world::flatten(scene));
+  const Ray ray{vec3(0.25F, 0.1F, -1.0F), 0.0F, vec3(0, 0, 1), std::numeric_limits<float>::infinity()};
+  EXPECT_EQ(caster.cast({&ray, 1})[0].t, 1.0F);
+}
+
+TEST_F(AlphaTest, EveryWayOfTracingGivesTheSameBits) {
+  const world::Scene scene = make_scene_of_alpha();
+  View view = make_view({96, 72});
+  view.samples_per_pixel = 3;
+  TunedRendererOptions options;
+  const RenderResult expected = make_renderer(device(), scene, options).render(view);
+  EXPECT_GT(expected.rays.passed, 1000U);
+  const auto expect_same = [&] {
+    const RenderResult result = make_renderer(device(), scene, options).render(view);
+    EXPECT_TRUE(has_same_bits(result.image, expected.image));
+    EXPECT_EQ(result.rays.passed, expected.rays.passed);
+  };
+  options.avoids_texels = true;
+  expect_same();
+  options.force_all_features = true;
+  expect_same();
+  options = {};
+  for (const uint32_t packet : {1U, 2U, 4U}) {
+    options.packet_size = packet;
+    options.blocks_per_dispatch = 5 * packet;
+    expect_same();
+  }
+  options = {};
+  for (const std::string_view builder : builder_names()) {
+    options.builder = builder;
+    expect_same();
+  }
+}
+
+// More sources than a turn of the stream takes.
+TEST_F(AlphaTest, ManySourcesLightWhatBlends) {
+  world::Scene scene = make_scene_of_alpha();
+  const View view = make_view({48, 36});
+  const Light light = scene.lights[0];
+  const Image expected = make_renderer(device(), scene, {}).render(view).image;
+  for (uint32_t i = 0; i < layout::STREAM_SOURCES; ++i) {
+    scene.lights.push_back(light);
+    scene.lights.back().diffuse = scene.lights.back().specular = vec3(0.0F);
+  }
+  EXPECT_TRUE(has_same_bits(make_renderer(device(), scene, {}).render(view).image, expected));
+}
+
+}  // namespace
+}  // namespace promin::test
