@@ -33,9 +33,10 @@ float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3
   return alpha;
 }
 
-bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing) {
+bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge) {
   SurfaceRecord surface = load_surface(index);
   MaterialRecord material = material_of(surface);
+  if (has(FEATURE_BLENDING) && is_on_open_edge && (flags_of(material) & MATERIAL_BLENDS) != 0u) return true;
   // As shading has it.
   float facing = dot3(triangle_normal(p), direction);
   if (has(FEATURE_ONE_SIDED) && passes_backs && facing > 0.0 && (flags_of(material) & MATERIAL_IS_ONE_SIDED) != 0u) {

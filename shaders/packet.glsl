@@ -39,9 +39,12 @@ void pass(uint slot, float t, uint order) {
   packet[slot].tmin = t > 0.0 ? uintBitsToFloat(floatBitsToUint(t) - 1u) : 0.0;
 }
 
-// Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, or its back
-// where that is not shown (cutouts.glsl; cast.comp has rays that see geometry alone).
-bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing);
+// Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, its back where
+// that is not shown, or of what blends an edge that is a neighbour's (cutouts.glsl; cast.comp has rays that see geometry
+// alone).
+const uint MAY_BE_CUT_OUT =
+    FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | FEATURE_BIT(FEATURE_BLENDING);
+bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge);
 bool may_have_holes(uint index);
 
 // What the invocation's rays took: x = node steps, y = primitive tests. The entry point sets it to zero.

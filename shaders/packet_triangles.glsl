@@ -29,9 +29,10 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
       shift = shifts[slot];
     }
     Crossing crossing = cross_triangle(of_next, shear_z, tmin);
-    if (has(FEATURE_HOLES) || has(FEATURE_ONE_SIDED)) {
+    if (MAY_BE_CUT_OUT != 0u) {
       precise float t = crossing.t + shift;
-      if (crossing.t > tmin && t <= limit && is_cut_out(direction, p, index, crossing)) crossing = NO_CROSSING;
+      bool may_be_kept = crossing.t > tmin && t <= limit;
+      if (may_be_kept && is_cut_out(direction, p, index, crossing, is_on_open_edge(of_next))) crossing = NO_CROSSING;
     }
     may_another_be_met = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {

@@ -42,7 +42,7 @@ class MaterialPacker {
   void add(const Material& material) {
     MaterialRecord record = std::visit([&](const auto& model) { return pack(model); }, material.model);
     record.cover = pack_cover(material);
-    record.emissive = vec4(material.emissive, std::bit_cast<float>(flags_of(material)));
+    record.emissive = vec4(material.emissive, std::bit_cast<float>(pack_flags(material)));
     packed_.records.push_back(record);
   }
   PackedMaterials take() { return std::move(packed_); }
@@ -56,9 +56,8 @@ class MaterialPacker {
 #include "promin/kinds/materials.def"
   };
 
-  static uint flags_of(const Material& material) {
-    return std::visit(ModelNumber(), material.model) |
-           flag(has_holes(material), MATERIAL_HAS_HOLES) |
+  static uint pack_flags(const Material& material) {
+    return std::visit(ModelNumber(), material.model) | flag(has_holes(material), MATERIAL_HAS_HOLES) |
            flag(blends(material), MATERIAL_BLENDS) | flag(!material.is_double_sided, MATERIAL_IS_ONE_SIDED);
   }
 

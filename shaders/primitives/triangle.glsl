@@ -49,6 +49,19 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
 
+// Whether the ray meets an edge from whose triangle it is taken, so that of the triangles that share it on both sides
+// one alone is met, and of those around a corner too: as if all rays were moved aside by an infinitely small step.
+bool is_left_open(float area, vec2 from, vec2 to, float determinant) {
+  vec2 way = determinant < 0.0 ? from : to;
+  vec2 start = determinant < 0.0 ? to : from;
+  return area == 0.0 && !(way.y > start.y || (way.y == start.y && way.x > start.x));
+}
+bool is_on_open_edge(ShearedTriangle sheared) {
+  return is_left_open(sheared.areas.x, sheared.b, sheared.c, sheared.determinant) ||
+         is_left_open(sheared.areas.y, sheared.c, sheared.a, sheared.determinant) ||
+         is_left_open(sheared.areas.z, sheared.a, sheared.b, sheared.determinant);
+}
+
 // The point that the weights give should be the origin of the sheared plane. For slivers and for triangles seen edge-on
 // the weights are rounding and little else, but the error lies along the triangle, so a step along its longest side
 // brings the point back. Where that leads out of the triangle, the point becomes the nearest one of the side that it

@@ -453,12 +453,48 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
 }
 
 TEST_F(GltfTest, WhatAMaterialLosesIsSaidByItsName) {
-  GltfBuilder gltf = material_gltf(
-      {{"name", "glass"}, {"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_transmission", json::object()}}}});
+  GltfBuilder gltf =
+      material_gltf({{"name", "glass"}, {"extensions", {{"KHR_materials_transmission", json::object()}}}});
   gltf.json["extensionsUsed"] = {"KHR_materials_transmission", "KHR_texture_transform"};
   gltf.add_node({{"mesh", 0}});
-  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"glass\": alphaMode BLEND is drawn opaque",
-                                               "material \"glass\": KHR_materials_transmission is ignored"));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"glass\": KHR_materials_transmission is ignored"));
+}
+
+TEST_F(GltfTest, MaterialsHaveAlphaAndSides) {
+  const auto material_of = [&](const json& source) {
+    GltfBuilder gltf = material_gltf(source);
+    gltf.add_node({{"mesh", 0}});
+    return load(gltf).materials.at(0);
+  };
+  const Material plain = material_of(json::object());
+  EXPECT_EQ(plain.alpha_mode, AlphaMode::kOpaque);
+  EXPECT_FALSE(plain.is_double_sided);
+  const json half = {{"baseColorFactor", {1, 1, 1, 0.5}}};
+  const Material mask = material_of({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", half}});
+  EXPECT_EQ(mask.alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(mask.alpha, 0.5F);
+  EXPECT_EQ(mask.alpha_cutoff, 0.5F);
+  const Material blend = material_of({{"alphaMode", "BLEND"}, {"alphaCutoff", 0.25}, {"doubleSided", true}});
+  EXPECT_EQ(blend.alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(blend.alpha, 1.0F);
+  EXPECT_EQ(blend.alpha_cutoff, 0.25F);
+  EXPECT_TRUE(blend.is_double_sided);
+  const Material unlit = material_of({{"alphaMode", "BLEND"},
+                                      {"pbrMetallicRoughness", half},
+                                      {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  EXPECT_EQ(unlit.alpha, 0.5F);
+}
+
+TEST_F(GltfTest, ClassicMaterialsAreOpaqueAndHaveTwoSides) {
+  GltfBuilder gltf = material_gltf({{"name", "old"},
+                                    {"alphaMode", "BLEND"},
+                                    {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}},
+                                    {"extensions", {{"PROMIN_materials_phong", json::object()}}}});
+  gltf.add_node({{"mesh", 0}});
+  const Scene scene = load(gltf);
+  EXPECT_EQ(scene.materials.at(0).alpha_mode, AlphaMode::kOpaque);
+  EXPECT_TRUE(scene.materials.at(0).is_double_sided);
+  EXPECT_THAT(scene.warnings, ElementsAre("material \"old\": its alphaMode is ignored, it is drawn opaque"));
 }
 
 TEST_F(GltfTest, PhongMaterialsHaveNoTextures) {

@@ -176,9 +176,7 @@ TEST_F(ObjTest, IlluminationModels) {
 TEST_F(ObjTest, TransparencyAndMapsAreSaid) {
   std::vector<std::string> warnings;
   material("illum 7\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is transparent, it is drawn opaque"));
-  material("d 0.5\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is transparent, it is drawn opaque"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 7), it is drawn opaque"));
   material("map_Kd wood.png\n", &warnings);
   EXPECT_THAT(warnings,
               ElementsAre("material \"m\": its texture maps are ignored, the first is map_Kd in m.mtl line 2"));
@@ -198,7 +196,8 @@ TEST_F(ObjTest, FacesKeepTheirMaterials) {
   const Mesh& mesh = mesh_of(scene);
   ASSERT_THAT(mesh.triangle_materials, SizeIs(4));
   std::vector<vec3> colors;
-  for (const uint32_t material : mesh.triangle_materials) colors.push_back(scene.materials.at(material).phong().diffuse);
+  for (const uint32_t material : mesh.triangle_materials)
+    colors.push_back(scene.materials.at(material).phong().diffuse);
   EXPECT_THAT(colors, ElementsAre(vec3(0.8F), vec3(0, 0, 1), vec3(0, 0, 1), vec3(1, 0, 0)));
   EXPECT_THAT(mesh_of(scene, 1).triangle_materials, IsEmpty());
   EXPECT_EQ(scene.materials.at(scene.objects[1].material).name, "blue");
@@ -223,13 +222,15 @@ TEST_F(ObjTest, StatementsBeforeTheFirstMaterialAreOfNone) {
 
 TEST_F(ObjTest, OpacityWinsOverTransparency) {
   std::vector<std::string> warnings;
-  for (const char* opaque : {"d 1\n", "Tr 0\n", "d 1\nTr 1\n", "Tr 1\nd 1\n"}) {
-    material(opaque, &warnings);
+  for (const char* opaque : {"d 1\n", "Tr 0\n", "d 1\nTr 1\n", "Tr 1\nd 1\n", "d full\n", "d 2\n"}) {
+    EXPECT_EQ(material(opaque, &warnings).alpha_mode, AlphaMode::kOpaque) << opaque;
     EXPECT_THAT(warnings, IsEmpty()) << opaque;
   }
-  for (const char* transparent : {"d 0.5\n", "Tr 0.5\n", "d 0.5\nTr 0\n", "d -halo 0.5\n", "illum 4\n"}) {
-    material(transparent, &warnings);
-    EXPECT_THAT(warnings, ElementsAre("material \"m\" is transparent, it is drawn opaque")) << transparent;
+  for (const char* transparent : {"d 0.25\n", "Tr 0.75\n", "d 0.25\nTr 0\n", "d -halo 0.25\n", "illum 4\nd 0.25\n"}) {
+    const Material blending = material(transparent, &warnings);
+    EXPECT_EQ(blending.alpha_mode, AlphaMode::kBlend) << transparent;
+    EXPECT_EQ(blending.alpha, 0.25F) << transparent;
+    EXPECT_THAT(warnings, IsEmpty()) << transparent;
   }
 }
 
