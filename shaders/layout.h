@@ -149,6 +149,13 @@ LAYOUT_FLOAT LEAST_SHARE_BEHIND = 0.0009765625f;
 // From this roughness on a metallic-roughness material shows the environment alone, no mirror ray.
 LAYOUT_FLOAT ROUGHEST_MIRROR = 0.4f;
 
+// The clear coat of a metallic-roughness material, whose record has its number, from 1 on, in x of d.
+struct CoatRecord {
+  vec4 factors;  // x = how much of it there is; y = roughness; z = scale of its normals
+  uvec4 slots;   // numbers of texture slots: x = of how much there is, y = of roughness, z = of normals
+};
+LAYOUT_CONSTANT COAT_TEXELS = 2u;
+
 // A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
 struct TextureSlotRecord {
   vec4 to_u;    // w = bits of TEXTURE_*
@@ -195,7 +202,8 @@ struct ViewConstants {
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
-  uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level
+  uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
+                       // w = coats, as CoatRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
   vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
@@ -276,6 +284,7 @@ static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeo
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
+static_assert(sizeof(CoatRecord) == 16 * COAT_TEXELS);
 static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS && sizeof(TextureSlotRecord) == 16 * TEXTURE_SLOT_TEXELS);
 #undef LAYOUT_CONSTANT
 #undef LAYOUT_FLOAT

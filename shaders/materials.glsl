@@ -6,6 +6,7 @@
 //                     `follows_mirror` without the part that the mirror ray brings
 //   contribution      what a source of strength 1 adds where nothing is between
 //   mirror_weight     the weight of what the mirror ray brings; 0: none is traced
+//   mirror_normal     the unit normal about which it is mirrored
 //   mirror_roughness  the roughness at which a mirror ray that meets nothing sees the environment, or NO_ENVIRONMENT
 
 #define PROMIN_MATERIAL_SOURCES
@@ -44,4 +45,11 @@ float mirror_roughness(ShadingPoint point) {
   RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, mirror_roughness_##PREFIX(point))
 #include "promin/kinds/materials.def"
   return NO_ENVIRONMENT;
+}
+
+vec3 mirror_normal(ShadingPoint point) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, mirror_normal_##PREFIX(point))
+#include "promin/kinds/materials.def"
+  return point.normal;
 }

@@ -66,11 +66,11 @@ bool bounce(inout Path path, ShadingPoint point) {
   path.origin = lift_off(point.position, point.geometric_normal, point.lift);
   if (has(FEATURE_TEXTURES)) {
     // What is curved spreads the cone, beyond a focus too.
-    precise float facing = max(-dot3(point.normal, path.direction), 1.0 / 64.0);
+    precise float facing = max(-dot3(mirror_normal(point), path.direction), 1.0 / 64.0);
     precise float spread = path.cone_spread + 2.0 * point.curvature * path.cone_width / facing;
     path.cone_spread = spread;
   }
-  path.direction = reflect_direction(path.direction, point.normal, point.geometric_normal);
+  path.direction = reflect_direction(path.direction, mirror_normal(point), point.geometric_normal);
   ++path.bounces;
   path.passed_t = -1.0;
   path.passed_order = 0u;

@@ -2,6 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shading (docs/model.md, "Light") of a point that a ray hit.
 
+// A clear coat as the eye sees it (KHR_materials_clearcoat): what it reflects covers `weight` of all that is below.
+struct Coat {
+  float weight;
+  float roughness;
+  float share;  // of light from all around, what it would reflect if it covered all
+  vec3 normal;  // without the normals of the material below
+};
+
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
@@ -14,6 +22,7 @@ struct ShadingPoint {
   vec2 lobe_shares;  // with FEATURE_METALLIC_ROUGHNESS
   float occlusion;   // with FEATURE_TEXTURES: what is left of the environment's light
   float curvature;   // with FEATURE_TEXTURES: how fast the normal turns along the surface
+  Coat coat;         // with FEATURE_COATS
 };
 
 #include "materials.glsl"
@@ -92,6 +101,35 @@ vec4 tangent_of(Primitive p, vec2 a, vec2 b, vec2 c) {
   return vec4(normalize3(tangent), -sign_of_area);
 }
 
+// Where the mesh has tangents they are interpolated, else they are the triangle's own.
+vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint slot) {
+  if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
+    precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
+                       weights.y * load_vertex4(VIEW.first_texture.y + corners.y) +
+                       weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
+    return vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
+  }
+  bool is_second = has_flag(load_slot(slot), TEXTURE_UV_SET);
+  return is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
+}
+
+// The coat's textures: its factors, and its normal.
+void apply_coat_textures(inout Coat coat, CoatRecord record, Primitive p, uvec4 corners, vec3 weights, CornerUvs uvs,
+                         TexturePlace place, bool is_flipped, vec3 direction) {
+  if (record.slots.x != 0u) {
+    precise float weight = coat.weight * look_up(record.slots.x, place).x;
+    coat.weight = weight;
+  }
+  if (record.slots.y != 0u) {
+    precise float roughness = coat.roughness * look_up(record.slots.y, place).y;
+    coat.roughness = roughness;
+  }
+  if (record.slots.z != 0u) {
+    coat.normal = turned_normal(coat.normal, look_up(record.slots.z, place).xyz, record.factors.z,
+                                tangent_at(corners, weights, p, uvs, record.slots.z), is_flipped ? -1.0 : 1.0, direction);
+  }
+}
+
 void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 weights, vec3 wound_normal,
                     bool is_flipped, vec3 direction, float cone_width) {
   CornerUvs uvs = load_corner_uvs(corners.xyz);
@@ -139,20 +177,34 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   }
   uint normal = slot_number(is_phong ? material.b.w : material.d.z);
   if ((is_phong || is_metallic_roughness) && normal != 0u) {
-    vec4 tangent;
-    if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
-      precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
-                         weights.y * load_vertex4(VIEW.first_texture.y + corners.y) +
-                         weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
-      tangent = vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
-    } else {
-      bool is_second = has_flag(load_slot(normal), TEXTURE_UV_SET);
-      tangent = is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
-    }
+    vec4 tangent = tangent_at(corners, weights, p, uvs, normal);
     point.normal = turned_normal(point.normal, look_up(normal, place).xyz, is_phong ? 1.0 : material.c.y, tangent,
                                  is_flipped ? -1.0 : 1.0, direction);
   }
   point.material = material;
+  if (has(FEATURE_COATS) && is_metallic_roughness && slot_number(material.d.x) != 0u) {
+    Coat coat = point.coat;
+    apply_coat_textures(coat, load_coat(VIEW.first_lookup.w + slot_number(material.d.x) - 1u), p, corners, weights, uvs,
+                        place, is_flipped, direction);
+    point.coat = coat;
+  }
+}
+
+// The coat as the material has it, without its textures; its weight is how much of it there is.
+Coat bare_coat(ShadingPoint point) {
+  bool is_coated = model_of(point) == MATERIAL_METALLIC_ROUGHNESS && slot_number(point.material.d.x) != 0u;
+  if (!is_coated) return Coat(0.0, 0.0, 0.0, point.normal);
+  vec4 factors = load_coat(VIEW.first_lookup.w + slot_number(point.material.d.x) - 1u).factors;
+  return Coat(factors.x, factors.y, 0.0, point.normal);
+}
+
+// What the eye sees of the coat: Schlick's factor of an index of refraction of 1.5.
+Coat seen_coat(Coat coat, vec3 direction) {
+  float cosine = clamp(-dot3(coat.normal, direction), 0.0, 1.0);
+  precise float p = 1.0 - cosine;
+  precise float p2 = p * p;
+  precise float weight = coat.weight * (0.04 + 0.96 * (p2 * p2 * p));
+  return Coat(weight, coat.roughness, load_lobe_shares(cosine, coat.roughness).x, coat.normal);
 }
 
 // `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit.
@@ -186,12 +238,14 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_wid
   }
   point.lobe_shares = vec2(1.0, 0.0);
   point.occlusion = 1.0;
+  if (has(FEATURE_COATS)) point.coat = bare_coat(point);
   if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }
   if (has(FEATURE_METALLIC_ROUGHNESS)) {
     point.lobe_shares = load_lobe_shares(-dot3(point.normal, direction), point.material.c.x);
   }
+  if (has(FEATURE_COATS)) point.coat = seen_coat(point.coat, direction);
   if (has(FEATURE_RAY_LOG)) {
     log_surface(point.position, point.lift, surface.normal, point.normal,
                 record.corners_material.w & SURFACE_MATERIAL_MASK);

@@ -6,6 +6,7 @@
 // starts at a multiple of its own stride (VIEW.first_index).
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Coats { CoatRecord coats[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
 layout(set = 0, binding = BINDING_SHADING_TEXELS) uniform usamplerBuffer shading_texels;
@@ -25,6 +26,12 @@ MaterialRecord load_material(uint index) {
 }
 
 uint flags_of(MaterialRecord material) { return floatBitsToUint(material.emissive.w); }
+
+CoatRecord load_coat(uint index) {
+  if (FETCHES_TEXELS == 0u) return coats[index];
+  uint first = COAT_TEXELS * index;
+  return CoatRecord(shading_vector(first), texelFetch(shading_texels, int(first + 1u)));
+}
 
 LightRecord load_light(uint index) {
   if (FETCHES_TEXELS == 0u) return lights[index];

@@ -72,6 +72,7 @@ uint64_t total_bytes(const Parts&... parts) {
 struct DeviceScene::PlacedTail {
   Placed materials;
   Placed texture_slots;
+  Placed coats;
   Placed lobe_table;
   Placed sky;
   /// The last, because they change most often in number.
@@ -83,7 +84,8 @@ DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   PlacedTail placed;
   placed.materials = place(tail.materials.records, head_bytes_);
   placed.texture_slots = place(tail.materials.slots, placed.materials.end());
-  placed.lobe_table = place(*tail.lobe_table, placed.texture_slots.end());
+  placed.coats = place(tail.materials.coats, placed.texture_slots.end());
+  placed.lobe_table = place(*tail.lobe_table, placed.coats.end());
   placed.sky = place(tail.sky->texels, placed.lobe_table.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
   return placed;
@@ -160,7 +162,7 @@ void DeviceScene::take_colors(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail_bytes = total_bytes(tail_.materials.records, tail_.materials.slots, *tail_.lobe_table,
+  const uint64_t tail_bytes = total_bytes(tail_.materials.records, tail_.materials.slots, tail_.materials.coats, *tail_.lobe_table,
                                           tail_.sky->texels, tail_.lights.records);
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
@@ -212,7 +214,7 @@ void DeviceScene::write_tail(Tail tail) {
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::lobe_table, &PlacedTail::sky,
+  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::coats, &PlacedTail::lobe_table, &PlacedTail::sky,
                           &PlacedTail::lights}) {
     if (!needs_larger && is_same(placed.*part, last.*part)) continue;
     write(*shading_, placed.*part);
@@ -220,7 +222,7 @@ void DeviceScene::write_tail(Tail tail) {
   }
   constants_.first_index.x = placed.materials.first_index;
   constants_.first_index.y = placed.lights.first_index;
-  constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky->side, 0);
+  constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky->side, placed.coats.first_index);
   constants_.first_texture.z = placed.texture_slots.first_index;
   constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());

@@ -80,7 +80,7 @@ class MaterialPacker {
     return {vec4(m.base_color, m.metallic),
             vec4(vec3(at_normal), m.specular),
             vec4(m.roughness, m.normal_scale, m.occlusion_strength, 0.0F),
-            vec4(0.0F, add(m.metallic_roughness_texture), add(m.normal_texture), add(m.occlusion_texture)),
+            vec4(add_coat(m), add(m.metallic_roughness_texture), add(m.normal_texture), add(m.occlusion_texture)),
             {},
             {}};
   }
@@ -88,15 +88,26 @@ class MaterialPacker {
     return {vec4(m.color, 0.0F), {}, {}, {}, {}, {}};
   }
 
-  /// The bits of the slot's number, 0 where there is no texture or no image.
-  float add(const TextureSlot& slot) {
-    if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0.0F;
+  /// The bits of the coat's number, 0 where there is none.
+  float add_coat(const MetallicRoughness& m) {
+    if (m.clearcoat == 0.0F) return 0.0F;
+    packed_.coats.push_back({vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0.0F),
+                             uvec4(number_of(m.clearcoat_texture), number_of(m.clearcoat_roughness_texture),
+                                   number_of(m.clearcoat_normal_texture), 0)});
+    return std::bit_cast<float>(static_cast<uint>(packed_.coats.size()));
+  }
+
+  float add(const TextureSlot& slot) { return std::bit_cast<float>(number_of(slot)); }
+
+  /// The slot's number, from 1 on; 0 where there is no texture or no image.
+  uint number_of(const TextureSlot& slot) {
+    if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0;
     const Texture& texture = tables_.textures[slot.texture];
     const PlacedImage& image = tables_.images[texture.image];
-    if (image.levels == 0) return 0.0F;
+    if (image.levels == 0) return 0;
     packed_.slots.push_back({vec4(slot.to_u, std::bit_cast<float>(flags_of(slot, texture, image.use))),
                              vec4(slot.to_v, 0.0F), uvec4(image.first, image.size, image.levels)});
-    return std::bit_cast<float>(static_cast<uint>(packed_.slots.size()));
+    return static_cast<uint>(packed_.slots.size());
   }
 
   const TextureTables& tables_;

@@ -92,6 +92,11 @@ struct MaterialFeatures {
     if (material.roughness < ROUGHEST_MIRROR || material.metallic_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;
     }
+    if (material.clearcoat == 0.0F) return features;
+    features |= FEATURE_COATS;
+    if (material.clearcoat_roughness < ROUGHEST_MIRROR || material.clearcoat_roughness_texture.exists()) {
+      features |= FEATURE_MIRRORS;
+    }
     return features;
   }
   FeatureMask operator()(const Unlit& /*material*/) const { return FEATURE_UNLIT; }

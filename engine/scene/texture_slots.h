@@ -31,6 +31,9 @@ void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
   visit(model.metallic_roughness_texture, "metallic_roughness_texture");
   visit(model.normal_texture, "normal_texture");
   visit(model.occlusion_texture, "occlusion_texture");
+  visit(model.clearcoat_texture, "clearcoat_texture");
+  visit(model.clearcoat_roughness_texture, "clearcoat_roughness_texture");
+  visit(model.clearcoat_normal_texture, "clearcoat_normal_texture");
 }
 
 template <typename Visit>

@@ -77,6 +77,10 @@ class Validation {
     check_share(material.specular, place + ".specular");
     check(std::isfinite(material.normal_scale), "the scale is not finite", place + ".normal_scale", "use a finite one");
     check_share(material.occlusion_strength, place + ".occlusion_strength");
+    check_share(material.clearcoat, place + ".clearcoat");
+    check_share(material.clearcoat_roughness, place + ".clearcoat_roughness");
+    check(std::isfinite(material.clearcoat_normal_scale), "the scale is not finite", place + ".clearcoat_normal_scale",
+          "use a finite one");
     check_color(material.specular_color, place + ".specular_color");
     check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
           "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");

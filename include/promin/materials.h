@@ -55,6 +55,18 @@ struct MetallicRoughness {
   TextureSlot occlusion_texture = {};
   /// 0...1.
   float occlusion_strength = 1.0F;
+  /// How much of a clear coat there is over all of it, 0...1 (KHR_materials_clearcoat); it reflects as glass does.
+  float clearcoat = 0.0F;
+  /// The coat's perceptual roughness, 0...1.
+  float clearcoat_roughness = 0.0F;
+  /// Factor of how much of it there is (red).
+  TextureSlot clearcoat_texture = {};
+  /// Factor of its roughness (green).
+  TextureSlot clearcoat_roughness_texture = {};
+  /// Its normals; those of the material below do not bend it.
+  TextureSlot clearcoat_normal_texture = {};
+  /// Factor of x and y of these normals, finite.
+  float clearcoat_normal_scale = 1.0F;
 };
 
 /// A colour that no light changes (KHR_materials_unlit).

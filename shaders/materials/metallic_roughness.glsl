@@ -55,33 +55,61 @@ vec3 albedo_of(ShadingPoint point) {
   return albedo;
 }
 
-// The part of what is reflected that a mirror ray brings; the environment brings the rest.
-float sharpness_of(ShadingPoint point) {
-  precise float x =
-      clamp((point.material.c.x - SHARPEST_BLUR) * (1.0 / (ROUGHEST_MIRROR - SHARPEST_BLUR)), 0.0, 1.0);
+// The part of what a surface of this roughness reflects that a mirror ray brings; the environment brings the rest.
+float sharpness_of(float roughness) {
+  precise float x = clamp((roughness - SHARPEST_BLUR) * (1.0 / (ROUGHEST_MIRROR - SHARPEST_BLUR)), 0.0, 1.0);
   precise float sharpness = 1.0 - x * x * (3.0 - 2.0 * x);
   return sharpness;
 }
 
+bool is_coated(ShadingPoint point) { return has(FEATURE_COATS) && point.coat.weight > 0.0; }
+
+// The same of the material itself. A hit has one mirror ray, of the coat where there is one: under it what has another
+// normal sees the environment alone.
+float sharpness_of(ShadingPoint point) {
+  if (is_coated(point) && any(notEqual(point.normal, point.coat.normal))) return 0.0;
+  return sharpness_of(point.material.c.x);
+}
+
 vec3 mirror_weight_metallic_roughness(ShadingPoint point) {
   precise vec3 weight = sharpness_of(point) * reflectance_of(point);
+  if (is_coated(point)) {
+    weight = (1.0 - point.coat.weight) * weight + point.coat.weight * point.coat.share * sharpness_of(point.coat.roughness);
+  }
   return max_abs(weight) < LEAST_MIRROR_WEIGHT ? vec3(0.0) : weight;
 }
 
-float mirror_roughness_metallic_roughness(ShadingPoint point) { return point.material.c.x; }
+// Of coat and material the smoother one's.
+float mirror_roughness_metallic_roughness(ShadingPoint point) {
+  return is_coated(point) ? min(point.material.c.x, point.coat.roughness) : point.material.c.x;
+}
 
-// The direction from which the lobe takes most of its light: rough ones lean towards the normal.
-vec3 direction_of_lobe(ShadingPoint point, vec3 direction) {
-  vec3 mirrored = reflect_direction(direction, point.normal, point.geometric_normal);
-  float roughness = point.material.c.x;
+vec3 mirror_normal_metallic_roughness(ShadingPoint point) {
+  return is_coated(point) ? point.coat.normal : point.normal;
+}
+
+// The direction from which a lobe takes most of its light: rough ones lean towards the normal.
+vec3 direction_of_lobe(vec3 normal, vec3 geometric_normal, float roughness, vec3 direction) {
+  vec3 mirrored = reflect_direction(direction, normal, geometric_normal);
   float alpha2 = roughness * roughness * roughness * roughness;
-  precise vec3 leaning = mirrored + (point.normal - mirrored) * alpha2;
+  precise vec3 leaning = mirrored + (normal - mirrored) * alpha2;
   return normalize3(leaning);
+}
+
+// What the coat reflects of the environment, but for what its mirror ray brings.
+vec3 environment_in_coat(ShadingPoint point, vec3 direction, bool follows_mirror) {
+  Coat coat = point.coat;
+  vec3 around = environment_radiance(
+      direction_of_lobe(coat.normal, point.geometric_normal, coat.roughness, direction), coat.roughness);
+  float sharpness = follows_mirror ? sharpness_of(coat.roughness) : 0.0;
+  precise vec3 seen = coat.share * (1.0 - sharpness) * point.occlusion * around;
+  return seen;
 }
 
 vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follows_mirror) {
   float sharpness = follows_mirror ? sharpness_of(point) : 0.0;
-  vec3 around = environment_radiance(direction_of_lobe(point, direction), point.material.c.x);
+  vec3 around = environment_radiance(
+      direction_of_lobe(point.normal, point.geometric_normal, point.material.c.x, direction), point.material.c.x);
   vec3 reflectance = reflectance_of(point);
   precise vec3 diffuse = albedo_of(point) * ambient_at(point.normal);
   precise vec3 own;
@@ -89,6 +117,10 @@ vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follo
     own = point.material.emissive.xyz + point.occlusion * (diffuse + (1.0 - sharpness) * reflectance * around);
   } else {
     own = point.material.emissive.xyz + diffuse + (1.0 - sharpness) * reflectance * around;
+  }
+  if (is_coated(point)) {
+    vec3 in_coat = environment_in_coat(point, direction, follows_mirror);
+    own = (1.0 - point.coat.weight) * own + point.coat.weight * in_coat;
   }
   return own;
 }
@@ -114,7 +146,8 @@ float visibility_of(float v, float l, float alpha) {
   return visibility;
 }
 
-vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+// What a source adds to what is under the coat, or without one to all.
+vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
   precise vec3 sum = to_eye + to_light;
   float size = length3(sum);
@@ -135,4 +168,27 @@ vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_li
   precise float scale = cosine * density_of(point.normal, h, alpha) * visibility_of(v, cosine, alpha);
   contribution += reflected * light.specular.xyz * scale;
   return contribution;
+}
+
+// What the coat reflects of a source.
+vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightRecord light) {
+  Coat coat = point.coat;
+  float cosine = dot3(coat.normal, to_light);
+  precise vec3 sum = to_eye + to_light;
+  float size = length3(sum);
+  if (!(cosine > 0.0) || size < LEAST_HALF_VECTOR) return vec3(0.0);
+  precise vec3 h = sum / size;
+  float alpha = max(coat.roughness * coat.roughness, LEAST_ALPHA);
+  float v = max(dot3(coat.normal, to_eye), LEAST_COSINE);
+  precise float scale = cosine * density_of(coat.normal, h, alpha) * visibility_of(v, cosine, alpha);
+  precise vec3 reflected = scale * light.specular.xyz;
+  return reflected;
+}
+
+vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+  precise vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
+  if (!is_coated(point)) return below;
+  precise vec3 sum =
+      (1.0 - point.coat.weight) * below + point.coat.weight * contribution_in_coat(point, to_eye, to_light, light);
+  return sum;
 }

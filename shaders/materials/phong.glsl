@@ -26,3 +26,5 @@ vec3 mirror_weight_phong(ShadingPoint point) { return point.material.d.xyz; }
 
 // Perfect, so its rays see the environment as it is; where there is none, the background.
 float mirror_roughness_phong(ShadingPoint point) { return perfect_mirror_roughness(); }
+
+vec3 mirror_normal_phong(ShadingPoint point) { return point.normal; }

@@ -14,3 +14,5 @@ vec3 contribution_unlit(ShadingPoint point, vec3 to_eye, vec3 to_light, float co
 vec3 mirror_weight_unlit(ShadingPoint point) { return vec3(0.0); }
 
 float mirror_roughness_unlit(ShadingPoint point) { return NO_ENVIRONMENT; }
+
+vec3 mirror_normal_unlit(ShadingPoint point) { return point.normal; }

@@ -80,6 +80,9 @@ class ContentHash {
     add(material.specular_color);
     add(material.normal_scale);
     add(material.occlusion_strength);
+    for (const float value : {material.clearcoat, material.clearcoat_roughness, material.clearcoat_normal_scale}) {
+      add(value);
+    }
   }
   void add(const Unlit& unlit) { add(unlit.color); }
   void add(const TextureSlot& slot) {

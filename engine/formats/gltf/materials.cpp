@@ -42,6 +42,17 @@ float ior_of(const json& extension, const std::string& title, LoadReport& report
   return 1.0F;
 }
 
+void read_clearcoat(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
+  material.clearcoat = extension.value("clearcoatFactor", 0.0F);
+  material.clearcoat_roughness = extension.value("clearcoatRoughnessFactor", 0.0F);
+  material.clearcoat_texture = textures.read_slot(extension, "clearcoatTexture", ImageUse::kData);
+  material.clearcoat_roughness_texture = textures.read_slot(extension, "clearcoatRoughnessTexture", ImageUse::kData);
+  material.clearcoat_normal_texture = textures.read_slot(extension, "clearcoatNormalTexture", ImageUse::kNormal);
+  if (const auto info = extension.find("clearcoatNormalTexture"); info != extension.end()) {
+    material.clearcoat_normal_scale = info->value("scale", 1.0F);
+  }
+}
+
 MetallicRoughness metallic_roughness_of(const json& source, const std::string& title, GltfTextures& textures,
                                         LoadReport& report) {
   MetallicRoughness material;
@@ -67,6 +78,9 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
     material.specular = extension->value("specularFactor", 1.0F);
     material.specular_color = vec3(vec3_of(*extension, "specularColorFactor", dvec3(1.0)));
   }
+  if (const json* extension = find_extension(source, "KHR_materials_clearcoat")) {
+    read_clearcoat(*extension, textures, material);
+  }
   return material;
 }
 
@@ -77,9 +91,9 @@ bool has_texture(const json& object) {
   return false;
 }
 
-constexpr std::array<std::string_view, 5> kKnown = {"PROMIN_materials_phong", "KHR_materials_unlit",
+constexpr std::array<std::string_view, 6> kKnown = {"PROMIN_materials_phong", "KHR_materials_unlit",
                                                     "KHR_materials_emissive_strength", "KHR_materials_ior",
-                                                    "KHR_materials_specular"};
+                                                    "KHR_materials_specular", "KHR_materials_clearcoat"};
 
 void warn_about_what_is_ignored(const json& source, const std::string& title, LoadReport& report) {
   const auto pbr = source.find("pbrMetallicRoughness");

@@ -40,6 +40,7 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_SHAPES "extensions.KHR_implicit_shapes.shapes"
 #define PROMIN_SKIES "extensions.OMI_environment_sky.skies"
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
+#define PROMIN_COAT "materials[].extensions.KHR_materials_clearcoat"
 #define PROMIN_PHONG "materials[].extensions.PROMIN_materials_phong"
 
 #define PROMIN_TEXTURE_INFO(PATH)                                                                  \
@@ -143,6 +144,12 @@ constexpr JsonRule kRules[] = {
     number("materials[].extensions.KHR_materials_ior.ior", 0.0, kMaxScalar),
     number("materials[].extensions.KHR_materials_specular.specularFactor", 0.0, 1.0),
     color("materials[].extensions.KHR_materials_specular.specularColorFactor"),
+    number(PROMIN_COAT ".clearcoatFactor", 0.0, 1.0),
+    number(PROMIN_COAT ".clearcoatRoughnessFactor", 0.0, 1.0),
+    PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatRoughnessTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatNormalTexture"),
+    number(PROMIN_COAT ".clearcoatNormalTexture.scale", -kMaxScalar, kMaxScalar),
     color(PROMIN_PHONG ".ambientFactor"),
     color(PROMIN_PHONG ".diffuseFactor"),
     color(PROMIN_PHONG ".specularFactor"),
