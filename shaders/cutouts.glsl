@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What rays pass by: holes that alpha of textures and vertices makes, and backs that a material does not show (docs/model.md,
-// "Alpha"). A hole is told where a triangle is intersected, for every ray of a picture, so that which hit is the nearest
-// depends neither on the tree nor on how often a triangle lies in it.
+// What rays pass by: holes that alpha of textures and vertices makes, and backs that a material does not show
+// (docs/model.md, "Alpha and sides"). A hole is told where a triangle is intersected, for every ray of a picture, so
+// that which hit is the nearest depends neither on the tree nor on how often a triangle lies in it.
 
 MaterialRecord material_of(SurfaceRecord surface) {
   return load_material(VIEW.first_index.x + (surface.corners_material.w & SURFACE_MATERIAL_MASK));

@@ -20,8 +20,8 @@ vec3 octant;
 bool passes_backs = false;  // with FEATURE_ONE_SIDED
 float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
 float sight_spread = 0.0;   // and how much it grows at a distance of 1
-// With FEATURE_BLENDING: what a ray has passed counts no more, which is all that is nearer than this, and at this t what
-// has no higher order. By the entry point.
+// With FEATURE_BLENDING: what a ray has passed counts no more, which is all that is nearer than this, and at this t
+// what has no higher order. By the entry point.
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];
 
@@ -39,9 +39,9 @@ void pass(uint slot, float t, uint order) {
   packet[slot].tmin = t > 0.0 ? uintBitsToFloat(floatBitsToUint(t) - 1u) : 0.0;
 }
 
-// Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, its back where
-// that is not shown, or of what blends an edge that is a neighbour's (cutouts.glsl; cast.comp has rays that see geometry
-// alone).
+// Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, its back
+// where that is not shown, or of what blends an edge that is a neighbour's (cutouts.glsl; cast.comp has rays that see
+// geometry alone).
 const uint MAY_BE_CUT_OUT =
     FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | FEATURE_BIT(FEATURE_BLENDING);
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge);

@@ -126,7 +126,8 @@ void apply_coat_textures(inout Coat coat, CoatRecord record, Primitive p, uvec4 
   }
   if (record.slots.z != 0u) {
     coat.normal = turned_normal(coat.normal, look_up(record.slots.z, place).xyz, record.factors.z,
-                                tangent_at(corners, weights, p, uvs, record.slots.z), is_flipped ? -1.0 : 1.0, direction);
+                                tangent_at(corners, weights, p, uvs, record.slots.z), is_flipped ? -1.0 : 1.0,
+                                direction);
   }
 }
 

@@ -74,7 +74,8 @@ float sharpness_of(ShadingPoint point) {
 vec3 mirror_weight_metallic_roughness(ShadingPoint point) {
   precise vec3 weight = sharpness_of(point) * reflectance_of(point);
   if (is_coated(point)) {
-    weight = (1.0 - point.coat.weight) * weight + point.coat.weight * point.coat.share * sharpness_of(point.coat.roughness);
+    weight = (1.0 - point.coat.weight) * weight +
+             point.coat.weight * point.coat.share * sharpness_of(point.coat.roughness);
   }
   return max_abs(weight) < LEAST_MIRROR_WEIGHT ? vec3(0.0) : weight;
 }

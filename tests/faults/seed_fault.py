@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the shaders with a fault in them, for tests of the tests: what removes robustness must make a test fail.
 
-seed_fault.py FAULT SHADERS INCLUDE KERNELS GLSLANG OUT: copies the folder SHADERS and the .comp file KERNELS into OUT,
-puts the fault in, and compiles cast.comp and KERNELS to OUT/*.spv, with the tables in INCLUDE. A fault whose place is
-gone is an error."""
+seed_fault.py FAULT SHADERS INCLUDE GLSLANG OUT KERNEL...: copies the folder SHADERS and the .comp files KERNEL into OUT,
+puts the fault in, and compiles the kernels to OUT/*.spv, with the tables in INCLUDE. A fault whose place is gone is an
+error."""
 
 import pathlib
 import re
@@ -47,15 +47,50 @@ FAULTS = {
         ]
     },
     "nothing_precise": {"primitives/triangle.glsl": [(r"\bprecise ", "")]},
+    # Of pictures (tests/gpu/boards_test.cpp).
+    "srgb_is_linear": {"textures.glsl": [(r"return vec3\(code\.x <= 0\.04045[^;]*;", "return code;")]},
+    "srgb_after_filter": {
+        "textures.glsl": [
+            (r"if \(has_flag\(slot, TEXTURE_IS_SRGB\)\) numbers.xyz = decode_srgb\(numbers.xyz\);", ""),
+            (
+                r"(precise vec4 result = upper [^;]*;)",
+                r"\1 if (has_flag(slot, TEXTURE_IS_SRGB)) result.xyz = decode_srgb(result.xyz);",
+            ),
+        ]
+    },
+    "wraps_swapped": {"textures.glsl": [(r"mode == WRAP_REPEAT \? repeated", "mode == WRAP_MIRRORED ? repeated")]},
+    "one_uv_set": {"textures.glsl": [(r"is_second \? place\.uvs\.zw : place\.uvs\.xy", "place.uvs.xy")]},
+    "transform_transposed": {"textures.glsl": [(r"slot\.to_u\.y \* st\.y", "slot.to_v.x * st.y")]},
+    "green_flipped": {
+        "shading.glsl": [(r"scaled\.y \* across", "-scaled.y * across")],
+    },
+    "normals_unscaled": {"shading.glsl": [(r"\(2\.0 \* texel\.xy - 1\.0\) \* scale", "2.0 * texel.xy - 1.0")]},
+    "occlusion_dims_sources": {
+        "materials/metallic_roughness.glsl": [(r"albedo_of\(point\) \* INVERSE_PI", "point.occlusion * \\g<0>")]
+    },
+    "cutoff_excluded": {"cutouts.glsl": [(r"< material\.cover\.y", "<= material.cover.y")]},
+    "masks_in_shadows_alone": {"cutouts.glsl": [(r"if \(!has\(FEATURE_HOLES\)", "if (passes_backs || !has(FEATURE_HOLES)")]},
+    "shadows_without_holes": {"cutouts.glsl": [(r"if \(!has\(FEATURE_HOLES\)", "if (!passes_backs || !has(FEATURE_HOLES)")]},
+    "fronts_culled": {"cutouts.glsl": [(r"facing > 0\.0", "facing < 0.0")]},
+    "alpha_premultiplied": {"path.glsl": [(r"weight = coverage \* weight;", ";")]},
+    "edges_counted_twice": {"cutouts.glsl": [(r"&& is_on_open_edge &&", "&& false &&")]},
+    "equal_t_passed": {"packet.glsl": [(r"t < passed_t\[slot\] \|\|", "t <= passed_t[slot] ||")]},
+    "coat_bent_by_normals": {
+        "shading.glsl": [(r"point\.coat = seen_coat\(point\.coat, direction\);",
+                          "{ Coat bent = point.coat; bent.normal = point.normal; point.coat = seen_coat(bent, direction); }")]
+    },
 }
 
 
 def main():
-    fault, shaders, include, kernel, glslang, out = sys.argv[1], *map(pathlib.Path, sys.argv[2:])
+    fault = sys.argv[1]
+    shaders, include, glslang, out, *kernels = map(pathlib.Path, sys.argv[2:])
     folder = out / "shaders"
     shutil.rmtree(out, ignore_errors=True)
     shutil.copytree(shaders, folder)
-    shutil.copy(kernel, folder)
+    for kernel in kernels:
+        if kernel.parent.resolve() != shaders.resolve():
+            shutil.copy(kernel, folder)
     for file, changes in FAULTS[fault].items():
         text = (folder / file).read_text()
         for pattern, replacement in changes:
@@ -63,7 +98,7 @@ def main():
             if count == 0:
                 sys.exit(f"seed_fault.py: error: {file} has no {pattern} for the fault {fault}; mend the pattern")
         (folder / file).write_text(text)
-    for source in (folder / "cast.comp", folder / kernel.name):
+    for source in (folder / kernel.name for kernel in kernels):
         spirv = out / (source.stem + ".spv")
         options = ["--quiet", "-V", "--target-env", "vulkan1.1", "-I" + str(include)]
         subprocess.run([glslang, *options, "-o", spirv, source], check=True)

@@ -410,6 +410,19 @@ TEST_F(GltfTest, MetallicRoughnessIsTakenAsItIs) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+TEST_F(GltfTest, ClearCoatsAreRead) {
+  const LoadedScene scene = load(material_gltf(
+      {{"extensions",
+        {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.25}}}}}}));
+  const auto model = model_of<MetallicRoughness>(scene);
+  EXPECT_EQ(model.clearcoat, 0.75F);
+  EXPECT_EQ(model.clearcoat_roughness, 0.25F);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const auto bare =
+      model_of<MetallicRoughness>(load(material_gltf({{"extensions", {{"KHR_materials_clearcoat", json::object()}}}})));
+  EXPECT_EQ(bare.clearcoat, 0.0F);
+}
+
 TEST_F(GltfTest, MetallicRoughnessHasTheSpecificationsDefaults) {
   const auto model = model_of<MetallicRoughness>(load(material_gltf(
       {{"extensions", {{"KHR_materials_ior", json::object()}, {"KHR_materials_specular", json::object()}}}})));

@@ -131,6 +131,25 @@ TEST_F(MaterialsTest, ColoredSpheresSendNoMoreThanTheyGet) {
   EXPECT_GT(darker, image.pixels.size() / 4);
 }
 
+// A coat gives nothing back of what facets reflect more than once, so a rough one may only lose light.
+TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
+  for (const float roughness : {0.0F, 0.05F, 0.3F, 1.0F}) {
+    world::Scene scene = make_spheres(vec3(1.0F));
+    for (Material& material : scene.materials) {
+      auto& model = std::get<MetallicRoughness>(material.model);
+      model.clearcoat = 1.0F;
+      model.clearcoat_roughness = roughness;
+    }
+    float least = 1.0F;
+    for (const vec3& pixel : render(scene, look_at_spheres()).pixels) {
+      ASSERT_LE(max_component(pixel), 1.0F + 16.0F * kU) << roughness;
+      least = std::min({least, pixel.x, pixel.y, pixel.z});
+    }
+    // Facets that lie flat lose nothing; the table has them to 0.0003 but at the rim.
+    EXPECT_GT(least, roughness == 0.0F ? 0.9F : 0.4F) << roughness;
+  }
+}
+
 // The same light by 4096 sources: so many show a lobe of this roughness as if they were everywhere.
 TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
   constexpr int kCount = 4096;

@@ -101,6 +101,20 @@ TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
   EXPECT_TRUE(compare(test::make_scene_of_alpha(), test::make_view(uvec2(96, 72))).passes());
 }
 
+TEST_F(OraclePictureTest, ClearCoatsAgreeWithTheOracle) {
+  world::Scene scene = test::make_scene_of_everything(60);
+  const auto coat = [&](size_t material, float clearcoat, float roughness) {
+    auto& model = std::get<MetallicRoughness>(scene.materials[material].model);
+    model.clearcoat = clearcoat;
+    model.clearcoat_roughness = roughness;
+    scene.materials[material].emissive = vec3(0.05F);
+  };
+  coat(4, 1.0F, 0.0F);
+  coat(5, 0.5F, 0.3F);
+  for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material = i % 2 == 0 ? 4 : 5;
+  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+}
+
 // Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is
 // rounded, for device and oracle alike; colour is not asked, as secondary rays start farther off the surface there.
 TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {

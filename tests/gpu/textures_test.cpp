@@ -233,6 +233,29 @@ TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
   EXPECT_NEAR(center(), 0.6F * open_alone, 1e-6F);
 }
 
+TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
+  // What lies below sends nothing.
+  const auto shaded = [&](const std::function<void(MetallicRoughness&)>& change) {
+    Scene scene = make_lit_board(make_image(
+        {1, 1}, [](uint32_t, uint32_t) { return 0xFFFF80C0U; }, ImageUse::kNormal));
+    auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
+    material.base_color = vec3(0.0F);
+    material.specular = 0.0F;
+    material.clearcoat = 0.5F;
+    material.clearcoat_roughness = 0.5F;
+    change(material);
+    return render(scene, make_board_view({8, 8})).pixels[27].r;
+  };
+  const float bare = shaded([](MetallicRoughness&) {});
+  EXPECT_GT(bare, 0.0F);
+  EXPECT_EQ(shaded([](MetallicRoughness& m) { m.normal_texture.texture = 0; }), bare);
+  EXPECT_NE(shaded([](MetallicRoughness& m) { m.clearcoat_normal_texture.texture = 0; }), bare);
+  // Red is 0xC0 of 255, green 0x80.
+  EXPECT_NEAR(shaded([](MetallicRoughness& m) { m.clearcoat_texture.texture = 0; }), bare * 192.0F / 255.0F, 1e-6F);
+  const float smoother = shaded([](MetallicRoughness& m) { m.clearcoat_roughness = 0.5F * 128.0F / 255.0F; });
+  EXPECT_NEAR(shaded([](MetallicRoughness& m) { m.clearcoat_roughness_texture.texture = 0; }), smoother, 1e-6F);
+}
+
 TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {
   // +X of the texture goes along +u, +Y against +v, as images have their first row at v = 0; the board's v goes up.
   const auto shaded = [&](uint32_t texel, bool has_tangents, float turn) {

@@ -39,6 +39,22 @@ Real density_of_sine_square(Real sine_square, Real alpha) {
   return alpha * alpha / (kPi * sum * sum);
 }
 
+/// The part of the reflected light that a mirror ray brings.
+Real sharpness_of(Real roughness) {
+  const Real x = std::clamp((roughness - kSharpestBlur) / (kRoughestMirror - kSharpestBlur), Real(0), Real(1));
+  return 1 - x * x * (3 - 2 * x);
+}
+
+Real alpha_of_sources_of(Real roughness) {
+  return std::max(roughness * roughness, kLeastAlphaOfSources);
+}
+
+/// What facets that reflect all send of a source with an irradiance of 1 across its way.
+Real facet_radiance(const LobeAngles& angles, Real alpha) {
+  return angles.l * visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) *
+         microfacet_density(angles.theta, alpha);
+}
+
 /// The numbers of the device's table, which is data: entries of 16 bits in cells of four.
 class LobeTable {
  public:
@@ -225,12 +241,11 @@ Lobe::Lobe(const MetallicRoughness& material, const Vector& vertex_color, const 
 }
 
 Real Lobe::sharpness() const {
-  const Real x = std::clamp((roughness_ - kSharpestBlur) / (kRoughestMirror - kSharpestBlur), Real(0), Real(1));
-  return 1 - x * x * (3 - 2 * x);
+  return sharpness_of(roughness_);
 }
 
 Real Lobe::alpha_of_sources() const {
-  return std::max(roughness_ * roughness_, kLeastAlphaOfSources);
+  return alpha_of_sources_of(roughness_);
 }
 
 Vector Lobe::highlights_of_all(const LobeShares& shares) const {
@@ -241,8 +256,25 @@ Vector Lobe::highlight(const LobeAngles& angles) const {
   const Real alpha = alpha_of_sources();
   const Vector facets = (1 - metallic_) * dielectric_.k * dielectric_.fresnel(angles.v_h) +
                         metallic_ * metal_.k * metal_.fresnel(angles.v_h);
-  return facets * angles.l * visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) *
-         microfacet_density(angles.theta, alpha);
+  return facets * facet_radiance(angles, alpha);
+}
+
+ClearCoat::ClearCoat(const MetallicRoughness& material, Real cosine_to_eye)
+    // A vertex normal may turn away from the eye.
+    : weight_(material.clearcoat * (0.04L + 0.96L * fifth_power(1 - std::max(cosine_to_eye, Real(0))))),
+      roughness_(material.clearcoat_roughness),
+      reflectance_(look_up_lobe_shares(cosine_to_eye, roughness_).all) {}
+
+Real ClearCoat::sharpness() const {
+  return sharpness_of(roughness_);
+}
+
+Real ClearCoat::alpha_of_sources() const {
+  return alpha_of_sources_of(roughness_);
+}
+
+Real ClearCoat::highlight(const LobeAngles& angles) const {
+  return facet_radiance(angles, alpha_of_sources());
 }
 
 }  // namespace promin::oracle

@@ -80,4 +80,25 @@ class Lobe {
   Vector albedo_{0};
 };
 
+/// A clear coat as one eye sees it at one point (KHR_materials_clearcoat), without textures: it has the material's
+/// normal.
+class ClearCoat {
+ public:
+  ClearCoat(const MetallicRoughness& material, Real cosine_to_eye);
+
+  /// The part of all that is seen that is the coat's.
+  Real weight() const { return weight_; }
+  /// What it reflects of light of 1 from all around, were it all that is seen.
+  Real reflectance() const { return reflectance_; }
+  /// As Lobe's.
+  Real sharpness() const;
+  Real highlight(const LobeAngles& angles) const;
+  Real alpha_of_sources() const;
+
+ private:
+  Real weight_;
+  Real roughness_;
+  Real reflectance_;
+};
+
 }  // namespace promin::oracle

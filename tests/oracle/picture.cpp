@@ -169,7 +169,9 @@ class PhongSurface {
       : phong_(phong), point_(point), to_eye_(to_eye) {}
 
   /// What is sent without any source or mirror ray.
-  Vector own(const Vector& ambient) const { return Vector(phong_.ambient) * point_.vertex_color * ambient; }
+  Vector own(const Vector& emissive, const Vector& ambient) const {
+    return emissive + Vector(phong_.ambient) * point_.vertex_color * ambient;
+  }
   /// What a source adds where nothing is between, of strength 1.
   Radiance contribution(const Light& light, const Illumination& illumination) const {
     const Real cosine = glm::dot(point_.normal, illumination.to_light);
@@ -197,7 +199,7 @@ class UnlitSurface {
   UnlitSurface(const Unlit& unlit, const SurfacePoint& point, const Vector&, const PointError&)
       : color_(Vector(unlit.color) * point.vertex_color) {}
 
-  Vector own(const Vector&) const { return color_; }
+  Vector own(const Vector& emissive, const Vector&) const { return emissive + color_; }
   Radiance contribution(const Light&, const Illumination&) const { return {}; }
   Vector mirror_weight() const { return Vector(0); }
   static constexpr bool kMirrorsBackground = true;
@@ -213,10 +215,12 @@ class MetallicRoughnessSurface {
       : point_(point),
         to_eye_(to_eye),
         error_(error),
-        lobe_(material, point.vertex_color, look_up_lobe_shares(glm::dot(point.normal, to_eye), material.roughness)) {}
+        lobe_(material, point.vertex_color, look_up_lobe_shares(glm::dot(point.normal, to_eye), material.roughness)),
+        coat_(material, glm::dot(point.normal, to_eye)) {}
 
-  Vector own(const Vector& ambient) const {
-    return lobe_.albedo() * ambient + (1 - lobe_.sharpness()) * lobe_.reflectance() * ambient;
+  Vector own(const Vector& emissive, const Vector& ambient) const {
+    const Vector below = emissive + lobe_.albedo() * ambient + (1 - lobe_.sharpness()) * lobe_.reflectance() * ambient;
+    return (1 - coat_.weight()) * below + coat_.weight() * (1 - coat_.sharpness()) * coat_.reflectance() * ambient;
   }
 
   Radiance contribution(const Light& light, const Illumination& illumination) const {
@@ -226,11 +230,18 @@ class MetallicRoughnessSurface {
     const Real apart = glm::length(to_eye_ + illumination.to_light);
     if (apart < 0x1p-12L) return sum;
     const LobeAngles angles = angles_of(point_.normal, to_eye_, illumination.to_light);
-    sum.add(Vector(light.specular), bound_highlight(angles, angle_error(illumination, apart)));
-    return sum;
+    const Real error = angle_error(illumination, apart);
+    sum.add(Vector(light.specular), bound_highlight(lobe_, angles, error));
+    Radiance coated;
+    coated.add(Vector(1 - coat_.weight()), sum);
+    coated.add(coat_.weight() * Vector(light.specular), bound_highlight(coat_, angles, error));
+    return coated;
   }
 
-  Vector mirror_weight() const { return lobe_.sharpness() * lobe_.reflectance(); }
+  Vector mirror_weight() const {
+    return (1 - coat_.weight()) * lobe_.sharpness() * lobe_.reflectance() +
+           coat_.weight() * coat_.sharpness() * coat_.reflectance();
+  }
   static constexpr bool kMirrorsBackground = false;
 
  private:
@@ -242,14 +253,15 @@ class MetallicRoughnessSurface {
 
   /// The lobe grows as the half vector nears the normal, l grows, v falls and V.H falls, so its largest and least
   /// values within the angles' errors are at the ends. Beside that fp32 errs by 64 u + 8 u / alpha.
-  Radiance bound_highlight(const LobeAngles& at, Real error) const {
+  template <class AnyLobe>
+  static Radiance bound_highlight(const AnyLobe& lobe, const LobeAngles& at, Real error) {
     const auto highlight_at = [&](Real step) {
-      return lobe_.highlight({std::clamp(at.theta - step, Real(0), std::numbers::pi_v<Real> / 2), at.v - step,
-                              std::max(at.l + step, Real(0)), std::clamp(at.v_h - step, Real(0), Real(1))});
+      return Vector(lobe.highlight({std::clamp(at.theta - step, Real(0), std::numbers::pi_v<Real> / 2), at.v - step,
+                                    std::max(at.l + step, Real(0)), std::clamp(at.v_h - step, Real(0), Real(1))}));
     };
-    const Vector color = lobe_.highlight(at);
+    const Vector color(lobe.highlight(at));
     const Vector off = glm::max(highlight_at(error) - color, color - highlight_at(-error));
-    const Vector rounding = (64 + 8 / lobe_.alpha_of_sources()) * kRoundoff * color;
+    const Vector rounding = (64 + 8 / lobe.alpha_of_sources()) * kRoundoff * color;
     const Vector sum = off + rounding;
     return {color, std::max({sum.x, sum.y, sum.z})};
   }
@@ -258,6 +270,7 @@ class MetallicRoughnessSurface {
   Vector to_eye_;
   PointError error_;
   Lobe lobe_;
+  ClearCoat coat_;
 };
 
 PhongSurface make_surface(const Phong& model, const SurfacePoint& point, const Vector& to_eye, const PointError& e) {
@@ -274,7 +287,7 @@ MetallicRoughnessSurface make_surface(const MetallicRoughness& model, const Surf
 /// What the point sends by itself and from the visible sources.
 template <class Surface>
 Radiance shade(const world::Scene& scene, const SurfacePoint& point, const Surface& surface) {
-  Radiance sum{Vector(point.material->emissive) + surface.own(Vector(scene.environment.ambient))};
+  Radiance sum{surface.own(Vector(point.material->emissive), Vector(scene.environment.ambient))};
   for (const Light& light : scene.lights) {
     const Illumination illumination = illuminate(light, point.position);
     const Real cosine = glm::dot(point.normal, illumination.to_light);

@@ -12,8 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 13> kKnownExtensions = {"KHR_implicit_shapes",
+constexpr std::array<std::string_view, 14> kKnownExtensions = {"KHR_implicit_shapes",
                                                                "KHR_lights_punctual",
+                                                               "KHR_materials_clearcoat",
                                                                "KHR_materials_emissive_strength",
                                                                "KHR_materials_ior",
                                                                "KHR_materials_specular",
