@@ -52,8 +52,14 @@ Json json_of(const ExplainedSource& source, const Scene& scene) {
   return json;
 }
 
-Json json_of(const ExplainedRay& ray, size_t bounce, const Scene& scene) {
-  Json json = {{"kind", bounce == 0 ? "camera" : "mirror"}};
+/// What sort of ray the one of this number is.
+std::string_view kind_of(const ExplainedSample& sample, size_t number) {
+  if (number == 0) return "camera";
+  return sample.rays[number - 1].coverage < 1.0F ? "through" : "mirror";
+}
+
+Json json_of(const ExplainedRay& ray, std::string_view kind, const Scene& scene) {
+  Json json = {{"kind", kind}};
   json.update(json_of(ray.ray));
   json["weight"] = json_of(ray.weight);
   json["hit"] = json_of(ray.hit);
@@ -63,6 +69,7 @@ Json json_of(const ExplainedRay& ray, size_t bounce, const Scene& scene) {
                         {"normal", json_of(ray.hit.normal)},
                         {"shading_normal", json_of(ray.shading_normal)},
                         {"lift", json_of(ray.lift)},
+                        {"coverage", json_of(ray.coverage)},
                         {"material", ray.material},
                         {"material_name", scene.materials[ray.material].name}});
   }
@@ -96,10 +103,10 @@ std::string text_of(const ExplainedSource& source, const Scene& scene) {
   return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));
 }
 
-std::string text_of(const ExplainedRay& ray, size_t bounce, const Scene& scene) {
-  const std::string indent(2 * bounce + 2, ' ');
-  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, bounce == 0 ? "camera" : "mirror",
-                                 text_of(ray.ray.origin), text_of(ray.ray.direction), text_of(ray.weight));
+std::string text_of(const ExplainedRay& ray, size_t number, std::string_view kind, const Scene& scene) {
+  const std::string indent(2 * number + 2, ' ');
+  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, kind, text_of(ray.ray.origin),
+                                 text_of(ray.ray.direction), text_of(ray.weight));
   const auto add = [&](const std::string& line) { text += indent + "  " + line + "\n"; };
   if (ray.hit.object < 0) {
     add("misses: background " + text_of(ray.own));
@@ -107,6 +114,7 @@ std::string text_of(const ExplainedRay& ray, size_t bounce, const Scene& scene) 
     add(fmt::format("hits {}, u {:.6g}, v {:.6g}", text_of(ray.hit, scene), ray.hit.u, ray.hit.v));
     add(fmt::format("at {}, normal {}, {}", text_of(ray.position), text_of(ray.shading_normal),
                     with_name(fmt::format("material {}", ray.material), scene.materials[ray.material].name)));
+    if (ray.coverage < 1.0F) add(fmt::format("covers {:.6g} of what is behind", ray.coverage));
     add("ambient and emitted " + text_of(ray.own));
   }
   for (const ExplainedSource& source : ray.sources) add(text_of(source, scene));
@@ -120,7 +128,7 @@ std::string explain_json(const Explanation& explanation, const Scene& scene) {
   Json samples = Json::array();
   for (const ExplainedSample& sample : explanation.samples) {
     Json rays = Json::array();
-    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, rays.size(), scene));
+    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, kind_of(sample, rays.size()), scene));
     samples.push_back({{"rays", rays}, {"radiance", json_of(sample.radiance())}});
   }
   const Json json = {{"pixel", {explanation.pixel.x, explanation.pixel.y}},
@@ -135,8 +143,10 @@ std::string explain_text(const Explanation& explanation, const Scene& scene) {
       fmt::format("pixel {} {}: {}\n", explanation.pixel.x, explanation.pixel.y, text_of(explanation.color));
   for (size_t i = 0; i < explanation.samples.size(); ++i) {
     text += fmt::format("sample {}\n", i);
-    const std::vector<ExplainedRay>& rays = explanation.samples[i].rays;
-    for (size_t bounce = 0; bounce < rays.size(); ++bounce) text += text_of(rays[bounce], bounce, scene);
+    const ExplainedSample& sample = explanation.samples[i];
+    for (size_t ray = 0; ray < sample.rays.size(); ++ray) {
+      text += text_of(sample.rays[ray], ray, kind_of(sample, ray), scene);
+    }
   }
   return text;
 }

@@ -69,29 +69,32 @@ TracedFrame trace(Renderer& renderer, const View& view, uint32_t repeats,
 
 // An AOV's channels, by the type of its values.
 
-void add_channels(const std::string& name, const std::vector<uint32_t>& values, std::vector<Channel>& channels) {
+void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<uint32_t>& values,
+                  std::vector<Channel>& channels) {
   channels.push_back({name, true, values});
 }
 
-void add_channels(const std::string& name, const std::vector<float>& values, std::vector<Channel>& channels) {
+void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<float>& values,
+                  std::vector<Channel>& channels) {
   Channel channel{name, false, std::vector<uint32_t>(values.size())};
   std::transform(values.begin(), values.end(), channel.values.begin(),
                  [](float value) { return std::bit_cast<uint32_t>(value); });
   channels.push_back(std::move(channel));
 }
 
-void add_channels(const std::string& name, const std::vector<vec3>& values, std::vector<Channel>& channels) {
+void add_channels(const std::string& name, std::string_view components, const std::vector<vec3>& values,
+                  std::vector<Channel>& channels) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> component;
     for (const vec3& value : values) component.push_back(value[axis]);
-    add_channels(name + "." + "XYZ"[axis], component, channels);
+    add_channels(name + "." + components[static_cast<size_t>(axis)], {}, component, channels);
   }
 }
 
 std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
   std::vector<Channel> channels;
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) \
-  if (choice.FIELD) add_channels(CHANNEL, aovs.FIELD, channels);
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) \
+  if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, aovs.FIELD, channels);
 #include "promin/kinds/aovs.def"
   return channels;
 }

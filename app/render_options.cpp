@@ -38,7 +38,7 @@ AovChoice read_aovs(const OptionValues& words) {
   std::istringstream list(words.text() + ",");
   for (std::string name; std::getline(list, name, ',');) {
     bool is_known = false;
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) \
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) \
   if (name == #FIELD) is_known = choice.FIELD = true;
 #include "promin/kinds/aovs.def"
     if (is_known) continue;

@@ -75,12 +75,12 @@ struct ViewOptions {
 
 /// The AOVs that --aov asks for.
 struct AovChoice {
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) bool FIELD = false;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) bool FIELD = false;
 #include "promin/kinds/aovs.def"
 
   bool any() const {
     return false
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) || FIELD
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) || FIELD
 #include "promin/kinds/aovs.def"
         ;
   }

@@ -13,9 +13,9 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "film.glsl"
 #include "stream.glsl"
 #include "math.glsl"
+#include "ray_bins.glsl"
 #include "ray.glsl"
 #include "make_ray.glsl"
-#include "ray_bins.glsl"
 #include "primitives.glsl"
 #include "packet.glsl"
 #include "packet_triangles.glsl"
@@ -91,6 +91,20 @@ void put_record(Path path, Ray ray, Hit hit) {
   if (is_middle) pixels[path.pixel].w = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
 }
 
+// Debug views show no light, but their AOVs need what is lit.
+const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | uint(DEBUG_VIEW == DEBUG_VIEW_NONE);
+
+// Of the middle sample, as put_record.
+void put_albedo(uint pixel, Hit hit, ShadingPoint point) {
+  if (sample_at_hand() != samples_per_pixel() / 2u) return;
+  uvec4 record = uvec4(0u, 0u, 0u, NO_ORDER);
+  if (hit.primitive != NO_PRIMITIVE) {
+    record = uvec4(floatBitsToUint(albedo_color(point)),
+                   load_surface(hit.primitive).corners_material.w & SURFACE_MATERIAL_MASK);
+  }
+  pixels[2u * window_pixel_count() + pixel] = record;
+}
+
 // Shades what the camera rays hit, without any source.
 void arrive() {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
@@ -98,16 +112,19 @@ void arrive() {
     if (!is_inside[i]) continue;
     Ray ray = packet[i];
     put_record(paths[i], ray, found[i]);
+    begin_path_log(ray, found[i], 0u, paths[i].weight);
+    if (SHADES_POINTS != 0u && found[i].primitive != NO_PRIMITIVE) {
+      widen_cone(paths[i], ray, found[i]);
+      points[i] = make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width);
+    }
+    if (has(FEATURE_AOVS)) put_albedo(paths[i].pixel, found[i], points[i]);
     if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
       seen[i] = debug_color(ray, found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
       continue;
     }
-    begin_path_log(ray, found[i], 0u, paths[i].weight);
     seen[i] = radiance_behind(paths[i].direction);
     if (found[i].primitive != NO_PRIMITIVE) {
       is_lit[i] = true;
-      widen_cone(paths[i], ray, found[i]);
-      points[i] = make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width);
       bool is_opaque = coverage_of(paths[i], points[i]) == 1.0;
       seen[i] = own_light(points[i], paths[i].direction, is_opaque && leads_on(points[i], 0u));
       paths[i].passed_t = found[i].t;
@@ -201,7 +218,7 @@ void leave() {
     Path path = paths[i];
     float coverage = is_lit[i] ? coverage_of(path, points[i]) : 1.0;
     add_radiance(path, seen[i], coverage);
-    if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance);
+    if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
     if (has(FEATURE_BLENDING) && coverage < 1.0) {
       uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
       path.cone_width = CAMERA.look.w;

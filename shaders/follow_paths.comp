@@ -135,7 +135,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
                                                          : radiance_beyond(ray.direction, path.roughness);
     add_radiance(path, beyond, 1.0);
     log_own_light(beyond);
-    end_path_log(path.radiance);
+    end_path_log(path.radiance, 1.0);
     finish_path(path);
     return ASK_NOTHING;
   }
@@ -154,7 +154,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   store_vector(record_of_path(number) + RECORD_SEEN, seen);
   if (begins_bounce(turn + 1u)) {
-    end_path_log(path.radiance);
+    end_path_log(path.radiance, coverage);
     if (has(FEATURE_BLENDING) && coverage < 1.0) return ask_through(number, path, ray, hit, coverage);
     return ask_mirror(number, path, point);
   }

@@ -269,7 +269,7 @@ struct RayLog {
   vec4 position;        // w = lift
   vec4 normal;          // geometric, as Hit::normal
   vec4 shading_normal;  // faces the ray
-  vec4 weight;          // factor of what the hit sends
+  vec4 weight;          // of what comes along the ray; w = how much of what is behind it the hit covers
   vec4 own;             // ambient and emitted light
   vec4 radiance;        // the path's so far; a source's contribution
 };

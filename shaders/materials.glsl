@@ -6,6 +6,7 @@
 //                     `follows_mirror` without the part that the mirror ray brings
 //   contribution      what a source of strength 1 adds where nothing is between
 //   mirror_weight     the weight of what the mirror ray brings; 0: none is traced
+//   albedo_color      its base colour
 //   mirror_normal     the unit normal about which it is mirrored
 //   mirror_roughness  the roughness at which a mirror ray that meets nothing sees the environment, or NO_ENVIRONMENT
 
@@ -52,4 +53,11 @@ vec3 mirror_normal(ShadingPoint point) {
   RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, mirror_normal_##PREFIX(point))
 #include "promin/kinds/materials.def"
   return point.normal;
+}
+
+vec3 albedo_color(ShadingPoint point) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, albedo_color_##PREFIX(point))
+#include "promin/kinds/materials.def"
+  return vec3(0.0);
 }

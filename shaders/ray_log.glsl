@@ -73,8 +73,9 @@ void log_own_light(vec3 own) {
   if (has(FEATURE_RAY_LOG)) path_log.own = vec4(own, 0.0);
 }
 
-void end_path_log(vec3 radiance) {
+void end_path_log(vec3 radiance, float coverage) {
   if (!has(FEATURE_RAY_LOG)) return;
+  path_log.weight.w = coverage;
   path_log.radiance = vec4(radiance, 0.0);
   append_log(path_log);
 }

@@ -159,8 +159,11 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   if (is_phong) {
     uint specular = slot_number(material.d.w);
     if (specular != 0u) {
-      precise vec3 color = material.c.xyz * look_up(specular, place).xyz;
+      vec3 factors = look_up(specular, place).xyz;
+      precise vec3 color = material.c.xyz * factors;
+      precise vec3 reflection = material.d.xyz * factors;
       material.c = vec4(color, material.c.w);
+      material.d = vec4(reflection, material.d.w);
     }
   }
   if (is_metallic_roughness) {

@@ -69,8 +69,12 @@ class MaterialPacker {
   }
 
   MaterialRecord pack(const Phong& m) {
-    return {
-        vec4(m.ambient, 0.0F), vec4(m.diffuse, 0.0F), vec4(m.specular, m.shininess), vec4(m.reflection, 0.0F), {}, {}};
+    return {vec4(m.ambient, 0.0F),
+            vec4(m.diffuse, add(m.normal_texture)),
+            vec4(m.specular, m.shininess),
+            vec4(m.reflection, add(m.specular_texture)),
+            {},
+            {}};
   }
   MaterialRecord pack(const MetallicRoughness& m) {
     // KHR_materials_ior: 0 stands for a dielectric that reflects all.
@@ -97,7 +101,9 @@ class MaterialPacker {
     return std::bit_cast<float>(static_cast<uint>(packed_.coats.size()));
   }
 
-  float add(const TextureSlot& slot) { return std::bit_cast<float>(number_of(slot)); }
+  float add(const TextureSlot& slot) {
+    return std::bit_cast<float>(number_of(slot));
+  }
 
   /// The slot's number, from 1 on; 0 where there is no texture or no image.
   uint number_of(const TextureSlot& slot) {

@@ -176,11 +176,14 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     film->buffer().read(std::as_writable_bytes(std::span(film_records)), Film::kPixelsOffset);
     average_samples(film_records, samples, std::span(result.image.pixels).subspan(first, count));
     if (!options.with_aovs) return;
-    for (size_t i = 0; i < count; ++i) read_aovs(film_records[i], film_records[count + i], first + i, result.aovs);
+    for (size_t i = 0; i < count; ++i) {
+      read_aovs(film_records[i], film_records[count + i], film_records[2 * count + i], first + i, result.aovs);
+    }
   }
 
-  /// Reads a pixel's AOVs from its two records (shaders/film.glsl).
-  void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, size_t at, Aovs& aovs) const {
+  /// Reads a pixel's AOVs from its three records (shaders/film.glsl).
+  void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, const uvec4& albedo_and_material, size_t at,
+                 Aovs& aovs) const {
     PrimitiveId id{Aovs::kNoId, Aovs::kNoId};
     if (pixel.w != layout::NO_ORDER) id = primitive_of_order(scene.numbers(), pixel.w);
     // Members have the names of the table, so an AOV that nothing is read into does not compile.
@@ -189,8 +192,15 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       vec3 normal;
       uint32_t object;
       uint32_t primitive;
-    } told{std::bit_cast<float>(normal_and_depth.w), vec3_of(normal_and_depth), id.object, id.primitive};
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) aovs.FIELD[at] = told.FIELD;
+      uint32_t material;
+      vec3 albedo;
+    } told{std::bit_cast<float>(normal_and_depth.w),
+           vec3_of(normal_and_depth),
+           id.object,
+           id.primitive,
+           albedo_and_material.w,
+           vec3_of(albedo_and_material)};
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) aovs.FIELD[at] = told.FIELD;
 #include "promin/kinds/aovs.def"
   }
 

@@ -25,14 +25,14 @@ static_assert(0
 
 std::span<const std::string_view> aov_names() {
   static constexpr std::array kNames = {
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) std::string_view(#FIELD),
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) std::string_view(#FIELD),
 #include "promin/kinds/aovs.def"
   };
   return kNames;
 }
 
 void Aovs::resize(size_t pixel_count) {
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) FIELD.assign(pixel_count, MISS);
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) FIELD.assign(pixel_count, MISS);
 #include "promin/kinds/aovs.def"
 }
 

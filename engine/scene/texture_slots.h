@@ -13,17 +13,21 @@ inline const TextureSlot& base_slot(const MetallicRoughness& model) {
 inline const TextureSlot& base_slot(const Unlit& model) {
   return model.color_texture;
 }
-inline TextureSlot base_slot(const Phong& /*model*/) {
-  return {};
+inline const TextureSlot& base_slot(const Phong& model) {
+  return model.diffuse_texture;
 }
-inline TextureSlot base_slot(const Material& material) {
-  return std::visit([](const auto& model) -> TextureSlot { return base_slot(model); }, material.model);
+inline const TextureSlot& base_slot(const Material& material) {
+  return std::visit([](const auto& model) -> const TextureSlot& { return base_slot(model); }, material.model);
 }
 
 // The textures of materials, each once: `visit(slot, name)` gets the slot and the name of its member.
 
 template <typename Visit>
-void for_each_slot(const Phong& /*model*/, const Visit& /*visit*/) {}
+void for_each_slot(const Phong& model, const Visit& visit) {
+  visit(model.diffuse_texture, "diffuse_texture");
+  visit(model.specular_texture, "specular_texture");
+  visit(model.normal_texture, "normal_texture");
+}
 
 template <typename Visit>
 void for_each_slot(const MetallicRoughness& model, const Visit& visit) {

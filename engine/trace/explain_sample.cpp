@@ -60,6 +60,7 @@ ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbe
     ray.shading_normal = vec3(entry.shading_normal);
     ray.material = entry.ids.z;
     ray.weight = vec3(entry.weight);
+    ray.coverage = entry.weight.w;
     ray.own = vec3(entry.own);
     ray.sources = std::exchange(sources, {});
     ray.radiance = vec3(entry.radiance);

@@ -196,7 +196,7 @@ void Film::warm_up() const {
 }
 
 uint32_t Film::records_per_pixel() const {
-  return features_.has_any(layout::FEATURE_AOVS) ? 2 : 1;
+  return features_.has_any(layout::FEATURE_AOVS) ? 3 : 1;
 }
 
 bool Film::has_stream() const {

@@ -19,13 +19,16 @@ namespace promin {
 ///   - depth: distance from the eye, with an orthographic camera from the plane through it; infinite on a miss
 ///   - normal: geometric normal as Hit::normal, never flipped to the ray; 0 on a miss
 ///   - object, primitive: as Hit::object and Hit::primitive; kNoId on a miss
+///   - material: index into Scene::materials; kNoId on a miss
+///   - albedo: the base colour, linear RGB, with vertex colours and textures: of Phong materials the diffuse factor, of
+///     unlit ones the colour; 0 on a miss
 struct Aovs {
-  /// What object and primitive are on a miss.
+  /// What object, primitive and material are on a miss.
   static constexpr uint32_t kNoId = 0xFFFFFFFF;
 
   /// @cond
   // The members, of the table.
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL) std::vector<TYPE> FIELD;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) std::vector<TYPE> FIELD;
 #include "promin/kinds/aovs.def"
   /// @endcond
 

@@ -21,11 +21,11 @@ struct ExplainedSource {
   /// What the light adds to the light that the point sends; 0 where it is blocked.
   vec3 contribution{0.0F};
 
-  /// Whether nothing stands between the point and the light.
-  bool is_visible() const { return shadow_ray ? blocker.object < 0 : contribution != vec3(0.0F); }
+  /// Whether its light reaches the point, be it through surfaces that blend.
+  bool is_visible() const { return contribution != vec3(0.0F); }
 };
 
-/// A ray of the path: the camera's, or that of the mirror at the hit before.
+/// A ray of the path: the camera's, that of the mirror at the hit before, or the same from behind that hit on.
 struct ExplainedRay {
   /// As traced: the largest component of its direction is in [1, 2), and t is in its units.
   Ray ray;
@@ -39,20 +39,23 @@ struct ExplainedRay {
   vec3 shading_normal{0.0F};
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Weight of all that comes along this ray: the product of the mirrors so far.
+  /// Weight of all that comes along this ray: the product of the mirrors so far, and of what surfaces that blend leave.
   vec3 weight{1.0F};
+  /// How much of what is behind it the hit covers, 0...1: the rest of the weight is the next ray's, which is this one
+  /// from behind the hit on. 1 unless the material blends.
+  float coverage = 1.0F;
   /// Ambient and emitted light of the point; on a miss the background.
   vec3 own{0.0F};
   /// The lights at the point, in the scene's order.
   std::vector<ExplainedSource> sources;
-  /// The path's sum up to here, to the bit in fp32: that of the ray before + weight * (own + contributions in their
-  /// order).
+  /// The path's sum up to here, to the bit in fp32: that of the ray before + coverage * weight * (own + contributions
+  /// in their order).
   vec3 radiance{0.0F};
 };
 
 /// The path of one sample.
 struct ExplainedSample {
-  /// The camera's ray and the mirrors' one after the other; at least one.
+  /// The camera's ray, then mirrors' rays and those from behind surfaces that blend; at least one.
   std::vector<ExplainedRay> rays;
   /// Light that the path brings to the sample: the last ray's sum.
   const vec3& radiance() const { return rays.back().radiance; }

@@ -26,6 +26,12 @@ struct Phong {
   float shininess = 0.0F;
   /// Weight of what the mirror ray brings; 0 traces none.
   vec3 reflection{0.0F};
+  /// Factors of ambient and diffuse.
+  TextureSlot diffuse_texture = {};
+  /// Factors of specular and reflection.
+  TextureSlot specular_texture = {};
+  /// Normals in the tangent space of the mesh.
+  TextureSlot normal_texture = {};
 };
 
 /// The metallic-roughness model of glTF 2.0, appendix B (docs/model.md, "Metallic-roughness"). The default is that of
@@ -95,7 +101,7 @@ struct Material {
   std::variant<Phong, MetallicRoughness, Unlit> model;
   /// Light that the surface sends by itself, linear RGB, finite and not negative; it lights nothing else.
   vec3 emissive{0.0F};
-  /// Factors of it; of metallic-roughness materials alone.
+  /// Factors of it; unlit materials have none.
   TextureSlot emissive_texture = {};
   /// What alpha does.
   AlphaMode alpha_mode = AlphaMode::kOpaque;

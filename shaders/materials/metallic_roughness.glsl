@@ -193,3 +193,5 @@ vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_li
       (1.0 - point.coat.weight) * below + point.coat.weight * contribution_in_coat(point, to_eye, to_light, light);
   return sum;
 }
+
+vec3 albedo_color_metallic_roughness(ShadingPoint point) { return base_color_of(point); }

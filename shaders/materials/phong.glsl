@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // Phong's model (docs/model.md, "Phong"). Of its record a = ambient, b = diffuse, c = specular, w of it the exponent,
-// d = reflection.
+// d = reflection; numbers of texture slots: w of b = of normals, w of d = of specular and reflection.
 
 vec3 own_light_phong(ShadingPoint point, vec3 direction, bool follows_mirror) {
   precise vec3 own = point.material.a.xyz * point.color * ambient_at(point.normal) + point.material.emissive.xyz;
@@ -28,3 +28,8 @@ vec3 mirror_weight_phong(ShadingPoint point) { return point.material.d.xyz; }
 float mirror_roughness_phong(ShadingPoint point) { return perfect_mirror_roughness(); }
 
 vec3 mirror_normal_phong(ShadingPoint point) { return point.normal; }
+
+vec3 albedo_color_phong(ShadingPoint point) {
+  precise vec3 color = point.material.b.xyz * point.color;
+  return color;
+}

@@ -16,3 +16,8 @@ vec3 mirror_weight_unlit(ShadingPoint point) { return vec3(0.0); }
 float mirror_roughness_unlit(ShadingPoint point) { return NO_ENVIRONMENT; }
 
 vec3 mirror_normal_unlit(ShadingPoint point) { return point.normal; }
+
+vec3 albedo_color_unlit(ShadingPoint point) {
+  precise vec3 color = point.material.a.xyz * point.color;
+  return color;
+}

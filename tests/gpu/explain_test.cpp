@@ -65,6 +65,7 @@ class ExplainTest : public test::DeviceTest {
   static vec3 next_weight(const ExplainedSample& sample, size_t i, const vec3& weight, const world::Scene& scene) {
     const ExplainedRay& ray = sample.rays[i];
     if (ray.hit.object < 0) return weight;
+    if (ray.coverage < 1.0F) return (1.0F - ray.coverage) * weight;
     const auto& model = scene.materials[ray.material].model;
     if (const auto* phong = std::get_if<Phong>(&model)) return weight * phong->reflection;
     if (i + 1 == sample.rays.size()) return vec3(0.0F);
@@ -86,7 +87,7 @@ class ExplainTest : public test::DeviceTest {
         EXPECT_EQ(bits_of(ray.weight), bits_of(weight));
         vec3 sent = ray.own;
         for (const ExplainedSource& source : ray.sources) sent += source.contribution;
-        radiance += weight * sent;
+        radiance += ray.coverage * weight * sent;
         EXPECT_EQ(bits_of(ray.radiance), bits_of(radiance));
         if (ray.hit.object < 0) {
           EXPECT_EQ(ray.own, sees_environment ? scene.environment.ambient : scene.environment.background);
@@ -96,7 +97,7 @@ class ExplainTest : public test::DeviceTest {
         EXPECT_EQ(ray.sources.size(), scene.lights.size());
         weight = next_weight(sample, i, weight, scene);
         const bool is_phong = std::holds_alternative<Phong>(scene.materials[ray.material].model);
-        sees_environment = sees_environment || !is_phong;
+        sees_environment = sees_environment || (!is_phong && ray.coverage == 1.0F);
       }
       sum += radiance;
     }
@@ -109,7 +110,9 @@ class ExplainTest : public test::DeviceTest {
     RayCounts explained;
     for (const ExplainedSample& sample : explanation.samples) {
       explained.primary += 1;
-      explained.reflection += sample.rays.size() - 1;
+      for (size_t i = 0; i + 1 < sample.rays.size(); ++i) {
+        if (sample.rays[i].coverage == 1.0F) ++explained.reflection;
+      }
       for (const ExplainedRay& ray : sample.rays) {
         for (const ExplainedSource& source : ray.sources) explained.shadow += source.shadow_ray ? 1 : 0;
       }
@@ -139,6 +142,25 @@ TEST_F(ExplainTest, EverythingAddsUpToThePicture) {
   View view = test::make_view(uvec2(150, 100));
   view.samples_per_pixel = 3;
   check(test::make_scene_of_everything(), view);
+}
+
+// Of what blends casts see the nearest surface alone, so hits are not compared with theirs.
+TEST_F(ExplainTest, WhatBlendsAddsUpToThePicture) {
+  const world::Scene scene = test::make_scene_of_alpha();
+  const View view = test::make_view(uvec2(48, 36));
+  Renderer renderer = make_renderer(device(), scene);
+  const Image image = renderer.render(view).image;
+  size_t through = 0;
+  for (uint32_t y = 0; y < view.size.y; y += 5) {
+    for (uint32_t x = 0; x < view.size.x; x += 3) {
+      const Explanation explanation = renderer.explain(view, uvec2(x, y));
+      EXPECT_EQ(bits_of(explanation.color), bits_of(image.pixels[y * view.size.x + x]));
+      expect_sums(explanation, scene);
+      expect_counts(renderer, view, explanation);
+      for (const ExplainedRay& ray : explanation.samples[0].rays) through += ray.coverage < 1.0F ? 1 : 0;
+    }
+  }
+  EXPECT_GT(through, 20U);
 }
 
 TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {

@@ -50,6 +50,35 @@ class ShadingTest : public test::DeviceTest {
   Aovs aovs_;
 };
 
+TEST_F(ShadingTest, AovsTellMaterialsAndTheirColours) {
+  const auto base_color = [](const Material& material) {
+    if (const auto* model = std::get_if<MetallicRoughness>(&material.model)) return model->base_color;
+    if (const auto* model = std::get_if<Unlit>(&material.model)) return model->color;
+    return material.phong().diffuse;
+  };
+  size_t seen = 0;
+  for (size_t i = 0; i < aovs_.object.size(); ++i) {
+    if (is_miss(i)) {
+      EXPECT_EQ(aovs_.material[i], Aovs::kNoId);
+      EXPECT_EQ(aovs_.albedo[i], vec3(0.0F));
+      continue;
+    }
+    const world::Object& object = scene_.objects[aovs_.object[i]];
+    ASSERT_EQ(aovs_.material[i], object.material);
+    // The gem's vertices have colours.
+    if (object.name == "gem") continue;
+    ASSERT_EQ(aovs_.albedo[i], base_color(scene_.materials[object.material]));
+    ++seen;
+  }
+  EXPECT_GT(seen, 1000U);
+  for (size_t i = 1; i < debug_view_names().size(); ++i) {
+    view_.mode.debug_view = static_cast<DebugView>(i);
+    const Aovs shown = renderer_->render(view_).aovs;
+    EXPECT_EQ(shown.albedo, aovs_.albedo) << debug_view_names()[i];
+    EXPECT_EQ(shown.material, aovs_.material) << debug_view_names()[i];
+  }
+}
+
 TEST_F(ShadingTest, LightHasTheSameBitsAfterEveryOther) {
   const Image before = show(DebugView::kNone);
   for (size_t i = 1; i < debug_view_names().size(); ++i) {

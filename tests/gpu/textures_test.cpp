@@ -233,6 +233,40 @@ TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
   EXPECT_NEAR(center(), 0.6F * open_alone, 1e-6F);
 }
 
+TEST_F(TexturesTest, PhongMaterialsHaveFactorsToo) {
+  // Red is a fifth, green and blue are whole.
+  const auto shaded = [&](const std::function<void(Phong&)>& change) {
+    Scene scene = make_lit_board(make_image({1, 1}, [](uint32_t, uint32_t) { return 0xFFFFFF33U; }));
+    scene.environment.background = vec3(1.0F);
+    Phong phong{.ambient = vec3(0.5F), .diffuse = vec3(0.5F)};
+    change(phong);
+    scene.materials[0].model = phong;
+    return render(scene, make_board_view({8, 8})).pixels[27];
+  };
+  const vec3 matt = shaded([](Phong&) {});
+  const vec3 textured = shaded([](Phong& phong) { phong.diffuse_texture.texture = 0; });
+  EXPECT_NEAR(textured.r, 0.2F * matt.r, 1e-6F);
+  EXPECT_EQ(textured.g, matt.g);
+  const auto glossy = [](Phong& phong) {
+    phong.specular = vec3(1.0F);
+    phong.shininess = 1.0F;
+    phong.reflection = vec3(0.5F);
+  };
+  const vec3 whole = shaded(glossy);
+  const vec3 part = shaded([&](Phong& phong) {
+    glossy(phong);
+    phong.specular_texture.texture = 0;
+  });
+  EXPECT_GT(whole.r, matt.r + 0.6F);
+  EXPECT_NEAR(part.r - matt.r, 0.2F * (whole.r - matt.r), 1e-6F);
+  EXPECT_EQ(part.g, whole.g);
+  // The texel leans towards -u and -v, which goes up here.
+  const vec3 turned = shaded([](Phong& phong) { phong.normal_texture.texture = 0; });
+  const vec3 to_light = glm::normalize(vec3(-1, 1, 1));
+  const vec3 normal = glm::normalize(vec3(-0.6F, -1.0F, 1.0F));
+  EXPECT_NEAR(turned.r, 0.5F * 0.25F + 0.5F * glm::dot(normal, to_light), 1e-5F);
+}
+
 TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
   // What lies below sends nothing.
   const auto shaded = [&](const std::function<void(MetallicRoughness&)>& change) {
