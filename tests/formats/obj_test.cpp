@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "formats/obj/triangulate.h"
 #include "formats/source_file.h"
+#include "formats/triangulate.h"
 #include "support/scene_folder.h"
 
 namespace promin {

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "formats/obj/materials.h"
 #include "formats/obj/text.h"
-#include "formats/obj/triangulate.h"
+#include "formats/triangulate.h"
 
 namespace promin {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/file.h"
-#include "formats/obj/text_lines.h"
 #include "formats/scene_path.h"
+#include "formats/text_lines.h"
 #include "promin/validate.h"
 
 namespace promin {

@@ -7,14 +7,12 @@
 #include <optional>
 #include <unordered_map>
 
-#include "formats/obj/text_lines.h"
+#include "formats/text_lines.h"
+#include "formats/triangulate.h"
 #include "promin/validate.h"
 
 namespace promin {
 namespace {
-
-/// Cutting a concave polygon takes quadratic time.
-constexpr size_t kMaxCorners = 10'000;
 
 /// Statements that other programs need and that change nothing here.
 constexpr std::array<std::string_view, 2> kHarmless = {"vt", "s"};
@@ -107,9 +105,9 @@ class ObjParser {
       out_.corners.push_back(corner);
     }
     const size_t count = out_.corners.size() - first;
-    if (count < 3 || count > kMaxCorners) {
+    if (count < 3 || count > kMaxPolygonCorners) {
       refuse("a face has " + std::to_string(count) + " corners",
-             "give it 3 to " + std::to_string(kMaxCorners) + ", on one line");
+             "give it 3 to " + std::to_string(kMaxPolygonCorners) + ", on one line");
       return;
     }
     if (!is_group_open_) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/obj/triangulate.h"
+#include "formats/triangulate.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/obj/text_lines.h"
+#include "formats/text_lines.h"
 
 #include <algorithm>
 #include <charconv>
