@@ -42,7 +42,7 @@ struct BvhOptions {
 };
 
 void add_scene_row(OptionTable& table, BvhOptions& options) {
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
                      [&](const OptionValues& w) { options.scene = w.text(); });
 }
 

@@ -143,7 +143,7 @@ Command add_info_command(CLI::App& program) {
   };
   const auto options = std::make_shared<InfoOptions>();
   OptionTable table(command);
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
                      [options](const OptionValues& w) { options->file = w.text(); });
   add_environment_options(table, options->environment);
   return {&command, [options] { print_info(options->file, options->environment); }};

@@ -15,7 +15,7 @@ constexpr uint32_t kMaxRepeats = 10000;
 }  // namespace
 
 void add_scene_argument(OptionTable& table, TracingOptions& options) {
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb or .obj",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
                      [&](const OptionValues& w) { options.scene = w.text(); });
 }
 

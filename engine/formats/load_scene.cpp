@@ -10,7 +10,9 @@
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
 #include "formats/obj/load_obj.h"
+#include "formats/ply/load_ply.h"
 #include "formats/source_file.h"
+#include "formats/stl/load_stl.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -43,7 +45,8 @@ void warn_of_tiny_meshes(Scene& scene) {
   }
 }
 
-constexpr SceneFormat kFormats[] = {{".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}};
+constexpr SceneFormat kFormats[] = {
+    {".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}, {".ply", load_ply}, {".stl", load_stl}};
 
 const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);

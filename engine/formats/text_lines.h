@@ -12,7 +12,8 @@ namespace promin {
 /// Walks the lines of a text, whether they end in \n or \r\n.
 class TextLines {
  public:
-  explicit TextLines(std::string_view text) : rest_(text) {}
+  /// `lines_before` of the file come before the text.
+  explicit TextLines(std::string_view text, uint64_t lines_before = 0) : rest_(text), number_(lines_before) {}
 
   /// Goes to the next line; false at the end.
   bool advance();
@@ -25,7 +26,7 @@ class TextLines {
  private:
   std::string_view rest_;
   std::string_view line_;
-  uint64_t number_ = 0;
+  uint64_t number_;
 };
 
 /// Takes the next word off a line; empty at its end or at a comment.

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
 #include <random>
 
 #include "promin/validate.h"
 #include "support/gltf_builder.h"
+#include "support/ply_builder.h"
 #include "support/scene_folder.h"
+#include "support/stl_builder.h"
 
 namespace promin {
 namespace {
@@ -44,6 +47,48 @@ const std::string kSmallObj =
     "f 1 2 3 4\nf 1//1 2//1 3//-1\ng two\nf -5 -4 -3 -2 -1\nl 1 2\nf 1/1/1 2/2/1 3/3/1\n";
 const std::string kSmallMtl =
     "newmtl red\nKa 0 0 0\nKd 1 0 0\nKs 1 1 1\nNs 10\nillum 3\nd 0.5\nmap_Kd -s 1 1 1 a.png\n";
+
+/// A square with normals and colours, a strip, and what is passed over.
+std::string small_ply(const std::string& format) {
+  return "ply\nformat " + format +
+         " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty float nx\n"
+         "property float ny\nproperty float nz\nproperty uchar red\nproperty ushort green\nproperty float blue\n"
+         "element edge 1\nproperty list uchar short ends\nelement face 2\nproperty list uchar int vertex_indices\n"
+         "element tristrips 1\nproperty list int char vertex_indices\nend_header\n";
+}
+
+std::string small_text_ply() {
+  return small_ply("ascii") +
+         "0 0 0 0 0 1 255 0 0.5\n1 0 0 0 0 1 0 65535 1\n1 1 0 0 0 1 0 0 0\n0 1 0 0 0 0 9 9 0.25\n"
+         "2 0 1\n4 0 1 2 3\n3 0 1 2\n5 0 1 -1 2 3\n";
+}
+
+std::string small_binary_ply(std::endian order) {
+  PlyBuilder ply(order);
+  std::string header = small_ply("x");
+  header.erase(0, header.find("element"));
+  header.resize(header.find("end_header"));
+  ply.header(header);
+  for (int i = 0; i < 4; ++i) {
+    for (const char* type : {"float", "float", "double", "float", "float", "float", "uchar", "ushort", "float"}) {
+      ply.add(type, i);
+    }
+  }
+  const auto add_list = [&](const char* count_type, const char* type, const std::vector<int>& numbers) {
+    ply.add(count_type, static_cast<double>(numbers.size()));
+    for (const int number : numbers) ply.add(type, number);
+  };
+  add_list("uchar", "short", {0, 1});
+  add_list("uchar", "int", {0, 1, 2, 3});
+  add_list("uchar", "int", {0, 1, 2});
+  add_list("int", "char", {0, 1, 2, -1, 1, 2, 3});
+  return ply.bytes();
+}
+
+const std::string kSmallStl =
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1.5e0 0\nendloop\nendfacet\n"
+    "endsolid\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+    "endfacet\nendsolid b\n";
 
 /// Bytes that mean something to one of the parsers, or nothing to any.
 std::string mutate(std::string bytes, std::mt19937& random) {
@@ -115,6 +160,20 @@ TEST_F(LoadFuzzTest, ObjLoadsOrIsRefused) {
 TEST_F(LoadFuzzTest, MtlLoadsOrIsRefused) {
   write("a.obj", kSmallObj);
   run("a.mtl", kSmallMtl, "a.obj", 3000);
+}
+
+TEST_F(LoadFuzzTest, PlyLoadsOrIsRefused) {
+  run("a.ply", small_text_ply(), "a.ply", 3000);
+  run("a.ply", small_binary_ply(std::endian::little), "a.ply", 3000);
+  run("a.ply", small_binary_ply(std::endian::big), "a.ply", 3000);
+}
+
+TEST_F(LoadFuzzTest, StlLoadsOrIsRefused) {
+  run("a.stl", kSmallStl, "a.stl", 3000);
+  StlBuilder stl;
+  stl.add({vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)});
+  stl.add({vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)}, 7);
+  run("a.stl", stl.bytes(), "a.stl", 3000);
 }
 
 /// A step further than bytes: any value of the document becomes any other kind of value.

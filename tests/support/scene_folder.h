@@ -41,6 +41,16 @@ class SceneFolder : public TempFolder {
   std::string refusal(const std::string& name, std::string_view bytes) const { return refusal(write(name, bytes)); }
 };
 
+/// A text with lines that end in \r\n.
+inline std::string with_carriage_returns(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\n') result += '\r';
+    result += c;
+  }
+  return result;
+}
+
 inline const Mesh& mesh_of(const world::Scene& scene, size_t object = 0) {
   return std::get<Mesh>(scene.objects.at(object).shape);
 }

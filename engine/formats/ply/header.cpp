@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/ply/header.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "formats/text_lines.h"
+
+namespace promin {
+namespace {
+
+constexpr size_t kMaxNames = 1000;
+constexpr std::string_view kEnd = "end_header";
+const std::string kExportAgain = "export the file again";
+
+struct TypeName {
+  std::string_view name;
+  PlyType type;
+};
+
+constexpr std::array<TypeName, 16> kTypes = {{{"char", PlyType::kInt8},
+                                              {"int8", PlyType::kInt8},
+                                              {"uchar", PlyType::kUint8},
+                                              {"uint8", PlyType::kUint8},
+                                              {"short", PlyType::kInt16},
+                                              {"int16", PlyType::kInt16},
+                                              {"ushort", PlyType::kUint16},
+                                              {"uint16", PlyType::kUint16},
+                                              {"int", PlyType::kInt32},
+                                              {"int32", PlyType::kInt32},
+                                              {"uint", PlyType::kUint32},
+                                              {"uint32", PlyType::kUint32},
+                                              {"float", PlyType::kFloat32},
+                                              {"float32", PlyType::kFloat32},
+                                              {"double", PlyType::kFloat64},
+                                              {"float64", PlyType::kFloat64}}};
+
+template <class Named>
+const Named* find_named(const std::vector<Named>& all, std::string_view name) {
+  const auto found = std::ranges::find(all, name, &Named::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
+class HeaderParser {
+ public:
+  HeaderParser(std::string_view file, LoadReport& report) : file_(file), lines_(file), report_(report) {}
+
+  PlyHeader parse() {
+    if (!lines_.advance() || trim(lines_.line()) != "ply") {
+      report_.refuse("the first line is not \"ply\"", "", "name a PLY file");
+      return {};
+    }
+    while (lines_.advance()) {
+      ++out_.line_count;
+      if (trim(lines_.line()) == kEnd) {
+        finish();
+        return std::move(out_);
+      }
+      read_statement(lines_.line());
+    }
+    refuse("the header has no end", kExportAgain);
+    return {};
+  }
+
+ private:
+  void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
+
+  void finish() {
+    const auto end = static_cast<size_t>(lines_.line().data() - file_.data());
+    out_.size_bytes = std::min(file_.find('\n', end), file_.size() - 1) + 1;
+    if (!has_format_) refuse("the header tells no format", kExportAgain);
+    check_counts(file_.size() - out_.size_bytes);
+  }
+
+  void read_statement(std::string_view line) {
+    const std::string_view keyword = take_word(line);
+    if (keyword == "format") {
+      read_format(take_word(line));
+    } else if (keyword == "element") {
+      read_element(line);
+    } else if (keyword == "property") {
+      read_property(line);
+    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+      report_.warn(quote(keyword) + " in " + lines_.place() + " of the header is ignored");
+    }
+  }
+
+  void read_format(std::string_view name) {
+    has_format_ = true;
+    if (name == "ascii") {
+      out_.encoding = PlyEncoding::kText;
+    } else if (name == "binary_little_endian") {
+      out_.encoding = PlyEncoding::kLittleEndian;
+    } else if (name == "binary_big_endian") {
+      out_.encoding = PlyEncoding::kBigEndian;
+    } else {
+      refuse(quote(name) + " is no format of PLY", "use ascii, binary_little_endian or binary_big_endian");
+    }
+  }
+
+  void read_element(std::string_view line) {
+    const std::string_view name = take_word(line);
+    const std::string_view word = take_word(line);
+    const std::optional<int64_t> count = parse_integer(word);
+    if (!count || *count < 0) refuse(quote(word) + " is no count of rows", "write \"element NAME COUNT\"");
+    if (find_named(out_.elements, name) != nullptr) refuse("there are two elements " + quote(name), kExportAgain);
+    if (!has_room(out_.elements, "elements")) return;
+    out_.elements.push_back(
+        {.name = std::string(name), .row_count = static_cast<uint64_t>(std::max(count.value_or(0), int64_t{0}))});
+  }
+
+  void read_property(std::string_view line) {
+    if (out_.elements.empty()) return refuse("a property comes before any element", kExportAgain);
+    PlyProperty property;
+    std::string_view type = take_word(line);
+    property.is_list = type == "list";
+    if (property.is_list) {
+      property.count_type = read_type(take_word(line));
+      type = take_word(line);
+    }
+    property.type = read_type(type);
+    property.name = take_word(line);
+    std::vector<PlyProperty>& properties = out_.elements.back().properties;
+    if (find_named(properties, property.name) != nullptr) {
+      refuse("there are two properties " + quote(property.name), kExportAgain);
+    }
+    if (has_room(properties, "properties")) properties.push_back(property);
+  }
+
+  /// Each new name is looked for among the others.
+  template <class Named>
+  bool has_room(const std::vector<Named>& all, const std::string& what) {
+    if (all.size() < kMaxNames) return true;
+    report_.refuse("the header has more than " + std::to_string(kMaxNames) + " " + what, "", kExportAgain);
+    return false;
+  }
+
+  PlyType read_type(std::string_view name) {
+    const auto found = std::ranges::find(kTypes, name, &TypeName::name);
+    if (found != kTypes.end()) return found->type;
+    refuse(quote(name) + " is no type of numbers", "use char, uchar, short, ushort, int, uint, float or double");
+    return PlyType::kFloat32;
+  }
+
+  /// A header that lies must not take memory.
+  void check_counts(uint64_t room) {
+    const bool is_text = out_.encoding == PlyEncoding::kText;
+    // The last number of a text may have no space behind it.
+    if (is_text) ++room;
+    for (const PlyElement& element : out_.elements) {
+      uint64_t row_bytes = 0;
+      for (const PlyProperty& property : element.properties) {
+        // A number of a text takes a digit and a space.
+        row_bytes += is_text ? 2 : size_of(property.is_list ? property.count_type : property.type);
+      }
+      const uint64_t rows = row_bytes == 0 ? element.row_count : room / row_bytes;
+      if (element.row_count > rows) {
+        report_.refuse("the header tells of " + std::to_string(element.row_count) + " rows of " + quote(element.name) +
+                           ", the file has room for " + std::to_string(rows),
+                       "", "the file is cut short: copy or export it again");
+        return;
+      }
+      room -= element.row_count * row_bytes;
+    }
+  }
+
+  std::string_view file_;
+  TextLines lines_;
+  LoadReport& report_;
+  PlyHeader out_ = {.line_count = 1};
+  bool has_format_ = false;
+};
+
+}  // namespace
+
+size_t size_of(PlyType type) {
+  switch (type) {
+    case PlyType::kInt8:
+    case PlyType::kUint8:
+      return 1;
+    case PlyType::kInt16:
+    case PlyType::kUint16:
+      return 2;
+    case PlyType::kInt32:
+    case PlyType::kUint32:
+    case PlyType::kFloat32:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+const PlyElement* PlyHeader::find(std::string_view name) const {
+  return find_named(elements, name);
+}
+
+PlyHeader parse_ply_header(std::string_view file, LoadReport& report) {
+  return HeaderParser(file, report).parse();
+}
+
+}  // namespace promin

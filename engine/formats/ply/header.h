@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/load_report.h"
+
+namespace promin {
+
+enum class PlyType : uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+/// Bytes of a number in a binary file.
+size_t size_of(PlyType type);
+
+struct PlyProperty {
+  std::string name = {};
+  PlyType type = PlyType::kFloat32;
+  /// Whether a row has a count and that many numbers of `type`.
+  bool is_list = false;
+  PlyType count_type = PlyType::kUint8;
+
+  /// Whether it is what faces and strips have their corners in.
+  bool lists_vertices() const { return is_list && (name == "vertex_indices" || name == "vertex_index"); }
+};
+
+/// A table of the file: `row_count` rows, each with a value of each property.
+struct PlyElement {
+  std::string name = {};
+  uint64_t row_count = 0;
+  std::vector<PlyProperty> properties = {};
+};
+
+enum class PlyEncoding { kText, kLittleEndian, kBigEndian };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kText;
+  /// In the order of the file.
+  std::vector<PlyElement> elements = {};
+  /// Where the rows begin.
+  size_t size_bytes = 0;
+  uint64_t line_count = 0;
+
+  /// nullptr where there is none.
+  const PlyElement* find(std::string_view name) const;
+};
+
+/// Parses the header of a PLY file (Turk 1994), with the types' names of either kind, and holds the counts of rows
+/// against the size of the file. Problems go to the report.
+PlyHeader parse_ply_header(std::string_view file, LoadReport& report);
+
+}  // namespace promin

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "formats/load_report.h"
+#include "promin/scene.h"
+
+namespace promin {
+
+/// Reads the report's file as PLY, text or binary of either order of bytes: the vertices' x, y, z, nx, ny, nz and
+/// colours, which are taken for those of sRGB, the lists vertex_indices or vertex_index of faces, and tristrips. All of
+/// it is one object of the default material; polygons of n corners give n - 2 triangles in file order. Throws
+/// InputError with all problems.
+Scene load_ply(LoadReport& report);
+
+}  // namespace promin

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "formats/load_report.h"
+#include "formats/ply/header.h"
+#include "formats/text_lines.h"
+
+namespace promin {
+
+/// Takes numbers off the rows of a binary PLY file. Past the end, and after any problem, numbers are 0.
+template <std::endian kOrder>
+class PlyBinaryRows {
+ public:
+  PlyBinaryRows(std::string_view body, uint64_t /*header_lines*/) : rest_(body) {}
+
+  void start_row() {}
+  void end_row(LoadReport& /*report*/) {}
+
+  double take(PlyType type) {
+    switch (type) {
+      case PlyType::kInt8:
+        return static_cast<double>(static_cast<int8_t>(take_bytes<uint8_t>()));
+      case PlyType::kUint8:
+        return static_cast<double>(take_bytes<uint8_t>());
+      case PlyType::kInt16:
+        return static_cast<double>(static_cast<int16_t>(take_bytes<uint16_t>()));
+      case PlyType::kUint16:
+        return static_cast<double>(take_bytes<uint16_t>());
+      case PlyType::kInt32:
+        return static_cast<double>(static_cast<int32_t>(take_bytes<uint32_t>()));
+      case PlyType::kUint32:
+        return static_cast<double>(take_bytes<uint32_t>());
+      case PlyType::kFloat32:
+        return static_cast<double>(std::bit_cast<float>(take_bytes<uint32_t>()));
+      default:
+        return std::bit_cast<double>(take_bytes<uint64_t>());
+    }
+  }
+
+  /// No more numbers than this can follow.
+  size_t most_numbers(PlyType type) const { return rest_.size() / size_of(type); }
+  /// What went wrong, if anything did.
+  const std::string& problem() const { return problem_; }
+  std::string place() const { return {}; }
+
+ private:
+  template <class Word>
+  Word take_bytes() {
+    Word word = 0;
+    if (rest_.size() < sizeof(Word)) {
+      problem_ = "the file ends within its rows";
+      return word;
+    }
+    if constexpr (kOrder == std::endian::native) {
+      std::memcpy(&word, rest_.data(), sizeof(Word));
+    } else {
+      for (size_t i = 0; i < sizeof(Word); ++i) {
+        word = static_cast<Word>(word | Word{static_cast<uint8_t>(rest_[i])} << (8 * (sizeof(Word) - 1 - i)));
+      }
+    }
+    rest_.remove_prefix(sizeof(Word));
+    return word;
+  }
+
+  std::string_view rest_;
+  std::string problem_;
+};
+
+/// Takes numbers off the rows of a PLY file that is text: a row is a line. As PlyBinaryRows otherwise.
+class PlyTextRows {
+ public:
+  PlyTextRows(std::string_view body, uint64_t header_lines) : lines_(body, header_lines) {}
+
+  void start_row() {
+    do {
+      if (!lines_.advance()) {
+        problem_ = "the file ends within its rows";
+        return;
+      }
+      rest_ = trim(lines_.line());
+    } while (rest_.empty());
+  }
+
+  void end_row(LoadReport& report) {
+    if (problem_.empty() && !rest_.empty() && !take_word(rest_).empty()) {
+      report.warn("numbers beyond the properties of an element are ignored");
+    }
+    rest_ = {};
+  }
+
+  double take(PlyType /*type*/) {
+    std::string_view word = take_word(rest_);
+    if (word.empty()) {
+      if (problem_.empty()) problem_ = "a row has fewer numbers than its element has properties";
+      return 0.0;
+    }
+    // Unlike parse_number this takes "nan", which some programs write for the normals of vertices without faces.
+    const std::string_view whole = word;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error == std::errc() && end == word.data() + word.size()) return number;
+    if (problem_.empty()) problem_ = quote(whole) + " is no number";
+    return 0.0;
+  }
+
+  size_t most_numbers(PlyType /*type*/) const { return rest_.size(); }
+  const std::string& problem() const { return problem_; }
+  std::string place() const { return lines_.place(); }
+
+ private:
+  TextLines lines_;
+  std::string_view rest_;
+  std::string problem_;
+};
+
+}  // namespace promin
