@@ -5,10 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/parallel.h"
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/json_lookup.h"
-#include "textures/decode_picture.h"
 
 namespace promin {
 namespace {
@@ -99,8 +97,7 @@ uint32_t GltfTextures::find_texture(size_t index, ImageUse use) {
 uint32_t GltfTextures::find_image(int index, ImageUse use) {
   const auto [known, is_new] = image_numbers_.try_emplace({index, use}, static_cast<uint32_t>(images_.size()));
   if (!is_new) return known->second;
-  Source& source = images_.emplace_back();
-  source.image = std::make_shared<TextureImage>();
+  PictureSource& source = images_.emplace_back();
   source.image->use = use;
   source.title = title_of(document_.json, "images", static_cast<size_t>(index));
   source.image->name = document_.json["images"][static_cast<size_t>(index)].value("name", "");
@@ -108,7 +105,7 @@ uint32_t GltfTextures::find_image(int index, ImageUse use) {
   return known->second;
 }
 
-void GltfTextures::read_file(size_t index, Source& source) {
+void GltfTextures::read_file(size_t index, PictureSource& source) {
   const json& image = document_.json["images"][index];
   if (image.contains("bufferView")) {
     const json& view = document_.json["bufferViews"][image["bufferView"].get<size_t>()];
@@ -120,38 +117,14 @@ void GltfTextures::read_file(size_t index, Source& source) {
     source.problem = "it has no bytes";
     return;
   }
-  // What would refuse a buffer is no more than a warning here: the scene can be shown without.
-  LoadReport attempt(report_.file());
-  std::optional<std::vector<std::byte>> bytes =
-      read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", attempt);
-  for (const SourceFile& file : attempt.sources()) report_.add_source(file.file);
-  try {
-    attempt.throw_if_refused();
-  } catch (const InputError& error) {
-    source.problem = error.problems().front().what;
-    return;
-  }
-  source.own = std::move(*bytes);
-  source.file = source.own;
+  read_picture(source, report_, [&](LoadReport& report) {
+    return read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", report);
+  });
 }
 
 void GltfTextures::finish(Scene& scene) {
-  for_each_index(images_.size(), 0, [&](size_t i) {
-    Source& source = images_[i];
-    if (!source.problem.empty()) return;
-    try {
-      DecodedPicture picture = decode_picture(source.file);
-      source.image->size = picture.size;
-      source.image->texels = std::move(picture.texels);
-    } catch (const PictureError& error) {
-      source.problem = error.what();
-    }
-    source.own = {};
-  });
-  for (const Source& source : images_) {
-    if (!source.problem.empty()) report_.warn("image " + source.title + " is ignored: " + source.problem);
-    scene.images.push_back(source.image);
-  }
+  decode_pictures(images_, report_);
+  for (const PictureSource& source : images_) scene.images.push_back(source.image);
   scene.textures = textures_;
 }
 

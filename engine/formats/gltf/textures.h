@@ -3,14 +3,12 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/gltf/document.h"
+#include "formats/picture_sources.h"
 #include "promin/scene.h"
 
 namespace promin {
@@ -28,24 +26,13 @@ class GltfTextures {
   void finish(Scene& scene);
 
  private:
-  /// An image to decode.
-  struct Source {
-    std::shared_ptr<TextureImage> image;
-    /// In the document's buffers, or in `own`.
-    std::span<const std::byte> file;
-    std::vector<std::byte> own;
-    std::string title;
-    /// Why it cannot be used; empty where it can.
-    std::string problem;
-  };
-
   uint32_t find_texture(size_t index, ImageUse use);
   uint32_t find_image(int index, ImageUse use);
-  void read_file(size_t index, Source& source);
+  void read_file(size_t index, PictureSource& source);
 
   const GltfDocument& document_;
   LoadReport& report_;
-  std::vector<Source> images_;
+  std::vector<PictureSource> images_;
   std::vector<Texture> textures_;
   std::map<std::pair<int, ImageUse>, uint32_t> image_numbers_;
   std::map<std::pair<size_t, ImageUse>, uint32_t> texture_numbers_;

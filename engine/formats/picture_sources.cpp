@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/picture_sources.h"
+
+#include "core/parallel.h"
+#include "textures/decode_picture.h"
+
+namespace promin {
+
+void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
+  for_each_index(sources.size(), 0, [&](size_t i) {
+    PictureSource& source = sources[i];
+    if (!source.problem.empty()) return;
+    try {
+      DecodedPicture picture = decode_picture(source.file);
+      source.image->size = picture.size;
+      source.image->texels = std::move(picture.texels);
+    } catch (const PictureError& error) {
+      source.problem = error.what();
+    }
+    source.own = {};
+  });
+  for (const PictureSource& source : sources) {
+    if (!source.problem.empty()) report.warn("image " + source.title + " is ignored: " + source.problem);
+  }
+}
+
+}  // namespace promin
