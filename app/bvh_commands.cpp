@@ -16,6 +16,7 @@
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "device_scene/pack_scene.h"
+#include "load_options.h"
 #include "outputs.h"
 #include "progress.h"
 #include "promin/error.h"
@@ -31,6 +32,7 @@ constexpr uint32_t kMaxThreads = 1024;
 
 struct BvhOptions {
   std::filesystem::path scene;
+  LoadOptions load;
   std::filesystem::path file;
   std::string builder{builder_names().front()};
   /// 0 takes one thread per core.
@@ -52,6 +54,7 @@ void add_file_row(OptionTable& table, BvhOptions& options) {
 }
 
 void add_common_rows(OptionTable& table, BvhOptions& options) {
+  add_strict_option(table, options.load);
   table.add("--threads", "N", fmt::format("Threads to use, 1 to {} [one a core]", kMaxThreads),
             [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
   table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
@@ -60,7 +63,7 @@ void add_common_rows(OptionTable& table, BvhOptions& options) {
 
 Scene load(const BvhOptions& options, const Console& console) {
   const Stopwatch loading;
-  Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene, options.load);
   for (const std::string& warning : scene.warnings) console.warn(warning);
   console.detail(fmt::format("loaded {}: {:.1f} ms", options.scene.string(), loading.ms()));
   return scene;

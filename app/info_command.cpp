@@ -14,6 +14,7 @@
 #include "device_scene/pack_shading.h"
 #include "environment/pack_sky.h"
 #include "environment_options.h"
+#include "load_options.h"
 #include "promin/load_scene.h"
 #include "rows.h"
 #include "scene/features.h"
@@ -100,11 +101,17 @@ std::string describe_bounds(const Bounds& bounds) {
                      bounds.hi.y, bounds.hi.z);
 }
 
-void print_info(const std::filesystem::path& file, const EnvironmentOptions& environment) {
-  Scene scene = load_scene(file);
-  const EnvironmentChoice surroundings(environment);
+struct InfoOptions {
+  std::filesystem::path file;
+  LoadOptions load;
+  EnvironmentOptions environment;
+};
+
+void print_info(const InfoOptions& options) {
+  Scene scene = load_scene(options.file, options.load);
+  const EnvironmentChoice surroundings(options.environment);
   const SceneCounts counts = count_scene(scene);
-  print_row("scene", file.string());
+  print_row("scene", options.file.string());
   print_row("objects", describe_objects(counts, scene.objects.size()));
   print_row("primitives", std::to_string(counts.primitives));
   std::string lights = count_lights(scene.lights);
@@ -137,16 +144,13 @@ void print_info(const std::filesystem::path& file, const EnvironmentOptions& env
 
 Command add_info_command(CLI::App& program) {
   CLI::App& command = add_command(program, "info", "Print what a scene holds and what is modelled of it");
-  struct InfoOptions {
-    std::filesystem::path file;
-    EnvironmentOptions environment;
-  };
   const auto options = std::make_shared<InfoOptions>();
   OptionTable table(command);
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
                      [options](const OptionValues& w) { options->file = w.text(); });
+  add_strict_option(table, options->load);
   add_environment_options(table, options->environment);
-  return {&command, [options] { print_info(options->file, options->environment); }};
+  return {&command, [options] { print_info(*options); }};
 }
 
 }  // namespace promin::app

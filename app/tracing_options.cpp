@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "arguments.h"
+#include "load_options.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -34,6 +35,7 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
             [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });
   table.add("--bvh", "FILE.pbvh", "Take the BVH from a file of promin-bvh build",
             [&](const OptionValues& w) { options.bvh = w.text(); });
+  add_strict_option(table, options.load);
   table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
   table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "console.h"
+#include "promin/load_scene.h"
 #include "promin/renderer.h"
 
 namespace promin::app {
@@ -18,6 +19,7 @@ class OptionTable;
 /// The options that every command which traces a scene takes.
 struct TracingOptions {
   std::filesystem::path scene;
+  LoadOptions load;
   std::optional<std::filesystem::path> stats;
   /// Name or index of a device.
   std::optional<std::string> device;

@@ -18,7 +18,7 @@ Scene load_for(const TracingOptions& options, RunStats& stats, const Console& co
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources) {
   const Stopwatch load;
-  Scene scene = load_scene(options.scene, sources);
+  Scene scene = load_scene(options.scene, options.load, sources);
   stats.load_ms = load.ms();
   for (const std::string& warning : scene.warnings) console.warn(warning);
   stats.scene_file = options.scene.filename().string();

@@ -31,11 +31,12 @@ void ReadyPicture::take_lights() {
   picture.take_scene_change();
 }
 
-ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
+ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
                              std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment)
     : device_(&device),
       budget_ms_(budget_ms),
       file_(std::move(file)),
+      load_(std::move(load)),
       look_(look),
       environment_(std::move(environment)),
       watch_(std::move(sources)) {}
@@ -77,7 +78,7 @@ std::optional<ReadyPicture> ScenePreparer::take() {
 void ScenePreparer::read() {
   step_ = Step::kReading;
   work_.start([this, request = asked_] {
-    const auto scene = std::make_shared<Scene>(load_scene(file_, sources_));
+    const auto scene = std::make_shared<Scene>(load_scene(file_, load_, sources_));
     light_up(*scene, look_, environment_);
     return make(put_on_device(scene, request), request);
   });

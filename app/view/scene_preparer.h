@@ -60,9 +60,9 @@ struct PictureRequest {
 /// picture is shown.
 class ScenePreparer {
  public:
-  /// Takes a scene's file, the files that it was read from, how it is lit and shown, and what is changed about its
-  /// surroundings.
-  ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file,
+  /// Takes a scene's file and how it is read, the files that it was read from, how it is lit and shown, and what is
+  /// changed about its surroundings.
+  ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
                 std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
@@ -99,6 +99,7 @@ class ScenePreparer {
   const gpu::Device* device_;
   double budget_ms_;
   std::filesystem::path file_;
+  LoadOptions load_;
   LookOptions look_;
   EnvironmentChoice environment_;
   SceneWatch watch_;

@@ -126,8 +126,8 @@ void view(const WindowOptions& options) {
   const gpu::Device device({.selection = tracing.device, .presentation = &presentation});
   stats.device = device.info();
   console.detail(device.choice());
-  ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, std::move(sources),
-                         look, environment);
+  ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, tracing.load,
+                         std::move(sources), look, environment);
   // This takes longest and comes last, because without a window it would be in vain.
   preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);

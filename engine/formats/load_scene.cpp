@@ -20,7 +20,7 @@ namespace {
 
 struct SceneFormat {
   const char* ending;
-  Scene (*load)(LoadReport&);
+  Scene (*load)(const LoadOptions&, LoadReport&);
 };
 
 bool has_anything_to_draw(const Scene& scene) {
@@ -60,16 +60,16 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file) {
+Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
   std::vector<SourceFile> sources;
-  return load_scene(file, sources);
+  return load_scene(file, options, sources);
 }
 
-Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources) {
+Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources) {
   LoadReport report(file);
   report.add_source(file);
   try {
-    Scene scene = find_format(file).load(report);
+    Scene scene = find_format(file).load(options, report);
     sources = report.sources();
     warn_of_tiny_meshes(scene);
     if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");

@@ -21,6 +21,6 @@ struct SourceFile {
 
 /// Does what load_scene does, and reports each file that was read or missed, the scene's own first, also where it
 /// throws.
-Scene load_scene(const std::filesystem::path& file, std::vector<SourceFile>& sources);
+Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources);
 
 }  // namespace promin

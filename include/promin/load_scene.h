@@ -9,9 +9,17 @@
 
 namespace promin {
 
+/// How a scene is read.
+struct LoadOptions {
+  /// Whether a file that requires an extension which is not known is refused, as glTF 2.0, section 3.12, asks for. Else
+  /// it is refused only where it lies on what geometry is made of: where it changes materials, textures or light, the
+  /// scene comes without it, and with a warning.
+  bool is_strict = false;
+};
+
 /// Reads a scene by its ending: .gltf, .glb, .obj, .ply or .stl. The scene comes back valid (promin/validate.h). A scene
 /// without lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem found, each
 /// with place and cure; warnings lie in Scene::warnings. Any thread may call it.
-PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file);
+PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace promin

@@ -39,6 +39,26 @@ struct Object {
   dmat4 world_from_object{1.0};
 };
 
+/// What has become of an extension that a scene's file has.
+enum class ExtensionUse : uint32_t {
+  /// The scene has all of it that can be seen.
+  kUsed,
+  /// Some of it is replaced by something like it: there is a warning.
+  kApproximated,
+  /// The scene is as without it.
+  kIgnored,
+};
+
+/// An extension of the format that a scene's file has.
+struct FileExtension {
+  /// As "KHR_materials_ior".
+  std::string name;
+  /// How much of it the scene has.
+  ExtensionUse use = ExtensionUse::kUsed;
+  /// Whether the file says that it cannot be shown without.
+  bool is_required = false;
+};
+
 /// A description of what is to be rendered, in a world whose unit of length is anything. It has no tree and nothing of
 /// a device. Renderer and Caster read it while they are made and keep nothing of it: a later change takes effect by
 /// Renderer::set_lights and its like, or with a new Renderer. load_scene gives a valid scene, validate() checks any
@@ -65,6 +85,8 @@ struct Scene {
   /// Whether it was written for classic light: a glTF file all of whose materials are Phong's as written
   /// (PROMIN_materials_phong). Without lights such a scene gets a headlight, any other a studio.
   bool is_classic = false;
+  /// The extensions of the file, in its order; empty for a format that has none.
+  std::vector<FileExtension> extensions;
   /// What the file asks for and the renderer does not model, and what it assumed instead; one sentence each.
   std::vector<std::string> warnings;
 

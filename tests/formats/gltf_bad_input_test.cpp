@@ -81,8 +81,12 @@ const BadGltf kBadGltf[] = {
     {"NoAsset", [](auto& g) { g.json.erase("asset"); }, "\"asset\" is missing", "the top level"},
     {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "\"1.0\" is not 2.x", "asset.version"},
     {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "needs glTF \"2.1\"", "asset.minVersion"},
-    {"RequiredExtension", [](auto& g) { g.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-     "KHR_draco_mesh_compression is not implemented", "extensionsRequired[0]"},
+    {"RequiredExtension",
+     [](auto& g) {
+       g.json["extensionsRequired"] = {"EXT_splats"};
+       primitive(g)["extensions"]["EXT_splats"] = json::object();
+     },
+     "EXT_splats is not implemented", "meshes[0].primitives[0]"},
     // Types
     {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 stands where an array belongs", "nodes"},
     {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string stands where an object", "nodes[1]"},

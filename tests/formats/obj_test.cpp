@@ -43,7 +43,7 @@ TEST_F(ObjTest, TellsOfItsFilesAsTheyWereBeforeReading) {
     return names;
   };
   std::vector<SourceFile> sources;
-  load_scene(folder_ / "scene.obj", sources);
+  load_scene(folder_ / "scene.obj", {}, sources);
   ASSERT_THAT(names_of(sources), ElementsAre("scene.obj", "m.mtl", "missing.mtl"));
   for (const SourceFile& source : sources) EXPECT_EQ(source.stamp, stamp_of(source.file));
   EXPECT_TRUE(sources[1].stamp);
@@ -52,7 +52,7 @@ TEST_F(ObjTest, TellsOfItsFilesAsTheyWereBeforeReading) {
   EXPECT_NE(sources[1].stamp, stamp_of(sources[1].file));
 
   write("scene.obj", kSquare + "mtllib m.mtl\nf 1 2 300\n");
-  EXPECT_THROW(load_scene(folder_ / "scene.obj", sources), InputError);
+  EXPECT_THROW(load_scene(folder_ / "scene.obj", {}, sources), InputError);
   EXPECT_THAT(names_of(sources), Contains("scene.obj")) << "also of a broken scene";
 }
 

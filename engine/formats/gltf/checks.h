@@ -13,7 +13,7 @@ namespace promin {
 
 // What a glTF document must hold beyond its schema (schema.h), checked before any reader uses it.
 
-/// Checks the version, the required extensions, and that parts which belong together are there.
+/// Checks the version, and that parts which belong together are there.
 void check_gltf_asset(const nlohmann::json& document, LoadReport& report);
 
 /// Checks that the nodes form trees: there are no cycles, a node has at most one parent, and scenes list roots, once

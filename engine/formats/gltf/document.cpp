@@ -6,6 +6,7 @@
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/checks.h"
 #include "formats/gltf/container.h"
+#include "formats/gltf/extensions.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/parse_json.h"
 #include "formats/gltf/schema.h"
@@ -76,7 +77,7 @@ void fill_views(GltfDocument& document) {
 
 }  // namespace
 
-GltfDocument read_gltf_document(LoadReport& report) {
+GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) {
   std::vector<std::byte> bytes = read_file(report.file());
   const GltfContainer container = split_gltf(bytes, report);
   GltfDocument document;
@@ -87,6 +88,7 @@ GltfDocument read_gltf_document(LoadReport& report) {
   fill_views(document);
 
   check_gltf_asset(document.json, report);
+  check_gltf_extensions(document.json, options.is_strict, report);
   check_gltf_nodes(document.json, report);
   check_gltf_accessors(document.json, report);
   document.buffers = read_gltf_buffers(document, container.binary, report);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/load_report.h"
+#include "promin/load_scene.h"
 
 namespace promin {
 
@@ -96,6 +97,6 @@ struct GltfDocument {
 
 /// Reads the file that the report is about. Checks come in three rounds (the file's frame, the schema, what the
 /// schema cannot say); each throws InputError with all of its problems.
-GltfDocument read_gltf_document(LoadReport& report);
+GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

@@ -9,6 +9,7 @@
 
 #include "formats/gltf/cameras.h"
 #include "formats/gltf/document.h"
+#include "formats/gltf/extensions.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/lights.h"
 #include "formats/gltf/materials.h"
@@ -31,6 +32,7 @@ class SceneReader {
 
   Scene read() {
     scene_.file = report_.file();
+    scene_.extensions = list_gltf_extensions(document_.json);
     GltfTextures textures(document_, report_);
     scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);
@@ -141,8 +143,8 @@ class SceneReader {
 
 }  // namespace
 
-Scene load_gltf(LoadReport& report) {
-  const GltfDocument document = read_gltf_document(report);
+Scene load_gltf(const LoadOptions& options, LoadReport& report) {
+  const GltfDocument document = read_gltf_document(options, report);
   return SceneReader(document, report).read();
 }
 

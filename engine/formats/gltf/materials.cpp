@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/materials.h"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-
 #include "formats/gltf/json_lookup.h"
 
 namespace promin {
@@ -91,10 +87,6 @@ bool has_texture(const json& object) {
   return false;
 }
 
-constexpr std::array<std::string_view, 6> kKnown = {"PROMIN_materials_phong", "KHR_materials_unlit",
-                                                    "KHR_materials_emissive_strength", "KHR_materials_ior",
-                                                    "KHR_materials_specular", "KHR_materials_clearcoat"};
-
 void warn_about_what_is_ignored(const json& source, const std::string& title, LoadReport& report) {
   const auto pbr = source.find("pbrMetallicRoughness");
   const bool is_classic = find_extension(source, "PROMIN_materials_phong") != nullptr;
@@ -103,12 +95,6 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   }
   if (is_classic && source.value("alphaMode", "OPAQUE") != "OPAQUE") {
     report.warn("material " + title + ": its alphaMode is ignored, it is drawn opaque");
-  }
-  if (!source.contains("extensions")) return;
-  for (const auto& [name, value] : source["extensions"].items()) {
-    if (std::ranges::find(kKnown, name) == kKnown.end()) {
-      report.warn("material " + title + ": " + name + " is ignored");
-    }
   }
 }
 

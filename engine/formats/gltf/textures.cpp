@@ -55,6 +55,13 @@ void take_transform(const json& transform, TextureSlot& slot) {
   slot.to_v = vec3(dvec3(-sine * s.x, cosine * s.y, o.y));
 }
 
+/// The image that a texture shows, or -1. Where there is one of core glTF, it shows what an extension's shows.
+int image_of(const json& texture) {
+  if (texture.contains("source")) return texture["source"];
+  const json* webp = find_extension(texture, "EXT_texture_webp");
+  return webp == nullptr ? -1 : webp->value("source", -1);
+}
+
 }  // namespace
 
 TextureSlot GltfTextures::read_slot(const json& object, const char* name, ImageUse use) {
@@ -80,12 +87,13 @@ uint32_t GltfTextures::find_texture(size_t index, ImageUse use) {
   const auto [known, is_new] = texture_numbers_.try_emplace({index, use}, TextureSlot::kNone);
   if (!is_new) return known->second;
   const json& source = document_.json["textures"][index];
-  if (!source.contains("source")) {
-    report_.warn("textures[" + std::to_string(index) + "] has no image that is known, it is ignored");
+  const int image = image_of(source);
+  if (image < 0) {
+    textures_without_image_.insert(index);
     return TextureSlot::kNone;
   }
   Texture texture;
-  texture.image = find_image(source["source"].get<int>(), use);
+  texture.image = find_image(image, use);
   if (source.contains("sampler")) {
     take_sampler(document_.json["samplers"][source["sampler"].get<size_t>()], texture);
   }
@@ -126,6 +134,10 @@ void GltfTextures::finish(Scene& scene) {
   decode_pictures(images_, report_);
   for (const PictureSource& source : images_) scene.images.push_back(source.image);
   scene.textures = textures_;
+  if (const size_t count = textures_without_image_.size(); count > 0) {
+    report_.warn(std::to_string(count) + (count == 1 ? " texture has" : " textures have") +
+                 " no image that is known; materials are drawn without");
+  }
 }
 
 }  // namespace promin

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,7 @@ class GltfTextures {
   std::vector<Texture> textures_;
   std::map<std::pair<int, ImageUse>, uint32_t> image_numbers_;
   std::map<std::pair<size_t, ImageUse>, uint32_t> texture_numbers_;
+  std::set<size_t> textures_without_image_;
 };
 
 }  // namespace promin

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "promin/load_scene.h"
+
+namespace promin::app {
+
+class OptionTable;
+
+/// Adds the row of --strict, for commands that load a scene. `options` must outlive the parsing.
+void add_strict_option(OptionTable& table, LoadOptions& options);
+
+}  // namespace promin::app
