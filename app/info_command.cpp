@@ -122,6 +122,7 @@ void print_info(const InfoOptions& options) {
   const PackedScene packed = pack_scene(flat, builder_names().front());
   print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
   print_row("materials", std::to_string(scene.materials.size()));
+  if (!scene.variants.empty()) print_rows("variants", scene.variants);
   print_row("lights", lights);
   print_row("background", describe_background(scene.environment, assumed));
   print_row("sky", describe_sky(scene.environment));
@@ -149,6 +150,7 @@ Command add_info_command(CLI::App& program) {
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
                      [options](const OptionValues& w) { options->file = w.text(); });
   add_strict_option(table, options->load);
+  add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
   return {&command, [options] { print_info(*options); }};
 }

@@ -12,4 +12,13 @@ void add_strict_option(OptionTable& table, LoadOptions& options) {
                  options.is_strict);
 }
 
+void add_variant_option(OptionTable& table, LoadOptions& options) {
+  table.add("--variant", "NAME",
+            "Variant of the scene's materials; `promin info` lists them [the file's own materials]",
+            [&](const OptionValues& w) {
+              if (w.text().empty()) w.refuse("--variant takes the name of a variant, not \"\"");
+              options.material_variant = w.text();
+            });
+}
+
 }  // namespace promin::app

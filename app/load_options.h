@@ -10,5 +10,7 @@ class OptionTable;
 
 /// Adds the row of --strict, for commands that load a scene. `options` must outlive the parsing.
 void add_strict_option(OptionTable& table, LoadOptions& options);
+/// The same of --variant, for commands that show materials.
+void add_variant_option(OptionTable& table, LoadOptions& options);
 
 }  // namespace promin::app

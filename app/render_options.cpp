@@ -12,6 +12,7 @@
 
 #include "arguments.h"
 #include "camera_path.h"
+#include "load_options.h"
 #include "promin/aovs.h"
 #include "promin/error.h"
 #include "promin/image.h"
@@ -197,6 +198,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             });
   table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
   table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
             [&](const OptionValues& w) { view.crop = read_window(w); });

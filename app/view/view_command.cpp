@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "camera_path.h"
+#include "load_options.h"
 #include "outputs.h"
 #include "promin/error.h"
 #include "render_options.h"
@@ -38,6 +39,7 @@ struct WindowOptions {
 void add_window_options(CLI::App& program, WindowOptions& options) {
   OptionTable table(program);
   add_scene_argument(table, options.tracing);
+  add_variant_option(table, options.tracing.load);
   add_view_options(table, options.view);
   table.add("--target-ms", "T",
             fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",

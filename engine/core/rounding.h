@@ -25,6 +25,15 @@ inline bool is_finite(const vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+inline bool is_finite(const dmat4& matrix) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(matrix[column][row])) return false;
+    }
+  }
+  return true;
+}
+
 inline float max_component(const vec3& v) {
   return std::fmax(v.x, std::fmax(v.y, v.z));
 }

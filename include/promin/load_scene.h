@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "promin/export.h"
 #include "promin/scene.h"
@@ -15,11 +16,15 @@ struct LoadOptions {
   /// it is refused only where it lies on what geometry is made of: where it changes materials, textures or light, the
   /// scene comes without it, and with a warning.
   bool is_strict = false;
+  /// The variant of materials that is shown (KHR_materials_variants), one of Scene::variants; empty: the materials that
+  /// hold without any.
+  std::string material_variant = {};
 };
 
 /// Reads a scene by its ending: .gltf, .glb, .obj, .ply or .stl. The scene comes back valid (promin/validate.h). A scene
 /// without lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem found, each
-/// with place and cure; warnings lie in Scene::warnings. Any thread may call it.
+/// with place and cure, and UsageError where it has no such variant of materials; warnings lie in Scene::warnings. Any
+/// thread may call it.
 PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace promin

@@ -85,6 +85,8 @@ struct Scene {
   /// Whether it was written for classic light: a glTF file all of whose materials are Phong's as written
   /// (PROMIN_materials_phong). Without lights such a scene gets a headlight, any other a studio.
   bool is_classic = false;
+  /// The names of the variants of materials that the file has (LoadOptions::material_variant).
+  std::vector<std::string> variants;
   /// The extensions of the file, in its order; empty for a format that has none.
   std::vector<FileExtension> extensions;
   /// What the file asks for and the renderer does not model, and what it assumed instead; one sentence each.

@@ -3,6 +3,10 @@
 // Extensions of glTF that are not known, or change how the rest of the file is read.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
+#include "promin/error.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 
@@ -161,6 +165,201 @@ TEST_F(GltfExtensionsTest, TexturesOfSpecularAreSaidToBeIgnored) {
   EXPECT_THAT(scene.warnings,
               ElementsAre("1 material has textures of KHR_materials_specular, which are ignored; the factors hold"));
   EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kApproximated);
+}
+
+// Specular-glossiness
+
+/// Two pixels: red and blue 80 hexadecimal with glossiness 1, blue 80 with glossiness 1/5.
+const std::string kGlossyPixels =
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR42mP4z9Dwn4GhwRgAES8DMu8hmVcAAAAASUVORK5CYII=";
+
+/// The triangle in a material of KHR_materials_pbrSpecularGlossiness.
+GltfBuilder glossy_gltf(const json& extension) {
+  GltfBuilder gltf = textured_gltf({{"source", 0}});
+  gltf.json["images"] = {{{"uri", kGlossyPixels}}};
+  gltf.json["materials"] = {{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", extension}}}}};
+  return gltf;
+}
+
+const MetallicRoughness& model_of(const Scene& scene) {
+  return std::get<MetallicRoughness>(scene.materials.at(0).model);
+}
+
+TEST_F(GltfExtensionsTest, SpecularGlossinessIsADielectricThatReflectsItsSpecularColor) {
+  GltfBuilder gltf = glossy_gltf(
+      {{"diffuseFactor", {0.5, 0.25, 0, 1}}, {"specularFactor", {0.25, 0.5, 1}}, {"glossinessFactor", 0.75}});
+  const Scene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_EQ(model_of(scene).base_color, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(model_of(scene).specular_color, vec3(0.25F, 0.5F, 1));
+  EXPECT_EQ(model_of(scene).specular, 1.0F);
+  EXPECT_EQ(model_of(scene).metallic, 0.0F);
+  EXPECT_EQ(model_of(scene).ior, 0.0F) << "so that the specular colour is the reflectance";
+  EXPECT_EQ(model_of(scene).roughness, 0.25F);
+  EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kUsed);
+}
+
+TEST_F(GltfExtensionsTest, SpecularGlossinessHasTheExtensionsDefaults) {
+  GltfBuilder gltf = glossy_gltf(json::object());
+  const Scene scene = load(gltf);
+  EXPECT_EQ(model_of(scene).base_color, vec3(1));
+  EXPECT_EQ(model_of(scene).specular_color, vec3(1));
+  EXPECT_EQ(model_of(scene).roughness, 0.0F);
+}
+
+TEST_F(GltfExtensionsTest, TexturesOfGlossinessBecomeSuchOfRoughness) {
+  for (const double factor : {1.0, 0.5}) {
+    GltfBuilder gltf = glossy_gltf({{"diffuseTexture", {{"index", 0}}},
+                                    {"specularFactor", {1, 1, 0.5}},
+                                    {"glossinessFactor", factor},
+                                    {"specularGlossinessTexture", {{"index", 0}}}});
+    const Scene scene = load(gltf);
+    const MetallicRoughness& model = model_of(scene);
+    const Texture& texture = scene.textures.at(model.metallic_roughness_texture.texture);
+    const TextureImage& image = *scene.images.at(texture.image);
+    EXPECT_EQ(image.use, ImageUse::kData);
+    // 255 - 255 and 255 - 51, or half of what is taken off, rounded up.
+    const std::vector<uint32_t> expected =
+        factor == 1.0 ? std::vector<uint32_t>{0xFF000000, 0xFF00CC00} : std::vector<uint32_t>{0xFF008000, 0xFF00E600};
+    EXPECT_EQ(image.texels, expected);
+    EXPECT_EQ(model.roughness, 1.0F) << "the texture has the factor in it";
+    EXPECT_FLOAT_EQ(model.specular_color.r, 0.5F);
+    EXPECT_FLOAT_EQ(model.specular_color.g, 0.0F);
+    EXPECT_FLOAT_EQ(model.specular_color.b, 0.5F * 0.21586050F) << "80 hexadecimal of sRGB, linear";
+    EXPECT_EQ(scene.images.size(), 2U) << "the diffuse texture keeps its texels";
+    EXPECT_EQ(scene.images.at(scene.textures.at(model.base_color_texture.texture).image)->texels,
+              (std::vector<uint32_t>{0xFF8000FF, 0x33800000}));
+    EXPECT_THAT(scene.warnings, ElementsAre("1 material has textures of KHR_materials_pbrSpecularGlossiness, whose "
+                                            "specular colours are approximated by their mean"));
+    EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kApproximated);
+  }
+}
+
+TEST_F(GltfExtensionsTest, GlossinessHoldsWhereItsTextureIsMissing) {
+  GltfBuilder gltf = glossy_gltf({{"glossinessFactor", 0.75}, {"specularGlossinessTexture", {{"index", 0}}}});
+  gltf.json["images"] = {{{"uri", "missing.png"}}};
+  const Scene scene = load(gltf);
+  EXPECT_EQ(model_of(scene).roughness, 0.25F);
+  EXPECT_EQ(model_of(scene).specular_color, vec3(1));
+}
+
+// Variants
+
+/// The triangle with material 0, in the variants "dawn" 1 and "night" 2.
+GltfBuilder varied_gltf() {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["materials"] = {json::object(), json::object(), json::object()};
+  gltf.json["extensions"]["KHR_materials_variants"]["variants"] = {
+      {{"name", "noon"}}, {{"name", "dawn"}}, {{"name", "night"}}};
+  json& primitive = gltf.json["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 2}, {"variants", {2}}},
+                                                                   {{"material", 1}, {"variants", {1}}}};
+  return gltf;
+}
+
+TEST_F(GltfExtensionsTest, VariantsChooseMaterials) {
+  GltfBuilder gltf = varied_gltf();
+  const Scene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.variants, ElementsAre("noon", "dawn", "night"));
+  EXPECT_EQ(scene.objects.at(0).material, 0U);
+  EXPECT_EQ(load(gltf, {.material_variant = "dawn"}).objects.at(0).material, 1U);
+  EXPECT_EQ(load(gltf, {.material_variant = "night"}).objects.at(0).material, 2U);
+  EXPECT_EQ(load(gltf, {.material_variant = "noon"}).objects.at(0).material, 0U) << "it says nothing of the primitive";
+}
+
+TEST_F(GltfExtensionsTest, UnknownVariantsNameTheKnownOnes) {
+  GltfBuilder gltf = varied_gltf();
+  try {
+    load(gltf, {.material_variant = "dusk"});
+    FAIL() << "it loads";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the scene has no variant \"dusk\""));
+    EXPECT_THAT(error.what(), HasSubstr("choose one of: \"noon\", \"dawn\", \"night\""));
+  }
+  GltfBuilder plain = triangle_gltf();
+  EXPECT_THROW(load(plain, {.material_variant = "dusk"}), UsageError);
+  const std::filesystem::path obj = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THROW(load_scene(obj, {.material_variant = "dusk"}), UsageError);
+}
+
+TEST_F(GltfExtensionsTest, VariantsMustBeThere) {
+  GltfBuilder gltf = varied_gltf();
+  gltf.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"][1]["variants"] = {3};
+  EXPECT_THAT(refusal_of(gltf), HasSubstr("index 3 is out of range"));
+}
+
+// Instances
+
+/// The triangle, shown by a node at (1, 0, 0).
+GltfBuilder instanced_gltf(const json& attributes) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["nodes"][0]["translation"] = {1, 0, 0};
+  gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+  return gltf;
+}
+
+json& instances_of(GltfBuilder& gltf) {
+  return gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+}
+
+TEST_F(GltfExtensionsTest, InstancesAreCopiesInTheirPlaces) {
+  GltfBuilder gltf = instanced_gltf(json::object());
+  const auto half = static_cast<float>(std::sqrt(0.5));
+  instances_of(gltf)["TRANSLATION"] = gltf.add<float>({0, 0, 0, 0, 5, 0}, "VEC3");
+  instances_of(gltf)["ROTATION"] = gltf.add<float>({0, 0, 0, 1, 0, 0, half, half}, "VEC4");
+  instances_of(gltf)["SCALE"] = gltf.add<float>({1, 1, 1, 2, 1, 1}, "VEC3");
+  instances_of(gltf)["_ID"] = gltf.add<float>({7, 8}, "SCALAR");
+  const Scene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(scene.objects.size(), 2U);
+  EXPECT_EQ(scene.geometries.size(), 1U) << "copies share their geometry";
+  EXPECT_EQ(scene.objects[1].geometry, 0U);
+  EXPECT_EQ(dvec3(scene.objects[0].world_from_object * dvec4(1, 0, 0, 1)), dvec3(2, 0, 0));
+  // Scaled to (2, 0, 0), turned to (0, 2, 0), moved by (0, 5, 0), and by the node.
+  const dvec3 corner(scene.objects[1].world_from_object * dvec4(1, 0, 0, 1));
+  EXPECT_LT(glm::distance(corner, dvec3(1, 7, 0)), 1e-6);
+}
+
+TEST_F(GltfExtensionsTest, RotationsOfInstancesMayBeNormalizedIntegers) {
+  GltfBuilder gltf = instanced_gltf(json::object());
+  instances_of(gltf)["ROTATION"] = gltf.add<int16_t>({0, 0, 32767, 0}, "VEC4", true);
+  const Scene scene = load(gltf);
+  ASSERT_EQ(scene.objects.size(), 1U);
+  EXPECT_LT(glm::distance(dvec3(scene.objects[0].world_from_object * dvec4(1, 0, 0, 1)), dvec3(0, 0, 0)), 1e-6);
+}
+
+TEST_F(GltfExtensionsTest, BadInstancesAreRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto refusal_with = [&](const char* name, const std::vector<float>& numbers, const std::string& type) {
+    GltfBuilder gltf = instanced_gltf(json::object());
+    instances_of(gltf)[name] = gltf.add<float>(numbers, type);
+    return refusal_of(gltf);
+  };
+  EXPECT_THAT(refusal_with("ROTATION", {0, 0, 0, 0}, "VEC4"), HasSubstr("the rotation has length 0"));
+  EXPECT_THAT(refusal_with("TRANSLATION", {0, 0, 0, 0, nan, 0}, "VEC3"), HasSubstr("TRANSLATION, element 1"));
+  EXPECT_THAT(refusal_with("SCALE", {1, 1}, "VEC2"), HasSubstr("is not allowed here"));
+  EXPECT_THAT(refusal_with("SCALE", {1e30F, 1, 1}, "VEC3"), HasSubstr("beyond 1e15 in the world"));
+
+  GltfBuilder uneven = instanced_gltf(json::object());
+  instances_of(uneven)["SCALE"] = uneven.add<float>({1, 1, 1}, "VEC3");
+  instances_of(uneven)["TRANSLATION"] = uneven.add<float>({1, 1, 1, 2, 2, 2}, "VEC3");
+  EXPECT_THAT(refusal_of(uneven), HasSubstr("give all attributes one count"));
+
+  GltfBuilder empty = instanced_gltf(json::object());
+  empty.json["accessors"].push_back({{"componentType", 5126}, {"count", 16000000}, {"type", "VEC3"}});
+  instances_of(empty)["SCALE"] = empty.json["accessors"].size() - 1;
+  EXPECT_THAT(refusal_of(empty), HasSubstr("the instances have no buffer view"));
+}
+
+TEST_F(GltfExtensionsTest, TooManyInstancesAreRefusedBeforeTheyAreTaken) {
+  GltfBuilder gltf = instanced_gltf(json::object());
+  // 2^14 + 1 copies of 2^14 triangles.
+  gltf.json["meshes"][0]["primitives"][0]["indices"] = gltf.add(std::vector<uint8_t>(3 << 14, 0), "SCALAR");
+  instances_of(gltf)["SCALE"] = gltf.add(std::vector<float>(3 * ((1 << 14) + 1), 1.0F), "VEC3");
+  EXPECT_THAT(refusal_of(gltf), HasSubstr("16385 instances of 16384 triangles in 1 primitives are more than"));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ std::string say_too_short(uint64_t size, uint64_t length) {
   return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
 }
 
-/// Which buffers hold images, or attributes or indices of meshes that are read.
+/// Which buffers hold images, instances, or attributes or indices of meshes that are read.
 std::vector<bool> find_needed_buffers(const GltfDocument& document) {
   std::vector<bool> is_needed(elements_of(document.json, "buffers").size(), false);
   const auto need_view = [&](int view) {
@@ -95,6 +95,11 @@ std::vector<bool> find_needed_buffers(const GltfDocument& document) {
         if (is_read_attribute(name)) need_accessor(accessor);
       }
     }
+  }
+  for (const json& node : elements_of(document.json, "nodes")) {
+    const json* instances = find_extension(node, "EXT_mesh_gpu_instancing");
+    if (instances == nullptr) continue;
+    for (const auto& [name, accessor] : (*instances)["attributes"].items()) need_accessor(accessor);
   }
   for (const json& image : elements_of(document.json, "images")) {
     if (image.contains("bufferView")) need_view(image["bufferView"].get<int>());

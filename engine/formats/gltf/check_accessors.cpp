@@ -23,7 +23,7 @@ struct Format {
   std::optional<bool> normalized;
 };
 
-/// The attributes that the loader reads; "indices" stands for a primitive's indices.
+/// The attributes of vertices and of instances that the loader reads; "indices" stands for a primitive's indices.
 constexpr Format kFormats[] = {
     {"POSITION", "VEC3", kGltfFloat, {}},
     {"POSITION", "VEC3", kGltfByte, {}},
@@ -55,6 +55,11 @@ constexpr Format kFormats[] = {
     {"indices", "SCALAR", kGltfUnsignedByte, false},
     {"indices", "SCALAR", kGltfUnsignedShort, false},
     {"indices", "SCALAR", kGltfUnsignedInt, false},
+    {"TRANSLATION", "VEC3", kGltfFloat, {}},
+    {"ROTATION", "VEC4", kGltfFloat, {}},
+    {"ROTATION", "VEC4", kGltfByte, true},
+    {"ROTATION", "VEC4", kGltfShort, true},
+    {"SCALE", "VEC3", kGltfFloat, {}},
 };
 
 std::string at(const char* array, size_t index) {
@@ -127,20 +132,37 @@ void check_format(const json& accessor, std::string_view attribute, const std::s
                 place, "export it as the glTF specification has it");
 }
 
-void check_primitive(const json& primitive, const json& accessors, const std::string& place, LoadReport& report) {
-  uint64_t vertex_count = 0;
-  for (const auto& [name, index] : primitive["attributes"].items()) {
+/// Checks what is beside each other in each vertex, or in each instance.
+void check_attributes(const json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
+  uint64_t first_count = 0;
+  for (const auto& [name, index] : attributes.items()) {
     const json& accessor = accessors[index.get<size_t>()];
-    const std::string attribute_place = place + ".attributes." + name;
-    check_format(accessor, name, attribute_place, report);
+    check_format(accessor, name, place + "." + name, report);
     const auto count = accessor["count"].get<uint64_t>();
-    if (vertex_count == 0) vertex_count = count;
-    if (count != vertex_count) {
+    if (first_count == 0) first_count = count;
+    if (count != first_count) {
       report.refuse(
-          "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(vertex_count),
-          attribute_place, "give all attributes of a primitive one count");
+          "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(first_count),
+          place + "." + name, "give all attributes one count");
     }
   }
+}
+
+/// Instances need bytes in the file, so that its size bounds their number.
+void check_instances(const json& node, const json& accessors, const std::string& place, LoadReport& report) {
+  const json* extension = find_extension(node, "EXT_mesh_gpu_instancing");
+  if (extension == nullptr) return;
+  const std::string attributes_place = place + ".extensions.EXT_mesh_gpu_instancing.attributes";
+  const json& attributes = (*extension)["attributes"];
+  check_attributes(attributes, accessors, attributes_place, report);
+  for (const auto& [name, index] : attributes.items()) {
+    if (accessors[index.get<size_t>()].contains("bufferView")) continue;
+    report.refuse("the instances have no buffer view, so all are 0", attributes_place + "." + name, "add the bytes");
+  }
+}
+
+void check_primitive(const json& primitive, const json& accessors, const std::string& place, LoadReport& report) {
+  check_attributes(primitive["attributes"], accessors, place + ".attributes", report);
   if (!primitive.contains("indices")) return;
   const json& indices = accessors[primitive["indices"].get<size_t>()];
   check_format(indices, "indices", place + ".indices", report);
@@ -184,6 +206,9 @@ void check_gltf_accessors(const json& document, LoadReport& report) {
 
   const json& accessors = elements_of(document, "accessors");
   for (size_t i = 0; i < accessors.size(); ++i) check_accessor(document, accessors[i], at("accessors", i), report);
+
+  const json& nodes = elements_of(document, "nodes");
+  for (size_t i = 0; i < nodes.size(); ++i) check_instances(nodes[i], accessors, at("nodes", i), report);
 
   const json& meshes = elements_of(document, "meshes");
   for (size_t m = 0; m < meshes.size(); ++m) {

@@ -26,16 +26,21 @@ struct Known {
 };
 
 constexpr Known kKnown[] = {
+    {.name = "EXT_mesh_gpu_instancing"},
     {.name = "EXT_texture_webp"},
     {.name = "KHR_implicit_shapes"},
     {.name = "KHR_lights_punctual"},
     {.name = "KHR_materials_clearcoat"},
     {.name = "KHR_materials_emissive_strength"},
     {.name = "KHR_materials_ior"},
+    {.name = "KHR_materials_pbrSpecularGlossiness",
+     .approximated = {"specularGlossinessTexture"},
+     .approximation = "whose specular colours are approximated by their mean"},
     {.name = "KHR_materials_specular",
      .approximated = {"specularTexture", "specularColorTexture"},
      .approximation = "which are ignored; the factors hold"},
     {.name = "KHR_materials_unlit"},
+    {.name = "KHR_materials_variants"},
     {.name = "KHR_mesh_quantization"},
     {.name = "KHR_node_visibility"},
     {.name = "KHR_texture_transform"},

@@ -15,8 +15,8 @@ namespace promin {
 std::vector<FileExtension> list_gltf_extensions(const nlohmann::json& document);
 
 /// Refuses a required extension that is not known where it lies on what geometry is made of (a buffer, a buffer view,
-/// an accessor, a mesh primitive, a node), or where `is_strict`, in any case. What else is left out or approximated is a
-/// warning for each extension, with the number of materials or textures.
+/// an accessor, a mesh primitive, a node), or where `is_strict`, in any case. What else is left out or approximated is
+/// a warning for each extension, with the number of materials or textures.
 void check_gltf_extensions(const nlohmann::json& document, bool is_strict, LoadReport& report);
 
 }  // namespace promin

@@ -10,12 +10,14 @@
 #include "formats/gltf/cameras.h"
 #include "formats/gltf/document.h"
 #include "formats/gltf/extensions.h"
+#include "formats/gltf/instances.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/lights.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/nodes.h"
 #include "formats/gltf/shapes.h"
+#include "formats/gltf/variants.h"
 
 namespace promin {
 namespace {
@@ -24,6 +26,8 @@ using nlohmann::json;
 
 /// Nodes may show one mesh many times, so that the size of the file does not bound the scene's.
 constexpr uint64_t kMaxTriangles = uint64_t{1} << 28;
+/// Objects are numbered in 32 bits, of which the last two numbers mean none.
+constexpr uint64_t kMaxObjects = (uint64_t{1} << 32) - 2;
 
 /// Turns the nodes of a document into a scene.
 class SceneReader {
@@ -32,6 +36,7 @@ class SceneReader {
 
   Scene read() {
     scene_.file = report_.file();
+    scene_.variants = list_gltf_variants(document_.json);
     scene_.extensions = list_gltf_extensions(document_.json);
     GltfTextures textures(document_, report_);
     scene_.materials = read_gltf_materials(document_, textures, report_);
@@ -55,6 +60,33 @@ class SceneReader {
     }
     const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
     if (node.mesh < 0) return;
+    const std::optional<uint64_t> instance_count = count_gltf_instances(document_, placed);
+    if (!instance_count) return read_mesh(placed);
+    if (!has_room_for(*instance_count, placed)) return;
+    for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
+      read_mesh({placed.node, place, placed.is_visible});
+    }
+  }
+
+  /// Whether a node's instances can be taken, told before any of them is.
+  bool has_room_for(uint64_t instance_count, const PlacedNode& placed) {
+    const auto mesh = static_cast<size_t>(document_.nodes[static_cast<size_t>(placed.node)].mesh);
+    const uint64_t primitive_count = document_.meshes[mesh].primitives.size();
+    uint64_t triangle_count = 0;
+    for (size_t i = 0; i < primitive_count; ++i) triangle_count += count_gltf_triangles(document_, mesh, i);
+    // Divided, because products may not fit into 64 bits.
+    const uint64_t triangle_room = kMaxTriangles - std::min(triangle_count_, kMaxTriangles);
+    const bool has_room = triangle_count <= triangle_room / instance_count &&
+                          primitive_count <= (kMaxObjects - scene_.objects.size()) / instance_count;
+    if (has_room) return true;
+    report_.refuse("its " + std::to_string(instance_count) + " instances of " + std::to_string(triangle_count) +
+                       " triangles in " + std::to_string(primitive_count) + " primitives are more than a scene holds",
+                   "nodes[" + std::to_string(placed.node) + "]", "use fewer instances, or a simpler mesh");
+    return false;
+  }
+
+  void read_mesh(const PlacedNode& placed) {
+    const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
     const auto mesh = static_cast<size_t>(node.mesh);
     const GltfMesh& source = document_.meshes[mesh];
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
@@ -144,7 +176,8 @@ class SceneReader {
 }  // namespace
 
 Scene load_gltf(const LoadOptions& options, LoadReport& report) {
-  const GltfDocument document = read_gltf_document(options, report);
+  GltfDocument document = read_gltf_document(options, report);
+  if (!options.material_variant.empty()) choose_gltf_variant(document, options.material_variant, report.file());
   return SceneReader(document, report).read();
 }
 

@@ -49,6 +49,17 @@ void read_clearcoat(const json& extension, GltfTextures& textures, MetallicRough
   }
 }
 
+void read_shared_textures(const json& source, GltfTextures& textures, MetallicRoughness& material) {
+  material.normal_texture = textures.read_slot(source, "normalTexture", ImageUse::kNormal);
+  if (const auto info = source.find("normalTexture"); info != source.end()) {
+    material.normal_scale = info->value("scale", 1.0F);
+  }
+  material.occlusion_texture = textures.read_slot(source, "occlusionTexture", ImageUse::kData);
+  if (const auto info = source.find("occlusionTexture"); info != source.end()) {
+    material.occlusion_strength = info->value("strength", 1.0F);
+  }
+}
+
 MetallicRoughness metallic_roughness_of(const json& source, const std::string& title, GltfTextures& textures,
                                         LoadReport& report) {
   MetallicRoughness material;
@@ -59,14 +70,7 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
     material.base_color_texture = textures.read_slot(*pbr, "baseColorTexture", ImageUse::kColor);
     material.metallic_roughness_texture = textures.read_slot(*pbr, "metallicRoughnessTexture", ImageUse::kData);
   }
-  material.normal_texture = textures.read_slot(source, "normalTexture", ImageUse::kNormal);
-  if (const auto info = source.find("normalTexture"); info != source.end()) {
-    material.normal_scale = info->value("scale", 1.0F);
-  }
-  material.occlusion_texture = textures.read_slot(source, "occlusionTexture", ImageUse::kData);
-  if (const auto info = source.find("occlusionTexture"); info != source.end()) {
-    material.occlusion_strength = info->value("strength", 1.0F);
-  }
+  read_shared_textures(source, textures, material);
   if (const json* extension = find_extension(source, "KHR_materials_ior")) {
     material.ior = ior_of(*extension, title, report);
   }
@@ -77,6 +81,24 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
   if (const json* extension = find_extension(source, "KHR_materials_clearcoat")) {
     read_clearcoat(*extension, textures, material);
   }
+  return material;
+}
+
+/// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is its specular colour. That is what an index of
+/// refraction of 0 makes of it.
+MetallicRoughness specular_glossiness_of(const json& source, const json& extension, GltfTextures& textures) {
+  const float glossiness = extension.value("glossinessFactor", 1.0F);
+  MetallicRoughness material;
+  material.base_color = to_shares(dvec3(vec4_of(extension, "diffuseFactor", dvec4(1.0))));
+  material.metallic = 0.0F;
+  material.ior = 0.0F;
+  material.specular_color = to_shares(vec3_of(extension, "specularFactor", dvec3(1.0)));
+  material.base_color_texture = textures.read_slot(extension, "diffuseTexture", ImageUse::kColor);
+  material.metallic_roughness_texture =
+      textures.read_glossiness_slot(extension, "specularGlossinessTexture", glossiness);
+  // The texture has the factor in it.
+  material.roughness = material.metallic_roughness_texture.exists() ? 1.0F : 1.0F - glossiness;
+  read_shared_textures(source, textures, material);
   return material;
 }
 
@@ -110,9 +132,13 @@ void read_alpha(const json& source, Material& material) {
   const std::string mode = source.value("alphaMode", "OPAQUE");
   if (mode == "MASK") material.alpha_mode = AlphaMode::kMask;
   if (mode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
-  if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
-    material.alpha = std::min(static_cast<float>(vec4_of(*pbr, "baseColorFactor", dvec4(1.0)).w), 1.0F);
+  dvec4 base(1.0);
+  if (const json* glossy = find_extension(source, "KHR_materials_pbrSpecularGlossiness")) {
+    base = vec4_of(*glossy, "diffuseFactor", base);
+  } else if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
+    base = vec4_of(*pbr, "baseColorFactor", base);
   }
+  material.alpha = std::min(static_cast<float>(base.w), 1.0F);
   material.alpha_cutoff = source.value("alphaCutoff", 0.5F);
   material.is_double_sided = source.value("doubleSided", false);
 }
@@ -127,7 +153,9 @@ Material read_material(const json& source, const std::string& title, GltfTexture
     read_alpha(source, material);
     return material;
   } else {
-    material.model = metallic_roughness_of(source, title, textures, report);
+    const json* archived = find_extension(source, "KHR_materials_pbrSpecularGlossiness");
+    material.model = archived != nullptr ? specular_glossiness_of(source, *archived, textures)
+                                         : metallic_roughness_of(source, title, textures, report);
     material.emissive_texture = textures.read_slot(source, "emissiveTexture", ImageUse::kColor);
     read_alpha(source, material);
   }

@@ -246,6 +246,16 @@ Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive,
   return PrimitiveReader(document, mesh, primitive, report).read();
 }
 
+uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive) {
+  const GltfPrimitive& source = document.meshes[mesh].primitives[primitive];
+  const auto positions = source.attributes.find("POSITION");
+  if (source.mode < kGltfTriangles || positions == source.attributes.end()) return 0;
+  const int corners = source.indices < 0 ? positions->second : source.indices;
+  const uint64_t count = document.accessors[static_cast<size_t>(corners)].count;
+  if (source.mode == kGltfTriangles) return count / 3;
+  return count < 3 ? 0 : count - 2;
+}
+
 void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
                      Object& object, LoadReport& report) {
   object.geometry = geometry;

@@ -14,6 +14,9 @@ namespace promin {
 /// coordinates go to the report.
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report);
 
+/// Number of these triangles, as far as the file tells before anything is read.
+uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive);
+
 /// The object that shows a mesh at a node: its geometry is the mesh at `geometry`, or where the node's transform is
 /// singular a new one that is flattened already, without normals if these vanish. A vertex beyond 1e15 in the world
 /// goes to the report. `place` names the primitive.

@@ -28,15 +28,6 @@ dmat4 local_transform(const nlohmann::json& node) {
   return matrix;
 }
 
-bool is_finite(const dmat4& matrix) {
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
-      if (!std::isfinite(matrix[column][row])) return false;
-    }
-  }
-  return true;
-}
-
 /// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
 std::vector<int> root_nodes(const GltfDocument& document) {
   const nlohmann::json& scenes = elements_of(document.json, "scenes");

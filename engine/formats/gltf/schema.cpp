@@ -42,6 +42,10 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
 #define PROMIN_COAT "materials[].extensions.KHR_materials_clearcoat"
 #define PROMIN_PHONG "materials[].extensions.PROMIN_materials_phong"
+#define PROMIN_GLOSSY "materials[].extensions.KHR_materials_pbrSpecularGlossiness"
+#define PROMIN_VARIANTS "extensions.KHR_materials_variants.variants"
+#define PROMIN_MAPPINGS "meshes[].primitives[].extensions.KHR_materials_variants.mappings"
+#define PROMIN_INSTANCES "nodes[].extensions.EXT_mesh_gpu_instancing.attributes"
 
 #define PROMIN_TEXTURE_INFO(PATH)                                                                  \
   object(PATH), needed(index(PATH ".index", "textures")), integer(PATH ".texCoord", 0, kMaxCount), \
@@ -156,6 +160,11 @@ constexpr JsonRule kRules[] = {
     PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatRoughnessTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatNormalTexture"),
     number(PROMIN_COAT ".clearcoatNormalTexture.scale", -kMaxScalar, kMaxScalar),
+    numbers(PROMIN_GLOSSY ".diffuseFactor", 4, 0.0, kMaxCoordinate),
+    color(PROMIN_GLOSSY ".specularFactor"),
+    number(PROMIN_GLOSSY ".glossinessFactor", 0.0, 1.0),
+    PROMIN_TEXTURE_INFO(PROMIN_GLOSSY ".diffuseTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_GLOSSY ".specularGlossinessTexture"),
     color(PROMIN_PHONG ".ambientFactor"),
     color(PROMIN_PHONG ".diffuseFactor"),
     color(PROMIN_PHONG ".specularFactor"),
@@ -202,6 +211,18 @@ constexpr JsonRule kRules[] = {
     object("nodes[].extensions.*"),
     object("meshes[].primitives[].extensions"),
     object("meshes[].primitives[].extensions.*"),
+
+    needed(array(PROMIN_VARIANTS)),
+    object(PROMIN_VARIANTS "[]"),
+    needed(text(PROMIN_VARIANTS "[].name")),
+    needed(array(PROMIN_MAPPINGS)),
+    object(PROMIN_MAPPINGS "[]"),
+    needed(index(PROMIN_MAPPINGS "[].material", "materials")),
+    needed(array(PROMIN_MAPPINGS "[].variants")),
+    index(PROMIN_MAPPINGS "[].variants[]", PROMIN_VARIANTS),
+
+    needed(object(PROMIN_INSTANCES)),
+    index(PROMIN_INSTANCES ".*", "accessors"),
 
     needed(index("nodes[].extensions.KHR_lights_punctual.light", PROMIN_LIGHTS)),
     boolean("nodes[].extensions.KHR_node_visibility.visible"),
@@ -263,6 +284,10 @@ constexpr JsonRule kRules[] = {
 #undef PROMIN_SKIES
 #undef PROMIN_LINK
 #undef PROMIN_PHONG
+#undef PROMIN_GLOSSY
+#undef PROMIN_VARIANTS
+#undef PROMIN_MAPPINGS
+#undef PROMIN_INSTANCES
 #undef PROMIN_TEXTURE_INFO
 
 }  // namespace

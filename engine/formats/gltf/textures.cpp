@@ -7,6 +7,7 @@
 
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/json_lookup.h"
+#include "formats/gltf/specular_glossiness.h"
 
 namespace promin {
 namespace {
@@ -65,6 +66,14 @@ int image_of(const json& texture) {
 }  // namespace
 
 TextureSlot GltfTextures::read_slot(const json& object, const char* name, ImageUse use) {
+  return read_slot_for(object, name, {use, std::nullopt});
+}
+
+TextureSlot GltfTextures::read_glossiness_slot(const json& object, const char* name, float glossiness_factor) {
+  return read_slot_for(object, name, {ImageUse::kData, glossiness_factor});
+}
+
+TextureSlot GltfTextures::read_slot_for(const json& object, const char* name, const Purpose& purpose) {
   TextureSlot slot;
   const auto found = object.find(name);
   if (found == object.end()) return slot;
@@ -79,12 +88,12 @@ TextureSlot GltfTextures::read_slot(const json& object, const char* name, ImageU
                  " is ignored, there are sets 0 and 1");
     return slot;
   }
-  slot.texture = find_texture(info["index"].get<size_t>(), use);
+  slot.texture = find_texture(info["index"].get<size_t>(), purpose);
   return slot;
 }
 
-uint32_t GltfTextures::find_texture(size_t index, ImageUse use) {
-  const auto [known, is_new] = texture_numbers_.try_emplace({index, use}, TextureSlot::kNone);
+uint32_t GltfTextures::find_texture(size_t index, const Purpose& purpose) {
+  const auto [known, is_new] = texture_numbers_.try_emplace({index, purpose}, TextureSlot::kNone);
   if (!is_new) return known->second;
   const json& source = document_.json["textures"][index];
   const int image = image_of(source);
@@ -93,7 +102,7 @@ uint32_t GltfTextures::find_texture(size_t index, ImageUse use) {
     return TextureSlot::kNone;
   }
   Texture texture;
-  texture.image = find_image(image, use);
+  texture.image = find_image(image, purpose);
   if (source.contains("sampler")) {
     take_sampler(document_.json["samplers"][source["sampler"].get<size_t>()], texture);
   }
@@ -102,11 +111,12 @@ uint32_t GltfTextures::find_texture(size_t index, ImageUse use) {
   return known->second;
 }
 
-uint32_t GltfTextures::find_image(int index, ImageUse use) {
-  const auto [known, is_new] = image_numbers_.try_emplace({index, use}, static_cast<uint32_t>(images_.size()));
+uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
+  const auto [known, is_new] = image_numbers_.try_emplace({index, purpose}, static_cast<uint32_t>(images_.size()));
   if (!is_new) return known->second;
+  if (purpose.second) glossiness_[known->second] = {*purpose.second};
   PictureSource& source = images_.emplace_back();
-  source.image->use = use;
+  source.image->use = purpose.first;
   source.title = title_of(document_.json, "images", static_cast<size_t>(index));
   source.image->name = document_.json["images"][static_cast<size_t>(index)].value("name", "");
   read_file(static_cast<size_t>(index), source);
@@ -130,10 +140,28 @@ void GltfTextures::read_file(size_t index, PictureSource& source) {
   });
 }
 
+void GltfTextures::take_specular(Material& material) const {
+  auto* model = std::get_if<MetallicRoughness>(&material.model);
+  if (model == nullptr || !model->metallic_roughness_texture.exists()) return;
+  const uint32_t image = textures_[model->metallic_roughness_texture.texture].image;
+  const auto found = glossiness_.find(image);
+  if (found == glossiness_.end()) return;
+  if (!images_[image].image->texels.empty()) {
+    model->specular_color *= vec3(found->second.mean_specular);
+  } else {
+    model->roughness = 1.0F - found->second.factor;
+  }
+}
+
 void GltfTextures::finish(Scene& scene) {
   decode_pictures(images_, report_);
+  for (auto& [image, glossiness] : glossiness_) {
+    std::vector<uint32_t>& texels = images_[image].image->texels;
+    if (!texels.empty()) glossiness.mean_specular = take_glossiness(texels, static_cast<double>(glossiness.factor));
+  }
   for (const PictureSource& source : images_) scene.images.push_back(source.image);
   scene.textures = textures_;
+  for (Material& material : scene.materials) take_specular(material);
   if (const size_t count = textures_without_image_.size(); count > 0) {
     report_.warn(std::to_string(count) + (count == 1 ? " texture has" : " textures have") +
                  " no image that is known; materials are drawn without");

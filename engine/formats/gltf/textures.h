@@ -4,6 +4,8 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -22,21 +24,38 @@ class GltfTextures {
   /// The slot that `info`, the textureInfo `name` of an object, describes; an empty one where there is none.
   TextureSlot read_slot(const nlohmann::json& object, const char* name, ImageUse use);
 
+  /// The same of specularGlossinessTexture, as a slot of roughness: its image becomes one whose green is
+  /// 1 - glossiness_factor * glossiness. finish() multiplies the mean of its colours into the specular colour of the
+  /// materials that have the slot.
+  TextureSlot read_glossiness_slot(const nlohmann::json& object, const char* name, float glossiness_factor);
+
   /// Decodes all images on all cores and hands everything over. An image that cannot be decoded is warned about and
   /// counts as absent.
   void finish(Scene& scene);
 
  private:
-  uint32_t find_texture(size_t index, ImageUse use);
-  uint32_t find_image(int index, ImageUse use);
+  /// What images are made for: the use, and the factor of a specularGlossinessTexture.
+  using Purpose = std::pair<ImageUse, std::optional<float>>;
+  /// Of the image of a specularGlossinessTexture.
+  struct Glossiness {
+    float factor = 1.0F;
+    dvec3 mean_specular{1.0};
+  };
+
+  TextureSlot read_slot_for(const nlohmann::json& object, const char* name, const Purpose& purpose);
+  uint32_t find_texture(size_t index, const Purpose& purpose);
+  uint32_t find_image(int index, const Purpose& purpose);
   void read_file(size_t index, PictureSource& source);
+  void take_specular(Material& material) const;
 
   const GltfDocument& document_;
   LoadReport& report_;
   std::vector<PictureSource> images_;
+  /// By the index of the image.
+  std::map<uint32_t, Glossiness> glossiness_;
   std::vector<Texture> textures_;
-  std::map<std::pair<int, ImageUse>, uint32_t> image_numbers_;
-  std::map<std::pair<size_t, ImageUse>, uint32_t> texture_numbers_;
+  std::map<std::pair<int, Purpose>, uint32_t> image_numbers_;
+  std::map<std::pair<size_t, Purpose>, uint32_t> texture_numbers_;
   std::set<size_t> textures_without_image_;
 };
 

@@ -144,7 +144,10 @@ std::vector<uint32_t> materials_of(const ObjText& text, const ObjGroup& group, c
 
 }  // namespace
 
-Scene load_obj(const LoadOptions&, LoadReport& report) {
+Scene load_obj(const LoadOptions& options, LoadReport& report) {
+  if (!options.material_variant.empty()) {
+    throw UsageError({"OBJ has no variants of materials", report.file().string(), "ask for none"});
+  }
   const std::filesystem::path& file = report.file();
   const std::vector<std::byte> bytes = read_file(file);
   const ObjText text = parse_obj_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
