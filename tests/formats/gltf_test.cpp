@@ -506,7 +506,7 @@ TEST_F(GltfTest, ClassicMaterialsAreOpaqueAndHaveTwoSides) {
                                     {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}},
                                     {"extensions", {{"PROMIN_materials_phong", json::object()}}}});
   gltf.add_node({{"mesh", 0}});
-  const Scene scene = load(gltf);
+  const LoadedScene scene = load(gltf);
   EXPECT_EQ(scene.materials.at(0).alpha_mode, AlphaMode::kOpaque);
   EXPECT_TRUE(scene.materials.at(0).is_double_sided);
   EXPECT_THAT(scene.warnings, ElementsAre("material \"old\": its alphaMode is ignored, it is drawn opaque"));

@@ -155,7 +155,7 @@ class MeshMaker {
 
 }  // namespace
 
-Scene load_ply(LoadReport& report) {
+Scene load_ply(const LoadOptions& /*options*/, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(report.file());
   const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const PlyHeader header = parse_ply_header(file, report);

@@ -11,6 +11,6 @@ namespace promin {
 /// colours, which are taken for those of sRGB, the lists vertex_indices or vertex_index of faces, and tristrips. All of
 /// it is one object of the default material; polygons of n corners give n - 2 triangles in file order. Throws
 /// InputError with all problems.
-Scene load_ply(LoadReport& report);
+Scene load_ply(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

@@ -99,7 +99,7 @@ Mesh make_mesh(StlSolid& solid) {
 
 }  // namespace
 
-Scene load_stl(LoadReport& report) {
+Scene load_stl(const LoadOptions& /*options*/, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(report.file());
   const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::vector<StlSolid> solids = is_text(file) ? parse_stl_text(file, report) : read_binary(file, report);

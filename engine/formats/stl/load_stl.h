@@ -11,6 +11,6 @@ namespace promin {
 /// whatever it begins with. Each facet is a triangle with corners of its own, in file order, drawn sharp: its normal in
 /// the file is ignored, and so are colours. A solid with facets is an object of the default material, by its name; a
 /// binary file is one. Throws InputError with all problems.
-Scene load_stl(LoadReport& report);
+Scene load_stl(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin
