@@ -81,7 +81,8 @@ void build(const BvhOptions& options) {
   PackedScene packed;
   {
     Progress progress(console.is_quiet(), kProgram);
-    packed = pack_scene(world::flatten(scene), options.builder, {options.thread_count, progress.callback()});
+    packed = pack_scene(world::flatten(scene, world::Purpose::kHits), options.builder,
+                        {options.thread_count, progress.callback()});
   }
   const TreeView tree = packed.tree();
   console.detail(fmt::format("built {} nodes, depth {}: {:.1f} ms", tree.stats.nodes, tree.stats.depth, packed.bvh_ms));
@@ -140,7 +141,7 @@ void print_info(const std::filesystem::path& path) {
 void verify(const BvhOptions& options) {
   const Console console(options.verbosity(), kProgram);
   const Scene scene = load(options, console);
-  const PackedScene packed = pack_scene_with(options.file, world::flatten(scene));
+  const PackedScene packed = pack_scene_with(options.file, world::flatten(scene, world::Purpose::kHits));
   console.detail(fmt::format("read {}: {:.1f} ms", options.file.string(), packed.bvh_ms));
   TreeFaults faults;
   {

@@ -153,7 +153,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
 Caster::Caster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Caster::Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options) {
   throw_if_invalid(scene);
-  impl_ = std::make_unique<Impl>(device, world::flatten(scene), TunedCasterOptions{options, {}});
+  impl_ = std::make_unique<Impl>(device, world::flatten(scene, world::Purpose::kHits), TunedCasterOptions{options, {}});
 }
 Caster::~Caster() = default;
 Caster::Caster(Caster&&) noexcept = default;

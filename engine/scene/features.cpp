@@ -129,7 +129,7 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
   for (size_t i = 0; i < materials.size(); ++i) {
     if (!is_shown[i]) continue;
     features |= std::visit(MaterialFeatures(), materials[i].model);
-    for_each_slot(materials[i], [&](const TextureSlot& slot, const char*) {
+    for_each_slot(materials[i], [&](const TextureSlot& slot, const char* /*name*/, ImageUse /*use*/) {
       if (slot.exists()) features |= FEATURE_TEXTURES;
     });
     if (has_holes(materials[i])) features |= FEATURE_HOLES;

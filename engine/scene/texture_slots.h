@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <variant>
+
 #include "promin/materials.h"
 
 namespace promin {
@@ -20,36 +22,37 @@ inline const TextureSlot& base_slot(const Material& material) {
   return std::visit([](const auto& model) -> const TextureSlot& { return base_slot(model); }, material.model);
 }
 
-// The textures of materials, each once: `visit(slot, name)` gets the slot and the name of its member.
+// The textures of materials, each once: `visit(slot, name, use)` gets the slot, with or without a texture, the name of
+// its member, and what it takes the image for.
 
 template <typename Visit>
 void for_each_slot(const Phong& model, const Visit& visit) {
-  visit(model.diffuse_texture, "diffuse_texture");
-  visit(model.specular_texture, "specular_texture");
-  visit(model.normal_texture, "normal_texture");
+  visit(model.diffuse_texture, "diffuse_texture", ImageUse::kColor);
+  visit(model.specular_texture, "specular_texture", ImageUse::kColor);
+  visit(model.normal_texture, "normal_texture", ImageUse::kNormal);
 }
 
 template <typename Visit>
 void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
-  visit(model.base_color_texture, "base_color_texture");
-  visit(model.metallic_roughness_texture, "metallic_roughness_texture");
-  visit(model.normal_texture, "normal_texture");
-  visit(model.occlusion_texture, "occlusion_texture");
-  visit(model.clearcoat_texture, "clearcoat_texture");
-  visit(model.clearcoat_roughness_texture, "clearcoat_roughness_texture");
-  visit(model.clearcoat_normal_texture, "clearcoat_normal_texture");
+  visit(model.base_color_texture, "base_color_texture", ImageUse::kColor);
+  visit(model.metallic_roughness_texture, "metallic_roughness_texture", ImageUse::kData);
+  visit(model.normal_texture, "normal_texture", ImageUse::kNormal);
+  visit(model.occlusion_texture, "occlusion_texture", ImageUse::kData);
+  visit(model.clearcoat_texture, "clearcoat_texture", ImageUse::kData);
+  visit(model.clearcoat_roughness_texture, "clearcoat_roughness_texture", ImageUse::kData);
+  visit(model.clearcoat_normal_texture, "clearcoat_normal_texture", ImageUse::kNormal);
 }
 
 template <typename Visit>
 void for_each_slot(const Unlit& model, const Visit& visit) {
-  visit(model.color_texture, "color_texture");
+  visit(model.color_texture, "color_texture", ImageUse::kColor);
 }
 
 /// Those of the material's model, and of what it sends by itself.
 template <typename Visit>
 void for_each_slot(const Material& material, const Visit& visit) {
   std::visit([&](const auto& model) { for_each_slot(model, visit); }, material.model);
-  visit(material.emissive_texture, "emissive_texture");
+  visit(material.emissive_texture, "emissive_texture", ImageUse::kColor);
 }
 
 }  // namespace promin

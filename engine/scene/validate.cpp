@@ -140,7 +140,7 @@ class Validation {
 
   void check_slots(const Scene& scene) {
     for (size_t i = 0; i < scene.materials.size(); ++i) {
-      for_each_slot(scene.materials[i], [&](const TextureSlot& slot, const char* name) {
+      for_each_slot(scene.materials[i], [&](const TextureSlot& slot, const char* name, ImageUse /*use*/) {
         check_slot(slot, scene.textures.size(), place_of("materials", i) + "." + name);
       });
     }

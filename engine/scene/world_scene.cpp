@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/world_scene.h"
 
+#include <optional>
 #include <utility>
 
 #include "scene/framing.h"
+#include "scene/picture_meshes.h"
 #include "shapes/shapes.h"
 
 namespace promin::world {
@@ -85,20 +87,33 @@ Mesh place(const Mesh& mesh, const dmat4& world_from_object) {
   return placed;
 }
 
-Object flatten(const promin::Scene& scene, const promin::Object& object) {
+namespace {
+
+Object flatten(const promin::Scene& scene, const promin::Object& object, PictureMeshes* meshes) {
   Object result{object.name, NotDrawn{}, object.material};
   if (object.geometry == promin::Object::kNoGeometry) return result;
   const Geometry& geometry = scene.geometries[object.geometry];
-  result.shape = std::visit(ShapeInWorld{object.world_from_object}, geometry);
+  const std::shared_ptr<const Mesh> mesh = meshes == nullptr ? nullptr : meshes->find(object);
+  const ShapeInWorld in_world{object.world_from_object};
+  result.shape = mesh == nullptr ? std::visit(in_world, geometry) : in_world(*mesh);
   result.is_rewound = std::holds_alternative<Mesh>(geometry) && Placement(object.world_from_object).is_mirroring();
   return result;
 }
 
-Scene flatten(const promin::Scene& scene) {
-  Scene result{scene.file,     {},           scene.materials, scene.images,
-               scene.textures, scene.lights, scene.cameras,   scene.environment};
+}  // namespace
+
+Scene flatten(const promin::Scene& scene, Purpose purpose) {
+  Scene result{scene.file, {}, scene.materials, {}, {}, scene.lights, scene.cameras, scene.environment};
+  std::optional<PictureMeshes> meshes;
+  if (purpose == Purpose::kPictures) {
+    result.images = scene.images;
+    result.textures = scene.textures;
+    meshes.emplace(scene);
+  }
   result.objects.reserve(scene.objects.size());
-  for (const promin::Object& object : scene.objects) result.objects.push_back(flatten(scene, object));
+  for (const promin::Object& object : scene.objects) {
+    result.objects.push_back(flatten(scene, object, meshes ? &*meshes : nullptr));
+  }
   return result;
 }
 

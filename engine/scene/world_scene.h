@@ -48,11 +48,16 @@ struct Scene {
 /// reverses the winding, so that counter-clockwise stays outside. Under the identity positions keep their bits.
 Mesh place(const Mesh& mesh, const dmat4& world_from_object);
 
-/// An object in the world. The scene is valid.
-Object flatten(const promin::Scene& scene, const promin::Object& object);
+/// What a scene is put into the world for.
+enum class Purpose {
+  /// Meshes get what textures need (scene/picture_meshes.h): more vertices, but the same triangles.
+  kPictures,
+  /// Rays that are cast, or a tree alone: there are neither images nor textures.
+  kHits,
+};
 
 /// All objects in their order. The scene is valid.
-Scene flatten(const promin::Scene& scene);
+Scene flatten(const promin::Scene& scene, Purpose purpose = Purpose::kPictures);
 
 /// Number of triangles (degenerate ones included), 1 for an analytic shape, 0 for NotDrawn.
 uint32_t primitive_count(const Shape& shape);

@@ -27,7 +27,8 @@ struct Mesh {
   /// Texture coordinates of sets 0 (x, y) and 1 (z, w), finite; empty or one per position.
   std::vector<vec4> uvs;
   /// Tangents for normal textures, xyz of any length but 0, w = 1 or -1 the side of the bitangent; empty or one per
-  /// position. Where there are none, those of each triangle's texture coordinates are taken.
+  /// position. Where there are none and a texture of normals is shown, they are made of the texture coordinates
+  /// (docs/model.md, "Textures").
   std::vector<vec4> tangents;
   /// Indices into `positions`. Degenerate triangles stay here, so that numbering holds; they are never hit.
   std::vector<uvec3> triangles;

@@ -109,7 +109,7 @@ class ContentHash {
     add(static_cast<uint64_t>(material.alpha_mode) << 1 | uint64_t{material.is_double_sided});
     add(material.alpha);
     add(material.alpha_cutoff);
-    for_each_slot(material, [this](const TextureSlot& slot, const char*) { add(slot); });
+    for_each_slot(material, [this](const TextureSlot& slot, const char* /*name*/, ImageUse /*use*/) { add(slot); });
   }
   void add(const Light& light) {
     add(static_cast<uint64_t>(light.kind));

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/picture_meshes.h"
+
+#include "scene/texture_slots.h"
+#include "textures/center_uvs.h"
+#include "textures/tangents.h"
+
+namespace promin {
+namespace {
+
+/// Whether a slot has an image that could be read.
+bool is_shown(const Scene& scene, const TextureSlot& slot) {
+  return slot.exists() && !scene.images[scene.textures[slot.texture].image]->texels.empty();
+}
+
+/// Whether each material is on the mesh.
+std::vector<bool> find_materials(const Mesh& mesh, const Object& object, size_t count) {
+  std::vector<bool> is_on_mesh(count, false);
+  if (mesh.triangle_materials.empty()) is_on_mesh[object.material] = true;
+  for (const uint32_t material : mesh.triangle_materials) is_on_mesh[material] = true;
+  return is_on_mesh;
+}
+
+}  // namespace
+
+PictureMeshes::PictureMeshes(const Scene& scene) : scene_(scene), object_counts_(scene.geometries.size(), 0) {
+  for (const Object& object : scene.objects) {
+    if (object.geometry != Object::kNoGeometry) ++object_counts_[object.geometry];
+  }
+}
+
+std::shared_ptr<const Mesh> PictureMeshes::find(const Object& object) {
+  const auto* mesh = std::get_if<Mesh>(&scene_.geometries[object.geometry]);
+  if (mesh == nullptr || mesh->uvs.empty()) return nullptr;
+  const Needs needs = needs_of(*mesh, object);
+  if (needs == Needs{}) return nullptr;
+  const std::pair key(object.geometry, needs);
+  if (const auto known = made_.find(key); known != made_.end()) return known->second;
+  auto made = std::make_shared<Mesh>(*mesh);
+  if (needs.tangents) add_tangents(*made, *needs.tangents);
+  center_uvs(*made, {needs.center[0], needs.center[1], needs.center[2], needs.center[3]});
+  if (object_counts_[object.geometry] > 1) made_.emplace(key, made);
+  return made;
+}
+
+PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& object) const {
+  Needs needs;
+  std::vector<TextureSlot> slots;
+  const std::vector<bool> is_on_mesh = find_materials(mesh, object, scene_.materials.size());
+  for (size_t i = 0; i < is_on_mesh.size(); ++i) {
+    if (!is_on_mesh[i]) continue;
+    for_each_slot(scene_.materials[i], [&](const TextureSlot& slot, const char* /*name*/, ImageUse use) {
+      if (!is_shown(scene_, slot)) return;
+      slots.push_back(slot);
+      // Of several sets the first has its way.
+      if (use == ImageUse::kNormal && mesh.tangents.empty() && !needs.tangents) needs.tangents = slot.uv_set;
+    });
+  }
+  if (slots.empty()) return needs;
+  const dvec4 center = find_uv_center(mesh, slots, scene_.textures);
+  for (int i = 0; i < 4; ++i) needs.center[static_cast<size_t>(i)] = center[i];
+  return needs;
+}
+
+}  // namespace promin

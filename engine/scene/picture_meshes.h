@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "promin/scene.h"
+
+namespace promin {
+
+/// Meshes with what textures need of them: tangents where a texture of normals is shown (textures/tangents.h), texture
+/// coordinates near 0 (textures/center_uvs.h). Each is made once for the objects that need the same of it.
+class PictureMeshes {
+ public:
+  /// The scene is valid and outlives this.
+  explicit PictureMeshes(const Scene& scene);
+
+  /// The mesh that an object shows, or null where the scene's own serves.
+  std::shared_ptr<const Mesh> find(const Object& object);
+
+ private:
+  /// The set of coordinates that tangents are needed for, and what is taken off all coordinates.
+  struct Needs {
+    std::optional<uint32_t> tangents;
+    std::array<double, 4> center{};
+
+    auto operator<=>(const Needs&) const = default;
+  };
+  Needs needs_of(const Mesh& mesh, const Object& object) const;
+
+  const Scene& scene_;
+  /// Of each geometry, how many objects show it.
+  std::vector<uint32_t> object_counts_;
+  std::map<std::pair<uint32_t, Needs>, std::shared_ptr<const Mesh>> made_;
+};
+
+}  // namespace promin

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace promin {
+
+// Corners of triangles are numbered 3 * triangle + (0, 1, 2), and edges as the corners that they start at.
+
+/// The value for no corner and no edge.
+inline constexpr uint32_t kNoCorner = std::numeric_limits<uint32_t>::max();
+
+inline uint32_t next_corner(uint32_t corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+inline uint32_t last_corner(uint32_t corner) {
+  return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
+
+/// For each edge the one of another triangle that runs the other way between the same vertices; kNoCorner where there
+/// is none. Where several do, the first goes with the first, the second with the second. `vertices` has the vertex of
+/// each corner, below `vertex_count`; kNoCorner at all three of a triangle that is left out. No other triangle has a
+/// vertex twice. The same for any number of threads.
+std::vector<uint32_t> find_edge_neighbors(std::span<const uint32_t> vertices, uint32_t vertex_count);
+
+}  // namespace promin
