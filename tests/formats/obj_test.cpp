@@ -6,6 +6,7 @@
 
 #include "formats/source_file.h"
 #include "formats/triangulate.h"
+#include "support/make_png.h"
 #include "support/scene_folder.h"
 
 namespace promin {
@@ -63,7 +64,7 @@ TEST_F(ObjTest, FacesCountFromTheFrontOrTheBack) {
   EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f 1 2 3"))), wanted);
   EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f -4 -3 -2\n"))), wanted);
   EXPECT_EQ(corners_of(mesh_of(load("f 1 2 3\n" + kSquare))), wanted) << "vertices may follow";
-  EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f 1/7 2/8 3/9 # vt is not read\n"))), wanted);
+  EXPECT_EQ(corners_of(mesh_of(load(kSquare + "f 1/7 2/8 3/9 # no texture shows these\n"))), wanted);
 }
 
 TEST_F(ObjTest, LineEndsOfEveryKindWork) {
@@ -173,13 +174,15 @@ TEST_F(ObjTest, IlluminationModels) {
   EXPECT_EQ(material(factors + "3\n").phong().reflection, vec3(0.25F));
 }
 
-TEST_F(ObjTest, TransparencyAndMapsAreSaid) {
+TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   std::vector<std::string> warnings;
   material("illum 7\n", &warnings);
   EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 7), it is drawn opaque"));
-  material("map_Kd wood.png\n", &warnings);
+  material("map_Ka wood.png\nmap_Ns wood.png\n", &warnings);
   EXPECT_THAT(warnings,
-              ElementsAre("material \"m\": its texture maps are ignored, the first is map_Kd in m.mtl line 2"));
+              ElementsAre("material \"m\": some of its texture maps are ignored, the first is map_d in m.mtl line 2"));
+  material("map_Bump -bm 2 wood.png\nbump wood.png\n", &warnings);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("bump maps, which hold heights, are ignored")));
 }
 
 TEST_F(ObjTest, AMissingMtlIsGrey) {
@@ -241,6 +244,228 @@ TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
   write("a.mtl", "newmtl a\nKd 1 0 0\n");
   write("b.mtl", "newmtl b\nKd 0 1 0\n");
   EXPECT_EQ(load(kSquare + "mtllib a.mtl b.mtl\nusemtl b\nf 1 2 3\n").materials.at(0).phong().diffuse, vec3(0, 1, 0));
+}
+
+// Texture maps
+
+/// Loads a square with texture coordinates on all corners and a material of these lines.
+class ObjMapTest : public ObjTest {
+ protected:
+  ObjMapTest() { write_picture("a.png", {10, 20, 30}); }
+
+  void write_picture(const std::string& name, const std::vector<uint8_t>& rgb, const uvec2& size = {1, 1}) const {
+    const std::vector<std::byte> file = make_png(size, PNG_COLOR_TYPE_RGB, 8, rgb);
+    write(name, {reinterpret_cast<const char*>(file.data()), file.size()});
+  }
+  LoadedScene load_with(const std::string& lines) const {
+    write("m.mtl", "newmtl m\n" + lines);
+    return load(kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.25\nmtllib m.mtl\nusemtl m\nf 1/1 2/2 3/3 4/4\n");
+  }
+  static const TextureImage& image_of(const LoadedScene& scene, const TextureSlot& slot) {
+    return *scene.images.at(scene.textures.at(slot.texture).image);
+  }
+};
+
+TEST_F(ObjMapTest, MapsMultiplyTheirColours) {
+  const LoadedScene scene = load_with("Kd 0.5 0.5 0.5\nKs 1 1 0\nNs 9\nmap_Kd a.png\nmap_Ks a.png\nmap_Ke a.png\n");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.phong().diffuse, vec3(0.5F));
+  EXPECT_EQ(material.phong().ambient, vec3(0.5F));
+  EXPECT_EQ(material.phong().specular, vec3(1, 1, 0));
+  EXPECT_EQ(material.emissive, vec3(1)) << "the map alone tells it";
+  for (const TextureSlot& slot :
+       {material.phong().diffuse_texture, material.phong().specular_texture, material.emissive_texture}) {
+    ASSERT_TRUE(slot.exists());
+    EXPECT_EQ(slot.to_u, vec3(1, 0, 0));
+    EXPECT_EQ(slot.to_v, vec3(0, 1, 0));
+    EXPECT_EQ(image_of(scene, slot).use, ImageUse::kColor);
+    EXPECT_THAT(image_of(scene, slot).texels, ElementsAre(0xFF1E140AU));
+  }
+  EXPECT_FALSE(material.phong().normal_texture.exists());
+  EXPECT_THAT(scene.images, SizeIs(1)) << "one picture of one use";
+  EXPECT_THAT(scene.textures, SizeIs(1));
+}
+
+TEST_F(ObjMapTest, OnlyAMissingColourIsThatOfTheMap) {
+  EXPECT_EQ(load_with("map_Kd a.png\n").materials.at(0).phong().diffuse, vec3(1));
+  EXPECT_EQ(load_with("Kd 0 0 0\nmap_Kd a.png\n").materials.at(0).phong().diffuse, vec3(0));
+}
+
+TEST_F(ObjMapTest, NormalsAreTakenAsNormals) {
+  const LoadedScene scene = load_with("norm a.png\n");
+  const TextureSlot& slot = scene.materials.at(0).phong().normal_texture;
+  ASSERT_TRUE(slot.exists());
+  EXPECT_EQ(image_of(scene, slot).use, ImageUse::kNormal);
+}
+
+TEST_F(ObjMapTest, TextureCoordinatesGrowUpwards) {
+  const LoadedScene scene = load_with("map_Kd a.png\n");
+  EXPECT_THAT(mesh_of(scene).uvs,
+              ElementsAre(vec4(0, 1, 0, 0), vec4(1, 1, 0, 0), vec4(1, 0, 0, 0), vec4(0.5F, 0.75F, 0, 0)));
+}
+
+TEST_F(ObjMapTest, WithoutMapsThereAreNoTextureCoordinates) {
+  const LoadedScene scene = load_with("Kd 1 1 1\n");
+  EXPECT_THAT(mesh_of(scene).uvs, IsEmpty());
+  write("m.mtl", "newmtl m\nmap_Kd a.png\nnewmtl n\n");
+  const LoadedScene two = load("vt nan 0\nvt 0 0\nmtllib m.mtl\n" + kSquare +
+                               "usemtl n\nf 1/1 2/2 3/1\nf 1/2 2/1 3/2\no a\nusemtl m\nf 1/2 2/2 3/2\n");
+  EXPECT_THAT(mesh_of(two, 0).positions, SizeIs(3)) << "coordinates that nothing shows split no vertices";
+  EXPECT_THAT(mesh_of(two, 0).uvs, IsEmpty());
+  EXPECT_THAT(mesh_of(two, 1).uvs, SizeIs(3));
+}
+
+TEST_F(ObjMapTest, CornersThatAreEqualAreShared) {
+  write("m.mtl", "newmtl m\nmap_Kd a.png\n");
+  const std::string head = "mtllib m.mtl\nusemtl m\nvt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 0 2\n" + kSquare;
+  const auto vertices_of = [&](const std::string& faces) { return mesh_of(load(head + faces)).positions.size(); };
+  EXPECT_EQ(vertices_of("f 1/1 2/1 3/1\nf 1/1 3/1 4/1\n"), 4U);
+  EXPECT_EQ(vertices_of("f 1/1 2/1 3/1\nf 1/2 3/1 4/1\n"), 5U);
+  EXPECT_EQ(vertices_of("f 1/1/1 2/1/1 3/1/1\nf 1/1/2 3/1/1 4/1/1\n"), 5U);
+  EXPECT_EQ(vertices_of("f 1/1/1 2/1/1 3/1/1\nf 1/1/1 3/1/1 4/-2/-2\n"), 4U);
+}
+
+TEST_F(ObjMapTest, CoordinatesThatAreMissingAreSaid) {
+  write("m.mtl", "newmtl m\nmap_Kd a.png\n");
+  const LoadedScene scene = load("mtllib m.mtl\nusemtl m\nvt 0 x\n" + kSquare + "f 1/1 2/7 3\n");
+  EXPECT_THAT(mesh_of(scene).uvs, ElementsAre(vec4(0, 1, 0, 0), vec4(0, 1, 0, 0), vec4(0, 1, 0, 0)));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("no numbers up to 1e15"), HasSubstr("corners without texture")));
+}
+
+TEST_F(ObjMapTest, OptionsPlaceTheMap) {
+  const LoadedScene scene =
+      load_with("map_Kd -blendu off -s 2 4 1 -mm 0 1 -o 0.5 0.25 -clamp on -imfchan m a.png\nmap_Ks -s 3 a.png\n");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const TextureSlot& slot = scene.materials.at(0).phong().diffuse_texture;
+  EXPECT_EQ(slot.to_u, vec3(2, 0, 0.5F));
+  // Upwards v' = 4 v + 0.25, so downwards 1 - v' = 4 (1 - v) - 3.25.
+  EXPECT_EQ(slot.to_v, vec3(0, 4, -3.25F));
+  EXPECT_EQ(scene.textures.at(slot.texture).wrap_u, TextureWrap::kClampToEdge);
+  EXPECT_EQ(scene.textures.at(slot.texture).wrap_v, TextureWrap::kClampToEdge);
+  const TextureSlot& specular = scene.materials.at(0).phong().specular_texture;
+  EXPECT_EQ(specular.to_u, vec3(3, 0, 0));
+  EXPECT_EQ(specular.to_v, vec3(0, 1, 0));
+  EXPECT_EQ(scene.textures.at(specular.texture).wrap_u, TextureWrap::kRepeat);
+}
+
+TEST_F(ObjMapTest, FilesLieBesideTheirMtl) {
+  std::filesystem::create_directories(folder_ / "parts" / "pictures");
+  write_picture("parts/pictures/deep red 1.png", {200, 0, 0});
+  write_picture("parts/7", {1, 2, 3});
+  write("parts/m.mtl", "newmtl m\r\nmap_Kd -s 1 1 1 pictures\\deep red 1.png\r\nmap_Ke -o 1 2 7\r\n");
+  const LoadedScene scene = load(kSquare + "vt 0 0\nmtllib parts/m.mtl\nusemtl m\nf 1/1 2/1 3/1\n");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_EQ(image_of(scene, scene.materials.at(0).phong().diffuse_texture).name, "parts/pictures/deep red 1.png");
+  EXPECT_EQ(image_of(scene, scene.materials.at(0).emissive_texture).name, "parts/7");
+}
+
+TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
+  write("broken.png", "no picture");
+  write("empty.png", "");
+  const LoadedScene scene = load_with("map_Kd none.png\nmap_Ke broken.png\nmap_Ks ../a.png\nnorm empty.png\n");
+  EXPECT_THAT(scene.warnings,
+              testing::UnorderedElementsAre("image \"none.png\" is ignored: \"none.png\" does not exist",
+                                            "image \"broken.png\" is ignored: it is neither PNG nor JPEG",
+                                            "image \"../a.png\" is ignored: \"../a.png\" leaves the scene's folder",
+                                            "image \"empty.png\" is ignored: the file is empty"));
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.phong().diffuse, vec3(0.8F));
+  EXPECT_EQ(material.phong().specular, vec3(0));
+  EXPECT_EQ(material.emissive, vec3(0));
+  EXPECT_FALSE(material.phong().diffuse_texture.exists());
+  EXPECT_FALSE(material.emissive_texture.exists());
+  EXPECT_THAT(scene.images, IsEmpty());
+  std::vector<SourceFile> sources;
+  load_scene(folder_ / "scene.obj", sources);
+  EXPECT_THAT(sources, Contains(testing::Field(&SourceFile::file, folder_ / "none.png"))) << "it may come later";
+}
+
+TEST_F(ObjMapTest, TheMapOfAmbientLightIsThatOfKd) {
+  EXPECT_THAT(load_with("map_Ka a.png\nmap_Kd a.png\n").warnings, IsEmpty());
+  EXPECT_THAT(load_with("map_Ka b.png\nmap_Kd a.png\n").warnings, ElementsAre(HasSubstr("its map_Ka is ignored")));
+}
+
+TEST_F(ObjMapTest, IllumZeroIsUnlit) {
+  const LoadedScene scene = load_with("Kd 1 0.5 0\nillum 0\nmap_Kd a.png\n");
+  const auto& unlit = std::get<Unlit>(scene.materials.at(0).model);
+  EXPECT_EQ(unlit.color, vec3(1, 0.5F, 0));
+  EXPECT_TRUE(unlit.color_texture.exists());
+}
+
+TEST_F(ObjMapTest, PhysicalFactorsMakeAPhysicalMaterial) {
+  const auto model_of = [&](const std::string& lines) {
+    return std::get<MetallicRoughness>(load_with(lines).materials.at(0).model);
+  };
+  const MetallicRoughness both = model_of("Kd 0.5 2 0\nPr 0.25\nPm 0.75\nKe 1 0 0\n");
+  EXPECT_EQ(both.base_color, vec3(0.5F, 1, 0));
+  EXPECT_EQ(both.roughness, 0.25F);
+  EXPECT_EQ(both.metallic, 0.75F);
+  EXPECT_FALSE(both.metallic_roughness_texture.exists());
+  EXPECT_EQ(model_of("Pm 1\n").roughness, 1.0F);
+  EXPECT_EQ(model_of("Pr 0\n").metallic, 0.0F);
+  EXPECT_EQ(model_of("Pr 0\n").base_color, vec3(0.8F));
+  const MetallicRoughness mapped = model_of("Pr 1\nmap_Kd a.png\nnorm -bm 0.5 a.png\n");
+  EXPECT_EQ(mapped.base_color, vec3(1));
+  EXPECT_TRUE(mapped.base_color_texture.exists());
+  EXPECT_TRUE(mapped.normal_texture.exists());
+  EXPECT_EQ(mapped.normal_scale, 0.5F);
+}
+
+TEST_F(ObjMapTest, RoughnessAndMetallicShareAPicture) {
+  write_picture("m.png", {100, 0, 0});
+  const LoadedScene scene = load_with("Pr 0.5\nPm 0.5\nmap_Pr -s 2 2 a.png\nmap_Pm m.png\n");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("options of map_Pm")));
+  const auto& model = std::get<MetallicRoughness>(scene.materials.at(0).model);
+  EXPECT_EQ(model.roughness, 1.0F) << "the map tells it alone";
+  EXPECT_EQ(model.metallic, 1.0F);
+  EXPECT_EQ(model.metallic_roughness_texture.to_u, vec3(2, 0, 0));
+  EXPECT_EQ(image_of(scene, model.metallic_roughness_texture).use, ImageUse::kData);
+  EXPECT_THAT(image_of(scene, model.metallic_roughness_texture).texels, ElementsAre(0xFF640AFFU));
+  EXPECT_THAT(scene.images, SizeIs(1));
+}
+
+TEST_F(ObjMapTest, OneMapOfTheTwoIsEnough) {
+  const LoadedScene rough = load_with("Pm 0.5\nmap_Pr a.png\nmap_Pm none.png\n");
+  const auto& model = std::get<MetallicRoughness>(rough.materials.at(0).model);
+  EXPECT_EQ(model.roughness, 1.0F);
+  EXPECT_EQ(model.metallic, 0.5F);
+  EXPECT_THAT(image_of(rough, model.metallic_roughness_texture).texels, ElementsAre(0xFFFF0AFFU));
+  const LoadedScene none = load_with("Pr 0.5\nmap_Pr none.png\n");
+  EXPECT_EQ(std::get<MetallicRoughness>(none.materials.at(0).model).roughness, 0.5F);
+  EXPECT_FALSE(std::get<MetallicRoughness>(none.materials.at(0).model).metallic_roughness_texture.exists());
+}
+
+TEST_F(ObjMapTest, OpacityHasAMap) {
+  write_picture("c.png", {1, 2, 3});
+  write_picture("o.png", {50, 0, 0, 60, 0, 0}, {2, 1});
+  const LoadedScene both = load_with("map_Kd c.png\nmap_d o.png\nd 0.5\n");
+  EXPECT_THAT(both.warnings, IsEmpty());
+  const Material& material = both.materials.at(0);
+  EXPECT_EQ(material.alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(material.alpha, 0.5F);
+  const TextureImage& image = image_of(both, material.phong().diffuse_texture);
+  EXPECT_EQ(image.size, uvec2(2, 1));
+  EXPECT_EQ(image.use, ImageUse::kColor);
+  EXPECT_THAT(image.texels, ElementsAre(0x32030201U, 0x3C030201U));
+  const LoadedScene alone = load_with("map_d o.png\n");
+  EXPECT_THAT(image_of(alone, alone.materials.at(0).phong().diffuse_texture).texels,
+              ElementsAre(0x32FFFFFFU, 0x3CFFFFFFU));
+  const LoadedScene same = load_with("map_Kd c.png\nmap_d c.png\n");
+  EXPECT_THAT(image_of(same, same.materials.at(0).phong().diffuse_texture).texels, ElementsAre(0xFF030201U));
+  EXPECT_EQ(same.materials.at(0).alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(load_with("map_Kd c.png\n").materials.at(0).alpha_mode, AlphaMode::kOpaque);
+}
+
+TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
+  write_picture("r.png", {1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0}, {4, 1});
+  write_picture("m.png", {5, 0, 0, 6, 0, 0}, {2, 1});
+  const LoadedScene scene = load_with("map_Pr r.png\nmap_Pm m.png\n");
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("images \"r.png\" and \"m.png\" differ in size, the smaller one is enlarged"));
+  const auto& model = std::get<MetallicRoughness>(scene.materials.at(0).model);
+  EXPECT_THAT(image_of(scene, model.metallic_roughness_texture).texels,
+              ElementsAre(0xFF0501FFU, 0xFF0502FFU, 0xFF0603FFU, 0xFF0604FFU));
 }
 
 // Refusals

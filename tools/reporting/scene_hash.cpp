@@ -73,6 +73,7 @@ class ContentHash {
   void add(const Phong& phong) {
     for (const vec3& factor : {phong.ambient, phong.diffuse, phong.specular, phong.reflection}) add(factor);
     add(phong.shininess);
+    for (const TextureSlot& slot : {phong.diffuse_texture, phong.specular_texture, phong.normal_texture}) add(slot);
   }
   void add(const MetallicRoughness& material) {
     add(material.base_color);

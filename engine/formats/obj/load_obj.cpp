@@ -4,26 +4,30 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
+#include <map>
+#include <variant>
 
 #include "core/file.h"
 #include "formats/obj/materials.h"
 #include "formats/obj/text.h"
+#include "formats/obj/textures.h"
 #include "formats/triangulate.h"
 
 namespace promin {
 namespace {
 
-/// Builds the mesh of one group after another. Its vertices are the pairs of position and normal that its faces use.
+/// Builds the mesh of one group after another. Its vertices are what its faces use of positions, with their normals
+/// and, where there is anything to show on them, texture coordinates.
 class MeshBuilder {
  public:
   MeshBuilder(const ObjText& text, LoadReport& report)
       : text_(text), report_(report), newest_vertex_(text.positions.size(), kNoObjIndex) {}
 
-  Mesh build(const ObjGroup& group) {
+  Mesh build(const ObjGroup& group, bool needs_uvs) {
     mesh_ = {};
     previous_vertex_.clear();
-    normal_of_vertex_.clear();
+    corner_of_vertex_.clear();
+    needs_uvs_ = needs_uvs;
     const auto* faces = &text_.faces[group.first_face];
     has_normals_ = std::any_of(faces, faces + group.face_count, [&](const ObjFace& f) { return has_normals(f); });
     for (uint32_t i = 0; i < group.face_count; ++i) add_face(faces[i]);
@@ -64,7 +68,7 @@ class MeshBuilder {
       // A sharp corner among smooth ones gets vertices of its own. A triangle without area is never hit, so any normal
       // will do.
       for (int i = 0; i < 3; ++i) {
-        vertices[i] = add_vertex(corners[triangle[i]].position);
+        vertices[i] = add_vertex(corners[triangle[i]]);
         mesh_.normals.push_back(length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));
       }
     } else {
@@ -73,26 +77,39 @@ class MeshBuilder {
     mesh_.triangles.push_back(vertices);
   }
 
-  /// The vertices of one position form a chain, the newest first; it is short, as few normals meet in a point.
+  /// The vertices of one position form a chain, the newest first; it is short, as few normals and texture coordinates
+  /// meet in a point.
   uint32_t find_or_add_vertex(const ObjCorner& corner) {
-    const uint32_t normal = has_normals_ ? corner.normal : kNoObjIndex;
+    const ObjCorner wanted = {corner.position, needs_uvs_ ? corner.uv : kNoObjIndex,
+                              has_normals_ ? corner.normal : kNoObjIndex};
     for (uint32_t v = newest_vertex_[corner.position]; v != kNoObjIndex; v = previous_vertex_[v]) {
-      if (normal_of_vertex_[v] == normal) return v;
+      if (corner_of_vertex_[v] == wanted) return v;
     }
-    const uint32_t vertex = add_vertex(corner.position);
+    const uint32_t vertex = add_vertex(corner);
     previous_vertex_[vertex] = newest_vertex_[corner.position];
     newest_vertex_[corner.position] = vertex;
-    normal_of_vertex_[vertex] = normal;
-    if (has_normals_) mesh_.normals.push_back(text_.normals[normal]);
+    corner_of_vertex_[vertex] = wanted;
+    if (has_normals_) mesh_.normals.push_back(text_.normals[corner.normal]);
     return vertex;
   }
 
-  uint32_t add_vertex(uint32_t position) {
-    mesh_.positions.push_back(text_.positions[position]);
-    if (!text_.colors.empty()) mesh_.colors.emplace_back(text_.colors[position], 1.0F);
+  uint32_t add_vertex(const ObjCorner& corner) {
+    mesh_.positions.push_back(text_.positions[corner.position]);
+    if (!text_.colors.empty()) mesh_.colors.emplace_back(text_.colors[corner.position], 1.0F);
+    if (needs_uvs_) mesh_.uvs.push_back(uv_of(corner));
     previous_vertex_.push_back(kNoObjIndex);
-    normal_of_vertex_.push_back(kNoObjIndex);
+    corner_of_vertex_.push_back({});
     return static_cast<uint32_t>(mesh_.positions.size() - 1);
+  }
+
+  /// A mesh's v grows downwards, from the first row of a picture.
+  vec4 uv_of(const ObjCorner& corner) {
+    if (corner.uv == kNoObjIndex) {
+      report_.warn("there are corners without texture coordinates under a texture, theirs are taken for 0");
+      return vec4(0.0F, 1.0F, 0.0F, 0.0F);
+    }
+    const dvec2 uv = text_.uvs[corner.uv];
+    return vec4(static_cast<float>(uv.x), static_cast<float>(1.0 - uv.y), 0.0F, 0.0F);
   }
 
   void forget_vertices(const ObjFace& face) {
@@ -105,28 +122,33 @@ class MeshBuilder {
   LoadReport& report_;
   Mesh mesh_;
   bool has_normals_ = false;
+  bool needs_uvs_ = false;
   std::vector<uint32_t> newest_vertex_;
   std::vector<uint32_t> previous_vertex_;
-  std::vector<uint32_t> normal_of_vertex_;
+  /// Of those that may be shared.
+  std::vector<ObjCorner> corner_of_vertex_;
   std::vector<vec3> polygon_;
 };
 
 /// Appends the materials that faces use; where each usemtl name lies in Scene::materials.
 std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadReport& report) {
-  const std::map<std::string, Material> known = read_obj_materials(text.libraries, report);
+  std::map<std::string, MtlMaterial> known = read_mtl_files(text.libraries, report);
+  std::vector<MtlMaterial*> used;
+  for (const std::string& name : text.material_names) {
+    if (const auto found = known.find(name); found != known.end()) used.push_back(&found->second);
+  }
+  ObjTextures textures(used, report);
   std::vector<uint32_t> indices;
   for (const std::string& name : text.material_names) {
-    const auto found = known.find(name);
-    Material material;
-    if (found != known.end()) {
-      material = found->second;
-    } else {
-      material.name = name;
-      report.warn("material " + quote(name) + " is in no MTL file: it is drawn grey");
-    }
     indices.push_back(static_cast<uint32_t>(scene.materials.size()));
-    scene.materials.push_back(material);
+    if (const auto found = known.find(name); found != known.end()) {
+      add_obj_material(found->second, textures, scene, report);
+      continue;
+    }
+    scene.materials.emplace_back().name = name;
+    report.warn("material " + quote(name) + " is in no MTL file: it is drawn grey");
   }
+  textures.finish(scene);
   return indices;
 }
 
@@ -140,6 +162,22 @@ std::vector<uint32_t> materials_of(const ObjText& text, const ObjGroup& group, c
     materials.insert(materials.end(), face.corner_count - 2, material);
   }
   return materials;
+}
+
+bool has_any_texture(const Phong& m) {
+  return m.diffuse_texture.exists() || m.specular_texture.exists() || m.normal_texture.exists();
+}
+bool has_any_texture(const MetallicRoughness& m) {
+  return m.base_color_texture.exists() || m.metallic_roughness_texture.exists() || m.normal_texture.exists();
+}
+bool has_any_texture(const Unlit& m) {
+  return m.color_texture.exists();
+}
+
+/// Whether an OBJ's material shows any.
+bool has_texture(const Material& material) {
+  return material.emissive_texture.exists() ||
+         std::visit([](const auto& model) { return has_any_texture(model); }, material.model);
 }
 
 }  // namespace
@@ -169,10 +207,14 @@ Scene load_obj(const LoadOptions& options, LoadReport& report) {
     scene.materials.back().name = "default";
   }
 
+  std::vector<bool> is_textured;
+  for (const Material& material : scene.materials) is_textured.push_back(has_texture(material));
   MeshBuilder builder(text, report);
   for (const ObjGroup& group : text.groups) {
-    Mesh mesh = builder.build(group);
-    mesh.triangle_materials = materials_of(text, group, indices, default_material);
+    std::vector<uint32_t> materials = materials_of(text, group, indices, default_material);
+    const bool needs_uvs = std::any_of(materials.begin(), materials.end(), [&](uint32_t m) { return is_textured[m]; });
+    Mesh mesh = builder.build(group, needs_uvs);
+    mesh.triangle_materials = std::move(materials);
     const uint32_t first = mesh.triangle_materials.front();
     const bool has_one_material = std::all_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
                                               [&](uint32_t material) { return material == first; });

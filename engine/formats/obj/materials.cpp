@@ -5,38 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
 #include "core/file.h"
 #include "formats/scene_path.h"
 #include "formats/text_lines.h"
-#include "promin/validate.h"
 
 namespace promin {
 namespace {
 
-/// Statements with factors of light, which are checked; d and Tr, opacity and transparency, only lead to a warning.
-constexpr std::array<std::string_view, 6> kFactors = {"Ka", "Kd", "Ks", "Ke", "Ns", "illum"};
-
-/// A material as its lines have it.
-struct MtlMaterial {
-  std::string name;
-  /// The values by keyword, the last of equal ones. Missing numbers are 0, but a single number is all three of a
-  /// colour.
-  std::map<std::string, dvec3> numbers = {};
-  bool has_maps = false;
-
-  dvec3 find(const std::string& keyword, double otherwise) const {
-    const auto found = numbers.find(keyword);
-    return found == numbers.end() ? dvec3(otherwise) : found->second;
-  }
-  double illum() const { return std::floor(find("illum", 2.0).x); }
-};
-
-bool is_map(std::string_view keyword) {
-  constexpr std::array<std::string_view, 5> kOthers = {"bump", "disp", "decal", "norm", "refl"};
-  return keyword.starts_with("map_") || std::find(kOthers.begin(), kOthers.end(), keyword) != kOthers.end();
+double illum_of(const MtlMaterial& source) {
+  return std::floor(source.find("illum", 2.0).x);
 }
 
 /// The files that a mtllib line names: the whole rest of the line, because names may hold spaces, or else each word.
@@ -55,37 +36,16 @@ std::vector<std::filesystem::path> find_library(const std::string& line, LoadRep
   return files;
 }
 
-std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& file, LoadReport& report) {
-  // Statements before the first material belong to none, but they are checked like the rest.
-  std::vector<MtlMaterial> materials(1);
-  TextLines lines(text);
-  while (lines.advance()) {
-    std::string_view rest = lines.line();
-    const std::string keyword(take_word(rest));
-    if (keyword == "newmtl") materials.push_back({.name = std::string(trim(rest))});
-    MtlMaterial& material = materials.back();
-    if (is_map(keyword) && !std::exchange(material.has_maps, true)) {
-      report.warn("material " + quote(material.name) + ": its texture maps are ignored, the first is " + keyword +
-                  " in " + file + " " + lines.place());
-    }
-    const bool is_factor = std::find(kFactors.begin(), kFactors.end(), keyword) != kFactors.end();
-    if (!is_factor && keyword != "d" && keyword != "Tr") continue;
-    dvec3 numbers(0.0);
-    int count = 0;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
-      // The opacity of what is seen edge-on, which is drawn as that of all.
-      if (keyword == "d" && word == "-halo") word = take_word(rest);
-      // An opacity that is no number counts as opaque.
-      const double number = parse_number(word).value_or(is_factor ? -1.0 : keyword == "d" ? 1.0 : 0.0);
-      if (count < 3) numbers[count] = number;
-      if (!is_factor || (number >= 0.0 && number <= kMaxCoordinate)) continue;
-      report.refuse(quote(word) + " is no factor of light", "mtllib " + file + " " + lines.place(),
-                    "use numbers from 0, with a decimal point");
-    }
-    if (count > 0) material.numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
+/// A colour of the file, or what it is without; 1 where a map alone tells it.
+vec3 color_of(const MtlMaterial& source, const std::string& keyword, double otherwise) {
+  return vec3(source.find(keyword, source.find_map("map_" + keyword) != nullptr ? 1.0 : otherwise));
+}
+
+void warn_of_unused_maps(const MtlMaterial& source, std::initializer_list<const char*> keywords, LoadReport& report) {
+  for (const char* keyword : keywords) {
+    if (source.find_map(keyword) == nullptr) continue;
+    report.warn("material " + quote(source.name) + ": its " + keyword + " is ignored");
   }
-  materials.erase(materials.begin());
-  return materials;
 }
 
 /// Where a material has both, d holds.
@@ -94,55 +54,126 @@ float opacity_of(const MtlMaterial& source) {
   return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
-Material make_material(const MtlMaterial& source) {
-  const double illum = source.illum();
-  const dvec3 diffuse = source.find("Kd", 0.8);
-  Material material;
-  material.name = source.name;
-  material.emissive = vec3(source.find("Ke", 0.0));
-  Phong& phong = material.phong();
-  phong.diffuse = vec3(diffuse);
-  phong.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : vec3(diffuse);
-  if (illum == 0.0) {
-    material.emissive += phong.diffuse;
-    phong.ambient = phong.diffuse = vec3(0.0F);
-  }
+/// Of map_Kd with the alpha of map_d.
+TextureSlot read_base_color(const MtlMaterial& source, ObjTextures& textures) {
+  return textures.read_base_color(source.find_map("map_Kd"), source.find_map("map_d"));
+}
+
+void take_alpha(const MtlMaterial& source, Material& material) {
+  material.alpha = opacity_of(source);
+  const bool has_map = source.find_map("map_d") != nullptr;
+  if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
+}
+
+bool is_metallic_roughness(const MtlMaterial& source) {
+  return source.numbers.contains("Pr") || source.numbers.contains("Pm") || source.maps.contains("map_Pr") ||
+         source.maps.contains("map_Pm");
+}
+
+MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& textures) {
+  // A map tells all by itself.
+  const auto share = [&](const char* keyword, double otherwise) {
+    const bool has_map = source.find_map(std::string("map_") + keyword) != nullptr;
+    return has_map ? 1.0F : static_cast<float>(std::min(source.find(keyword, otherwise).x, 1.0));
+  };
+  MetallicRoughness model;
+  model.base_color = glm::min(color_of(source, "Kd", 0.8), vec3(1.0F));
+  model.base_color_texture = read_base_color(source, textures);
+  model.roughness = share("Pr", 1.0);
+  model.metallic = share("Pm", 0.0);
+  model.metallic_roughness_texture =
+      textures.read_metallic_roughness(source.find_map("map_Pr"), source.find_map("map_Pm"));
+  const MtlMap* normals = source.find_map("norm");
+  model.normal_texture = textures.read_slot(normals, ImageUse::kNormal);
+  if (normals != nullptr) model.normal_scale = static_cast<float>(normals->strength);
+  return model;
+}
+
+Phong phong_of(const MtlMaterial& source, ObjTextures& textures) {
+  const double illum = illum_of(source);
+  Phong phong;
+  phong.diffuse = color_of(source, "Kd", 0.8);
+  phong.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : phong.diffuse;
+  phong.diffuse_texture = read_base_color(source, textures);
+  phong.normal_texture = textures.read_slot(source.find_map("norm"), ImageUse::kNormal);
   if (illum >= 2.0) {
-    phong.specular = vec3(source.find("Ks", 0.0));
+    phong.specular = color_of(source, "Ks", 0.0);
     phong.shininess = static_cast<float>(source.find("Ns", 0.0).x);
+    phong.specular_texture = textures.read_slot(source.find_map("map_Ks"), ImageUse::kColor);
   }
   if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
-  material.alpha = opacity_of(source);
-  if (material.alpha < 1.0F) material.alpha_mode = AlphaMode::kBlend;
-  return material;
+  return phong;
+}
+
+/// illum 0: the colour of Kd, to which Ke adds.
+void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& material, LoadReport& report) {
+  warn_of_unused_maps(source, {"map_Ks", "map_Ke", "norm"}, report);
+  material.emissive = vec3(source.find("Ke", 0.0));
+  const vec3 color = color_of(source, "Kd", 0.8);
+  if (const TextureSlot slot = read_base_color(source, textures); slot.exists()) {
+    material.model = Unlit{color, slot};
+    return;
+  }
+  material.emissive += color;
+  material.phong().ambient = material.phong().diffuse = vec3(0.0F);
 }
 
 void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
   const std::array<double, 4> kTransparent = {4, 6, 7, 9};
   if (opacity_of(source) == 1.0F &&
-      std::find(kTransparent.begin(), kTransparent.end(), source.illum()) != kTransparent.end()) {
-    report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(source.illum())) +
+      std::find(kTransparent.begin(), kTransparent.end(), illum_of(source)) != kTransparent.end()) {
+    report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
                 "), it is drawn opaque");
   }
-  if (source.illum() == 10.0) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
+  if (illum_of(source) == 10.0) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
+  // Most exporters name one file for both.
+  const MtlMap* ambient = source.find_map("map_Ka");
+  const MtlMap* diffuse = source.find_map("map_Kd");
+  if (ambient != nullptr && (diffuse == nullptr || diffuse->file != ambient->file)) {
+    report.warn(title + ": its map_Ka is ignored, ambient light takes map_Kd");
+  }
+}
+
+/// The folder of a file, relative to the scene's own, with a slash at its end where it is another.
+std::string folder_of(const std::filesystem::path& file, const std::filesystem::path& scene) {
+  const std::filesystem::path folder = file.lexically_relative(scene.parent_path()).parent_path();
+  return folder.empty() || folder == "." ? "" : folder.string() + "/";
 }
 
 }  // namespace
 
-std::map<std::string, Material> read_obj_materials(const std::vector<std::string>& libraries, LoadReport& report) {
-  std::map<std::string, Material> materials;
+std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>& libraries, LoadReport& report) {
+  std::map<std::string, MtlMaterial> materials;
   for (const std::string& library : libraries) {
     for (const std::filesystem::path& file : find_library(library, report)) {
       const std::vector<std::byte> bytes = read_file(file);
       const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      for (const MtlMaterial& source : parse_mtl(text, file.filename().string(), report)) {
+      const std::string folder = folder_of(file, report.file());
+      for (MtlMaterial& source : parse_mtl(text, file.filename().string(), folder, report)) {
         warn_about_what_is_ignored(source, report);
-        materials.emplace(source.name, make_material(source));
+        materials.emplace(source.name, std::move(source));
       }
     }
   }
   return materials;
+}
+
+void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& scene, LoadReport& report) {
+  Material& material = scene.materials.emplace_back();
+  material.name = source.name;
+  take_alpha(source, material);
+  if (is_metallic_roughness(source)) {
+    warn_of_unused_maps(source, {"map_Ks"}, report);
+    material.model = metallic_roughness_of(source, textures);
+  } else if (illum_of(source) == 0.0) {
+    make_colored(source, textures, material, report);
+    return;
+  } else {
+    material.model = phong_of(source, textures);
+  }
+  material.emissive = color_of(source, "Ke", 0.0);
+  material.emissive_texture = textures.read_slot(source.find_map("map_Ke"), ImageUse::kColor);
 }
 
 }  // namespace promin

@@ -7,13 +7,20 @@
 #include <vector>
 
 #include "formats/load_report.h"
+#include "formats/obj/mtl.h"
+#include "formats/obj/textures.h"
 #include "promin/scene.h"
 
 namespace promin {
 
-/// Reads materials by name from the MTL files that an OBJ's mtllib lines name beside it: Ka, Kd, Ks, Ns and Ke as they
-/// stand, with Ka as Kd where there is none. illum 0 shows Kd alone, 1 has no highlight, 2 has one, and from 3 on Ks
-/// also weighs the mirror ray. Missing files and what Phong cannot show (maps, transparency) are warned about.
-std::map<std::string, Material> read_obj_materials(const std::vector<std::string>& libraries, LoadReport& report);
+/// Reads materials by name from the MTL files that an OBJ's mtllib lines name beside it. Missing files and what cannot
+/// be shown (transparency, other maps) are warned about.
+std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>& libraries, LoadReport& report);
+
+/// Appends a material to the scene. Where it has Pr, Pm or their maps it is metallic-roughness, with the colour Kd.
+/// Else it is Phong: Ka, Kd, Ks, Ns and Ke as they stand, with Ka as Kd where there is none; illum 0 shows Kd alone, 1
+/// has no highlight, 2 has one, and from 3 on Ks also weighs the mirror ray. A map multiplies its colour, which is 1
+/// where the file has none.
+void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& scene, LoadReport& report);
 
 }  // namespace promin

@@ -15,7 +15,7 @@ namespace promin {
 namespace {
 
 /// Statements that other programs need and that change nothing here.
-constexpr std::array<std::string_view, 2> kHarmless = {"vt", "s"};
+constexpr std::array<std::string_view, 1> kHarmless = {"s"};
 
 class ObjParser {
  public:
@@ -31,6 +31,7 @@ class ObjParser {
       report_.warn(std::to_string(ignored_count_) + " statements of OBJ are ignored, the first is " + first_ignored_);
     }
     refuse_indices_past_the_end();
+    forget_uvs_past_the_end();
     if (!out_.colors.empty()) out_.colors.resize(out_.positions.size(), vec3(1.0F));
     return std::move(out_);
   }
@@ -39,6 +40,8 @@ class ObjParser {
   void read_statement(std::string_view keyword, std::string_view rest) {
     if (keyword == "v") {
       read_vertex(rest);
+    } else if (keyword == "vt") {
+      read_uv(rest);
     } else if (keyword == "vn") {
       read_normal(rest);
     } else if (keyword == "f") {
@@ -87,6 +90,23 @@ class ObjParser {
     out_.colors.emplace_back(n[3], n[4], n[5]);
   }
 
+  /// u, and mostly v; a third number is for textures of three dimensions. Files for which textures do not matter may
+  /// hold anything.
+  void read_uv(std::string_view rest) {
+    dvec2 uv(0.0);
+    for (int i = 0; i < 2; ++i) {
+      const std::string_view word = take_word(rest);
+      if (word.empty() && i > 0) break;
+      const std::optional<double> number = parse_number(word);
+      if (number && std::abs(*number) <= kMaxCoordinate) {
+        uv[i] = *number;
+      } else {
+        report_.warn("texture coordinates that are no numbers up to 1e15 are taken for 0");
+      }
+    }
+    out_.uvs.push_back(uv);
+  }
+
   void read_normal(std::string_view rest) {
     std::array<double, 6> n{};
     const std::optional<size_t> count = read_numbers(rest, n);
@@ -128,7 +148,7 @@ class ObjParser {
       word.remove_prefix(std::min(end + 1, word.size()));
     }
     bool is_good = word.empty() && read_index(parts[0], out_.positions.size(), last_position_, corner.position);
-    if (is_good && !parts[1].empty()) is_good = parse_integer(parts[1]).has_value();
+    if (is_good && !parts[1].empty()) is_good = read_uv_index(parts[1], corner.uv);
     if (is_good && !parts[2].empty()) {
       is_good = read_index(parts[2], out_.normals.size(), last_normal_, corner.normal);
     }
@@ -152,6 +172,21 @@ class ObjParser {
     index = static_cast<uint32_t>(from_zero);
     if (index >= count_so_far && index >= last.index) last = {index, lines_.place()};
     return true;
+  }
+
+  /// False where it is no number; where there are no such coordinates, the corner stays without.
+  bool read_uv_index(std::string_view word, uint32_t& index) {
+    const std::optional<int64_t> written = parse_integer(word);
+    if (!written) return false;
+    const int64_t from_zero = *written > 0 ? *written - 1 : static_cast<int64_t>(out_.uvs.size()) + *written;
+    if (*written != 0 && from_zero >= 0 && from_zero < int64_t{kNoObjIndex}) index = static_cast<uint32_t>(from_zero);
+    return true;
+  }
+
+  void forget_uvs_past_the_end() {
+    for (ObjCorner& corner : out_.corners) {
+      if (corner.uv >= out_.uvs.size()) corner.uv = kNoObjIndex;
+    }
   }
 
   void refuse_indices_past_the_end() {

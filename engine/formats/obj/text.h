@@ -19,7 +19,10 @@ inline constexpr uint32_t kNoObjIndex = std::numeric_limits<uint32_t>::max();
 struct ObjCorner {
   uint32_t position = 0;
   /// kNoObjIndex where the file gives none.
+  uint32_t uv = kNoObjIndex;
   uint32_t normal = kNoObjIndex;
+
+  bool operator==(const ObjCorner&) const = default;
 };
 
 struct ObjFace {
@@ -41,6 +44,8 @@ struct ObjText {
   std::vector<vec3> positions;
   /// Empty, or one per position, and white where the file gives none.
   std::vector<vec3> colors;
+  /// Texture coordinates; v grows upwards.
+  std::vector<dvec2> uvs;
   /// The normals as written, which are not of unit length.
   std::vector<vec3> normals;
   std::vector<ObjCorner> corners;
@@ -52,8 +57,9 @@ struct ObjText {
   std::vector<std::string> libraries;
 };
 
-/// Parses the statements v, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning where they would show.
-/// Texture coordinates are not read. Problems go to the report with their line.
+/// Parses the statements v, vt, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning where they would
+/// show. Texture coordinates that are no numbers or not there only lead to a warning. Problems go to the report with
+/// their line.
 ObjText parse_obj_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin
