@@ -42,6 +42,7 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
   TunedRendererOptions result;
   result.expected_samples = expected_samples;
   choose_tree(options.tracing, result);
+  result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
   result.force_all_features = options.has_all_features;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
   result.with_aovs = options.aovs.any();

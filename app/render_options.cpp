@@ -29,6 +29,7 @@ constexpr uint32_t kMaxFrame = 9999999;
 constexpr double kMaxBackground = 1e9;
 /// More would leave the range of floats.
 constexpr double kMaxExposureEv = 64.0;
+constexpr uint32_t kMaxTextureMib = 8192;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
@@ -142,6 +143,10 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
             "How PNG files and the window show what is brighter than they can [neutral; classic scenes: none]",
             [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
+  table.add("--texture-memory", "MIB",
+            fmt::format("Device memory for textures in MiB, 1 to {}; beyond it the largest are halved [{}]",
+                        kMaxTextureMib, look.texture_memory_mib),
+            [&](const OptionValues& w) { look.texture_memory_mib = w.whole(0, 1, kMaxTextureMib); });
 }
 
 }  // namespace

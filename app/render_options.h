@@ -52,6 +52,8 @@ struct LookOptions {
   /// Stops.
   std::optional<float> exposure_ev = std::nullopt;
   std::optional<ToneMapping> tone_mapping = std::nullopt;
+  /// RendererOptions::texture_bytes in MiB.
+  uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
 };
 
 /// The part of a scene that is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.

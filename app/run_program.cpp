@@ -28,7 +28,8 @@ struct Wording {
 constexpr Wording kWordings[] = {{Setting::kDepth, "take a smaller depth", "lower --max-depth"},
                                  {Setting::kDevice, "asked for as the device", "asked for by --device"},
                                  {Setting::kDevice, "another device", "another --device"},
-                                 {Setting::kBuilder, "the builder", "--builder"}};
+                                 {Setting::kBuilder, "the builder", "--builder"},
+                                 {Setting::kTextureMemory, "the memory of textures", "--texture-memory"}};
 
 std::string_view option_of(Setting setting) {
   switch (setting) {
@@ -40,6 +41,8 @@ std::string_view option_of(Setting setting) {
       return "--device";
     case Setting::kBuilder:
       return "--builder";
+    case Setting::kTextureMemory:
+      return "--texture-memory";
   }
   return "";
 }
@@ -77,6 +80,11 @@ void run_command(const std::string& name, const std::string& help,
 }
 
 }  // namespace
+
+std::string message_of(Problem problem) {
+  name_option(problem);
+  return problem.sentence();
+}
 
 std::string message_of(const Error& error) {
   std::vector<Problem> problems = error.problems();

@@ -17,7 +17,9 @@ namespace promin::app {
 int run_program(const std::string& name, const std::string& help,
                 std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv);
 
-/// What the error says, with this command line's options for the settings of the library that it speaks of.
+/// What the problem or the error says, with this command line's options for the settings of the library that it speaks
+/// of.
+std::string message_of(Problem problem);
 std::string message_of(const Error& error);
 
 }  // namespace promin::app

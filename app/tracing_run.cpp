@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
+#include "run_program.h"
 
 namespace promin::app {
 
@@ -40,6 +41,7 @@ gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats
 
 void take_setup(const SetupStats& setup, RunStats& stats, const Console& console) {
   stats.setup = setup;
+  for (const Problem& warning : setup.warnings) console.warn(message_of(warning));
   console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,
                              setup.bvh.nodes, setup.bvh.depth, setup.bvh.sah_cost, setup.bvh_ms));
   console.detail(fmt::format("features: {}", fmt::join(setup.features, ", ")));

@@ -130,6 +130,7 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
   options.builder = request.choice.builder;
   options.bvh = request.choice.bvh;
   options.mode = request.mode;
+  options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
     if (fraction == 1.0) step_ = Step::kUploading;

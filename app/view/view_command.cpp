@@ -12,6 +12,7 @@
 #include "outputs.h"
 #include "promin/error.h"
 #include "render_options.h"
+#include "run_program.h"
 #include "tracing_run.h"
 #include "view/viewer.h"
 #include "view_setup.h"
@@ -134,6 +135,7 @@ void view(const WindowOptions& options) {
   preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);
   if (!picture) return;
+  for (const Problem& warning : picture->scene->renderer->setup_stats().warnings) console.warn(message_of(warning));
   gpu::translate_vulkan_errors(
       [&] { Viewer(window, device, console, preparer, std::move(*picture), std::move(start), stats).run(); });
   check_validation(device, stats);

@@ -9,6 +9,7 @@
 
 #include "deferred_signals.h"
 #include "promin/error.h"
+#include "run_program.h"
 
 namespace promin::app {
 namespace {
@@ -185,10 +186,12 @@ void Viewer::show_picture(ReadyPicture ready) {
   if (!is_new) return;
   std::string text = "read " + file_.filename().string();
   report(text);
-  for (const std::string& warning : scene_->scene->warnings) {
+  const auto warn = [&](const std::string& warning) {
     console_.warn(warning);
     text += "\nwarning: " + warning;
-  }
+  };
+  for (const std::string& warning : scene_->scene->warnings) warn(warning);
+  for (const Problem& warning : scene_->renderer->setup_stats().warnings) warn(message_of(warning));
   message_ = text;
 }
 

@@ -58,15 +58,10 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
 Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage,
                std::span<const vk::MemoryPropertyFlags> preferences)
     : device_(&device), size_bytes_(size_bytes) {
-  const vk::PhysicalDeviceLimits& limits = device.limits();
-  vk::DeviceSize most_bytes = ~vk::DeviceSize{0};
-  if (usage & vk::BufferUsageFlagBits::eStorageBuffer) most_bytes = limits.maxStorageBufferRange;
-  if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer) {
-    most_bytes = std::max(most_bytes, limits.maxTexelBufferElements * kTexelBytes);
-  }
-  if (size_bytes > most_bytes) {
+  const vk::DeviceSize most = most_bytes(device, usage);
+  if (size_bytes > most) {
     throw RunError({"the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB",
-                    "on a device that allows " + std::to_string(most_bytes >> 20) + " MiB",
+                    "on a device that allows " + std::to_string(most >> 20) + " MiB",
                     "use a smaller scene or another device", Setting::kDevice});
   }
   buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, size_bytes, usage));
@@ -92,6 +87,16 @@ void check_file_size_limit(const Device& device) {
   // More than a driver needs beside buffers; what it gets then lies where this one lay.
   constexpr vk::DeviceSize kDriverBytes = 1U << 20;
   if (file_size_limit()) Buffer(device, kDriverBytes, vk::BufferUsageFlagBits::eTransferDst);
+}
+
+vk::DeviceSize Buffer::most_bytes(const Device& device, vk::BufferUsageFlags usage) {
+  const vk::PhysicalDeviceLimits& limits = device.limits();
+  vk::DeviceSize most = ~vk::DeviceSize{0};
+  if (usage & vk::BufferUsageFlagBits::eStorageBuffer) most = limits.maxStorageBufferRange;
+  if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer) {
+    most = std::max(most, limits.maxTexelBufferElements * kTexelBytes);
+  }
+  return most;
 }
 
 Buffer Buffer::make_readback(const Device& device, vk::DeviceSize size_bytes) {

@@ -22,6 +22,9 @@ class Buffer {
   /// too where a CPU driver keeps its memory in a file that would pass the process's file size limit.
   Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageFlags usage);
 
+  /// The most bytes of a buffer for these uses.
+  static vk::DeviceSize most_bytes(const Device& device, vk::BufferUsageFlags usage);
+
   /// One that transfers write and the host reads, at mapped().
   static Buffer make_readback(const Device& device, vk::DeviceSize size_bytes);
 

@@ -7,6 +7,7 @@
 #include "core/divide_up.h"
 #include "device/device.h"
 #include "device_scene/lobe_table.h"
+#include "promin/error.h"
 
 namespace promin {
 namespace {
@@ -184,7 +185,20 @@ std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
 gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
   // The buffer has room for some more lights, so that switching them on needs no other buffer.
   constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
-  return {*device_, tail_end + kSpareBytes, kStorageOrTexels};
+  const uint64_t bytes = tail_end + kSpareBytes;
+  // Texels of images are words: a view of them holds a quarter of what one of four words does.
+  const vk::PhysicalDeviceLimits& limits = device_->limits();
+  const uint64_t most_words_bytes =
+      std::max<uint64_t>(limits.maxStorageBufferRange, limits.maxTexelBufferElements * sizeof(uint32_t));
+  const bool is_too_large =
+      bytes > gpu::Buffer::most_bytes(*device_, kStorageOrTexels) ||
+      (image_words_bytes_ / sizeof(uint32_t) > limits.maxTexelBufferElements && bytes > limits.maxStorageBufferRange);
+  if (image_words_bytes_ > 0 && is_too_large) {
+    throw RunError({"the scene's textures take " + std::to_string(image_words_bytes_ >> 20) + " MiB",
+                    "on a device that allows " + std::to_string(most_words_bytes >> 20) + " MiB for them",
+                    "lower the memory of textures", Setting::kTextureMemory});
+  }
+  return {*device_, bytes, kStorageOrTexels};
 }
 
 void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {

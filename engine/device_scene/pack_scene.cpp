@@ -73,7 +73,7 @@ uint32_t kinds_of(std::span<const Primitive> bounded) {
 }
 
 /// Packs what a scene has beside its tree, whose references are there already.
-void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected) {
+void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected, uint64_t texture_bytes) {
   packed.numbers = std::move(collected.numbers);
   packed.features = geometry_features(scene.objects);
   packed.shown_materials = find_shown_materials(scene.objects, scene.materials.size());
@@ -95,7 +95,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   surfaces.insert(surfaces.end(), collected.unbounded_surfaces.begin(), collected.unbounded_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.push_back({});
   packed.surfaces.vertices = std::move(collected.vertices);
-  packed.surfaces.images = pack_images(scene.images, scene.textures);
+  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes);
 
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
@@ -125,7 +125,8 @@ TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& o
   return find_tree_faults(packed.tree(), packed.primitives, packed.numbers, options);
 }
 
-PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options) {
+PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options,
+                       uint64_t texture_bytes) {
   Collected collected = collect_primitives(scene);
 
   const Stopwatch building;
@@ -146,11 +147,11 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
   packed.references = sort_leaves_by_kind(bvh, collected.bounded);
   packed.geometry_hash = hash_geometry(collected.bounded);
-  pack_contents(packed, scene, collected);
+  pack_contents(packed, scene, collected, texture_bytes);
   return packed;
 }
 
-PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene) {
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {
   Collected collected = collect_primitives(scene);
 
   const Stopwatch reading;
@@ -163,7 +164,7 @@ PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::
   packed.bvh = tree.stats;
   packed.stack_size = tree.stack_size;
   packed.references.assign(tree.references.begin(), tree.references.end());
-  pack_contents(packed, scene, collected);
+  pack_contents(packed, scene, collected, texture_bytes);
   return packed;
 }
 

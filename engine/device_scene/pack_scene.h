@@ -75,12 +75,14 @@ struct PackedScene {
 };
 
 /// Packs a checked scene's objects. Throws UsageError for an unknown builder and RunError where counts pass what the
-/// layout can hold (2^27 primitives, 2^24 - 1 nodes).
-PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options = {});
+/// layout can hold (2^27 primitives, 2^24 - 1 nodes), and as pack_images does for images in `texture_bytes`.
+PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options = {},
+                       uint64_t texture_bytes = kDefaultTextureBytes);
 
 /// Packs a checked scene's objects with the tree of a file. Throws InputError for a file that is bad or not the
 /// scene's, and RunError as above.
-PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene);
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene,
+                            uint64_t texture_bytes = kDefaultTextureBytes);
 
 /// Applies find_tree_faults to the scene's own tree.
 TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});

@@ -34,8 +34,9 @@ vec3 vec3_of(const uvec4& bits) {
 }
 
 PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options) {
-  PackedScene packed = options.bvh ? pack_scene_with(*options.bvh, scene)
-                                   : pack_scene(scene, options.builder, {.progress = options.progress});
+  PackedScene packed = options.bvh
+                           ? pack_scene_with(*options.bvh, scene, options.texture_bytes)
+                           : pack_scene(scene, options.builder, {.progress = options.progress}, options.texture_bytes);
   return options.repack ? options.repack(std::move(packed)) : std::move(packed);
 }
 
@@ -56,6 +57,7 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   stats.bvh = packed.bvh;
   stats.bvh_ms = packed.bvh_ms;
   stats.degenerate_triangles = packed.degenerate_count;
+  if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
   geometry_features_ = packed.features;
   shown_materials_ = packed.shown_materials;
   primitive_count_ = packed.primitive_count();
@@ -70,10 +72,9 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
 }
 
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, const RenderMode& mode) const {
-  FeatureMask features = force_all_features_
-                             ? all_features()
-                             : picture_features(geometry_features_, material_features_, lights,
-                                                environment_features_, primitive_count_);
+  FeatureMask features = force_all_features_ ? all_features()
+                                             : picture_features(geometry_features_, material_features_, lights,
+                                                                environment_features_, primitive_count_);
   if (!mode.has_shadows) features = features.without(layout::FEATURE_SHADOWS);
   return features | features_of(mode.debug_view);
 }

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/srgb.h"
-#include "promin/error.h"
 
 namespace promin {
 namespace {
@@ -97,14 +97,48 @@ uint64_t count_words(const uvec2& size, uint32_t levels) {
   return words;
 }
 
+/// The size after some halvings.
+uvec2 halve(const uvec2& size, uint32_t halvings) {
+  return {std::max(size.x >> halvings, 1U), std::max(size.y >> halvings, 1U)};
+}
+
+/// What images take as their textures ask for them.
+class ImageSizes {
+ public:
+  ImageSizes(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures)
+      : images_(images), has_levels_(images.size(), false) {
+    for (const Texture& texture : textures) {
+      has_levels_[texture.image] = has_levels_[texture.image] || texture.has_levels;
+    }
+  }
+
+  /// 0 where the image is absent.
+  uint32_t levels(size_t image, uint32_t halvings) const {
+    if (images_[image]->texels.empty()) return 0;
+    return has_levels_[image] ? count_levels(halve(images_[image]->size, halvings)) : 1;
+  }
+  uint64_t words(size_t image, uint32_t halvings) const {
+    const uint32_t count = levels(image, halvings);
+    return count == 0 ? 0 : count_words(halve(images_[image]->size, halvings), count);
+  }
+
+ private:
+  std::span<const std::shared_ptr<const TextureImage>> images_;
+  std::vector<bool> has_levels_;
+};
+
+/// Writes an image's levels from that of the placed size on. Each is made of the one before it, not of rounded texels.
 void write_image(const TextureImage& image, const PlacedImage& placed, std::span<uint32_t> words) {
+  const auto halvings = static_cast<uint32_t>(count_levels(image.size) - count_levels(placed.size));
   uint32_t place = placed.levels;
-  words[0] = place;
-  std::ranges::copy(image.texels, words.begin() + place);
-  place += static_cast<uint32_t>(image.texels.size());
+  if (halvings == 0) {
+    words[0] = place;
+    std::ranges::copy(image.texels, words.begin() + place);
+    place += static_cast<uint32_t>(image.texels.size());
+  }
   const std::array<float, 256> numbers = make_numbers(image.use);
   Level level;
-  for (uint32_t i = 1; i < placed.levels; ++i) {
+  for (uint32_t i = 1; i < halvings + placed.levels; ++i) {
     if (i == 1) {
       level = make_coarser(image.size, [&](uint32_t x, uint32_t y) {
         const uint32_t word = image.texels[size_t{y} * image.size.x + x];
@@ -116,28 +150,82 @@ void write_image(const TextureImage& image, const PlacedImage& placed, std::span
       level =
           make_coarser(finer.size, [&](uint32_t x, uint32_t y) { return finer.texels[size_t{y} * finer.size.x + x]; });
     }
-    words[i] = place;
+    if (i < halvings) continue;
+    words[i - halvings] = place;
     for (const vec4& texel : level.texels) words[place++] = encode(texel, image.use);
   }
 }
 
+std::string to_mib(uint64_t bytes) {
+  constexpr uint64_t kMib = uint64_t{1} << 20;
+  return std::to_string((bytes + kMib - 1) / kMib) + " MiB";
+}
+
+/// Words of the buffer that images lie in are numbered in 32 bits.
+constexpr uint64_t kMostBytes = uint64_t{8} << 30;
+constexpr const char* kCure = "raise the memory of textures, or make images smaller";
+
+/// Says what was halved, if anything was.
+std::optional<Problem> warn_of(const TextureFit& fit) {
+  const auto count_from = [&](uint32_t least) {
+    return std::ranges::count_if(fit.halvings, [=](uint32_t count) { return count >= least; });
+  };
+  if (count_from(1) == 0) return std::nullopt;
+  std::string what = std::to_string(count_from(1)) + " of " + std::to_string(fit.halvings.size()) +
+                     " images of textures are halved in size";
+  if (count_from(2) > 0) what += ", " + std::to_string(count_from(2)) + " of these more than once";
+  what += ", so that " + to_mib(fit.whole_bytes) + " become " + to_mib(fit.bytes);
+  return Problem{what, "", kCure, Setting::kTextureMemory};
+}
+
 }  // namespace
 
-PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images,
-                         std::span<const Texture> textures) {
-  std::vector<bool> has_levels(images.size(), false);
-  for (const Texture& texture : textures) has_levels[texture.image] = has_levels[texture.image] || texture.has_levels;
+TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
+                      uint64_t most_bytes) {
+  most_bytes = std::min(most_bytes, kMostBytes);
+  const ImageSizes sizes(images, textures);
+  TextureFit fit{std::vector<uint32_t>(images.size(), 0)};
+  // The largest is on top, of equal ones the first.
+  const auto is_after = [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : a.second > b.second;
+  };
+  std::vector<std::pair<uint64_t, size_t>> heap;
+  for (size_t i = 0; i < images.size(); ++i) {
+    heap.emplace_back(sizes.words(i, 0), i);
+    fit.whole_bytes += sizeof(uint32_t) * heap.back().first;
+  }
+  fit.bytes = fit.whole_bytes;
+  std::ranges::make_heap(heap, is_after);
+  while (fit.bytes > most_bytes) {
+    std::ranges::pop_heap(heap, is_after);
+    auto& [words, image] = heap.back();
+    const uint64_t fewer = sizes.words(image, ++fit.halvings[image]);
+    if (fewer == words) {
+      throw RunError({"the scene's " + std::to_string(images.size()) + " images take more than " + to_mib(most_bytes) +
+                          " even as single texels",
+                      "", kCure, Setting::kTextureMemory});
+    }
+    fit.bytes -= sizeof(uint32_t) * (words - fewer);
+    words = fewer;
+    std::ranges::push_heap(heap, is_after);
+  }
+  return fit;
+}
+
+PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
+                         uint64_t most_bytes) {
+  const TextureFit fit = fit_images(images, textures, most_bytes);
+  const ImageSizes sizes(images, textures);
   PackedImages packed;
+  packed.warning = warn_of(fit);
   uint64_t words = 0;
   for (size_t i = 0; i < images.size(); ++i) {
-    const TextureImage& image = *images[i];
     PlacedImage& placed = packed.images.emplace_back();
-    if (image.texels.empty()) continue;
-    placed = {static_cast<uint32_t>(words), image.size, has_levels[i] ? count_levels(image.size) : 1, image.use};
-    words += count_words(image.size, placed.levels);
-    if (words * sizeof(uint32_t) <= kMostTextureBytes) continue;
-    throw RunError({"the scene's textures take more than " + std::to_string(kMostTextureBytes >> 20) + " MiB",
-                    "with image " + std::to_string(i), "make some of them smaller"});
+    const uint32_t halvings = fit.halvings[i];
+    const uint32_t levels = sizes.levels(i, halvings);
+    if (levels == 0) continue;
+    placed = {static_cast<uint32_t>(words), halve(images[i]->size, halvings), levels, images[i]->use};
+    words += sizes.words(i, halvings);
   }
   packed.words.resize(words);
   for_each_index(images.size(), 0, [&](size_t i) {

@@ -4,13 +4,29 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/unset_vector.h"
+#include "promin/error.h"
 #include "promin/textures.h"
 
 namespace promin {
+
+/// How a scene's images fit into a number of bytes.
+struct TextureFit {
+  /// How often each image is halved.
+  std::vector<uint32_t> halvings;
+  /// The bytes of all images with their levels as they are, and as they are packed.
+  uint64_t whole_bytes = 0;
+  uint64_t bytes = 0;
+};
+
+/// Halves the largest image, of equal ones the first, until all fit in `most_bytes`, and in the 8 GiB that words are
+/// numbered in. Throws RunError where they do not even as single texels.
+TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
+                      uint64_t most_bytes);
 
 /// Where an image lies among the words of PackedImages.
 struct PlacedImage {
@@ -26,14 +42,14 @@ struct PlacedImage {
 struct PackedImages {
   UnsetVector<uint32_t> words;
   std::vector<PlacedImage> images;
+  /// Says which were halved, if any were.
+  std::optional<Problem> warning;
 };
 
 /// Packs images on all cores, with levels down to one texel where a texture asks for levels. Each texel of a level is
-/// the mean over its area, of colours in linear light. Throws RunError where all take more than kMostTextureBytes.
-PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images,
-                         std::span<const Texture> textures);
-
-/// Most memory of a scene's images, so that pictures do not depend on the device's.
-inline constexpr uint64_t kMostTextureBytes = uint64_t{512} << 20;
+/// the mean over its area, of colours in linear light. An image that is halved to fit (fit_images) begins with the
+/// level of that size, whether it has further ones or not. Throws RunError as fit_images does.
+PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
+                         uint64_t most_bytes = kDefaultTextureBytes);
 
 }  // namespace promin

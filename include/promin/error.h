@@ -20,6 +20,8 @@ enum class Setting {
   kDevice,
   /// The builder of RendererOptions and CasterOptions.
   kBuilder,
+  /// RendererOptions::texture_bytes.
+  kTextureMemory,
 };
 
 /// One thing that is wrong, in words for people.

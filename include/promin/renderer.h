@@ -53,6 +53,10 @@ struct RendererOptions {
   /// About how many samples all pictures will have together, over all pixels. Where they are few, kernels are taken
   /// that are compiled sooner and trace slower. Pictures have the same bits.
   uint64_t expected_samples = std::numeric_limits<uint64_t>::max();
+  /// Most bytes that the scene's images may take in device memory, with their levels: beyond it the largest ones are
+  /// halved until all fit, which SetupStats::warnings tells. It decides about pictures, never the device: one that has
+  /// no room for what fits is a RunError.
+  uint64_t texture_bytes = kDefaultTextureBytes;
   /// Whether render() fills RenderResult::aovs. The image's bits stay the same.
   bool with_aovs = false;
   /// Told how far building the tree is; where it returns false the constructor throws Cancelled.
@@ -70,7 +74,8 @@ class PROMIN_EXPORT Renderer {
  public:
   /// Builds the tree, a bounding volume hierarchy, uploads the scene and compiles the pipeline. Throws UsageError for
   /// an unknown builder, InputError for a scene that is not valid (see validate) and for a BVH file that is bad or not
-  /// the scene's, RunError where memory does not suffice or a device limit is passed, Cancelled.
+  /// the scene's, RunError where memory does not suffice, a device limit is passed or images do not fit in
+  /// RendererOptions::texture_bytes even as single texels, Cancelled.
   Renderer(const gpu::Device& device, const Scene& scene, const RendererOptions& options = {});
   ~Renderer();
   /// Takes all that the other has.

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "promin/error.h"
 #include "promin/export.h"
 
 namespace promin {
@@ -50,6 +51,8 @@ struct SetupStats {
   std::vector<std::string> features;
   /// Triangles without area, which are never hit.
   uint64_t degenerate_triangles = 0;
+  /// What is shown otherwise than the scene has it, and what would help.
+  std::vector<Problem> warnings;
 };
 
 /// Counts of what takes long. Their differences tell what a change of the scene took.

@@ -36,6 +36,10 @@ struct TextureImage {
 /// The longest side of an image of a texture.
 inline constexpr uint32_t kMaxTextureSide = 16384;
 
+/// Most bytes of device memory that the images of a scene take, unless RendererOptions::texture_bytes says otherwise:
+/// the same on every device, because pictures depend on it.
+inline constexpr uint64_t kDefaultTextureBytes = uint64_t{512} << 20;
+
 /// What lies beyond the edge of an image.
 enum class TextureWrap : uint32_t { kRepeat = 0, kMirroredRepeat = 1, kClampToEdge = 2 };
 

@@ -120,6 +120,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--framing", "back"}, "--framing takes three-quarter or front, not"},
       {{"render", "square.gltf", "-o", "a.exr", "--tone-mapping", "agx"},
        "--tone-mapping takes none or neutral or aces"},
+      {{"render", "square.gltf", "-o", "a.exr", "--texture-memory", "0"},
+       "--texture-memory takes a whole number from 1 to 8192"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "bright"}, "--exposure takes a number from -64 to 64"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "nan"}, "--exposure takes a number from -64 to 64"},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "-1", "0", "0"},

@@ -32,6 +32,8 @@ TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
             "bad, asked for by --device; choose one");
   EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "bad, x; try again, or another --device");
   EXPECT_EQ(message("x", "take the builder sah", Setting::kBuilder), "bad, x; take --builder sah");
+  EXPECT_EQ(message("x", "raise the memory of textures", Setting::kTextureMemory), "bad, x; raise --texture-memory");
+  EXPECT_EQ(message_of(Problem{"bad", "x", "take the builder sah", Setting::kBuilder}), "bad, x; take --builder sah");
   EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "bad, x; bounce less (--max-depth)") << "other words";
   EXPECT_EQ(message("another device.gltf", "take another device", Setting::kNone),
             "bad, another device.gltf; take another device");

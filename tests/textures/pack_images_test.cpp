@@ -74,10 +74,72 @@ TEST(PackImages, AbsentImagesTakeNothing) {
   EXPECT_EQ(packed.images.at(0).levels, 0U);
 }
 
-TEST(PackImages, MoreThanTheBudgetIsRefused) {
-  // Each texel of it is named, none is read before the sum is known.
-  auto large = std::make_shared<TextureImage>(make_image({16384, 8192}, std::vector<uint32_t>(uint64_t{16384} * 8192)));
-  EXPECT_THROW(pack_images(Images{large}, std::vector{Texture{}}), RunError);
+/// Data images of these sizes, each with a texture.
+struct Collection {
+  Images images;
+  std::vector<Texture> textures;
+
+  void add(const uvec2& size, bool has_levels) {
+    std::vector<uint32_t> texels(size_t{size.x} * size.y);
+    std::mt19937 random(size.x);
+    for (uint32_t& texel : texels) texel = static_cast<uint32_t>(random());
+    images.push_back(std::make_shared<TextureImage>(make_image(size, std::move(texels))));
+    Texture texture;
+    texture.image = static_cast<uint32_t>(textures.size());
+    texture.has_levels = has_levels;
+    textures.push_back(texture);
+  }
+};
+
+TEST(PackImages, TheLargestAreHalvedUntilAllFit) {
+  Collection scene;
+  scene.add({8, 8}, true);    // 4 levels: 4 + 64 + 16 + 4 + 1 = 89 words, then 3 + 16 + 4 + 1 = 24
+  scene.add({4, 4}, true);    // 24 words, then 2 + 4 + 1 = 7
+  scene.add({8, 8}, false);   // 65 words, then 17
+  scene.add({16, 4}, false);  // 65 words, then 17
+  const auto halvings = [&](uint64_t words) { return fit_images(scene.images, scene.textures, 4 * words).halvings; };
+  EXPECT_THAT(halvings(243), ElementsAre(0U, 0U, 0U, 0U));
+  EXPECT_THAT(halvings(242), ElementsAre(1U, 0U, 0U, 0U));
+  EXPECT_THAT(halvings(177), ElementsAre(1U, 0U, 1U, 0U)) << "of equal ones the first";
+  EXPECT_THAT(halvings(129), ElementsAre(1U, 0U, 1U, 1U));
+  EXPECT_THAT(halvings(81), ElementsAre(2U, 0U, 1U, 1U));
+  EXPECT_THAT(halvings(8), ElementsAre(3U, 2U, 3U, 4U)) << "single texels, each with a list of one level";
+  EXPECT_THROW(halvings(7), RunError);
+}
+
+TEST(PackImages, WhatIsHalvedHasTheLevelsThatItHad) {
+  Collection scene;
+  scene.add({13, 6}, true);
+  const PackedImages whole = pack_images(scene.images, scene.textures);
+  EXPECT_FALSE(whole.warning.has_value());
+  const PackedImages halved = pack_images(scene.images, scene.textures, sizeof(uint32_t) * (whole.words.size() - 1));
+  EXPECT_EQ(halved.images.at(0).size, uvec2(6, 3));
+  ASSERT_EQ(halved.images.at(0).levels, 3U);
+  for (uint32_t level = 0; level < 3; ++level) EXPECT_EQ(level_of(halved, level), level_of(whole, level + 1)) << level;
+  // Without levels it is the same picture alone.
+  scene.textures[0].has_levels = false;
+  const PackedImages alone = pack_images(scene.images, scene.textures, sizeof(uint32_t) * 20);
+  ASSERT_EQ(alone.images.at(0).levels, 1U);
+  EXPECT_EQ(alone.words.size(), 19U);
+  EXPECT_EQ(level_of(alone, 0), level_of(whole, 1));
+}
+
+TEST(PackImages, WhatIsHalvedIsSaid) {
+  Collection scene;
+  for (const uint32_t side : {1024, 512, 16}) scene.add(uvec2(side), false);
+  const std::optional<Problem> warning = pack_images(scene.images, scene.textures, 600 << 10).warning;
+  ASSERT_TRUE(warning.has_value());
+  EXPECT_EQ(
+      warning->sentence(),
+      "2 of 3 images of textures are halved in size, 1 of these more than once, so that 6 MiB become 1 MiB; raise "
+      "the memory of textures, or make images smaller");
+  EXPECT_EQ(warning->setting, Setting::kTextureMemory);
+}
+
+TEST(PackImages, TheBudgetCanBeNoMoreThanWordsAreNumbered) {
+  Collection scene;
+  scene.add({2, 2}, false);
+  EXPECT_THAT(fit_images(scene.images, scene.textures, ~uint64_t{0}).halvings, ElementsAre(0U));
 }
 
 }  // namespace

@@ -53,9 +53,9 @@ TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
       describe_command({.file = "s", .look = look}, view),
       testing::HasSubstr(" --light headlight --background 0.100000001 0 1 --exposure -1.10000002 --tone-mapping "
                          "aces --eye "));
-  look = {.background = BackgroundChoice{.is_environment = true}};
+  look = {.background = BackgroundChoice{.is_environment = true}, .texture_memory_mib = 64};
   EXPECT_THAT(describe_command({.file = "s", .look = look}, view),
-              testing::HasSubstr(" --background environment --eye"));
+              testing::HasSubstr(" --background environment --texture-memory 64 --eye"));
 }
 
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
