@@ -126,7 +126,9 @@ PicturesPlugin load_plugin() {
   }
   find_function(library, "promin_pictures_encode", file, plugin.encode);
   find_function(library, "promin_pictures_open", file, plugin.open);
+  find_function(library, "promin_pictures_open_bytes", file, plugin.open_bytes);
   find_function(library, "promin_pictures_read_rgb", file, plugin.read_rgb);
+  find_function(library, "promin_pictures_read_rgba", file, plugin.read_rgba);
   find_function(library, "promin_pictures_close", file, plugin.close);
   return plugin;
 }

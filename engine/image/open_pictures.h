@@ -13,7 +13,9 @@ struct PicturesPlugin {
   decltype(&promin_pictures_interface) interface = nullptr;
   decltype(&promin_pictures_encode) encode = nullptr;
   decltype(&promin_pictures_open) open = nullptr;
+  decltype(&promin_pictures_open_bytes) open_bytes = nullptr;
   decltype(&promin_pictures_read_rgb) read_rgb = nullptr;
+  decltype(&promin_pictures_read_rgba) read_rgba = nullptr;
   decltype(&promin_pictures_close) close = nullptr;
 };
 

@@ -5,28 +5,24 @@
 #include <png.h>
 #include <turbojpeg.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <csetjmp>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
+#include "image/open_pictures.h"
+#include "image/picture_formats.h"
+#include "promin/error.h"
 #include "promin/textures.h"
 
 namespace promin {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "texels have red in the lowest byte");
-
-constexpr std::array<uint8_t, 8> kPngMagic = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-constexpr std::array<uint8_t, 3> kJpegMagic = {0xFF, 0xD8, 0xFF};
-
-template <size_t Count>
-bool begins_with(std::span<const std::byte> file, const std::array<uint8_t, Count>& magic) {
-  return file.size() >= Count && std::memcmp(file.data(), magic.data(), Count) == 0;
-}
 
 void check_size(uint64_t width, uint64_t height) {
   if (width == 0 || height == 0) throw PictureError("it has no pixels");
@@ -131,18 +127,63 @@ class JpegReader {
   unsigned long bytes_;
 };
 
+/// A file of any other format that the plugin for pictures reads.
+class PluginReader {
+ public:
+  PluginReader(std::span<const std::byte> file, const PictureFormat& format)
+      : plugin_(open_plugin()), reader_(nullptr, plugin_.close), file_(file), format_(format) {}
+
+  uvec2 read_header() {
+    // What the header says comes first: libraries take memory for the picture when they open it.
+    if (const std::optional<uvec2> size = read_told_size(file_, format_)) check_size(size->x, size->y);
+    ProminPicturesInfo info{};
+    ProminPicturesReader* opened = nullptr;
+    check(plugin_.open_bytes(file_.data(), file_.size(), format_.name, &opened, &info, &message_));
+    reader_.reset(opened);
+    if (info.is_flat == 0) throw PictureError("it is not a flat picture");
+    check_size(info.width, info.height);
+    return {static_cast<uint32_t>(info.width), static_cast<uint32_t>(info.height)};
+  }
+
+  void read_texels(const uvec2& /*size*/, uint32_t* texels) {
+    check(plugin_.read_rgba(reader_.get(), reinterpret_cast<unsigned char*>(texels), &message_));
+  }
+
+ private:
+  static const PicturesPlugin& open_plugin() {
+    try {
+      return open_pictures();
+    } catch (const RunError& error) {
+      throw PictureError(error.problems().front().what);
+    }
+  }
+  void check(int status) {
+    if (status == PROMIN_PICTURES_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (status != PROMIN_PICTURES_DONE) throw PictureError(format_.name + std::string(": ") + message_.text);
+  }
+
+  const PicturesPlugin& plugin_;
+  std::unique_ptr<ProminPicturesReader, decltype(PicturesPlugin::close)> reader_;
+  std::span<const std::byte> file_;
+  const PictureFormat& format_;
+  ProminPicturesMessage message_{};
+};
+
 /// Calls task with the reader that the file's first bytes ask for.
 template <typename Task>
 auto with_reader(std::span<const std::byte> file, const Task& task) {
-  if (begins_with(file, kPngMagic)) {
+  const PictureFormat* format = find_picture_format(file);
+  if (format == nullptr) throw PictureError("it is of no known format");
+  if (std::string_view(format->name) == "png") {
     PngReader reader(file);
     return task(reader);
   }
-  if (begins_with(file, kJpegMagic)) {
+  if (std::string_view(format->name) == "jpeg") {
     JpegReader reader(file);
     return task(reader);
   }
-  throw PictureError("it is neither PNG nor JPEG");
+  PluginReader reader(file, *format);
+  return task(reader);
 }
 
 template <typename Reader>

@@ -25,11 +25,13 @@ struct DecodedPicture {
   std::vector<uint32_t> texels;
 };
 
-/// The size of a PNG or JPEG file, which its first bytes tell from other formats. Throws PictureError where it is
-/// neither, is broken, or is larger than kMaxTextureSide or kMaxTextureTexels.
+/// The size of a picture, whose first bytes tell its format: one of image/picture_formats.h; for any but PNG and
+/// JPEG the plugin for pictures is opened. Throws PictureError where it is of none, is broken, is larger than
+/// kMaxTextureSide or kMaxTextureTexels, or the plugin is missing.
 uvec2 read_picture_size(std::span<const std::byte> file);
 
-/// The texels of such a file: grey ones in three channels, without alpha 1, 16 bits rounded to 8. Profiles and gamma of
+/// The texels of such a file: grey ones in three channels, without alpha 1, numbers of more bits rounded to 8, what
+/// is beyond 0...1 clamped. Profiles and gamma of
 /// the file are ignored, as glTF 2.0, section 3.8.3, asks for. Throws PictureError, before it takes memory for a
 /// picture that is too large.
 DecodedPicture decode_picture(std::span<const std::byte> file);

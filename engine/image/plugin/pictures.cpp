@@ -12,8 +12,15 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+
+#include "image/plugin/webp.h"
 
 struct ProminPicturesReader {
+  /// A WebP file in memory; all else has an input.
+  std::span<const unsigned char> webp;
+  /// Another file in memory.
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
   int first_channel = -1;
 };
@@ -97,6 +104,31 @@ int find_rgb(const OIIO::ImageSpec& spec) {
   return -1;
 }
 
+ProminPicturesInfo describe(ProminPicturesReader& reader) {
+  const OIIO::ImageSpec& spec = reader.input->spec();
+  const bool is_flat = spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep;
+  reader.first_channel = find_rgb(spec);
+  return {is_flat ? static_cast<uint64_t>(spec.width) : 0, is_flat ? static_cast<uint64_t>(spec.height) : 0,
+          is_flat ? 1U : 0U, reader.first_channel};
+}
+
+/// The number of channels that are read for RGBA: grey, grey and alpha, colours, colours and alpha.
+int count_rgba(const OIIO::ImageSpec& spec) {
+  const int count = std::min(spec.nchannels, 4);
+  const bool has_alpha = spec.alpha_channel == count - 1;
+  return count % 2 == 0 && !has_alpha ? count - 1 : count;
+}
+
+/// Spreads the first channels of each pixel over all four.
+void spread_channels(std::span<unsigned char> pixels, int count) {
+  if (count == 4) return;
+  for (size_t i = 0; i < pixels.size(); i += 4) {
+    unsigned char* pixel = &pixels[i];
+    pixel[3] = count == 2 ? pixel[1] : 255;
+    if (count <= 2) pixel[1] = pixel[2] = pixel[0];
+  }
+}
+
 }  // namespace
 
 uint32_t promin_pictures_interface() {
@@ -128,17 +160,59 @@ int promin_pictures_open(const char* file, ProminPicturesReader** reader, Promin
     auto opened = std::make_unique<ProminPicturesReader>();
     opened->input = OIIO::ImageInput::open(file);
     if (!opened->input) throw std::runtime_error(first_line(OIIO::geterror()));
-    const OIIO::ImageSpec& spec = opened->input->spec();
-    const bool is_flat = spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep;
-    opened->first_channel = find_rgb(spec);
-    *info = {is_flat ? static_cast<uint64_t>(spec.width) : 0, is_flat ? static_cast<uint64_t>(spec.height) : 0,
-             is_flat ? 1U : 0U, opened->first_channel};
+    *info = describe(*opened);
     *reader = opened.release();
+  });
+}
+
+int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char* format, ProminPicturesReader** reader,
+                               ProminPicturesInfo* info, ProminPicturesMessage* message) {
+  *reader = nullptr;
+  return guard(message, [&] {
+    auto opened = std::make_unique<ProminPicturesReader>();
+    if (std::string_view(format) == "webp") {
+      opened->webp = {static_cast<const unsigned char*>(bytes), byte_count};
+      const auto [width, height] = read_webp_size(opened->webp);
+      *info = {width, height, 1, -1};
+      *reader = opened.release();
+      return;
+    }
+    opened->memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, byte_count);
+    opened->input = OIIO::ImageInput::create(format);
+    if (!opened->input) throw std::runtime_error(first_line(OIIO::geterror()));
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    OIIO::ImageSpec spec;
+    const bool takes_memory = opened->input->supports("ioproxy") && opened->input->set_ioproxy(opened->memory.get());
+    if (!takes_memory) throw std::runtime_error(std::string(format) + " cannot be read from memory");
+    if (!opened->input->open(std::string("memory.") + format, spec, config)) {
+      throw std::runtime_error(first_line(opened->input->geterror()));
+    }
+    *info = describe(*opened);
+    *reader = opened.release();
+  });
+}
+
+int promin_pictures_read_rgba(ProminPicturesReader* reader, unsigned char* pixels, ProminPicturesMessage* message) {
+  return guard(message, [&] {
+    if (!reader->input) {
+      const auto [width, height] = read_webp_size(reader->webp);
+      read_webp(reader->webp, {pixels, size_t{4} * width * height});
+      return;
+    }
+    const OIIO::ImageSpec& spec = reader->input->spec();
+    const int count = count_rgba(spec);
+    constexpr OIIO::stride_t kPixelStride = 4;
+    if (!reader->input->read_image(0, 0, 0, count, OIIO::TypeDesc::UINT8, pixels, kPixelStride)) {
+      throw std::runtime_error(first_line(reader->input->geterror()));
+    }
+    spread_channels({pixels, 4 * spec.image_pixels()}, count);
   });
 }
 
 int promin_pictures_read_rgb(ProminPicturesReader* reader, float* pixels, ProminPicturesMessage* message) {
   return guard(message, [&] {
+    if (!reader->input) throw std::runtime_error("WebP has no numbers of light");
     const int first = reader->first_channel;
     if (!reader->input->read_image(0, 0, first, first + 3, OIIO::TypeDesc::FLOAT, pixels)) {
       throw std::runtime_error(first_line(reader->input->geterror()));

@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 1
+#define PROMIN_PICTURES_INTERFACE 2
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -88,6 +88,17 @@ int promin_pictures_encode(const struct ProminPicturesSource* source, ProminPict
 /// Opens a file of any format that OpenImageIO knows. Where it succeeds, `reader` is to be closed by the caller.
 int promin_pictures_open(const char* file, struct ProminPicturesReader** reader, struct ProminPicturesInfo* info,
                          struct ProminPicturesMessage* message);
+
+/// Opens a file in memory, which must stay there until the reader is closed, by OpenImageIO's name of its format, such
+/// as "webp". Alpha is kept apart from colours. Else as promin_pictures_open; any number of threads may call it.
+int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char* format,
+                               struct ProminPicturesReader** reader, struct ProminPicturesInfo* info,
+                               struct ProminPicturesMessage* message);
+
+/// Fills the caller's 4 * width * height bytes with red, green, blue and alpha of each pixel, 0 for 0 and less, 255 for
+/// 1 and more: one channel is grey, two are grey and alpha, of three alpha is 255.
+int promin_pictures_read_rgba(struct ProminPicturesReader* reader, unsigned char* pixels,
+                              struct ProminPicturesMessage* message);
 
 /// Fills the caller's 3 * width * height floats with R, G, B of each pixel, without conversion of colours.
 int promin_pictures_read_rgb(struct ProminPicturesReader* reader, float* pixels, struct ProminPicturesMessage* message);

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "promin/math.h"
+
+namespace promin {
+
+/// A format that the plugin for pictures reads from memory.
+struct PictureFormat {
+  /// OpenImageIO's name of it.
+  const char* name = "";
+  /// What files begin with, '?' for any byte; empty where only is_targa tells.
+  std::string_view magic;
+  /// Where the header holds width and height, little-endian, in how many bytes; 0 bytes where what reads it takes no
+  /// memory for the picture before the size is known.
+  size_t width_at = 0;
+  size_t height_at = 0;
+  size_t size_bytes = 0;
+};
+
+/// The format of a file: PNG, JPEG, WebP, BMP, DDS, GIF, OpenEXR or Radiance by their first bytes, else Targa, which
+/// has none, by whether its header can be one. Null where it is none of these.
+const PictureFormat* find_picture_format(std::span<const std::byte> file);
+
+/// The size that the header tells; nullopt where that is not known.
+std::optional<uvec2> read_told_size(std::span<const std::byte> file, const PictureFormat& format);
+
+}  // namespace promin

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "image/plugin/webp.h"
+
+#include <webp/decode.h>
+
+#include <stdexcept>
+
+std::pair<uint32_t, uint32_t> read_webp_size(std::span<const unsigned char> file) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK) {
+    throw std::runtime_error("its header is damaged");
+  }
+  if (features.has_animation != 0) throw std::runtime_error("it is animated");
+  return {static_cast<uint32_t>(features.width), static_cast<uint32_t>(features.height)};
+}
+
+void read_webp(std::span<const unsigned char> file, std::span<unsigned char> pixels) {
+  const auto [width, height] = read_webp_size(file);
+  if (pixels.size() != size_t{4} * width * height ||
+      WebPDecodeRGBAInto(file.data(), file.size(), pixels.data(), pixels.size(), static_cast<int>(4 * width)) ==
+          nullptr) {
+    throw std::runtime_error("its pixels are damaged");
+  }
+}
