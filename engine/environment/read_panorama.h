@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "promin/environment.h"
 
@@ -12,5 +15,8 @@ namespace promin {
 /// InputError where it is no picture, larger than a panorama may be, or has a pixel that is no radiance; RunError where
 /// the plugin for pictures is missing.
 Panorama read_panorama(const std::filesystem::path& file);
+
+/// Does the same with a file in memory, of one of the formats of image/picture_formats.h. `name` is for messages.
+Panorama read_panorama(std::span<const std::byte> file, const std::string& name);
 
 }  // namespace promin

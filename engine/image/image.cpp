@@ -13,6 +13,7 @@
 #include "core/file.h"
 #include "core/srgb.h"
 #include "image/open_pictures.h"
+#include "image/picture_formats.h"
 #include "image/read_image.h"
 #include "promin/error.h"
 
@@ -127,6 +128,57 @@ void check_picture(const Image& image, const std::optional<CropPlacement>& crop,
       "the crop reaches beyond the whole picture", "give its place and the size of the whole");
 }
 
+/// A picture that the plugin has opened, or not.
+class OpenedPicture {
+ public:
+  /// Has `open` open it, a call of the plugin's. `name` is for messages.
+  template <typename Open>
+  OpenedPicture(std::string name, const Open& open) : name_(std::move(name)), plugin_(open_pictures()) {
+    ProminPicturesReader* opened = nullptr;
+    const bool is_open = is_done(open(plugin_, &opened, &info_, &message_));
+    reader_ = {opened, plugin_.close};
+    if (is_open) return;
+    throw InputError(
+        {std::string("cannot read the picture (") + message_.text + ")", name_, "name a picture such as .exr or .png"});
+  }
+
+  Image read(const uvec2& most) {
+    check(most);
+    Image image;
+    image.size = uvec2(info_.width, info_.height);
+    image.pixels.resize(info_.width * info_.height);
+    static_assert(sizeof(vec3) == 3 * sizeof(float));
+    if (!is_done(plugin_.read_rgb(reader_.get(), &image.pixels.data()->x, &message_))) {
+      throw InputError(
+          {std::string("the picture is damaged (") + message_.text + ")", name_, "write or export it again"});
+    }
+    return image;
+  }
+
+ private:
+  void check(const uvec2& most) const {
+    if (info_.is_flat == 0) throw InputError({"not a flat picture", name_, "name a two-dimensional picture"});
+    if (info_.width > most.x || info_.height > most.y) {
+      throw InputError(
+          {"the picture is too large (" + std::to_string(info_.width) + "x" + std::to_string(info_.height) + " pixels)",
+           name_, "give one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
+    }
+    if (const uint64_t pixel_count = info_.width * info_.height; pixel_count > kMaxReadPixels) {
+      throw InputError({"the picture is too large (" + std::to_string(pixel_count) + " pixels)", name_,
+                        "at most " + std::to_string(kMaxReadPixels) + " pixels are read"});
+    }
+    if (info_.first_rgb_channel < 0) {
+      throw InputError({"the picture has no channels R, G, B", name_, "convert it to RGB"});
+    }
+  }
+
+  std::string name_;
+  const PicturesPlugin& plugin_;
+  ProminPicturesInfo info_{};
+  ProminPicturesMessage message_{};
+  std::unique_ptr<ProminPicturesReader, decltype(PicturesPlugin::close)> reader_{nullptr, nullptr};
+};
+
 }  // namespace
 
 bool is_writable_format(const fs::path& file) {
@@ -180,40 +232,21 @@ Image read_image(const fs::path& file) {
 Image read_image_within(const fs::path& file, const uvec2& most) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) throw InputError({"no such picture", file.string(), "check the path"});
-  const PicturesPlugin& plugin = open_pictures();
-  ProminPicturesInfo info{};
-  ProminPicturesMessage message{};
-  ProminPicturesReader* opened = nullptr;
-  const bool is_open = is_done(plugin.open(file.c_str(), &opened, &info, &message));
-  const std::unique_ptr<ProminPicturesReader, decltype(plugin.close)> reader(opened, plugin.close);
-  if (!is_open) {
-    throw InputError({std::string("cannot read the picture (") + message.text + ")", file.string(),
-                      "name a picture such as .exr or .png"});
-  }
-  if (info.is_flat == 0) throw InputError({"not a flat picture", file.string(), "name a two-dimensional picture"});
-  if (info.width > most.x || info.height > most.y) {
-    throw InputError(
-        {"the picture is too large (" + std::to_string(info.width) + "x" + std::to_string(info.height) + " pixels)",
-         file.string(), "give one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
-  }
-  const uint64_t pixel_count = info.width * info.height;
-  if (pixel_count > kMaxReadPixels) {
-    throw InputError({"the picture is too large (" + std::to_string(pixel_count) + " pixels)", file.string(),
-                      "at most " + std::to_string(kMaxReadPixels) + " pixels are read"});
-  }
-  if (info.first_rgb_channel < 0) {
-    throw InputError({"the picture has no channels R, G, B", file.string(), "convert it to RGB"});
-  }
+  const auto open = [&](const PicturesPlugin& plugin, auto... results) {
+    return plugin.open(file.c_str(), results...);
+  };
+  return OpenedPicture(file.string(), open).read(most);
+}
 
-  Image image;
-  image.size = uvec2(info.width, info.height);
-  image.pixels.resize(pixel_count);
-  static_assert(sizeof(vec3) == 3 * sizeof(float));
-  if (!is_done(plugin.read_rgb(reader.get(), &image.pixels.data()->x, &message))) {
-    throw InputError(
-        {std::string("the picture is damaged (") + message.text + ")", file.string(), "write or export it again"});
+Image read_image_bytes(std::span<const std::byte> file, const std::string& name, const uvec2& most) {
+  const PictureFormat* format = find_picture_format(file);
+  if (format == nullptr) {
+    throw InputError({"the picture is of no known format", name, "name a picture such as .exr or .png"});
   }
-  return image;
+  const auto open = [&](const PicturesPlugin& plugin, auto... results) {
+    return plugin.open_bytes(file.data(), file.size(), format->name, results...);
+  };
+  return OpenedPicture(name, open).read(most);
 }
 
 }  // namespace promin

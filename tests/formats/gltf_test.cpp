@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "core/file.h"
 #include "core/rounding.h"
 #include "environment/sky_radiance.h"
 #include "promin/image.h"
@@ -575,7 +576,7 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
   gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
   const LoadedScene scene = load(gltf);
   EXPECT_THAT(scene.warnings, ElementsAre("image \"bumps\" is ignored: \"missing.png\" does not exist",
-                                          "image images[1] is ignored: it is neither PNG nor JPEG"));
+                                          "image images[1] is ignored: it is of no known format"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
 }
 
@@ -687,15 +688,37 @@ TEST_F(GltfTest, GradientSkiesAreRead) {
   EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("topColor"));
 }
 
+TEST_F(GltfTest, PanoramasLieInTheFileToo) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["extensions"]["OMI_environment_sky"]["skies"] = {
+      {{"type", "panorama"}, {"panorama", {{"equirectangular", 0}}}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  for (const char* name : {"sky.exr", "sky.png"}) {
+    write_image(folder_ / name, {{4, 2}, std::vector<vec3>(8, vec3(0.5F))});
+    const std::vector<std::byte> bytes = read_file(folder_ / name);
+    const std::string picture(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    gltf.json["images"] = {{{"uri", "data:image/whatever;base64," + encode_base64(picture)}}};
+    const LoadedScene in_text = load(gltf);
+    EXPECT_THAT(in_text.warnings, IsEmpty());
+    // A PNG's levels are sRGB's: 188 / 255 is 0.503 of light.
+    EXPECT_NEAR(sky_radiance(in_text.environment, dvec3(1, 0, 0)).x, 0.5, 0.004) << name;
+    gltf.json["images"] = {{{"mimeType", "image/png"},
+                            {"bufferView", gltf.add_view(std::vector<uint8_t>(picture.begin(), picture.end()))}}};
+    const LoadedScene in_binary = SceneFolder::load("scene.glb", gltf.glb());
+    EXPECT_THAT(in_binary.warnings, IsEmpty());
+    EXPECT_NEAR(sky_radiance(in_binary.environment, dvec3(1, 0, 0)).x, 0.5, 0.004) << name;
+  }
+}
+
 TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   GltfBuilder gltf = triangle_gltf();
   auto& skies = gltf.json["extensions"]["OMI_environment_sky"]["skies"];
   skies = {{{"type", "panorama"}, {"panorama", {{"equirectangular", 1}}}}};
   gltf.json["textures"] = {json::object(), {{"source", 0}}};
   gltf.json["images"] = {{{"uri", "my%20sky.exr"}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("missing")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("does not exist")));
   write("my sky.exr", "no picture");
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cannot be read")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("no known format")));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(load(gltf).environment.sky));
   // The middle is +Z and the left is +X: of four pixels the first goes from -Z to +X.
   Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.0F))};
@@ -708,9 +731,10 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, -1)).x, 1.0, 1e-6);
   EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, 1)).x, 0.0, 1e-6);
   gltf.json["images"] = {{{"bufferView", 0}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("no file of its own")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("the sky's panorama images[0] is ignored: the picture is of no known "
+                                               "format"));
   gltf.json["images"] = {{{"uri", "../sky.exr"}}};
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("leaves the scene's folder"));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("leaves the scene's folder")));
   skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
   skies[0]["panorama"] = {{"equirectangular", 2}};

@@ -8,9 +8,8 @@
 #include <type_traits>
 
 #include "environment/read_panorama.h"
-#include "formats/gltf/buffers.h"
+#include "formats/gltf/image_bytes.h"
 #include "formats/gltf/json_lookup.h"
-#include "formats/scene_path.h"
 #include "promin/validate.h"
 
 namespace promin {
@@ -78,33 +77,31 @@ std::optional<T> value_of(const json& object, const char* name) {
   return member->get<T>();
 }
 
-/// The picture of a panorama: of a texture its source's file beside the scene. On nullopt the report holds the reason.
-std::optional<Panorama> read_panorama_sky(const json& document, const json& source, LoadReport& report) {
+/// The picture of a panorama. On nullopt the report holds the reason.
+std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const json& source, LoadReport& report) {
   if (source.contains("cubemap") && !source.contains("equirectangular")) {
     report.warn("the sky is a cube map, only equirectangular panoramas are drawn: there is no sky");
     return std::nullopt;
   }
-  const json& textures = elements_of(document, "textures");
-  const json& images = elements_of(document, "images");
+  const json& textures = elements_of(document.json, "textures");
+  const json& images = elements_of(document.json, "images");
   const auto texture = value_of<size_t>(source, "equirectangular");
   const auto image = texture ? value_of<size_t>(textures[*texture], "source") : std::nullopt;
-  const bool has_image = image && images.is_array() && *image < images.size();
-  const auto uri = has_image ? value_of<std::string>(images[*image], "uri") : std::nullopt;
-  if (!uri || uri->starts_with("data:")) {
-    report.warn("the sky's panorama has no file of its own: there is no sky");
+  if (!image || !images.is_array() || *image >= images.size()) {
+    report.warn("the sky's panorama has no image that is known: there is no sky");
     return std::nullopt;
   }
-  const std::string place = "images[" + std::to_string(*image) + "].uri";
-  const auto file = find_beside_scene(decode_percent(*uri).value_or(*uri), place, false, report);
-  if (!file) {
-    report.warn("the sky's panorama " + quote(*uri) + " is missing: there is no sky");
+  const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
+  PictureSource source;
+  read_gltf_image(document, *image, source, report);
+  if (!source.problem.empty()) {
+    report.warn(name + " is ignored: " + source.problem);
     return std::nullopt;
   }
   try {
-    return read_panorama(*file);
+    return read_panorama(source.file, name);
   } catch (const InputError& error) {
-    report.warn("the sky's panorama " + quote(*uri) + " cannot be read, " + error.problems().front().what +
-                ": there is no sky");
+    report.warn(name + " is ignored: " + error.problems().front().what);
     return std::nullopt;
   }
 }
@@ -175,7 +172,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
     return;
   }
   if (type == "panorama" && sky.contains(type)) {
-    if (std::optional<Panorama> panorama = read_panorama_sky(document.json, sky[type], report)) {
+    if (std::optional<Panorama> panorama = read_panorama_sky(document, sky[type], report)) {
       scene.environment.sky = std::move(*panorama);
       scene.environment.shows_sky = true;
       // Its middle is +Z here.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "formats/gltf/buffers.h"
+#include "formats/gltf/image_bytes.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/specular_glossiness.h"
 
@@ -119,25 +119,8 @@ uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
   source.image->use = purpose.first;
   source.title = title_of(document_.json, "images", static_cast<size_t>(index));
   source.image->name = document_.json["images"][static_cast<size_t>(index)].value("name", "");
-  read_file(static_cast<size_t>(index), source);
+  read_gltf_image(document_, static_cast<size_t>(index), source, report_);
   return known->second;
-}
-
-void GltfTextures::read_file(size_t index, PictureSource& source) {
-  const json& image = document_.json["images"][index];
-  if (image.contains("bufferView")) {
-    const json& view = document_.json["bufferViews"][image["bufferView"].get<size_t>()];
-    source.file = document_.buffers.bytes[view["buffer"].get<size_t>()].subspan(view.value("byteOffset", size_t{0}),
-                                                                                view["byteLength"].get<size_t>());
-    return;
-  }
-  if (!image.contains("uri")) {
-    source.problem = "it has no bytes";
-    return;
-  }
-  read_picture(source, report_, [&](LoadReport& report) {
-    return read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", report);
-  });
 }
 
 void GltfTextures::take_specular(Material& material) const {

@@ -5,7 +5,6 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -45,7 +44,6 @@ class GltfTextures {
   TextureSlot read_slot_for(const nlohmann::json& object, const char* name, const Purpose& purpose);
   uint32_t find_texture(size_t index, const Purpose& purpose);
   uint32_t find_image(int index, const Purpose& purpose);
-  void read_file(size_t index, PictureSource& source);
   void take_specular(Material& material) const;
 
   const GltfDocument& document_;

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/image_bytes.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/gltf/buffers.h"
+
+namespace promin {
+
+using nlohmann::json;
+
+void read_gltf_image(const GltfDocument& document, size_t index, PictureSource& source, LoadReport& report) {
+  const json& image = document.json["images"][index];
+  if (image.contains("bufferView")) {
+    const json& view = document.json["bufferViews"][image["bufferView"].get<size_t>()];
+    source.file = document.buffers.bytes[view["buffer"].get<size_t>()].subspan(view.value("byteOffset", size_t{0}),
+                                                                               view["byteLength"].get<size_t>());
+    return;
+  }
+  if (!image.contains("uri")) {
+    source.problem = "it has no bytes";
+    return;
+  }
+  read_picture(source, report, [&](LoadReport& attempt) {
+    return read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", attempt);
+  });
+}
+
+}  // namespace promin
