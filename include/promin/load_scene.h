@@ -19,6 +19,9 @@ struct LoadOptions {
   /// The variant of materials that is shown (KHR_materials_variants), one of Scene::variants; empty: the materials that
   /// hold without any.
   std::string material_variant = {};
+  /// Whether images of materials get their texels. Without them only their sizes are read, from the heads of their
+  /// files: enough to tell what a scene holds, in a fraction of the time.
+  bool decodes_images = true;
 };
 
 /// Reads a scene by its ending: .gltf, .glb, .obj, .ply or .stl. The scene comes back valid (promin/validate.h). A scene

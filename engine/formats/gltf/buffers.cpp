@@ -7,7 +7,9 @@
 
 #include "core/file.h"
 #include "formats/gltf/checks.h"
+#include "formats/gltf/draco.h"
 #include "formats/gltf/json_lookup.h"
+#include "formats/gltf/meshopt.h"
 #include "formats/scene_path.h"
 
 namespace promin {
@@ -73,39 +75,72 @@ std::string say_too_short(uint64_t size, uint64_t length) {
   return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
 }
 
-/// Which buffers hold images, instances, or attributes or indices of meshes that are read.
-std::vector<bool> find_needed_buffers(const GltfDocument& document) {
+std::vector<bool> find_needed_buffers(const GltfDocument& document, const std::vector<bool>& is_needed_view) {
   std::vector<bool> is_needed(elements_of(document.json, "buffers").size(), false);
-  const auto need_view = [&](int view) {
-    if (view < 0) return;
-    is_needed[static_cast<size_t>(document.views[static_cast<size_t>(view)].buffer)] = true;
-  };
-  const auto need_accessor = [&](int index) {
+  for (size_t i = 0; i < is_needed_view.size(); ++i) {
+    if (!is_needed_view[i]) continue;
+    const json* compressed = find_meshopt(document.json["bufferViews"][i]);
+    const auto own = static_cast<size_t>(document.views[i].buffer);
+    is_needed[compressed == nullptr ? own : (*compressed)["buffer"].get<size_t>()] = true;
+  }
+  return is_needed;
+}
+
+/// Whether the buffer only stands for what compressed views hold, and needs no bytes.
+bool is_fallback(const json& buffer) {
+  const json* extension = find_meshopt(buffer);
+  if (extension == nullptr) return false;
+  const auto fallback = extension->find("fallback");
+  return fallback != extension->end() && *fallback == true;
+}
+
+/// Finds the views that readers of a document need.
+class NeededViews {
+ public:
+  explicit NeededViews(const GltfDocument& document) : document_(document), is_needed_(document.views.size(), false) {
+    for (size_t m = 0; m < document.meshes.size(); ++m) {
+      const std::vector<GltfPrimitive>& primitives = document.meshes[m].primitives;
+      for (size_t p = 0; p < primitives.size(); ++p) {
+        need_primitive(primitives[p], document.json["meshes"][m]["primitives"][p]);
+      }
+    }
+    for (const json& node : elements_of(document.json, "nodes")) {
+      const json* instances = find_extension(node, "EXT_mesh_gpu_instancing");
+      if (instances == nullptr) continue;
+      for (const auto& [name, accessor] : (*instances)["attributes"].items()) need_accessor(accessor);
+    }
+    for (const json& image : elements_of(document.json, "images")) need_view(image.value("bufferView", -1));
+  }
+
+  std::vector<bool> take() { return std::move(is_needed_); }
+
+ private:
+  void need_view(int view) {
+    if (view >= 0) is_needed_[static_cast<size_t>(view)] = true;
+  }
+
+  void need_accessor(int index) {
     if (index < 0) return;
-    const GltfAccessor& accessor = document.accessors[static_cast<size_t>(index)];
+    const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(index)];
     need_view(accessor.view);
     if (!accessor.sparse) return;
     need_view(accessor.sparse->index_view);
     need_view(accessor.sparse->value_view);
-  };
-  for (const GltfMesh& mesh : document.meshes) {
-    for (const GltfPrimitive& primitive : mesh.primitives) {
-      need_accessor(primitive.indices);
-      for (const auto& [name, accessor] : primitive.attributes) {
-        if (is_read_attribute(name)) need_accessor(accessor);
-      }
+  }
+
+  void need_primitive(const GltfPrimitive& primitive, const json& source) {
+    const json* draco = find_draco(source);
+    if (draco != nullptr) need_view((*draco)["bufferView"]);
+    if (draco == nullptr) need_accessor(primitive.indices);
+    for (const auto& [name, accessor] : primitive.attributes) {
+      const bool is_compressed = draco != nullptr && (*draco)["attributes"].contains(name);
+      if (is_read_attribute(name) && !is_compressed) need_accessor(accessor);
     }
   }
-  for (const json& node : elements_of(document.json, "nodes")) {
-    const json* instances = find_extension(node, "EXT_mesh_gpu_instancing");
-    if (instances == nullptr) continue;
-    for (const auto& [name, accessor] : (*instances)["attributes"].items()) need_accessor(accessor);
-  }
-  for (const json& image : elements_of(document.json, "images")) {
-    if (image.contains("bufferView")) need_view(image["bufferView"].get<int>());
-  }
-  return is_needed;
-}
+
+  const GltfDocument& document_;
+  std::vector<bool> is_needed_;
+};
 
 }  // namespace
 
@@ -151,9 +186,13 @@ std::optional<std::string> decode_percent(std::string_view text) {
   return decoded;
 }
 
-GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
-                              LoadReport& report) {
-  const std::vector<bool> is_needed = find_needed_buffers(document);
+std::vector<bool> find_needed_views(const GltfDocument& document) {
+  return NeededViews(document).take();
+}
+
+GltfBuffers read_gltf_buffers(const GltfDocument& document, const std::vector<bool>& is_needed_view,
+                              std::optional<std::span<const std::byte>> glb_binary, LoadReport& report) {
+  const std::vector<bool> is_needed = find_needed_buffers(document, is_needed_view);
   GltfBuffers buffers;
   for (const json& source : elements_of(document.json, "buffers")) {
     const size_t index = buffers.bytes.size();
@@ -164,6 +203,7 @@ GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::s
     // The binary chunk belongs to the first buffer alone.
     const bool is_chunk = !has_uri && index == 0 && glb_binary;
     if (!is_needed[index]) {
+      if (is_fallback(source)) continue;
       const uint64_t size = has_uri    ? size_of_uri(source["uri"], place + ".uri", report)
                             : is_chunk ? glb_binary->size()
                                        : 0;

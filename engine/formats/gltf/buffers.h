@@ -17,12 +17,15 @@ namespace promin {
 std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, const std::string& place,
                                                     LoadReport& report);
 
+/// Which buffer views hold images, instances, or attributes or indices of meshes that are read.
+std::vector<bool> find_needed_views(const GltfDocument& document);
+
 /// The bytes of every buffer of a document: from data: URIs, files beside the scene (see find_beside_scene) or the
-/// GLB's binary chunk. A buffer that a mesh's attributes or indices lie in has at least its byteLength of them, any
-/// other has none. Only the former is refused where its bytes are missing or too few; of the latter that is a warning.
-/// Problems go to the report.
-GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
-                              LoadReport& report);
+/// GLB's binary chunk. A buffer that needed views lie in, or what they are compressed to, has at least its byteLength
+/// of them, any other has none. Only the former is refused where its bytes are missing or too few; of the latter that
+/// is a warning. Problems go to the report.
+GltfBuffers read_gltf_buffers(const GltfDocument& document, const std::vector<bool>& is_needed_view,
+                              std::optional<std::span<const std::byte>> glb_binary, LoadReport& report);
 
 /// RFC 4648, with or without padding; nullopt where the text is no base64.
 std::optional<std::vector<std::byte>> decode_base64(std::string_view text);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "formats/gltf/checks.h"
+#include "formats/gltf/draco.h"
 #include "formats/gltf/json_lookup.h"
 
 namespace promin {
@@ -85,7 +86,8 @@ void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t strid
                 place, "correct the count, the offset or the buffer view");
 }
 
-void check_accessor(const json& document, const json& accessor, const std::string& place, LoadReport& report) {
+void check_accessor(const json& document, const json& accessor, bool is_plain, const std::string& place,
+                    LoadReport& report) {
   const auto count = accessor["count"].get<uint64_t>();
   const std::string type = accessor["type"];
   const int component_type = accessor["componentType"];
@@ -99,7 +101,7 @@ void check_accessor(const json& document, const json& accessor, const std::strin
           "correct byteStride of its buffer view");
     }
     check_fit(view, accessor.value("byteOffset", uint64_t{0}), count, stride, size, place, report);
-  } else if (count > kMaxZeroElements) {
+  } else if (is_plain && count > kMaxZeroElements) {
     report.refuse("an accessor of " + std::to_string(count) + " zeros is too large", place + ".count",
                   "add a buffer view or use at most " + std::to_string(kMaxZeroElements));
   }
@@ -164,11 +166,34 @@ void check_instances(const json& node, const json& accessors, const std::string&
 void check_primitive(const json& primitive, const json& accessors, const std::string& place, LoadReport& report) {
   check_attributes(primitive["attributes"], accessors, place + ".attributes", report);
   if (!primitive.contains("indices")) return;
+  const bool is_compressed = find_draco(primitive) != nullptr;
   const json& indices = accessors[primitive["indices"].get<size_t>()];
   check_format(indices, "indices", place + ".indices", report);
-  if (!indices.contains("bufferView")) {
+  if (!indices.contains("bufferView") && !is_compressed) {
     report.refuse("the indices have no buffer view, so all are 0", place + ".indices", "add the bytes");
   }
+}
+
+/// Which accessors mesh primitives need the elements of as they are; of others they are in a stream of Draco's.
+std::vector<bool> find_plain_accessors(const json& document) {
+  std::vector<bool> is_plain(elements_of(document, "accessors").size(), true);
+  const auto visit = [&](bool is_compressed) {
+    for (const json& mesh : elements_of(document, "meshes")) {
+      for (const json& primitive : mesh["primitives"]) {
+        const json* draco = find_draco(primitive);
+        if (primitive.contains("indices") && (draco != nullptr) == is_compressed) {
+          is_plain[primitive["indices"].get<size_t>()] = !is_compressed;
+        }
+        for (const auto& [name, index] : primitive["attributes"].items()) {
+          const bool is_in_stream = draco != nullptr && (*draco)["attributes"].contains(name);
+          if (is_in_stream == is_compressed) is_plain[index.get<size_t>()] = !is_compressed;
+        }
+      }
+    }
+  };
+  visit(true);
+  visit(false);
+  return is_plain;
 }
 
 }  // namespace
@@ -205,7 +230,10 @@ void check_gltf_accessors(const json& document, LoadReport& report) {
   }
 
   const json& accessors = elements_of(document, "accessors");
-  for (size_t i = 0; i < accessors.size(); ++i) check_accessor(document, accessors[i], at("accessors", i), report);
+  const std::vector<bool> is_plain = find_plain_accessors(document);
+  for (size_t i = 0; i < accessors.size(); ++i) {
+    check_accessor(document, accessors[i], is_plain[i], at("accessors", i), report);
+  }
 
   const json& nodes = elements_of(document, "nodes");
   for (size_t i = 0; i < nodes.size(); ++i) check_instances(nodes[i], accessors, at("nodes", i), report);

@@ -6,8 +6,10 @@
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/checks.h"
 #include "formats/gltf/container.h"
+#include "formats/gltf/draco.h"
 #include "formats/gltf/extensions.h"
 #include "formats/gltf/json_lookup.h"
+#include "formats/gltf/meshopt.h"
 #include "formats/gltf/parse_json.h"
 #include "formats/gltf/schema.h"
 
@@ -91,7 +93,14 @@ GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) 
   check_gltf_extensions(document.json, options.is_strict, report);
   check_gltf_nodes(document.json, report);
   check_gltf_accessors(document.json, report);
-  document.buffers = read_gltf_buffers(document, container.binary, report);
+  check_gltf_meshopt(document.json, report);
+  const std::vector<bool> is_needed_view = find_needed_views(document);
+  document.buffers = read_gltf_buffers(document, is_needed_view, container.binary, report);
+  report.throw_if_refused();
+
+  decode_gltf_meshopt(document, is_needed_view, report);
+  report.throw_if_refused();
+  decode_gltf_draco(document, report);
   report.throw_if_refused();
 
   // Moving the bytes leaves them where they are: the views into them stay valid.

@@ -80,8 +80,8 @@ struct GltfBuffers {
   std::vector<std::vector<std::byte>> own;
 };
 
-/// A glTF file, read and checked: every index, type, range and length in it can be relied on. What only one reader
-/// needs (materials, cameras, extensions) it takes from `json`.
+/// A glTF file, read, checked and decompressed: every index, type, range and length in it can be relied on. What only
+/// one reader needs (materials, cameras, extensions) it takes from `json`.
 struct GltfDocument {
   nlohmann::json json;
   std::vector<GltfBufferView> views;

@@ -27,7 +27,9 @@ struct Known {
 
 constexpr Known kKnown[] = {
     {.name = "EXT_mesh_gpu_instancing"},
+    {.name = "EXT_meshopt_compression"},
     {.name = "EXT_texture_webp"},
+    {.name = "KHR_draco_mesh_compression"},
     {.name = "KHR_implicit_shapes"},
     {.name = "KHR_lights_punctual"},
     {.name = "KHR_materials_clearcoat"},
@@ -42,6 +44,7 @@ constexpr Known kKnown[] = {
     {.name = "KHR_materials_unlit"},
     {.name = "KHR_materials_variants"},
     {.name = "KHR_mesh_quantization"},
+    {.name = "KHR_meshopt_compression"},
     {.name = "KHR_node_visibility"},
     {.name = "KHR_texture_transform"},
     {.name = "OMI_environment_sky"},

@@ -45,6 +45,7 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_GLOSSY "materials[].extensions.KHR_materials_pbrSpecularGlossiness"
 #define PROMIN_VARIANTS "extensions.KHR_materials_variants.variants"
 #define PROMIN_MAPPINGS "meshes[].primitives[].extensions.KHR_materials_variants.mappings"
+#define PROMIN_DRACO "meshes[].primitives[].extensions.KHR_draco_mesh_compression"
 #define PROMIN_INSTANCES "nodes[].extensions.EXT_mesh_gpu_instancing.attributes"
 
 #define PROMIN_TEXTURE_INFO(PATH)                                                                  \
@@ -54,6 +55,12 @@ constexpr double kTiny = 1e-9;
       numbers(PATH ".extensions.KHR_texture_transform.scale", 2, -kMaxScalar, kMaxScalar),         \
       number(PATH ".extensions.KHR_texture_transform.rotation", -kMaxScalar, kMaxScalar),          \
       integer(PATH ".extensions.KHR_texture_transform.texCoord", 0, kMaxCount)
+
+#define PROMIN_MESHOPT(PATH)                                                                                      \
+  object(PATH), needed(index(PATH ".buffer", "buffers")), integer(PATH ".byteOffset", 0, kMaxBytes),              \
+      needed(integer(PATH ".byteLength", 1, kMaxBytes)), needed(integer(PATH ".byteStride", 1, 256)),             \
+      needed(integer(PATH ".count", 1, kMaxCount)), needed(choice(PATH ".mode", "ATTRIBUTES|TRIANGLES|INDICES")), \
+      choice(PATH ".filter", "NONE|OCTAHEDRAL|QUATERNION|EXPONENTIAL")
 
 constexpr JsonRule kRules[] = {
     needed(object("asset")),
@@ -109,6 +116,8 @@ constexpr JsonRule kRules[] = {
     integer("bufferViews[].byteStride", 4, 252),
     object("bufferViews[].extensions"),
     object("bufferViews[].extensions.*"),
+    PROMIN_MESHOPT("bufferViews[].extensions.EXT_meshopt_compression"),
+    PROMIN_MESHOPT("bufferViews[].extensions.KHR_meshopt_compression"),
 
     array("accessors"),
     object("accessors[]"),
@@ -212,6 +221,10 @@ constexpr JsonRule kRules[] = {
     object("meshes[].primitives[].extensions"),
     object("meshes[].primitives[].extensions.*"),
 
+    needed(index(PROMIN_DRACO ".bufferView", "bufferViews")),
+    needed(object(PROMIN_DRACO ".attributes")),
+    integer(PROMIN_DRACO ".attributes.*", 0, kMaxCount),
+
     needed(array(PROMIN_VARIANTS)),
     object(PROMIN_VARIANTS "[]"),
     needed(text(PROMIN_VARIANTS "[].name")),
@@ -289,6 +302,8 @@ constexpr JsonRule kRules[] = {
 #undef PROMIN_MAPPINGS
 #undef PROMIN_INSTANCES
 #undef PROMIN_TEXTURE_INFO
+#undef PROMIN_MESHOPT
+#undef PROMIN_DRACO
 
 }  // namespace
 

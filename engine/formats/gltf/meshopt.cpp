@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/meshopt.h"
+
+#include <meshoptimizer.h>
+
+#include <string>
+
+#include "formats/gltf/json_lookup.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+using Bytes = std::vector<std::byte>;
+
+/// In streams of attributes of version 0 four bytes may stand for 256, in any other for less.
+constexpr uint64_t kMaxRatio = 64;
+/// In version 1 two bits may.
+constexpr uint64_t kMaxRatioOfVersion1 = 1024;
+
+/// What a stream says of itself in its first byte: the kind in the upper half, the version in the lower.
+constexpr unsigned kAttributesHeader = 0xA0;
+
+/// A compressed view, checked.
+struct Stream {
+  uint64_t offset = 0;
+  uint64_t length = 0;
+  uint64_t stride = 0;
+  uint64_t count = 0;
+  std::string mode;
+  std::string filter;
+
+  uint64_t decoded_bytes() const { return count * stride; }
+};
+
+Stream stream_of(const json& extension) {
+  return {extension.value("byteOffset", uint64_t{0}),
+          extension["byteLength"],
+          extension["byteStride"],
+          extension["count"],
+          extension["mode"],
+          extension.value("filter", "NONE")};
+}
+
+std::string place_of(size_t view) {
+  return "bufferViews[" + std::to_string(view) + "]";
+}
+
+/// What is wrong with the shape of the elements; null where nothing is.
+const char* find_wrong_stride(const Stream& stream) {
+  if (stream.mode != "ATTRIBUTES") {
+    if (stream.stride != 2 && stream.stride != 4) return "indices have a stride of 2 or 4";
+    if (stream.filter != "NONE") return "indices have no filter";
+    if (stream.mode == "TRIANGLES" && stream.count % 3 != 0) return "triangles have three indices each";
+    return nullptr;
+  }
+  if (stream.stride % 4 != 0 || stream.stride > 256) return "attributes have a stride of 4, 8, ... 256";
+  if (stream.filter == "OCTAHEDRAL" && stream.stride != 4 && stream.stride != 8) {
+    return "the octahedral filter has a stride of 4 or 8";
+  }
+  if (stream.filter == "QUATERNION" && stream.stride != 8) return "the filter of quaternions has a stride of 8";
+  return nullptr;
+}
+
+void check_view(const json& document, size_t index, LoadReport& report) {
+  const json& view = document["bufferViews"][index];
+  const json* extension = find_meshopt(view);
+  if (extension == nullptr) return;
+  const Stream stream = stream_of(*extension);
+  const auto available = document["buffers"][(*extension)["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
+  if (stream.offset + stream.length > available) {
+    report.refuse("the compressed bytes end at byte " + std::to_string(stream.offset + stream.length) +
+                      " of a buffer of " + std::to_string(available) + " bytes",
+                  place_of(index), "correct their byteOffset or byteLength");
+  }
+  if (const char* wrong = find_wrong_stride(stream)) report.refuse(wrong, place_of(index), "compress the file again");
+  // In 64 bits this does not wrap: the schema keeps counts below 2^31 and strides below 257.
+  if (const auto length = view["byteLength"].get<uint64_t>(); length != stream.decoded_bytes()) {
+    report.refuse("the view has " + std::to_string(length) + " bytes, its stream " + std::to_string(stream.count) +
+                      " elements of " + std::to_string(stream.stride),
+                  place_of(index), "compress the file again");
+  }
+}
+
+void apply_filter(const Stream& stream, Bytes& bytes) {
+  if (stream.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), stream.count, stream.stride);
+  if (stream.filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), stream.count, stream.stride);
+  if (stream.filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), stream.count, stream.stride);
+}
+
+bool decode(const Stream& stream, std::span<const std::byte> compressed, Bytes& bytes) {
+  const auto* source = reinterpret_cast<const unsigned char*>(compressed.data());
+  const size_t size = compressed.size();
+  if (stream.mode == "TRIANGLES") {
+    return meshopt_decodeIndexBuffer(bytes.data(), stream.count, stream.stride, source, size) == 0;
+  }
+  if (stream.mode == "INDICES") {
+    return meshopt_decodeIndexSequence(bytes.data(), stream.count, stream.stride, source, size) == 0;
+  }
+  if (meshopt_decodeVertexBuffer(bytes.data(), stream.count, stream.stride, source, size) != 0) return false;
+  apply_filter(stream, bytes);
+  return true;
+}
+
+/// Decodes the views of one document.
+class Decoder {
+ public:
+  Decoder(GltfDocument& document, LoadReport& report) : document_(document), report_(report) {
+    for (const std::span<const std::byte> bytes : document.buffers.bytes) room_ += kMaxRatio * bytes.size();
+  }
+
+  void decode_view(size_t index, const json& extension) {
+    const Stream stream = stream_of(extension);
+    const std::span<const std::byte> compressed =
+        document_.buffers.bytes[extension["buffer"].get<size_t>()].subspan(stream.offset, stream.length);
+    const bool is_later_version = stream.mode == "ATTRIBUTES" && compressed[0] != std::byte{kAttributesHeader} &&
+                                  (compressed[0] & std::byte{0xF0}) == std::byte{kAttributesHeader};
+    if (!has_room_for(stream, is_later_version, index)) return;
+    Bytes bytes(stream.decoded_bytes());
+    if (!decode(stream, compressed, bytes)) {
+      return refuse(is_later_version
+                        ? "the compressed bytes are broken, or of a version that this libmeshoptimizer does "
+                          "not know: " +
+                              std::to_string(static_cast<unsigned>(compressed[0]) - kAttributesHeader)
+                        : "the compressed bytes are broken",
+                    index);
+    }
+    GltfBufferView& view = document_.views[index];
+    view.buffer = static_cast<int>(document_.buffers.bytes.size());
+    view.byte_offset = 0;
+    document_.buffers.bytes.emplace_back(document_.buffers.own.emplace_back(std::move(bytes)));
+  }
+
+ private:
+  /// Before memory is taken. Files may name one stream many times, so all of them together are held against what there
+  /// is of bytes, too.
+  bool has_room_for(const Stream& stream, bool is_later_version, size_t index) {
+    const uint64_t ratio = is_later_version ? kMaxRatioOfVersion1 : kMaxRatio;
+    const uint64_t wanted = stream.decoded_bytes();
+    if (wanted > ratio * stream.length) {
+      refuse(std::to_string(stream.length) + " compressed bytes are too few for " + std::to_string(wanted), index);
+      return false;
+    }
+    if (wanted > room_) {
+      refuse("all compressed views together hold more than " + std::to_string(kMaxRatio) + " times the file's bytes",
+             index);
+      return false;
+    }
+    room_ -= wanted;
+    return true;
+  }
+
+  void refuse(const std::string& what, size_t index) {
+    report_.refuse(what, place_of(index), "compress the file again");
+  }
+
+  GltfDocument& document_;
+  LoadReport& report_;
+  uint64_t room_ = 0;
+};
+
+}  // namespace
+
+const json* find_meshopt(const json& view) {
+  const json* extension = find_extension(view, "EXT_meshopt_compression");
+  return extension != nullptr ? extension : find_extension(view, "KHR_meshopt_compression");
+}
+
+void check_gltf_meshopt(const json& document, LoadReport& report) {
+  for (size_t i = 0; i < elements_of(document, "bufferViews").size(); ++i) check_view(document, i, report);
+}
+
+void decode_gltf_meshopt(GltfDocument& document, const std::vector<bool>& is_needed_view, LoadReport& report) {
+  Decoder decoder(document, report);
+  for (size_t i = 0; i < is_needed_view.size(); ++i) {
+    const json* extension = find_meshopt(document.json["bufferViews"][i]);
+    if (is_needed_view[i] && extension != nullptr) decoder.decode_view(i, *extension);
+  }
+}
+
+}  // namespace promin
