@@ -92,14 +92,14 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
     return std::nullopt;
   }
   const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
-  PictureSource source;
-  read_gltf_image(document, *image, source, report);
-  if (!source.problem.empty()) {
-    report.warn(name + " is ignored: " + source.problem);
+  PictureSource picture;
+  read_gltf_image(document, *image, picture, report);
+  if (!picture.problem.empty()) {
+    report.warn(name + " is ignored: " + picture.problem);
     return std::nullopt;
   }
   try {
-    return read_panorama(source.file, name);
+    return read_panorama(picture.file, name);
   } catch (const InputError& error) {
     report.warn(name + " is ignored: " + error.problems().front().what);
     return std::nullopt;
