@@ -47,6 +47,7 @@ TEST(AlphaCoverage, AlphasAreScaledToTheCutoff) {
   EXPECT_THAT(scaled({10, 30, 200, 250}, 0.5F, 0.5), ElementsAre(10U, 30U, 200U, 250U)) << "nothing to do";
   EXPECT_THAT(scaled({100, 200}, 0.5F, 1.0), ElementsAre(100U, 200U));
   EXPECT_THAT(scaled({100, 200}, 0.5F, 0.0), ElementsAre(100U, 200U));
+  EXPECT_THAT(scaled({199, 200}, 0.2F, 0.5), ElementsAre(50U, 51U)) << "rounding carries none over the cutoff";
   EXPECT_THAT(scaled({1, 2, 0, 0}, 1.0F, 0.5), ElementsAre(255U, 255U, 0U, 0U));
 }
 

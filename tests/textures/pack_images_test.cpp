@@ -116,6 +116,10 @@ TEST(PackImages, WhatIsHalvedHasTheLevelsThatItHad) {
   EXPECT_EQ(halved.images.at(0).size, uvec2(6, 3));
   ASSERT_EQ(halved.images.at(0).levels, 3U);
   for (uint32_t level = 0; level < 3; ++level) EXPECT_EQ(level_of(halved, level), level_of(whole, level + 1)) << level;
+  const PackedImages quartered = pack_images(scene.images, scene.textures, sizeof(uint32_t) * 10);
+  EXPECT_EQ(quartered.images.at(0).size, uvec2(3, 1));
+  ASSERT_EQ(quartered.images.at(0).levels, 2U);
+  for (uint32_t level = 0; level < 2; ++level) EXPECT_EQ(level_of(quartered, level), level_of(whole, level + 2));
   // Without levels it is the same picture alone.
   scene.textures[0].has_levels = false;
   const PackedImages alone = pack_images(scene.images, scene.textures, sizeof(uint32_t) * 20);
