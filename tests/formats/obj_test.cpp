@@ -368,7 +368,7 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
   const LoadedScene scene = load_with("map_Kd none.png\nmap_Ke broken.png\nmap_Ks ../a.png\nnorm empty.png\n");
   EXPECT_THAT(scene.warnings,
               testing::UnorderedElementsAre("image \"none.png\" is ignored: \"none.png\" does not exist",
-                                            "image \"broken.png\" is ignored: it is neither PNG nor JPEG",
+                                            "image \"broken.png\" is ignored: it is of no known format",
                                             "image \"../a.png\" is ignored: \"../a.png\" leaves the scene's folder",
                                             "image \"empty.png\" is ignored: the file is empty"));
   const Material& material = scene.materials.at(0);
