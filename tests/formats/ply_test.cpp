@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include "promin/validate.h"
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
 
@@ -176,6 +177,7 @@ TEST_F(PlyTest, NormalsOfNoLengthMakeTheirFacesSharp) {
     EXPECT_NE(mesh.normals.at(corners.x), vec3(1, 0, 0));
   }
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("normals of no length")));
+  EXPECT_THAT(validate(load_scene(folder_ / "scene.ply")), IsEmpty());
 }
 
 TEST_F(PlyTest, ColorsAreThoseOfScreens) {

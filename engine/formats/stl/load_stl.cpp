@@ -34,7 +34,8 @@ uint64_t facet_count(std::string_view file) {
   return count;
 }
 
-/// Texts begin with "solid", but so do the headers of some binary files, which hold zeros further on.
+/// Texts begin with "solid", but so do the headers of some binary files. Those hold zeros further on, in their count at
+/// the latest unless it is beyond 16 million.
 bool is_text(std::string_view file) {
   if (file.size() >= kFirstFacet && file.size() == kFirstFacet + kFacetBytes * facet_count(file)) return false;
   std::string_view begin = file.substr(0, kFirstFacet + kFacetBytes);
