@@ -83,13 +83,14 @@ def render(promin, scene, size, folder):
     """The rows of the scene's picture or None, what promin says of it, and whether it failed as it must not."""
     picture = folder / "picture.png"
     picture.unlink(missing_ok=True)
-    command = [promin, "render", scene, "-o", picture, "--size", *map(str, size), "--spp", "4", "--quiet"]
+    command = [promin, "render", scene, "-o", picture, "--size", *map(str, size), "--spp", "4"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     except subprocess.TimeoutExpired:
         return None, "takes more than 300 s", True
-    said = [line.strip() for line in done.stderr.splitlines() if line.strip()]
-    said = [line.removeprefix("promin: ").replace(str(scene), pathlib.Path(scene).name) for line in said]
+    said = [line.removeprefix("promin: ") for line in done.stderr.splitlines()]
+    said = [line for line in said if line.startswith(("warning: ", "error: "))]
+    said = [line.replace(str(scene), pathlib.Path(scene).name) for line in said]
     rows = read_png(picture) if done.returncode == 0 else None
     return rows, "; ".join(said), done.returncode not in (0, 3)
 

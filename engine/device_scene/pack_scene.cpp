@@ -14,11 +14,28 @@
 #include "core/stopwatch.h"
 #include "device_scene/collect_primitives.h"
 #include "promin/error.h"
+#include "scene/alpha.h"
 #include "scene/features.h"
+#include "scene/texture_slots.h"
 #include "shapes/shapes.h"
 
 namespace promin {
 namespace {
+
+/// From which alpha of its texels on each image is there (pack_images): of several masks with one image the first
+/// holds.
+std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
+  std::vector<float> cutoffs(scene.images.size(), 0.0F);
+  for (const Material& material : scene.materials) {
+    const TextureSlot& slot = base_slot(material);
+    // For casts there are no textures.
+    if (material.alpha_mode != AlphaMode::kMask || is_absent(material) || slot.texture >= scene.textures.size())
+      continue;
+    float& cutoff = cutoffs[scene.textures[slot.texture].image];
+    if (cutoff == 0.0F) cutoff = material.alpha_cutoff / material.alpha;
+  }
+  return cutoffs;
+}
 
 using namespace layout;
 
@@ -95,7 +112,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   surfaces.insert(surfaces.end(), collected.unbounded_surfaces.begin(), collected.unbounded_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.push_back({});
   packed.surfaces.vertices = std::move(collected.vertices);
-  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes);
+  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes, find_mask_cutoffs(scene));
 
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);

@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "core/srgb.h"
+#include "textures/alpha_coverage.h"
 
 namespace promin {
 namespace {
@@ -128,7 +129,7 @@ class ImageSizes {
 };
 
 /// Writes an image's levels from that of the placed size on. Each is made of the one before it, not of rounded texels.
-void write_image(const TextureImage& image, const PlacedImage& placed, std::span<uint32_t> words) {
+void write_image(const TextureImage& image, const PlacedImage& placed, float cutoff, std::span<uint32_t> words) {
   const auto halvings = static_cast<uint32_t>(count_levels(image.size) - count_levels(placed.size));
   uint32_t place = placed.levels;
   if (halvings == 0) {
@@ -137,6 +138,7 @@ void write_image(const TextureImage& image, const PlacedImage& placed, std::span
     place += static_cast<uint32_t>(image.texels.size());
   }
   const std::array<float, 256> numbers = make_numbers(image.use);
+  const double coverage = cutoff > 0.0F ? alpha_coverage(image.texels, cutoff) : 0.0;
   Level level;
   for (uint32_t i = 1; i < halvings + placed.levels; ++i) {
     if (i == 1) {
@@ -152,7 +154,9 @@ void write_image(const TextureImage& image, const PlacedImage& placed, std::span
     }
     if (i < halvings) continue;
     words[i - halvings] = place;
+    const std::span<uint32_t> written = words.subspan(place, level.texels.size());
     for (const vec4& texel : level.texels) words[place++] = encode(texel, image.use);
+    if (cutoff > 0.0F) scale_alpha_to_coverage(written, cutoff, coverage);
   }
 }
 
@@ -213,7 +217,7 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
 }
 
 PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
-                         uint64_t most_bytes) {
+                         uint64_t most_bytes, std::span<const float> cutoffs) {
   const TextureFit fit = fit_images(images, textures, most_bytes);
   const ImageSizes sizes(images, textures);
   PackedImages packed;
@@ -231,7 +235,8 @@ PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> im
   for_each_index(images.size(), 0, [&](size_t i) {
     const PlacedImage& placed = packed.images[i];
     if (placed.levels == 0) return;
-    write_image(*images[i], placed, std::span(packed.words).subspan(placed.first));
+    const float cutoff = cutoffs.empty() ? 0.0F : cutoffs[i];
+    write_image(*images[i], placed, cutoff, std::span(packed.words).subspan(placed.first));
   });
   return packed;
 }

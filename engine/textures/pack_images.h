@@ -47,9 +47,11 @@ struct PackedImages {
 };
 
 /// Packs images on all cores, with levels down to one texel where a texture asks for levels. Each texel of a level is
-/// the mean over its area, of colours in linear light. An image that is halved to fit (fit_images) begins with the
-/// level of that size, whether it has further ones or not. Throws RunError as fit_images does.
+/// the mean over its area, of colours in linear light. `cutoffs` has, for each image of a mask, from which alpha on it
+/// is there, for all others 0; empty: there are no masks. Levels of masks keep the share that is
+/// (textures/alpha_coverage.h). An image that is halved to fit (fit_images) begins with the level of that size, whether
+/// it has further ones or not. Throws RunError as fit_images does.
 PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
-                         uint64_t most_bytes = kDefaultTextureBytes);
+                         uint64_t most_bytes = kDefaultTextureBytes, std::span<const float> cutoffs = {});
 
 }  // namespace promin

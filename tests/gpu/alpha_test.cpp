@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
@@ -98,6 +100,24 @@ TEST_F(AlphaTest, AMaskIsThereFromItsCutoffOn) {
     add_board(scene, -1.0F, make_unlit(vec3(0.5F)));
     EXPECT_THAT(reds(scene, 4), testing::ElementsAre(0.5F, 0.5F, 0.25F, 0.25F)) << cutoff;
   }
+}
+
+// Means of alpha alone would be under the cutoff nearly everywhere.
+TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
+  Scene scene;
+  std::vector<uint32_t> alphas;
+  std::mt19937 generator(1);
+  for (uint32_t i = 0; i < 128 * 128; ++i) alphas.push_back(generator() >> 30 == 0 ? 255 : 0);
+  add_alpha_texture(scene, uvec2(128), alphas);
+  scene.textures[0].has_levels = true;
+  Material mask = make_unlit(vec3(0.0F), 1.0F, AlphaMode::kMask);
+  std::get<Unlit>(mask.model).color_texture.texture = 0;
+  add_board(scene, 0.0F, mask);
+  scene.environment.background = vec3(1.0F);
+  const Image image = trace(scene, make_board_view(uvec2(32))).image;
+  const auto there = std::ranges::count_if(image.pixels, [](const vec3& pixel) { return pixel.r == 0.0F; });
+  // Means of 16 texels are few numbers: the share nearest to a quarter that they can make is 0.19; unscaled it is 0.03.
+  EXPECT_NEAR(static_cast<double>(there) / 1024, 0.19, 0.03);
 }
 
 TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {

@@ -107,6 +107,22 @@ TEST(PackImages, TheLargestAreHalvedUntilAllFit) {
   EXPECT_THROW(halvings(7), RunError);
 }
 
+TEST(PackImages, LevelsOfMasksKeepTheirShare) {
+  // A quarter of the texels is there; of the means, 64 but for one, none would be.
+  std::vector<uint32_t> texels(16, 0);
+  for (const size_t i : {0U, 2U, 8U, 10U}) texels[i] = 0xFF000000U;
+  texels[1] = 0x40000000U;
+  Texture texture;
+  const Images images{std::make_shared<TextureImage>(make_image({4, 4}, texels))};
+  const std::vector<float> cutoffs = {0.5F};
+  const PackedImages packed = pack_images(images, std::vector{texture}, kDefaultTextureBytes, cutoffs);
+  EXPECT_THAT(level_of(packed, 0), testing::ElementsAreArray(texels));
+  const std::vector<uint32_t> means = level_of(packed, 1);
+  EXPECT_GE(means[0] >> 24, 128U);
+  for (size_t i = 1; i < 4; ++i) EXPECT_LT(means[i] >> 24, 128U);
+  EXPECT_LT(level_of(pack_images(images, std::vector{texture}), 1)[0] >> 24, 128U);
+}
+
 TEST(PackImages, WhatIsHalvedHasTheLevelsThatItHad) {
   Collection scene;
   scene.add({13, 6}, true);
