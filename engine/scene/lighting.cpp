@@ -74,6 +74,15 @@ double illuminance_of(const Scene& scene) {
   return sum / power_per_lux(scene);
 }
 
+/// Exporters write ambient factors of 0 for scenes that had no ambient light: what the studio's light alone does not
+/// reach would be black.
+void let_ambient_light_in(Scene& scene) {
+  for (Material& material : scene.materials) {
+    auto* phong = std::get_if<Phong>(&material.model);
+    if (phong != nullptr && phong->ambient == vec3(0.0F)) phong->ambient = phong->diffuse;
+  }
+}
+
 }  // namespace
 
 std::span<const std::string_view> light_choice_names() {
@@ -102,6 +111,7 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
   const float front = front_of(scene);
   environment.sky = Studio{front};
   assumed.has_studio = true;
+  if (!scene.is_classic) let_ambient_light_in(scene);
   if (!scene.lights.empty()) {
     environment.intensity = kStudioFill * unexposed;
     return assumed;

@@ -47,7 +47,8 @@ struct AssumedLight {
 
 /// Adds what the choice says where the scene has no sky (a sky of Environment or ambient light) or no lights. The
 /// background of a scene without a sky, unless it is classic or has a background, becomes the grey that after the
-/// exposure is kStudioBackground. Throws InputError as bounds_of() does.
+/// exposure is kStudioBackground. In the studio Phong materials without ambient factors take their diffuse ones. Throws
+/// InputError as bounds_of() does.
 PROMIN_EXPORT AssumedLight light_scene(Scene& scene, LightChoice choice = LightChoice::kAuto);
 
 /// Each component of the background of scenes that have none.

@@ -141,6 +141,22 @@ TEST(LightSceneTest, TheChoiceIsTheUsers) {
   EXPECT_EQ(display_of(studio), DisplayTransform());
 }
 
+TEST(LightSceneTest, TheStudioReachesWhatHasNoAmbientFactor) {
+  for (const LightChoice choice : {LightChoice::kStudio, LightChoice::kHeadlight}) {
+    Scene scene = phong_scene();
+    scene.materials.resize(2);
+    scene.materials[0].phong() = Phong{.ambient = vec3(0.0F), .diffuse = vec3(0.5F)};
+    scene.materials[1].phong() = Phong{.ambient = vec3(0.25F), .diffuse = vec3(0.5F)};
+    light_scene(scene, choice);
+    EXPECT_EQ(scene.materials[0].phong().ambient, vec3(choice == LightChoice::kStudio ? 0.5F : 0.0F));
+    EXPECT_EQ(scene.materials[1].phong().ambient, vec3(0.25F));
+  }
+  Scene classic = classic_scene();
+  classic.materials[0].phong().ambient = vec3(0.0F);
+  light_scene(classic, LightChoice::kStudio);
+  EXPECT_EQ(classic.materials[0].phong().ambient, vec3(0.0F));
+}
+
 TEST(LightSceneTest, LightsWithoutASkyGetTheStudioWeaker) {
   Scene scene = physical_scene();
   // E = 64 pi: the exposure is 2^-6.
