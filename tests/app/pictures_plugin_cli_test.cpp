@@ -83,7 +83,7 @@ TEST_F(PicturesPluginCliTest, OneThatDoesNotLoadIsRefused) {
 
 TEST_F(PicturesPluginCliTest, OneOfAnotherInterfaceIsRefused) {
   fs::copy_file(PROMIN_OTHER_PICTURES_PLUGIN, plugin());
-  expect_refusal("belongs to another version of promin (its interface is 2, not 1), plugins/libpromin_pictures.so;");
+  expect_refusal("belongs to another version of promin (its interface is 3, not 2), plugins/libpromin_pictures.so;");
 }
 
 TEST_F(PicturesPluginCliTest, OneThatLacksAFunctionIsRefused) {
