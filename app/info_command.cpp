@@ -7,7 +7,10 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "console.h"
 #include "device_scene/pack_scene.h"
@@ -19,6 +22,7 @@
 #include "rows.h"
 #include "scene/features.h"
 #include "scene_counts.h"
+#include "textures/pack_images.h"
 #include "view_setup.h"
 
 namespace promin::app {
@@ -101,6 +105,42 @@ std::string describe_bounds(const Bounds& bounds) {
                      bounds.hi.y, bounds.hi.z);
 }
 
+/// The file's extensions by what has become of them.
+std::vector<std::string> describe_extensions(const Scene& scene) {
+  const std::pair<ExtensionUse, const char*> uses[] = {{ExtensionUse::kUsed, "used"},
+                                                       {ExtensionUse::kApproximated, "approximated"},
+                                                       {ExtensionUse::kIgnored, "ignored"}};
+  std::vector<std::string> rows;
+  for (const auto& [use, title] : uses) {
+    std::vector<std::string> names;
+    for (const FileExtension& extension : scene.extensions) {
+      if (extension.use == use) names.push_back(extension.name + (extension.is_required ? " (required)" : ""));
+    }
+    if (!names.empty()) rows.push_back(fmt::format("{}: {}", title, fmt::join(names, ", ")));
+  }
+  return rows.empty() ? std::vector<std::string>{"none"} : rows;
+}
+
+/// Sizes of images with how many have them, the largest first.
+std::vector<std::string> describe_image_sizes(const Scene& scene) {
+  std::map<std::pair<uint64_t, uint32_t>, size_t, std::greater<>> counts;
+  for (const auto& image : scene.images) ++counts[{uint64_t{image->size.x} * image->size.y, image->size.x}];
+  std::vector<std::string> sizes;
+  for (const auto& [key, count] : counts) {
+    const auto [area, width] = key;
+    sizes.push_back(area == 0 ? fmt::format("{} absent", count)
+                              : fmt::format("{} of {}x{}", count, width, area / width));
+  }
+  return sizes;
+}
+
+std::string describe_textures(const Scene& scene, uint64_t image_bytes) {
+  if (scene.textures.empty()) return "0";
+  return fmt::format("{} of {} images ({}), {:.3f} MB on the device{}", scene.textures.size(), scene.images.size(),
+                     fmt::join(describe_image_sizes(scene), ", "), 1e-6 * static_cast<double>(image_bytes),
+                     image_bytes > kDefaultTextureBytes ? ", more than --texture-memory leaves them by default" : "");
+}
+
 struct InfoOptions {
   std::filesystem::path file;
   LoadOptions load;
@@ -108,7 +148,9 @@ struct InfoOptions {
 };
 
 void print_info(const InfoOptions& options) {
-  Scene scene = load_scene(options.file, options.load);
+  LoadOptions load = options.load;
+  load.decodes_images = false;
+  Scene scene = load_scene(options.file, load);
   const EnvironmentChoice surroundings(options.environment);
   const SceneCounts counts = count_scene(scene);
   print_row("scene", options.file.string());
@@ -122,6 +164,8 @@ void print_info(const InfoOptions& options) {
   const PackedScene packed = pack_scene(flat, builder_names().front());
   print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
   print_row("materials", std::to_string(scene.materials.size()));
+  const uint64_t image_bytes = packed_image_bytes(scene.images, scene.textures);
+  print_row("textures", describe_textures(scene, image_bytes));
   if (!scene.variants.empty()) print_rows("variants", scene.variants);
   print_row("lights", lights);
   print_row("background", describe_background(scene.environment, assumed));
@@ -134,10 +178,11 @@ void print_info(const InfoOptions& options) {
                                packed.bvh.depth, packed.bvh.sah_cost));
   const uint64_t shading_bytes = scene.materials.size() * sizeof(layout::MaterialRecord) +
                                  pack_lights(scene.lights).records.size() * sizeof(layout::LightRecord) +
-                                 packed_sky_bytes(scene.environment);
+                                 packed_sky_bytes(scene.environment) + image_bytes;
   print_row("memory", fmt::format("{:.3f} MB of geometry on the host, {:.3f} MB on the device",
                                   1e-6 * static_cast<double>(counts.geometry_bytes),
                                   1e-6 * static_cast<double>(packed.size_bytes() + shading_bytes)));
+  print_rows("extensions", describe_extensions(scene));
   print_rows("warnings", scene.warnings.empty() ? std::vector<std::string>{"none"} : scene.warnings);
 }
 

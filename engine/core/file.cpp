@@ -42,7 +42,7 @@ std::optional<FileStamp> stamp_of(const fs::path& file) {
                    status.st_ino};
 }
 
-std::vector<std::byte> read_file(const fs::path& file) {
+std::vector<std::byte> read_file(const fs::path& file, uint64_t most_bytes) {
   const fs::file_status status = find_input(file);
   if (fs::is_directory(status)) throw InputError({"is a folder, not a file", file.string(), "name a file in it"});
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
@@ -50,9 +50,9 @@ std::vector<std::byte> read_file(const fs::path& file) {
   const std::streamoff size = stream.tellg();
   if (size < 0) throw InputError({"cannot read the file", file.string(), "name a regular file"});
   if (size == 0) throw InputError({"the file is empty", file.string(), "export it again"});
-  std::vector<std::byte> bytes(static_cast<size_t>(size));
+  std::vector<std::byte> bytes(std::min(static_cast<uint64_t>(size), most_bytes));
   stream.seekg(0);
-  if (!stream.read(reinterpret_cast<char*>(bytes.data()), size)) {
+  if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     throw InputError({"cannot read the file to its end", file.string(), "check the disk"});
   }
   return bytes;

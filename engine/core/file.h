@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,9 +31,10 @@ struct FileStamp {
 /// nullopt where there is no such file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
-/// The whole of a regular file. Throws InputError, with the place and the cure, if it is missing, a folder, not
-/// readable or empty.
-std::vector<std::byte> read_file(const std::filesystem::path& file);
+/// The whole of a regular file, or its first `most_bytes`. Throws InputError, with the place and the cure, if it is
+/// missing, a folder, not readable or empty.
+std::vector<std::byte> read_file(const std::filesystem::path& file,
+                                 uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
 /// A file that appears whole or not at all: write to temporary(), then commit() renames it to the target. Without a
 /// commit the destructor removes the temporary file and the target stays as it was. A program that may reach the file

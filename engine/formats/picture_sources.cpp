@@ -7,14 +7,18 @@
 
 namespace promin {
 
-void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
+void decode_pictures(std::span<PictureSource> sources, bool takes_texels, LoadReport& report) {
   for_each_index(sources.size(), 0, [&](size_t i) {
     PictureSource& source = sources[i];
     if (!source.problem.empty()) return;
     try {
-      DecodedPicture picture = decode_picture(source.file);
-      source.image->size = picture.size;
-      source.image->texels = std::move(picture.texels);
+      if (takes_texels) {
+        DecodedPicture picture = decode_picture(source.file);
+        source.image->size = picture.size;
+        source.image->texels = std::move(picture.texels);
+      } else {
+        source.image->size = read_picture_size(source.file);
+      }
     } catch (const PictureError& error) {
       source.problem = error.what();
     }

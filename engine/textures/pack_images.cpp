@@ -106,8 +106,10 @@ uvec2 halve(const uvec2& size, uint32_t halvings) {
 /// What images take as their textures ask for them.
 class ImageSizes {
  public:
-  ImageSizes(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures)
-      : images_(images), has_levels_(images.size(), false) {
+  /// With `needs_texels` images without any count as absent, else those without a size.
+  ImageSizes(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
+             bool needs_texels)
+      : images_(images), has_levels_(images.size(), false), needs_texels_(needs_texels) {
     for (const Texture& texture : textures) {
       has_levels_[texture.image] = has_levels_[texture.image] || texture.has_levels;
     }
@@ -115,7 +117,8 @@ class ImageSizes {
 
   /// 0 where the image is absent.
   uint32_t levels(size_t image, uint32_t halvings) const {
-    if (images_[image]->texels.empty()) return 0;
+    const TextureImage& source = *images_[image];
+    if (needs_texels_ ? source.texels.empty() : source.size.x == 0 || source.size.y == 0) return 0;
     return has_levels_[image] ? count_levels(halve(images_[image]->size, halvings)) : 1;
   }
   uint64_t words(size_t image, uint32_t halvings) const {
@@ -126,6 +129,7 @@ class ImageSizes {
  private:
   std::span<const std::shared_ptr<const TextureImage>> images_;
   std::vector<bool> has_levels_;
+  bool needs_texels_;
 };
 
 /// Writes an image's levels from that of the placed size on. Each is made of the one before it, not of rounded texels.
@@ -187,7 +191,7 @@ std::optional<Problem> warn_of(const TextureFit& fit) {
 TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                       uint64_t most_bytes) {
   most_bytes = std::min(most_bytes, kMostBytes);
-  const ImageSizes sizes(images, textures);
+  const ImageSizes sizes(images, textures, true);
   TextureFit fit{std::vector<uint32_t>(images.size(), 0)};
   // The largest is on top, of equal ones the first.
   const auto is_after = [](const auto& a, const auto& b) {
@@ -216,10 +220,18 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
   return fit;
 }
 
+uint64_t packed_image_bytes(std::span<const std::shared_ptr<const TextureImage>> images,
+                            std::span<const Texture> textures) {
+  const ImageSizes sizes(images, textures, false);
+  uint64_t words = 0;
+  for (size_t i = 0; i < images.size(); ++i) words += sizes.words(i, 0);
+  return sizeof(uint32_t) * words;
+}
+
 PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                          uint64_t most_bytes, std::span<const float> cutoffs) {
   const TextureFit fit = fit_images(images, textures, most_bytes);
-  const ImageSizes sizes(images, textures);
+  const ImageSizes sizes(images, textures, true);
   PackedImages packed;
   packed.warning = warn_of(fit);
   uint64_t words = 0;

@@ -54,4 +54,9 @@ struct PackedImages {
 PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                          uint64_t most_bytes = kDefaultTextureBytes, std::span<const float> cutoffs = {});
 
+/// The bytes that these images take when they are packed and none is halved, by their sizes: their texels need not be
+/// there.
+uint64_t packed_image_bytes(std::span<const std::shared_ptr<const TextureImage>> images,
+                            std::span<const Texture> textures);
+
 }  // namespace promin

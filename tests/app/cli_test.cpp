@@ -299,6 +299,53 @@ TEST_F(CliTest, InfoSaysWhatASceneHolds) {
   EXPECT_THAT(info.out, ContainsRegex("memory +[0-9.]+ MB of geometry on the host, [0-9.]+ MB on the device"));
 }
 
+/// The square, with another text in place of a part of it.
+std::string square_with(const std::string& part, const std::string& other) {
+  std::string text = kSquareGltf;
+  text.replace(text.find(part), part.size(), other);
+  return text;
+}
+
+TEST_F(CliTest, StrictRefusesWhatIsRequiredAndNotKnown) {
+  write("foo.gltf",
+        square_with("\"extensionsUsed\":", R"("extensionsRequired": ["KHR_materials_foo"], "extensionsUsed":)"));
+  const ProcessResult info = run({"info", "foo.gltf"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("the file requires KHR_materials_foo, which is not known"));
+  EXPECT_THAT(info.out, ContainsRegex("extensions +used: KHR_lights_punctual\n"));
+  EXPECT_THAT(info.out, ContainsRegex(" +ignored: KHR_materials_foo \\(required\\)\n"));
+  const std::string refusal = "the required extension KHR_materials_foo is not implemented";
+  expect_failure(run({"info", "foo.gltf", "--strict"}), 3, refusal);
+  expect_failure(run({"render", "foo.gltf", "-o", "a.exr", "--strict"}), 3, refusal);
+}
+
+TEST_F(CliTest, VariantsAreChosenByName) {
+  const std::string variants =
+      R"("extensions": {"KHR_materials_variants": {"variants": [{"name": "red"}, {"name": "green"}]}, )";
+  write("cars.gltf", square_with("\"extensions\": {", variants));
+  EXPECT_THAT(run({"info", "cars.gltf"}).out, HasSubstr("variants    red\n            green\n"));
+  EXPECT_EQ(run({"info", "cars.gltf", "--variant", "green"}).exit_code, 0);
+  expect_failure(run({"info", "cars.gltf", "--variant", "blue"}), 2, "choose one of: \"red\", \"green\"");
+  expect_failure(run({"render", "cars.gltf", "-o", "a.exr", "--variant", "blue"}), 2, "no variant \"blue\"");
+  expect_failure(run({"info", "square.gltf", "--variant", "blue"}), 2,
+                 "the scene has no variant \"blue\", nor any other");
+}
+
+TEST_F(CliTest, InfoTellsTexturesBySize) {
+  const std::string pixel =
+      "data:image/"
+      "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNocFAAAAIkAOGVpLGLAAAAAElFTkSuQmCC";
+  std::string text = square_with("\"indices\": 1", R"("indices": 1, "material": 0)");
+  text.insert(text.rfind('}'), R"(, "materials": [{"normalTexture": {"index": 0}, "occlusionTexture": {"index": 1}}],
+      "textures": [{"source": 0}, {"source": 1}], "images": [{"uri": ")" +
+                                   pixel + R"("}, {"uri": "none.png"}])");
+  write("pixel.gltf", text);
+  const ProcessResult info = run({"info", "pixel.gltf"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, ContainsRegex("textures +2 of 2 images \\(1 of 1x1, 1 absent\\), 0.000 MB on the device\n"));
+  EXPECT_THAT(info.out, HasSubstr("image images[1] is ignored: "));
+}
+
 TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   const std::string lit = run({"info", "square.gltf"}).out;
   EXPECT_THAT(lit, ContainsRegex("lights +1 \\(point: 1.*; assumed: a studio's weaker light around the scene's own\n"));

@@ -413,6 +413,36 @@ TEST_F(GltfCompressionTest, OtherVersionsOfDracoAreRefused) {
   EXPECT_THAT(refusal_of(gltf), HasSubstr("its version is 2.1 and not 2.2"));
 }
 
+/// Any value of the documents becomes any other kind of value.
+TEST_F(GltfCompressionTest, DocumentsWithOtherValuesLoadOrAreRefused) {
+  GltfBuilder packed = packed_grid(2, "TRIANGLES");
+  packed_text(packed);
+  GltfBuilder draco = draco_grid(compress_grid(2, draco::MESH_EDGEBREAKER_ENCODING));
+  draco.text();
+  const std::vector<json> values = {
+      nullptr,       -1, 0, 1, 7, 12, 1.5, 2147483647, 18446744073709551615ULL, "x", "TRIANGLES", json::array(),
+      json::object()};
+  for (const json& good : {packed.json.flatten(), draco.json.flatten()}) {
+    int refused = 0;
+    int total = 0;
+    for (const auto& [pointer, old] : good.items()) {
+      for (const json& value : values) {
+        json document = good.unflatten();
+        document[json::json_pointer(pointer)] = value;
+        ++total;
+        try {
+          const Scene loaded = load_scene(write("a.gltf", document.dump()));
+          ASSERT_EQ(validate(loaded).size(), 0U) << pointer << " = " << value;
+        } catch (const InputError&) {
+          ++refused;
+        }
+      }
+    }
+    EXPECT_GT(refused, total / 3);
+    EXPECT_LT(refused, total);
+  }
+}
+
 TEST_F(GltfCompressionTest, BrokenDracoLoadsOrIsRefused) {
   for (const int method : kMethods) {
     const GltfBuilder gltf = draco_grid(compress_grid(4, method));

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/rounding.h"
 #include "environment/sky_radiance.h"
+#include "formats/gltf/buffers.h"
 #include "promin/image.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
@@ -591,6 +592,28 @@ GltfBuilder light_gltf(const json& light, const json& node = json::object()) {
   return gltf;
 }
 
+TEST_F(GltfTest, SizesOfImagesAreReadWithoutTheirTexels) {
+  GltfBuilder gltf = material_gltf({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                    {"normalTexture", {{"index", 1}}},
+                                    {"occlusionTexture", {{"index", 2}}}});
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}};
+  gltf.json["images"] = {{{"uri", kPixel}}, {{"uri", "long.png"}}, {{"uri", "broken.png"}}};
+  // A text of 100000 bytes comes between the chunk with the size and the pixel.
+  std::string bytes;
+  const std::optional<std::vector<std::byte>> pixel = decode_base64(kPixel.substr(kPixel.find(',') + 1));
+  for (const std::byte byte : *pixel) bytes += static_cast<char>(byte);
+  const std::string chunk = std::string("\0\1\x86\xA0tEXt", 8) + std::string(100000, 'x') + std::string(4, '\0');
+  write("long.png", bytes.substr(0, 33) + chunk + bytes.substr(33));
+  write("broken.png", "no picture");
+  const Scene scene = load_scene(write("scene.gltf", gltf.text()), {.decodes_images = false});
+  ASSERT_EQ(scene.images.size(), 3U);
+  EXPECT_EQ(scene.images[0]->size, uvec2(1));
+  EXPECT_EQ(scene.images[1]->size, uvec2(1));
+  EXPECT_EQ(scene.images[2]->size, uvec2(0));
+  for (const auto& image : scene.images) EXPECT_THAT(image->texels, IsEmpty());
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("images[2] is ignored")));
+}
+
 TEST_F(GltfTest, PointLightsFallOff) {
   const LoadedScene scene =
       load(light_gltf({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 60}, {"range", 9}, {"name", "key"}},
@@ -844,8 +867,36 @@ TEST_F(GltfTest, MotionIsLeftOut) {
   gltf.json["animations"] = {json::object()};
   gltf.json["skins"] = {json::object(), json::object()};
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
-  EXPECT_THAT(load(gltf).warnings,
-              ElementsAre(HasSubstr("animations"), HasSubstr("skins"), HasSubstr("morph targets")));
+  EXPECT_THAT(
+      load(gltf).warnings,
+      ElementsAre("the scene stands still: animations are ignored, skins are in their bind pose, morph targets have "
+                  "their default weights"));
+}
+
+TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {
+  GltfBuilder gltf = triangle_gltf();
+  auto& primitive = gltf.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = gltf.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  const size_t up = gltf.add<float>({0, 0, 0, 0, 0, 2, 0, 0, 0}, "VEC3");
+  const size_t aside = gltf.add<float>({0, 0, 0, 0, 0, 0, 4, 0, 0}, "VEC3");
+  primitive["targets"] = {{{"POSITION", up}, {"NORMAL", up}}, {{"POSITION", aside}}};
+  gltf.json["meshes"][0]["weights"] = {0.5, 0.25};
+  gltf.add_node({{"mesh", 0}, {"weights", {0, 1}}});
+  gltf.add_node({{"mesh", 0}, {"weights", {0.5, 0.25}}});
+  const LoadedScene scene = load(gltf);
+  EXPECT_THAT(mesh_of(scene, 0).positions, ElementsAre(vec3(0), vec3(1, 0, 1), vec3(1, 1, 0)));
+  EXPECT_THAT(mesh_of(scene, 0).normals, ElementsAre(vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)));
+  EXPECT_THAT(mesh_of(scene, 1).positions, ElementsAre(vec3(0), vec3(1, 0, 0), vec3(4, 1, 0)));
+  EXPECT_EQ(mesh_of(scene, 2).positions, mesh_of(scene, 0).positions);
+  EXPECT_THAT(scene.warnings, ElementsAre("the scene stands still: morph targets have their default weights"));
+}
+
+TEST_F(GltfTest, MorphTargetsWithoutWeightsNeedNoBytes) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 1}}};
+  EXPECT_EQ(mesh_of(load(gltf)).positions.size(), 3U);
+  gltf.json["meshes"][0]["weights"] = {1};
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("targets[0] has another number of vertices")));
 }
 
 TEST_F(GltfTest, IntegersMayBeWrittenAsFloats) {

@@ -40,6 +40,20 @@ GltfBuilder small_gltf() {
                  {"scale", {2, 2, 2}},
                  {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   gltf.json["scenes"] = {{{"nodes", {2}}}};
+
+  gltf.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+      {"diffuseFactor", {1, 0, 0, 1}}, {"specularGlossinessTexture", {{"index", 0}}}};
+  gltf.json["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+  gltf.json["images"] = {{{"bufferView", 0}}};
+  gltf.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "v"}}};
+  json& varied = gltf.json["meshes"][0]["primitives"][0];
+  varied["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 0}, {"variants", {0}}}};
+  varied["targets"] = {{{"POSITION", 0}, {"NORMAL", 2}}};
+  gltf.json["meshes"][0]["weights"] = {0.5};
+  gltf.json["nodes"][0]["weights"] = {0.25};
+  json& instances = gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  instances["TRANSLATION"] = gltf.add<float>({0, 0, 0, 1, 1, 1}, "VEC3");
+  instances["ROTATION"] = gltf.add<int8_t>({0, 0, 0, 127, 0, 0, 127, 0}, "VEC4", true);
   return gltf;
 }
 

@@ -162,5 +162,21 @@ TEST(PackImages, TheBudgetCanBeNoMoreThanWordsAreNumbered) {
   EXPECT_THAT(fit_images(scene.images, scene.textures, ~uint64_t{0}).halvings, ElementsAre(0U));
 }
 
+TEST(PackImagesTest, BytesAreToldBySizesAlone) {
+  const auto image = std::make_shared<TextureImage>();
+  image->size = {37, 20};
+  image->texels.resize(37 * 20);
+  const auto small = std::make_shared<TextureImage>();
+  small->size = {1, 3};
+  small->texels.resize(3);
+  const auto absent = std::make_shared<TextureImage>();
+  const Images images = {image, small, absent};
+  const std::vector<Texture> textures = {{.image = 0}, {.image = 1, .has_levels = false}, {.image = 2}};
+  const uint64_t bytes = pack_images(images, textures).words.size() * sizeof(uint32_t);
+  EXPECT_EQ(packed_image_bytes(images, textures), bytes);
+  image->texels.clear();
+  EXPECT_EQ(packed_image_bytes(images, textures), bytes);
+}
+
 }  // namespace
 }  // namespace promin

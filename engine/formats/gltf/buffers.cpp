@@ -37,14 +37,18 @@ int hex_value(char c) {
 
 // The readers below return nullopt once the report holds the reason.
 
-std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& place, LoadReport& report) {
+std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& place, LoadReport& report,
+                                   uint64_t most_bytes = std::numeric_limits<uint64_t>::max()) {
   constexpr std::string_view kMarker = ";base64,";
   const size_t marker = uri.find(kMarker);
   if (marker == std::string::npos || uri.find(',') != marker + kMarker.size() - 1) {
     report.refuse("the data: URI is not base64", place, "write data:application/octet-stream;base64,...");
     return std::nullopt;
   }
-  std::optional<Bytes> bytes = decode_base64(std::string_view(uri).substr(marker + kMarker.size()));
+  std::string_view text = std::string_view(uri).substr(marker + kMarker.size());
+  // Four letters are three bytes.
+  if (most_bytes / 3 < text.size() / 4) text = text.substr(0, (most_bytes / 3 + 1) * 4);
+  std::optional<Bytes> bytes = decode_base64(text);
   if (!bytes) report.refuse("the data: URI holds broken base64", place, "export the file again");
   return bytes;
 }
@@ -109,6 +113,13 @@ class NeededViews {
       if (instances == nullptr) continue;
       for (const auto& [name, accessor] : (*instances)["attributes"].items()) need_accessor(accessor);
     }
+    for (const GltfMesh& mesh : document.meshes) {
+      if (has_morph(mesh.weights)) need_targets(mesh);
+    }
+    for (const GltfNode& node : document.nodes) {
+      const bool is_morphed = node.mesh >= 0 && node.weights && has_morph(*node.weights);
+      if (is_morphed) need_targets(document.meshes[static_cast<size_t>(node.mesh)]);
+    }
     for (const json& image : elements_of(document.json, "images")) need_view(image.value("bufferView", -1));
   }
 
@@ -128,6 +139,14 @@ class NeededViews {
     need_view(accessor.sparse->value_view);
   }
 
+  void need_targets(const GltfMesh& mesh) {
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      for (const auto& target : primitive.targets) {
+        for (const auto& [name, accessor] : target) need_accessor(accessor);
+      }
+    }
+  }
+
   void need_primitive(const GltfPrimitive& primitive, const json& source) {
     const json* draco = find_draco(source);
     if (draco != nullptr) need_view((*draco)["bufferView"]);
@@ -144,11 +163,12 @@ class NeededViews {
 
 }  // namespace
 
-std::optional<Bytes> read_gltf_uri(const std::string& uri, const std::string& place, LoadReport& report) {
-  if (is_data(uri)) return read_data_uri(uri, place, report);
+std::optional<Bytes> read_gltf_uri(const std::string& uri, const std::string& place, LoadReport& report,
+                                   uint64_t most_bytes) {
+  if (is_data(uri)) return read_data_uri(uri, place, report, most_bytes);
   const auto file = find_file(uri, place, true, report);
   if (!file) return std::nullopt;
-  return read_file(*file);
+  return read_file(*file, most_bytes);
 }
 
 std::optional<Bytes> decode_base64(std::string_view text) {

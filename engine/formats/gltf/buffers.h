@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,9 +15,11 @@
 
 namespace promin {
 
-/// The bytes that a URI names, in a file beside the scene or in itself; nullopt once the report holds the reason.
+/// The bytes that a URI names, in a file beside the scene or in itself, or the first `most_bytes` of them (of a URI
+/// with its own bytes maybe one or two more); nullopt once the report holds the reason.
 std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, const std::string& place,
-                                                    LoadReport& report);
+                                                    LoadReport& report,
+                                                    uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
 /// Which buffer views hold images, instances, or attributes or indices of meshes that are read.
 std::vector<bool> find_needed_views(const GltfDocument& document);

@@ -184,6 +184,9 @@ std::vector<bool> find_plain_accessors(const json& document) {
         if (primitive.contains("indices") && (draco != nullptr) == is_compressed) {
           is_plain[primitive["indices"].get<size_t>()] = !is_compressed;
         }
+        for (const json& target : elements_of(primitive, "targets")) {
+          for (const auto& [name, index] : target.items()) is_plain[index.get<size_t>()] = true;
+        }
         for (const auto& [name, index] : primitive["attributes"].items()) {
           const bool is_in_stream = draco != nullptr && (*draco)["attributes"].contains(name);
           if (is_in_stream == is_compressed) is_plain[index.get<size_t>()] = !is_compressed;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/document.h"
 
+#include <algorithm>
+
 #include "core/file.h"
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/checks.h"
@@ -53,18 +55,20 @@ GltfAccessor accessor_of(const json& source) {
 
 GltfPrimitive primitive_of(const json& source) {
   return {source["attributes"], index_of(source, "indices"), index_of(source, "material"),
-          source.value("mode", kGltfTriangles)};
+          source.value("mode", kGltfTriangles), elements_of(source, "targets")};
 }
 
 GltfMesh mesh_of(const json& source) {
-  GltfMesh mesh{source.value("name", ""), {}};
+  GltfMesh mesh{source.value("name", ""), {}, elements_of(source, "weights")};
   for (const json& primitive : source["primitives"]) mesh.primitives.push_back(primitive_of(primitive));
   return mesh;
 }
 
 GltfNode node_of(const json& source) {
-  return {source.value("name", ""), index_of(source, "mesh"), index_of(source, "camera"),
-          elements_of(source, "children")};
+  GltfNode node{source.value("name", ""), index_of(source, "mesh"), index_of(source, "camera"),
+                elements_of(source, "children"), std::nullopt};
+  if (source.contains("weights")) node.weights = source["weights"].get<std::vector<double>>();
+  return node;
 }
 
 /// Fills the typed views from a document that follows the schema.
@@ -78,6 +82,10 @@ void fill_views(GltfDocument& document) {
 }
 
 }  // namespace
+
+bool has_morph(const std::vector<double>& weights) {
+  return std::ranges::any_of(weights, [](double weight) { return weight != 0.0; });
+}
 
 GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) {
   std::vector<std::byte> bytes = read_file(report.file());

@@ -55,11 +55,15 @@ struct GltfPrimitive {
   int indices = -1;
   int material = -1;
   int mode = kGltfTriangles;
+  /// The accessors of each morph target.
+  std::vector<std::map<std::string, int>> targets;
 };
 
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
+  /// Of morph targets, where a node has none of its own.
+  std::vector<double> weights;
 };
 
 struct GltfNode {
@@ -67,7 +71,12 @@ struct GltfNode {
   int mesh = -1;
   int camera = -1;
   std::vector<int> children;
+  /// Of its mesh's morph targets.
+  std::optional<std::vector<double>> weights;
 };
+
+/// Whether some weight of a morph target is another than 0.
+bool has_morph(const std::vector<double>& weights);
 
 /// The bytes of a document's buffers. Not to be copied: one part points into another.
 struct GltfBuffers {

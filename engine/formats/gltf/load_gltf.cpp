@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -32,13 +33,14 @@ constexpr uint64_t kMaxObjects = (uint64_t{1} << 32) - 2;
 /// Turns the nodes of a document into a scene.
 class SceneReader {
  public:
-  SceneReader(const GltfDocument& document, LoadReport& report) : document_(document), report_(report) {}
+  SceneReader(const GltfDocument& document, bool decodes_images, LoadReport& report)
+      : document_(document), decodes_images_(decodes_images), report_(report) {}
 
   Scene read() {
     scene_.file = report_.file();
     scene_.variants = list_gltf_variants(document_.json);
     scene_.extensions = list_gltf_extensions(document_.json);
-    GltfTextures textures(document_, report_);
+    GltfTextures textures(document_, decodes_images_, report_);
     scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);
     for (const PlacedNode& placed : place_gltf_nodes(document_, report_)) read_node(placed);
@@ -107,7 +109,7 @@ class SceneReader {
       return;
     }
     if (triangle_count_ > kMaxTriangles) return;
-    const uint32_t geometry = find_mesh(mesh, primitive);
+    const uint32_t geometry = find_mesh(placed.node, primitive);
     if (geometry == Object::kNoGeometry) return;
     triangle_count_ += primitive_count(scene_.geometries[geometry]);
     if (triangle_count_ > kMaxTriangles) {
@@ -124,11 +126,15 @@ class SceneReader {
     return static_cast<uint32_t>(scene_.geometries.size() - 1);
   }
 
-  /// The geometry of a mesh primitive, read once however many nodes show it; kNoGeometry where nothing is drawn.
-  uint32_t find_mesh(size_t mesh, size_t primitive) {
-    const auto [known, is_new] = mesh_geometries_.try_emplace({mesh, primitive}, Object::kNoGeometry);
+  /// The geometry of a primitive of a node's mesh, read once for all nodes that show it with the same weights of morph
+  /// targets; kNoGeometry where nothing is drawn.
+  uint32_t find_mesh(int node, size_t primitive) {
+    const GltfNode& shown = document_.nodes[static_cast<size_t>(node)];
+    const auto mesh = static_cast<size_t>(shown.mesh);
+    const std::vector<double>& weights = shown.weights ? *shown.weights : document_.meshes[mesh].weights;
+    const auto [known, is_new] = mesh_geometries_.try_emplace({mesh, primitive, weights}, Object::kNoGeometry);
     if (is_new) {
-      Mesh triangles = read_gltf_mesh(document_, mesh, primitive, report_);
+      Mesh triangles = read_gltf_mesh(document_, mesh, primitive, weights, report_);
       if (!triangles.triangles.empty()) known->second = add(std::move(triangles));
     }
     return known->second;
@@ -153,22 +159,23 @@ class SceneReader {
   }
 
   void warn_about_motion() {
-    if (!elements_of(document_.json, "animations").empty())
-      report_.warn("animations are ignored, the scene stands still");
-    if (!elements_of(document_.json, "skins").empty()) report_.warn("skins are ignored, meshes are drawn in rest pose");
-    for (const json& mesh : elements_of(document_.json, "meshes")) {
-      for (const json& primitive : mesh["primitives"]) {
-        if (primitive.contains("targets")) report_.warn("morph targets are ignored, meshes are drawn in rest pose");
-      }
-    }
+    const auto has_targets = [](const GltfPrimitive& primitive) { return !primitive.targets.empty(); };
+    const auto is_morphed = [&](const GltfMesh& mesh) { return std::ranges::any_of(mesh.primitives, has_targets); };
+    std::string parts;
+    const auto say = [&](const char* part) { parts += (parts.empty() ? ": " : ", ") + std::string(part); };
+    if (!elements_of(document_.json, "animations").empty()) say("animations are ignored");
+    if (!elements_of(document_.json, "skins").empty()) say("skins are in their bind pose");
+    if (std::ranges::any_of(document_.meshes, is_morphed)) say("morph targets have their default weights");
+    if (!parts.empty()) report_.warn("the scene stands still" + parts);
   }
 
   static constexpr uint32_t kNoMaterial = std::numeric_limits<uint32_t>::max();
 
   const GltfDocument& document_;
+  bool decodes_images_;
   LoadReport& report_;
   Scene scene_;
-  std::map<std::pair<size_t, size_t>, uint32_t> mesh_geometries_;
+  std::map<std::tuple<size_t, size_t, std::vector<double>>, uint32_t> mesh_geometries_;
   uint64_t triangle_count_ = 0;
   uint32_t default_material_ = kNoMaterial;
 };
@@ -178,7 +185,7 @@ class SceneReader {
 Scene load_gltf(const LoadOptions& options, LoadReport& report) {
   GltfDocument document = read_gltf_document(options, report);
   if (!options.material_variant.empty()) choose_gltf_variant(document, options.material_variant, report.file());
-  return SceneReader(document, report).read();
+  return SceneReader(document, options.decodes_images, report).read();
 }
 
 }  // namespace promin

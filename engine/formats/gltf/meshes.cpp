@@ -54,10 +54,12 @@ void warn_of_normals(const std::string& place, LoadReport& report) {
 /// One mesh primitive.
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report)
+  PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
+                  LoadReport& report)
       : document_(document),
         primitive_(document.meshes[mesh].primitives[primitive]),
         place_("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]"),
+        weights_(weights),
         report_(report) {}
 
   Mesh read() {
@@ -149,8 +151,27 @@ class PrimitiveReader {
     return place_ + ".attributes." + attribute + ", element " + std::to_string(vertex);
   }
 
+  /// Adds what the morph targets have of an attribute of three components, times their weights.
+  void add_targets(const char* attribute, std::vector<float>& values) {
+    for (size_t target = 0; target < std::min(weights_.size(), primitive_.targets.size()); ++target) {
+      const auto found = primitive_.targets[target].find(attribute);
+      if (weights_[target] == 0.0 || found == primitive_.targets[target].end()) continue;
+      const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(found->second)];
+      if (3 * accessor.count != values.size() || accessor.component_count != 3) {
+        report_.warn(place_ + ".targets[" + std::to_string(target) + "] has another number of vertices and is ignored");
+        continue;
+      }
+      const std::vector<float> moves = read_floats(document_, found->second, report_);
+      for (size_t i = 0; i < values.size(); ++i) {
+        values[i] =
+            static_cast<float>(static_cast<double>(values[i]) + weights_[target] * static_cast<double>(moves[i]));
+      }
+    }
+  }
+
   void read_positions(int accessor, Mesh& mesh) {
-    const std::vector<float> values = read_floats(document_, accessor, report_);
+    std::vector<float> values = read_floats(document_, accessor, report_);
+    add_targets("POSITION", values);
     mesh.positions.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* p = &values[3 * size_t{vertex}];
@@ -165,7 +186,8 @@ class PrimitiveReader {
   }
 
   void read_normals(int accessor, Mesh& mesh) {
-    const std::vector<float> values = read_floats(document_, accessor, report_);
+    std::vector<float> values = read_floats(document_, accessor, report_);
+    add_targets("NORMAL", values);
     std::vector<vec3> normals;
     normals.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
@@ -235,6 +257,7 @@ class PrimitiveReader {
   const GltfDocument& document_;
   const GltfPrimitive& primitive_;
   std::string place_;
+  const std::vector<double>& weights_;
   LoadReport& report_;
   size_t vertex_count_ = 0;
   std::vector<uint32_t> used_vertices_;
@@ -242,8 +265,9 @@ class PrimitiveReader {
 
 }  // namespace
 
-Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report) {
-  return PrimitiveReader(document, mesh, primitive, report).read();
+Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
+                    LoadReport& report) {
+  return PrimitiveReader(document, mesh, primitive, weights, report).read();
 }
 
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive) {

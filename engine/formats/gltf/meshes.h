@@ -10,9 +10,10 @@
 namespace promin {
 
 /// A mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space, with the vertices
-/// they use alone. Points, lines and primitives without a triangle come back empty, with a warning; bad indices and
-/// coordinates go to the report.
-Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report);
+/// they use alone, moved by the morph targets that have weights other than 0. Points, lines and primitives without a
+/// triangle come back empty, with a warning; bad indices and coordinates go to the report.
+Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
+                    LoadReport& report);
 
 /// Number of these triangles, as far as the file tells before anything is read.
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive);

@@ -88,6 +88,8 @@ constexpr JsonRule kRules[] = {
     numbers("nodes[].translation", 3, -kMaxCoordinate, kMaxCoordinate),
     numbers("nodes[].rotation", 4, -kMaxScalar, kMaxScalar),
     numbers("nodes[].scale", 3, -kMaxScalar, kMaxScalar),
+    array("nodes[].weights"),
+    number("nodes[].weights[]", -kMaxScalar, kMaxScalar),
 
     array("meshes"),
     object("meshes[]"),
@@ -100,6 +102,10 @@ constexpr JsonRule kRules[] = {
     index("meshes[].primitives[].material", "materials"),
     integer("meshes[].primitives[].mode", 0, 6),
     array("meshes[].primitives[].targets"),
+    object("meshes[].primitives[].targets[]"),
+    index("meshes[].primitives[].targets[].*", "accessors"),
+    array("meshes[].weights"),
+    number("meshes[].weights[]", -kMaxScalar, kMaxScalar),
 
     array("buffers"),
     object("buffers[]"),

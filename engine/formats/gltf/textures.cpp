@@ -137,7 +137,7 @@ void GltfTextures::take_specular(Material& material) const {
 }
 
 void GltfTextures::finish(Scene& scene) {
-  decode_pictures(images_, report_);
+  decode_pictures(images_, decodes_images_, report_);
   for (auto& [image, glossiness] : glossiness_) {
     std::vector<uint32_t>& texels = images_[image].image->texels;
     if (!texels.empty()) glossiness.mean_specular = take_glossiness(texels, static_cast<double>(glossiness.factor));

@@ -18,7 +18,9 @@ namespace promin {
 /// Reads the textures that materials name, each image once for each use (glTF 2.0, section 3.8).
 class GltfTextures {
  public:
-  GltfTextures(const GltfDocument& document, LoadReport& report) : document_(document), report_(report) {}
+  /// See LoadOptions::decodes_images.
+  GltfTextures(const GltfDocument& document, bool decodes_images, LoadReport& report)
+      : document_(document), decodes_images_(decodes_images), report_(report) {}
 
   /// The slot that `info`, the textureInfo `name` of an object, describes; an empty one where there is none.
   TextureSlot read_slot(const nlohmann::json& object, const char* name, ImageUse use);
@@ -28,8 +30,8 @@ class GltfTextures {
   /// materials that have the slot.
   TextureSlot read_glossiness_slot(const nlohmann::json& object, const char* name, float glossiness_factor);
 
-  /// Decodes all images on all cores and hands everything over. An image that cannot be decoded is warned about and
-  /// counts as absent.
+  /// Decodes all images, or reads their sizes, on all cores and hands everything over. An image that cannot be decoded
+  /// is warned about and counts as absent.
   void finish(Scene& scene);
 
  private:
@@ -47,6 +49,7 @@ class GltfTextures {
   void take_specular(Material& material) const;
 
   const GltfDocument& document_;
+  bool decodes_images_;
   LoadReport& report_;
   std::vector<PictureSource> images_;
   /// By the index of the image.

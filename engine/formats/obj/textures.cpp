@@ -74,7 +74,7 @@ ObjTextures::ObjTextures(const std::vector<MtlMaterial*>& materials, LoadReport&
     known->second = source.image;
     read_picture(source, report, [&](LoadReport& attempt) { return read_beside_scene(map.file, attempt); });
   });
-  decode_pictures(sources, report);
+  decode_pictures(sources, true, report);
   for_each_map(materials, [&](MtlMap& map, ImageUse use) { map.is_usable = !find_picture(&map, use)->texels.empty(); });
 }
 
