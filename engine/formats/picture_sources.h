@@ -45,8 +45,8 @@ void read_picture(PictureSource& source, LoadReport& report, const Read& read) {
   source.file = source.own;
 }
 
-/// Decodes all pictures on all cores, or reads their sizes alone. One for which that fails is warned about, and its image
-/// stays without.
+/// Decodes all pictures on all cores, or reads their sizes alone. One for which that fails is warned about, and its
+/// image stays without.
 void decode_pictures(std::span<PictureSource> sources, bool takes_texels, LoadReport& report);
 
 }  // namespace promin
