@@ -26,9 +26,10 @@ constexpr uint8_t kSequential = 0;
 constexpr uint8_t kEdgebreaker = 1;
 constexpr uint16_t kHasMetadata = 0x8000;
 
-/// No mesh of more triangles than this, or vertices, takes less than a byte for so many of them.
+/// A mesh of more triangles than this, or vertices, takes more than a byte for so many of them: a regular grid of 14
+/// bits, coded as tightly as can be, has 8 triangles a byte. The decoder takes some 24 bytes a triangle at once.
 constexpr uint64_t kSmallMesh = uint64_t{1} << 19;
-constexpr uint64_t kMostPerByte = 32;
+constexpr uint64_t kMostPerByte = 16;
 
 /// Why a stream cannot be used.
 struct DracoError : std::runtime_error {
