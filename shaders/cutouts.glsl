@@ -8,9 +8,15 @@ MaterialRecord material_of(SurfaceRecord surface) {
   return load_material(VIEW.first_index.x + (surface.corners_material.w & SURFACE_MATERIAL_MASK));
 }
 
+// Textures and vertices only take from alpha.
+bool is_all_hole(MaterialRecord material) {
+  return (flags_of(material) & MATERIAL_HAS_HOLES) != 0u && material.cover.x < material.cover.y;
+}
+
 bool has_holes(MaterialRecord material, SurfaceRecord surface) {
   uint flags = surface.corners_material.w;
-  return (flags_of(material) & MATERIAL_HAS_HOLES) != 0u && (flags & (SURFACE_HAS_UVS | SURFACE_IS_COLORED)) != 0u;
+  bool may_vary = (flags & (SURFACE_HAS_UVS | SURFACE_IS_COLORED)) != 0u;
+  return is_all_hole(material) || (may_vary && (flags_of(material) & MATERIAL_HAS_HOLES) != 0u);
 }
 
 bool may_have_holes(uint index) {
@@ -43,6 +49,7 @@ bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool
     return true;
   }
   if (!has(FEATURE_HOLES) || !has_holes(material, surface)) return false;
+  if (is_all_hole(material)) return true;
   float size = length3(direction);
   precise float cone_width = sight_width + sight_spread * (crossing.t * size);
   precise vec3 weights = vec3(1.0 - crossing.u - crossing.v, crossing.u, crossing.v);

@@ -32,7 +32,9 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
     if (MAY_BE_CUT_OUT != 0u) {
       precise float t = crossing.t + shift;
       bool may_be_kept = crossing.t > tmin && t <= limit;
-      if (may_be_kept && is_cut_out(direction, p, index, crossing, is_on_open_edge(of_next))) crossing = NO_CROSSING;
+      // From the ray's own origin.
+      Crossing whole = Crossing(t, crossing.u, crossing.v, crossing.part);
+      if (may_be_kept && is_cut_out(direction, p, index, whole, is_on_open_edge(of_next))) crossing = NO_CROSSING;
     }
     may_another_be_met = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {

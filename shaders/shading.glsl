@@ -261,9 +261,11 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_wid
 vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
   vec3 to_light = normalize3(sampled.direction);
   precise float cosine = dot3(point.normal, to_light);
-  if (!(cosine > 0.0 && sampled.strength > 0.0)) return vec3(0.0);
+  // A coat has a normal of its own.
+  bool is_lit = has(FEATURE_COATS) ? cosine > 0.0 || dot3(point.coat.normal, to_light) > 0.0 : cosine > 0.0;
+  if (!(is_lit && sampled.strength > 0.0)) return vec3(0.0);
 
-  precise vec3 contribution = contribution_of(point, to_eye, to_light, cosine, light);
+  precise vec3 contribution = contribution_of(point, to_eye, to_light, max(cosine, 0.0), light);
   contribution *= sampled.strength;
   return contribution;
 }

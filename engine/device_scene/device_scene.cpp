@@ -83,9 +83,9 @@ struct DeviceScene::PlacedTail {
 
 DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   PlacedTail placed;
-  placed.materials = place(tail.materials.records, head_bytes_);
-  placed.texture_slots = place(tail.materials.slots, placed.materials.end());
-  placed.coats = place(tail.materials.coats, placed.texture_slots.end());
+  placed.materials = place(tail.materials->records, head_bytes_);
+  placed.texture_slots = place(tail.materials->slots, placed.materials.end());
+  placed.coats = place(tail.materials->coats, placed.texture_slots.end());
   placed.lobe_table = place(*tail.lobe_table, placed.coats.end());
   placed.sky = place(tail.sky->texels, placed.lobe_table.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
@@ -119,8 +119,9 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
   take_colors(shading.environment);
-  Tail tail{pack_materials(shading.materials), lobe_table_for(shading.materials),
-            std::make_shared<const PackedSky>(pack_sky(shading.environment)), pack_lights(shading.lights)};
+  Tail tail{std::make_shared<const PackedMaterials>(pack_materials(shading.materials)),
+            lobe_table_for(shading.materials), std::make_shared<const PackedSky>(pack_sky(shading.environment)),
+            pack_lights(shading.lights)};
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : {surfaces, normals, colors, uvs, tangents, image_words}) write(*shading_, placed);
   write_tail(std::move(tail));
@@ -129,7 +130,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
 
 void DeviceScene::set_materials(std::span<const Material> materials) {
   Tail tail = tail_;
-  tail.materials = pack_materials(materials);
+  tail.materials = std::make_shared<const PackedMaterials>(pack_materials(materials));
   tail.lobe_table = lobe_table_for(materials);
   write_tail(std::move(tail));
 }
@@ -163,8 +164,8 @@ void DeviceScene::take_colors(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail_bytes = total_bytes(tail_.materials.records, tail_.materials.slots, tail_.materials.coats, *tail_.lobe_table,
-                                          tail_.sky->texels, tail_.lights.records);
+  const uint64_t tail_bytes = total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->coats,
+                                          *tail_.lobe_table, tail_.sky->texels, tail_.lights.records);
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
 
@@ -228,15 +229,16 @@ void DeviceScene::write_tail(Tail tail) {
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::coats, &PlacedTail::lobe_table, &PlacedTail::sky,
-                          &PlacedTail::lights}) {
+  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::coats,
+                          &PlacedTail::lobe_table, &PlacedTail::sky, &PlacedTail::lights}) {
     if (!needs_larger && is_same(placed.*part, last.*part)) continue;
     write(*shading_, placed.*part);
     uploads_.shading += (placed.*part).bytes.size();
   }
   constants_.first_index.x = placed.materials.first_index;
   constants_.first_index.y = placed.lights.first_index;
-  constants_.first_lookup = uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky->side, placed.coats.first_index);
+  constants_.first_lookup =
+      uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky->side, placed.coats.first_index);
   constants_.first_texture.z = placed.texture_slots.first_index;
   constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());

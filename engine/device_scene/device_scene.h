@@ -68,8 +68,9 @@ class DeviceScene {
   void take_shading_buffer(gpu::Buffer buffer);
   /// What is replaced apart, behind the surfaces.
   struct Tail {
-    PackedMaterials materials;
-    /// Empty where no material looks it up. It and the sky are large, and shared by the tails that do not change them.
+    // All but the lights are shared by the tails that do not change them.
+    std::shared_ptr<const PackedMaterials> materials = std::make_shared<const PackedMaterials>();
+    /// Empty where no material looks it up.
     std::shared_ptr<const std::vector<uvec4>> lobe_table = std::make_shared<const std::vector<uvec4>>();
     std::shared_ptr<const PackedSky> sky = std::make_shared<const PackedSky>();
     PackedLights lights;

@@ -34,6 +34,12 @@ std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
     float& cutoff = cutoffs[scene.textures[slot.texture].image];
     if (cutoff == 0.0F) cutoff = material.alpha_cutoff / material.alpha;
   }
+  // What blends somewhere is left as it is.
+  for (const Material& material : scene.materials) {
+    const TextureSlot& slot = base_slot(material);
+    const bool blends_texels = material.alpha_mode == AlphaMode::kBlend && slot.texture < scene.textures.size();
+    if (blends_texels) cutoffs[scene.textures[slot.texture].image] = 0.0F;
+  }
   return cutoffs;
 }
 

@@ -2,10 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/picture_sources.h"
 
+#include <array>
+#include <cmath>
+#include <string_view>
+
 #include "core/parallel.h"
+#include "core/srgb.h"
+#include "image/picture_formats.h"
 #include "textures/decode_picture.h"
 
 namespace promin {
+namespace {
+
+/// Pictures of light hold numbers where colours of textures are codes of sRGB.
+void encode_light(std::span<uint32_t> texels) {
+  std::array<uint32_t, 256> codes{};
+  for (size_t i = 0; i < codes.size(); ++i) {
+    codes[i] = static_cast<uint32_t>(std::lround(255.0 * linear_to_srgb(static_cast<double>(i) / 255.0)));
+  }
+  for (uint32_t& texel : texels) {
+    texel =
+        (texel & 0xFF000000U) | codes[texel & 0xFF] | codes[texel >> 8 & 0xFF] << 8 | codes[texel >> 16 & 0xFF] << 16;
+  }
+}
+
+bool holds_light(std::span<const std::byte> file) {
+  const PictureFormat* format = find_picture_format(file);
+  const std::string_view name = format == nullptr ? "" : format->name;
+  return name == "hdr" || name == "openexr";
+}
+
+}  // namespace
 
 void decode_pictures(std::span<PictureSource> sources, bool takes_texels, LoadReport& report) {
   for_each_index(sources.size(), 0, [&](size_t i) {
@@ -16,6 +43,7 @@ void decode_pictures(std::span<PictureSource> sources, bool takes_texels, LoadRe
         DecodedPicture picture = decode_picture(source.file);
         source.image->size = picture.size;
         source.image->texels = std::move(picture.texels);
+        if (source.image->use == ImageUse::kColor && holds_light(source.file)) encode_light(source.image->texels);
       } else {
         source.image->size = read_picture_size(source.file);
       }

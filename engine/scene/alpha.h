@@ -13,12 +13,12 @@ inline bool is_absent(const Material& material) {
   return material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff;
 }
 
-/// Whether textures and vertices may say that there is nothing in places.
+/// Whether there may be nothing in places, by the factor or by textures and vertices.
 inline bool has_holes(const Material& material) {
-  return material.alpha_mode != AlphaMode::kOpaque && !is_absent(material);
+  return material.alpha_mode != AlphaMode::kOpaque;
 }
 
-/// Whether what is behind it may be seen. What is absent blends, with alpha 0.
+/// Whether what is behind it may be seen. Of what is absent triangles are holes; other shapes blend, with alpha 0.
 inline bool blends(const Material& material) {
   return material.alpha_mode == AlphaMode::kBlend || is_absent(material);
 }

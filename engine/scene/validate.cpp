@@ -88,12 +88,21 @@ class Validation {
 
   void check_model(const Unlit& unlit, const std::string& place) { check_color(unlit.color, place + ".color"); }
 
+  void check_place(const TextureSlot& slot, const std::string& place) {
+    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set",
+          "take one of these");
+    check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
+  }
+
   void check_materials(std::span<const Material> materials) {
     for (size_t i = 0; i < materials.size(); ++i) {
       const Material& material = materials[i];
       const std::string place = place_of("materials", i);
       std::visit([&](const auto& model) { check_model(model, place); }, material.model);
       check_color(material.emissive, place + ".emissive");
+      for_each_slot(material, [&](const TextureSlot& slot, const char* name, ImageUse /*use*/) {
+        if (slot.exists()) check_place(slot, place + "." + name);
+      });
       check(static_cast<uint32_t>(material.alpha_mode) <= static_cast<uint32_t>(AlphaMode::kBlend),
             "the mode of alpha is none of AlphaMode", place + ".alpha_mode", "name one that there is");
       check_share(material.alpha, place + ".alpha");
@@ -129,13 +138,10 @@ class Validation {
     }
   }
 
-  /// The slots of a material; how many textures there are is known where there is a scene.
+  /// How many textures there are is known where there is a scene.
   void check_slot(const TextureSlot& slot, size_t texture_count, const std::string& place) {
     if (!slot.exists()) return;
     check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "name one that there is");
-    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set",
-          "take one of these");
-    check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
   }
 
   void check_slots(const Scene& scene) {

@@ -128,7 +128,8 @@ TileOptions Film::piece_options() const {
   const uint32_t most_paths = stream_shape(TileOptions::kMaxBlocks * kLanes).most_paths;
   return {.packet_size = packet_size_,
           .most_group_rows = profile.most_group_rows,
-          .most_blocks = has_stream() ? most_paths / kLanes : TileOptions::kMaxBlocks};
+          .most_blocks = has_stream() ? most_paths / kLanes : TileOptions::kMaxBlocks,
+          .most_layers = most_layers()};
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
@@ -145,8 +146,7 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
   const StreamShape shape = stream_shape(capacity_);
-  const uint32_t layers = features_.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
-  const uint32_t steps = piece.bounces + layers;
+  const uint32_t steps = piece.bounces + most_layers();
   const bool takes_stream = stream_ && steps > 0;
   if (takes_stream) stream_->record_begin(commands, *buffer_, shape);
   kernel_->record(commands, piece.dispatch, *buffer_, piece.group_count);
@@ -193,6 +193,10 @@ void Film::warm_up() const {
   begin(picture);
   const TileSample piece = picture.next(1.0);
   run({&piece, 1});
+}
+
+uint32_t Film::most_layers() const {
+  return features_.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
 }
 
 uint32_t Film::records_per_pixel() const {

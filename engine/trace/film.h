@@ -87,6 +87,8 @@ class Film {
  private:
   /// Whether paths go on beyond the camera stage.
   bool has_stream() const;
+  /// How many surfaces that blend a ray goes through.
+  uint32_t most_layers() const;
   bool fetches_film_texels() const;
   /// Of a film of so many pixels.
   StreamShape stream_shape(uint32_t pixel_count) const;

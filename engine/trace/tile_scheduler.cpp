@@ -43,7 +43,8 @@ TileSample TileScheduler::next(double units) {
   piece.group_count = arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows);
   piece.bounces = view_.max_depth;
   piece.units = block_count_;
-  piece.most_rays_a_lane = (1.0 + view_.max_depth) * (1.0 + scene_.light_count) * piece.units;
+  const double most_hits = 1.0 + view_.max_depth + options_.most_layers;
+  piece.most_rays_a_lane = most_hits * (1.0 + scene_.light_count) * (1.0 + options_.most_layers) * piece.units;
 
   ++sample_;
   if (sample_ == view_.samples_per_pixel) {

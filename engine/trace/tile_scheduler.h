@@ -32,6 +32,8 @@ struct TileOptions {
   uint32_t most_group_rows = 1;
   /// The largest piece, kMaxBlocks at most.
   uint32_t most_blocks = kMaxBlocks;
+  /// How many surfaces a ray goes through at most.
+  uint32_t most_layers = 0;
   /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };

@@ -80,9 +80,11 @@ vec3 mirror_weight_metallic_roughness(ShadingPoint point) {
   return max_abs(weight) < LEAST_MIRROR_WEIGHT ? vec3(0.0) : weight;
 }
 
-// Of coat and material the smoother one's.
+// Of coat and material the smoother one's; the coat's where it alone is mirrored in.
 float mirror_roughness_metallic_roughness(ShadingPoint point) {
-  return is_coated(point) ? min(point.material.c.x, point.coat.roughness) : point.material.c.x;
+  if (!is_coated(point)) return point.material.c.x;
+  bool is_one_normal = all(equal(point.normal, point.coat.normal));
+  return is_one_normal ? min(point.material.c.x, point.coat.roughness) : point.coat.roughness;
 }
 
 vec3 mirror_normal_metallic_roughness(ShadingPoint point) {

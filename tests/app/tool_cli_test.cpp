@@ -28,7 +28,10 @@ TEST_F(ToolCliTest, HelpAndVersionEverywhere) {
   }
 }
 
-TEST_F(ToolCliTest, ASheetShowsFilesAndSaysWhatIsWrongWithThem) {
+/// tools/contact_sheet.py.
+using SheetCliTest = CliTest;
+
+TEST_F(SheetCliTest, ShowsFilesAndSaysWhatIsWrongWithThem) {
   write("broken.obj", "f 1 2 3\n");
   const ProcessResult result =
       Process(PROMIN_PYTHON,

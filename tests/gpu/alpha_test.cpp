@@ -127,6 +127,12 @@ TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
   scene.add("ball", Sphere{.radius = 0.5}, 1);
   add_board(scene, -1.0F, make_unlit(vec3(0.5F)));
   EXPECT_THAT(reds(scene, 4), testing::Each(0.5F));
+  // AOVs do not see it either; of solids they see what blends with alpha 0.
+  TunedRendererOptions options;
+  options.with_aovs = true;
+  const Aovs aovs = trace(scene, make_board_view(uvec2(4)), options).aovs;
+  EXPECT_EQ(aovs.object[0], 2U);
+  EXPECT_EQ(aovs.object[5], 1U);
 }
 
 TEST_F(AlphaTest, AnOpaqueMaterialHasNoAlpha) {
@@ -317,10 +323,10 @@ TEST_F(AlphaTest, ManySourcesLightWhatBlends) {
   const View view = make_view({48, 36});
   const Light light = scene.lights[0];
   const Image expected = make_renderer(device(), scene, TunedRendererOptions()).render(view).image;
-  for (uint32_t i = 0; i < layout::STREAM_SOURCES; ++i) {
-    scene.lights.push_back(light);
-    scene.lights.back().diffuse = scene.lights.back().specular = vec3(0.0F);
-  }
+  // Dark ones first, so that those that light come in the next turn.
+  Light dark = light;
+  dark.diffuse = dark.specular = vec3(0.0F);
+  scene.lights.insert(scene.lights.begin(), layout::STREAM_SOURCES, dark);
   EXPECT_TRUE(has_same_bits(make_renderer(device(), scene, TunedRendererOptions()).render(view).image, expected));
 }
 

@@ -269,9 +269,10 @@ TEST_F(TexturesTest, PhongMaterialsHaveFactorsToo) {
 
 TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
   // What lies below sends nothing.
+  uint32_t texel = 0xFFFF80C0U;
   const auto shaded = [&](const std::function<void(MetallicRoughness&)>& change) {
     Scene scene = make_lit_board(make_image(
-        {1, 1}, [](uint32_t, uint32_t) { return 0xFFFF80C0U; }, ImageUse::kNormal));
+        {1, 1}, [&](uint32_t, uint32_t) { return texel; }, ImageUse::kNormal));
     auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
     material.base_color = vec3(0.0F);
     material.specular = 0.0F;
@@ -288,6 +289,9 @@ TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
   EXPECT_NEAR(shaded([](MetallicRoughness& m) { m.clearcoat_texture.texture = 0; }), bare * 192.0F / 255.0F, 1e-6F);
   const float smoother = shaded([](MetallicRoughness& m) { m.clearcoat_roughness = 0.5F * 128.0F / 255.0F; });
   EXPECT_NEAR(shaded([](MetallicRoughness& m) { m.clearcoat_roughness_texture.texture = 0; }), smoother, 1e-6F);
+  // Turned away from the light, to +x and -y.
+  texel = 0xFF90FFFFU;
+  EXPECT_EQ(shaded([](MetallicRoughness& m) { m.normal_texture.texture = 0; }), bare);
 }
 
 TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {

@@ -206,7 +206,9 @@ class PrimitiveReader {
     mesh.colors.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* c = &values[components * vertex];
-      const vec4 color(c[0], c[1], c[2], components == 4 ? c[3] : 1.0F);
+      // Of alpha no more than 0...1 means anything (glTF 2.0, section 3.7.2.1); NaN stays, to be refused.
+      const float alpha = components == 4 ? c[3] : 1.0F;
+      const vec4 color(c[0], c[1], c[2], std::isfinite(alpha) ? std::clamp(alpha, 0.0F, 1.0F) : alpha);
       if (!(color.r >= 0.0F && color.g >= 0.0F && color.b >= 0.0F && is_finite(vec3(color)) &&
             std::isfinite(color.a))) {
         report_.refuse("a vertex colour is negative or not finite", element_place("COLOR_0", vertex),

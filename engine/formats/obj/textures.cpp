@@ -88,6 +88,10 @@ TextureSlot ObjTextures::read_slot(const MtlMap* map, ImageUse use) {
 
 TextureSlot ObjTextures::read_base_color(const MtlMap* color, const MtlMap* alpha) {
   if (alpha == nullptr || (color != nullptr && color->file == alpha->file)) return read_slot(color, ImageUse::kColor);
+  if (color != nullptr &&
+      (color->scale != alpha->scale || color->offset != alpha->offset || color->is_clamped != alpha->is_clamped)) {
+    report_.warn("the options of map_d are ignored where those of map_Kd are others");
+  }
   const ImagePointer alphas = find_picture(alpha, ImageUse::kData);
   // Nothing else is made of one picture twice.
   const std::pair sources(color == nullptr ? alphas : find_picture(color, ImageUse::kColor), alphas);
