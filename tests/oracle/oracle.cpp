@@ -49,8 +49,11 @@ class Search {
     if (hit.t == passed.t && std::tie(hit.object, hit.primitive) <= std::tie(passed.object, passed.primitive)) {
       return true;
     }
+    if (!sight_.passes_backs || !is_triangle()) return false;
+    const Material& material = material_of(scene_, hit);
     const bool is_back = glm::dot(hit.normal, ray_.direction) > 0;
-    return is_back && sight_.passes_backs && is_triangle() && !material_of(scene_, hit).is_double_sided;
+    const bool is_absent = material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff;
+    return is_absent || (is_back && !material.is_double_sided);
   }
   bool is_triangle() const { return std::holds_alternative<Mesh>(scene_.objects[static_cast<size_t>(object_)].shape); }
   void offer(Real t, const Vector& normal) { offer(t, 0, 0, 0, normal); }

@@ -50,7 +50,8 @@ bool can_hit(const Ray& ray);
 
 /// What a ray of a picture sees otherwise than one that is cast.
 struct Sight {
-  /// Whether backs of triangles are passed by, where their material does not show them.
+  /// Whether backs of triangles are passed by, where their material does not show them, and triangles that a mask cuts
+  /// out whole. Shadow rays see both, and go through the latter.
   bool passes_backs = false;
   /// What it has passed already: all that is nearer, and of what is as near all up to this hit.
   Hit passed{.t = -1};
