@@ -17,6 +17,7 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   Dispatch dispatch;
   StreamState film_stream;
   uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
+  uvec4 pass_counts[BLOCK_SIZE * BLOCK_SIZE];
   uvec4 pixels[];
 };
 
