@@ -302,8 +302,6 @@ TEST_F(AlphaTest, EveryWayOfTracingGivesTheSameBits) {
   };
   options.avoids_texels = true;
   expect_same();
-  options.force_all_features = true;
-  expect_same();
   options = {};
   for (const uint32_t packet : {1U, 2U, 4U}) {
     options.packet_size = packet;
