@@ -115,7 +115,7 @@ void arrive() {
     begin_path_log(ray, found[i], 0u, paths[i].weight);
     if (SHADES_POINTS != 0u && found[i].primitive != NO_PRIMITIVE) {
       widen_cone(paths[i], ray, found[i]);
-      points[i] = make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width);
+      make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width, points[i]);
     }
     if (has(FEATURE_AOVS)) put_albedo(paths[i].pixel, found[i], points[i]);
     if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
@@ -164,9 +164,7 @@ bool go_through_layers(uint layers) {
     packet[i].tmin = INFINITY;
     if (hit.primitive == NO_PRIMITIVE) continue;
     blockers[i] = hit;
-    float coverage = layers < MOST_LAYERS ? coverage_of_hit(hit, packet[i].direction) : 1.0;
-    precise float left = arriving[i] * (1.0 - coverage);
-    arriving[i] = left >= LEAST_SHARE_BEHIND ? left : 0.0;
+    arriving[i] = share_behind(hit, packet[i].direction, arriving[i], layers);
     if (!(arriving[i] > 0.0)) continue;
     pass(i, hit.t, hit.order);
     is_any_left = true;

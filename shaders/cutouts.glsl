@@ -67,3 +67,11 @@ float coverage_of_hit(Hit hit, vec3 direction) {
   precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
   return clamp(alpha_at(material, p, surface, weights, 1.0, 0.0), 0.0, 1.0);
 }
+
+// What is left behind a hit of the share of a source's light that arrived at it, where the shadow ray has gone through
+// so many surfaces before.
+float share_behind(Hit hit, vec3 direction, float arriving, uint layers) {
+  float coverage = layers < MOST_LAYERS ? coverage_of_hit(hit, direction) : 1.0;
+  precise float left = arriving * (1.0 - coverage);
+  return left >= LEAST_SHARE_BEHIND ? left : 0.0;
+}

@@ -14,10 +14,7 @@ layout(constant_id = 1) const uint EXPOSURE = 0x3F800000u;
 
 // The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
-  Dispatch dispatch;
-  StreamState film_stream;
-  uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
-  uvec4 pass_counts[BLOCK_SIZE * BLOCK_SIZE];
+  FILM_HEAD(dispatch, film_stream, ray_counts, pass_counts)
   uvec4 pixels[];
 };
 

@@ -4,16 +4,12 @@
 
 // `pixels` holds, for each pixel, the bits of its sum over samples and the `order` of what it shows. With FEATURE_AOVS
 // the bits of each pixel's geometric normal and depth follow, then those of its albedo and its material, and then the
-// stream of paths that camera_stage.comp
-// leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y = shadow, z = reflection) and
-// how often loops were cut (w), `pass_counts` how often rays passed through a surface that blends (x). Each lane of a workgroup has a counter of its own, because all lanes would queue for a
-// single one, and a sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per subgroup and
-// leaks it.
+// stream of paths that camera_stage.comp leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y =
+// shadow, z = reflection) and how often loops were cut (w), `pass_counts` how often rays passed through a surface that
+// blends (x). Each lane of a workgroup has a counter of its own, because all lanes would queue for a single one, and a
+// sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per subgroup and leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
-  Dispatch dispatch;
-  StreamState film_stream;
-  uvec4 ray_counts[BLOCK_SIZE * BLOCK_SIZE];
-  uvec4 pass_counts[BLOCK_SIZE * BLOCK_SIZE];
+  FILM_HEAD(dispatch, film_stream, ray_counts, pass_counts)
   uvec4 pixels[];
 };
 

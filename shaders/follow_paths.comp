@@ -141,7 +141,8 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   }
   path.direction = normalize3(ray.direction);
   widen_cone(path, ray, hit);
-  ShadingPoint point = make_shading_point(ray, path.direction, hit, path.cone_width);
+  ShadingPoint point;
+  make_shading_point(ray, path.direction, hit, path.cone_width, point);
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
   log_own_light(own);

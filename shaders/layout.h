@@ -237,6 +237,13 @@ LAYOUT_CONSTANT STREAM_LISTS = 2u;
 LAYOUT_CONSTANT STREAM_BIN_BITS = 9u;  // of the bins by which rays are sorted (ray_bins.glsl)
 LAYOUT_CONSTANT STREAM_BINS = 1u << STREAM_BIN_BITS;
 LAYOUT_CONSTANT STREAM_LANES = 64u;
+// The head of a film, before its pixels: each block that a shader views the film by begins with it, under names of its
+// own, and FilmHead on the host is nothing else. Each lane of a workgroup has counters of its own (film.glsl).
+#define FILM_HEAD(DISPATCH, STREAM, RAY_COUNTS, PASS_COUNTS) \
+  Dispatch DISPATCH;                                         \
+  StreamState STREAM;                                        \
+  uvec4 RAY_COUNTS[BLOCK_SIZE * BLOCK_SIZE];                 \
+  uvec4 PASS_COUNTS[BLOCK_SIZE * BLOCK_SIZE];
 // Where the pixels of a film lie in its texels.
 LAYOUT_CONSTANT FILM_HEAD_TEXELS = 5u + 6u + 64u + 64u;
 
@@ -282,6 +289,11 @@ static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
 static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 320);
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
+struct FilmHead {
+  FILM_HEAD(dispatch, stream, ray_counts, pass_counts)
+};
+static_assert(sizeof(FilmHead) == 16 * FILM_HEAD_TEXELS);
+#undef FILM_HEAD
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
 static_assert(sizeof(CoatRecord) == 16 * COAT_TEXELS);

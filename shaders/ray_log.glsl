@@ -4,10 +4,7 @@
 // that the picture is made of: nothing here computes any.
 
 layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
-  Dispatch logged_dispatch;
-  StreamState logged_stream;
-  uvec4 logged_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
-  uvec4 logged_pass_counts[BLOCK_SIZE * BLOCK_SIZE];
+  FILM_HEAD(logged_dispatch, logged_stream, logged_ray_counts, logged_pass_counts)
   uvec4 logged_pixel;
   uvec4 log_count;  // x = number of entries
   RayLog logs[];

@@ -211,13 +211,14 @@ Coat seen_coat(Coat coat, vec3 direction) {
   return Coat(weight, coat.roughness, load_lobe_shares(cosine, coat.roughness).x, coat.normal);
 }
 
-// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit.
-ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width) {
+// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit. The point is not returned
+// but written to: of a call that is assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the
+// eighth of every argument, and crash where one of these is built from fewer (propagateNoContraction.cpp).
+void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, out ShadingPoint point) {
   Primitive p = load_primitive(hit.primitive);
   SurfaceRecord record = load_surface(hit.primitive);
   SurfacePoint surface = surface_point(ray, p, hit);
   bool is_flipped = dot3(surface.normal, ray.direction) > 0.0;
-  ShadingPoint point;
   point.position = surface.position;
   point.geometric_normal = is_flipped ? -surface.normal : surface.normal;
   point.normal = point.geometric_normal;
@@ -225,7 +226,7 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_wid
   point.shadow_position = surface.position;
   point.color = vec3(1.0);
   point.curvature = 0.0;
-  point.material = load_material(VIEW.first_index.x + (record.corners_material.w & SURFACE_MATERIAL_MASK));
+  point.material = material_of(record);
   precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
   if (has(FEATURE_SMOOTH_NORMALS) && (record.corners_material.w & SURFACE_IS_SMOOTH) != 0u) {
     apply_vertex_normals(point, p, record.corners_material.xyz, weights, is_flipped);
@@ -254,7 +255,6 @@ ShadingPoint make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_wid
     log_surface(point.position, point.lift, surface.normal, point.normal,
                 record.corners_material.w & SURFACE_MATERIAL_MASK);
   }
-  return point;
 }
 
 // What a source adds where nothing is between.

@@ -29,10 +29,7 @@ const uint ASK_BLOCKED = 0xFFFFFFFEu;  // the answer to a shadow ray that is
 const uint BIN_WITHOUT_RAY = STREAM_BINS - 1u;
 
 layout(std430, set = 0, binding = BINDING_FILM) buffer StreamWords {
-  Dispatch stream_dispatch;
-  StreamState stream;
-  uvec4 stream_ray_counts[BLOCK_SIZE * BLOCK_SIZE];
-  uvec4 stream_pass_counts[BLOCK_SIZE * BLOCK_SIZE];
+  FILM_HEAD(stream_dispatch, stream, stream_ray_counts, stream_pass_counts)
   uint words[];
 };
 

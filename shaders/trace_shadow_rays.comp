@@ -41,9 +41,7 @@ Hit go_through_layers(uint record) {
     trace_packet(false);
     if (found[0].primitive == NO_PRIMITIVE) break;
     last = found[0];
-    float coverage = layers < MOST_LAYERS ? coverage_of_hit(last, packet[0].direction) : 1.0;
-    precise float left = arriving * (1.0 - coverage);
-    arriving = left >= LEAST_SHARE_BEHIND ? left : 0.0;
+    arriving = share_behind(last, packet[0].direction, arriving, layers);
     if (!(arriving > 0.0)) break;
     pass(0u, last.t, last.order);
     ++layers;

@@ -14,7 +14,6 @@
 #include "core/parallel.h"
 #include "device/device.h"
 #include "follow_paths.spv.h"
-#include "trace/film_head.h"
 #include "trace_shadow_rays.spv.h"
 
 namespace promin {
@@ -25,6 +24,9 @@ using Stage = vk::PipelineStageFlagBits;
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 
+/// One for each lane of a block.
+using Counters = std::array<uvec4, kLanes>;
+
 /// Rays and cut loops, then passes (shaders/film.glsl).
 std::array<Counters, 2> lanes_of(std::span<const std::byte> counters) {
   std::array<Counters, 2> lanes;
@@ -32,7 +34,8 @@ std::array<Counters, 2> lanes_of(std::span<const std::byte> counters) {
   std::memcpy(lanes.data(), counters.data(), sizeof lanes);
   return lanes;
 }
-static_assert(offsetof(FilmHead, pass_counts) == offsetof(FilmHead, ray_counts) + sizeof(Counters));
+static_assert(offsetof(layout::FilmHead, pass_counts) == offsetof(layout::FilmHead, ray_counts) + sizeof(Counters));
+static_assert(sizeof(layout::FilmHead::ray_counts) == sizeof(Counters));
 
 uint32_t pick_packet_size(const gpu::DeviceProfile& profile, FeatureMask features, const FilmOptions& options) {
   if (options.packet_size) return *options.packet_size;
@@ -44,7 +47,7 @@ uint32_t pick_packet_size(const gpu::DeviceProfile& profile, FeatureMask feature
 
 }  // namespace
 
-const vk::DeviceSize Film::kPixelsOffset = sizeof(FilmHead);
+const vk::DeviceSize Film::kPixelsOffset = sizeof(layout::FilmHead);
 const vk::DeviceSize Film::kCountersBytes = 2 * sizeof(Counters);
 
 PictureShaders picture_shaders() {
@@ -106,7 +109,7 @@ void Film::bind_scene() {
 void Film::reserve(uint32_t pixel_count) {
   pixel_count = std::max(pixel_count, capacity_);
   const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + log_records_;
-  const uint64_t bytes = sizeof(FilmHead) + records * sizeof(uvec4) + stream_shape(pixel_count).bytes();
+  const uint64_t bytes = sizeof(layout::FilmHead) + records * sizeof(uvec4) + stream_shape(pixel_count).bytes();
   if (buffer_ && buffer_->size_bytes() >= bytes && capacity_ == pixel_count) return;
   using Usage = vk::BufferUsageFlagBits;
   // There before the old one goes: where memory is short the film stays whole.
@@ -141,7 +144,7 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
   const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite, Access::eTransferWrite);
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eTransfer, {}, before, {}, {});
   commands.updateBuffer<layout::ViewConstants>(*view_constants_.handle(), 0, picture.view_constants());
-  commands.fillBuffer(*buffer_->handle(), offsetof(FilmHead, ray_counts), kCountersBytes, 0);
+  commands.fillBuffer(*buffer_->handle(), offsetof(layout::FilmHead, ray_counts), kCountersBytes, 0);
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
@@ -156,7 +159,7 @@ void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& pie
 void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
   const vk::MemoryBarrier written(Access::eShaderWrite, Access::eTransferRead);
   commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, written, {}, {});
-  const vk::DeviceSize offset = offsetof(FilmHead, ray_counts);
+  const vk::DeviceSize offset = offsetof(layout::FilmHead, ray_counts);
   commands.copyBuffer(*buffer_->handle(), *target.handle(), vk::BufferCopy(offset, 0, kCountersBytes));
   const vk::MemoryBarrier copied(Access::eTransferWrite, Access::eHostRead | Access::eTransferWrite);
   commands.pipelineBarrier(Stage::eTransfer, Stage::eTransfer | Stage::eHost, {}, copied, {}, {});
@@ -224,7 +227,7 @@ StreamShape Film::stream_shape(uint32_t pixel_count) const {
 }
 
 uint32_t Film::max_capacity() const {
-  const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(FilmHead)) / sizeof(uvec4);
+  const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(layout::FilmHead)) / sizeof(uvec4);
   const uint64_t most_of_stream = StreamShape::kMostBytes / sizeof(uvec4);
   return static_cast<uint32_t>((records - most_of_stream) / records_per_pixel());
 }

@@ -12,7 +12,6 @@
 #include "device/device.h"
 #include "list_rays.spv.h"
 #include "place_rays.spv.h"
-#include "trace/film_head.h"
 #include "trace/tracing_kernel.h"
 
 namespace promin {
@@ -26,7 +25,7 @@ constexpr uint64_t kBinBytes = sizeof(uint32_t) * 2 * layout::STREAM_LISTS * lay
 
 /// Behind a film's pixels.
 uint64_t offset_of_record(uint64_t record) {
-  return sizeof(FilmHead) + record * sizeof(uvec4);
+  return sizeof(layout::FilmHead) + record * sizeof(uvec4);
 }
 
 std::vector<gpu::SpecializationConstant> with_query(std::span<const gpu::SpecializationConstant> constants,
@@ -94,7 +93,7 @@ void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu
   const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead,
                                      Access::eTransferWrite);
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eDrawIndirect, Stage::eTransfer, {}, after_last, {}, {});
-  commands.updateBuffer<layout::StreamState>(*film.handle(), offsetof(FilmHead, stream), state);
+  commands.updateBuffer<layout::StreamState>(*film.handle(), offsetof(layout::FilmHead, stream), state);
   const uint64_t first_bin = offset_of_record(shape.first_record) + shape.path_bytes() * shape.most_paths;
   commands.fillBuffer(*film.handle(), first_bin, kBinBytes, 0);
 }
@@ -103,7 +102,7 @@ void PathStream::record_turns(const vk::raii::CommandBuffer& commands, const gpu
                               const StreamShape& shape, uint32_t steps) const {
   const auto dispatch = [&](const gpu::ComputePipeline& pipeline, size_t groups) {
     wait_for_last(commands);
-    pipeline.dispatch_indirect(commands, film, offsetof(FilmHead, stream) + groups);
+    pipeline.dispatch_indirect(commands, film, offsetof(layout::FilmHead, stream) + groups);
   };
   // The last turn adds what the shadow rays of the last step let through.
   const uint64_t turns = uint64_t{steps} * shape.turns_of_bounce + 1;

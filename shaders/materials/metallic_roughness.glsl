@@ -149,6 +149,15 @@ float visibility_of(float v, float l, float alpha) {
   return visibility;
 }
 
+// The share of a source's light that facets of this roughness send to the eye, before Fresnel's factor: D, V and N.L.
+// h is the half vector.
+float facet_scale(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosine) {
+  float alpha = max(roughness * roughness, LEAST_ALPHA);
+  float v = max(dot3(normal, to_eye), LEAST_COSINE);
+  precise float scale = cosine * density_of(normal, h, alpha) * visibility_of(v, cosine, alpha);
+  return scale;
+}
+
 // What a source adds to what is under the coat, or without one to all.
 vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
@@ -156,9 +165,6 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
   float size = length3(sum);
   if (size < LEAST_HALF_VECTOR) return contribution;
   precise vec3 h = sum / size;
-  float roughness = point.material.c.x;
-  float alpha = max(roughness * roughness, LEAST_ALPHA);
-  float v = max(dot3(point.normal, to_eye), LEAST_COSINE);
   precise float p = 1.0 - min(0.5 * size, 1.0);
   precise float p2 = p * p;
   precise float p5 = p2 * p2 * p;
@@ -168,7 +174,7 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
   precise vec3 reflected =
       (1.0 - metallic) * dielectric.k * (dielectric.f0 + (dielectric.f90 - dielectric.f0) * p5) +
       metallic * metal.k * (metal.f0 + (metal.f90 - metal.f0) * p5);
-  precise float scale = cosine * density_of(point.normal, h, alpha) * visibility_of(v, cosine, alpha);
+  float scale = facet_scale(point.normal, point.material.c.x, h, to_eye, cosine);
   contribution += reflected * light.specular.xyz * scale;
   return contribution;
 }
@@ -181,10 +187,7 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   float size = length3(sum);
   if (!(cosine > 0.0) || size < LEAST_HALF_VECTOR) return vec3(0.0);
   precise vec3 h = sum / size;
-  float alpha = max(coat.roughness * coat.roughness, LEAST_ALPHA);
-  float v = max(dot3(coat.normal, to_eye), LEAST_COSINE);
-  precise float scale = cosine * density_of(coat.normal, h, alpha) * visibility_of(v, cosine, alpha);
-  precise vec3 reflected = scale * light.specular.xyz;
+  precise vec3 reflected = facet_scale(coat.normal, coat.roughness, h, to_eye, cosine) * light.specular.xyz;
   return reflected;
 }
 

@@ -14,7 +14,6 @@
 #include "gpu/device_fixture.h"
 #include "promin/display.h"
 #include "promin/image.h"
-#include "trace/film_head.h"
 #include "view/display_pass.h"
 
 namespace promin::app {
@@ -41,11 +40,11 @@ class EncodeFilmTest : public test::DeviceTest {
   /// The bytes that the window shows, R, G and B of each pixel.
   static std::vector<std::array<int, 3>> encode(const std::vector<vec3>& sums, const DisplayTransform& display) {
     constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
-    FilmHead head;
+    layout::FilmHead head{};
     head.dispatch.window = uvec4(0, 0, kSize);
     head.dispatch.sampling.x = kSamples;
     // What lies between must not be taken for pixels.
-    head.ray_counts.fill(uvec4(std::bit_cast<uint32_t>(1e9F)));
+    std::ranges::fill(head.ray_counts, uvec4(std::bit_cast<uint32_t>(1e9F)));
     gpu::Buffer film(device(), sizeof head + sums.size() * sizeof(uvec4), kStorage);
     film.write(std::as_bytes(std::span(&head, 1)));
     std::vector<uvec4> pixels;
