@@ -149,12 +149,16 @@ LAYOUT_FLOAT LEAST_SHARE_BEHIND = 0.0009765625f;
 // From this roughness on a metallic-roughness material shows the environment alone, no mirror ray.
 LAYOUT_FLOAT ROUGHEST_MIRROR = 0.4f;
 
-// The clear coat of a metallic-roughness material, whose record has its number, from 1 on, in x of d.
-struct CoatRecord {
-  vec4 factors;  // x = how much of it there is; y = roughness; z = scale of its normals
-  uvec4 slots;   // numbers of texture slots: x = of how much there is, y = of roughness, z = of normals
+// What few metallic-roughness materials have, of extensions of glTF; the material's record has the number of this, from 1
+// on, in x of d. Slots are numbers of texture slots.
+struct ExtensionRecord {
+  vec4 coat;         // x = how much of it there is; y = roughness; z = scale of its normals
+  uvec4 coat_slots;  // x = of how much there is, y = of roughness, z = of normals
+  vec4 sheen;        // xyz = colour; w = roughness
+  vec4 reflectance;  // xyz = the dielectric's at normal incidence, before what follows; w = factor of all it reflects
+  uvec4 slots;       // x = of the sheen's colour, y = of its roughness; of reflectance: z = of w, w = of xyz
 };
-LAYOUT_CONSTANT COAT_TEXELS = 2u;
+LAYOUT_CONSTANT EXTENSION_TEXELS = 5u;
 
 // A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
 struct TextureSlotRecord {
@@ -176,8 +180,10 @@ LAYOUT_CONSTANT WRAP_REPEAT = 0u;
 LAYOUT_CONSTANT WRAP_MIRRORED = 1u;
 LAYOUT_CONSTANT WRAP_CLAMP = 2u;
 
-// The entries of the table of lobes along each side (shading_records.glsl).
+// The entries of the table of lobes along each side (shading_records.glsl), and of that of sheens, whose entries are
+// shares of this largest one.
 LAYOUT_CONSTANT LOBE_TABLE_SIDE = 32u;
+LAYOUT_FLOAT LARGEST_SHEEN_SHARE = 2.0f;
 
 // Texels along each side of the coarsest levels of a sky (sky_levels.def, environment.glsl).
 LAYOUT_CONSTANT LEAST_SKY_SIDE = 32u;
@@ -203,7 +209,7 @@ struct ViewConstants {
   vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
   uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
-                       // w = coats, as CoatRecords
+                       // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
   vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
@@ -296,7 +302,7 @@ static_assert(sizeof(FilmHead) == 16 * FILM_HEAD_TEXELS);
 #undef FILM_HEAD
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
-static_assert(sizeof(CoatRecord) == 16 * COAT_TEXELS);
+static_assert(sizeof(ExtensionRecord) == 16 * EXTENSION_TEXELS);
 static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS && sizeof(TextureSlotRecord) == 16 * TEXTURE_SLOT_TEXELS);
 #undef LAYOUT_CONSTANT
 #undef LAYOUT_FLOAT

@@ -30,9 +30,21 @@ precise vec3 normalize3(vec3 v) {
   return scaled * (1.0 / length3(scaled));
 }
 
+// 2^z for z < 128, good to a few u; 0 where it would be subnormal. By Taylor on |f| <= 0.5.
+precise float power_of_two(float z) {
+  if (!(z > -126.0)) return 0.0;
+  precise float n = floor(z + 0.5);
+  precise float f = z - n;
+  precise float e =
+      1.0 + f * (0.693147181 +
+                 f * (0.240226507 +
+                      f * (0.0555041087 + f * (0.00961812911 + f * (0.00133335581 + f * 0.000154035304)))));
+  return e * uintBitsToFloat(uint(int(n) + 127) << 23);
+}
+
 // x^y for x in (0, 1] and y >= 0. GLSL's pow is exp2(y * log2(x)) with a log2 that may err by 2^-21 absolute, which
 // is 0.3 % of a highlight with exponent 10^4; here the logarithm's error is a few u relative, so that the result is
-// good to a few u * |y log2 x|. Series: log2 by atanh, |s| <= 0.172; exp2 by Taylor on |f| <= 0.5.
+// good to a few u * |y log2 x|. log2 by the series of atanh, |s| <= 0.172.
 precise float power(float x, float y) {
   uint bits = floatBitsToUint(x);
   int exponent = int(bits >> 23) - 127;
@@ -46,14 +58,7 @@ precise float power(float x, float y) {
   precise float series =
       s * (2.88539008 + s2 * (0.961796694 + s2 * (0.577078016 + s2 * (0.412198583 + s2 * 0.320598898))));
   precise float z = y * (float(exponent) + series);
-  if (!(z > -126.0)) return 0.0;
-  precise float n = floor(z + 0.5);
-  precise float f = z - n;
-  precise float e =
-      1.0 + f * (0.693147181 +
-                 f * (0.240226507 +
-                      f * (0.0555041087 + f * (0.00961812911 + f * (0.00133335581 + f * 0.000154035304)))));
-  return e * uintBitsToFloat(uint(int(n) + 127) << 23);
+  return power_of_two(z);
 }
 
 // -x where `other` is negative.

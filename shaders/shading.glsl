@@ -10,6 +10,13 @@ struct Coat {
   vec3 normal;  // without the normals of the material below
 };
 
+// A sheen as the eye sees it (KHR_materials_sheen).
+struct Sheen {
+  vec3 color;
+  float roughness;
+  float share;  // of light from all around, what it sends were its colour 1; what is above 1 is not sent
+};
+
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
@@ -23,11 +30,21 @@ struct ShadingPoint {
   float occlusion;   // with FEATURE_TEXTURES: what is left of the environment's light
   float curvature;   // with FEATURE_TEXTURES: how fast the normal turns along the surface
   Coat coat;         // with FEATURE_COATS
+  Sheen sheen;       // with FEATURE_SHEENS
 };
 
 #include "materials.glsl"
 #include "textures.glsl"
 #include "cutouts.glsl"
+
+// Whether materials may have layers above them, and what of them else few have (ExtensionRecord).
+const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
+const bool HAS_EXTENSIONS = HAS_LAYERS || has(FEATURE_SPECULAR_TEXTURES);
+
+bool is_extended(MaterialRecord material) { return slot_number(material.d.x) != 0u; }
+ExtensionRecord extension_of(MaterialRecord material) {
+  return load_extension(VIEW.first_lookup.w + slot_number(material.d.x) - 1u);
+}
 
 // Lifts the point onto the curved surface that the vertex normals suggest, so that its own coarse polygon does not
 // shadow what is shaded as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
@@ -114,21 +131,43 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
 }
 
 // The coat's textures: its factors, and its normal.
-void apply_coat_textures(inout Coat coat, CoatRecord record, Primitive p, uvec4 corners, vec3 weights, CornerUvs uvs,
+void apply_coat_textures(inout Coat coat, ExtensionRecord record, Primitive p, uvec4 corners, vec3 weights, CornerUvs uvs,
                          TexturePlace place, bool is_flipped, vec3 direction) {
-  if (record.slots.x != 0u) {
-    precise float weight = coat.weight * look_up(record.slots.x, place).x;
+  uvec4 slots = record.coat_slots;
+  if (slots.x != 0u) {
+    precise float weight = coat.weight * look_up(slots.x, place).x;
     coat.weight = weight;
   }
-  if (record.slots.y != 0u) {
-    precise float roughness = coat.roughness * look_up(record.slots.y, place).y;
+  if (slots.y != 0u) {
+    precise float roughness = coat.roughness * look_up(slots.y, place).y;
     coat.roughness = roughness;
   }
-  if (record.slots.z != 0u) {
-    coat.normal = turned_normal(coat.normal, look_up(record.slots.z, place).xyz, record.factors.z,
-                                tangent_at(corners, weights, p, uvs, record.slots.z), is_flipped ? -1.0 : 1.0,
-                                direction);
+  if (slots.z != 0u) {
+    coat.normal =
+        turned_normal(coat.normal, look_up(slots.z, place).xyz, record.coat.z,
+                      tangent_at(corners, weights, p, uvs, slots.z), is_flipped ? -1.0 : 1.0, direction);
   }
+}
+
+void apply_sheen_textures(inout Sheen sheen, ExtensionRecord record, TexturePlace place) {
+  if (record.slots.x != 0u) {
+    precise vec3 color = sheen.color * look_up(record.slots.x, place).xyz;
+    sheen.color = color;
+  }
+  if (record.slots.y != 0u) {
+    precise float roughness = sheen.roughness * look_up(record.slots.y, place).w;
+    sheen.roughness = roughness;
+  }
+}
+
+// KHR_materials_specular: the dielectric's reflectance at normal and at grazing incidence.
+vec4 textured_reflectance(ExtensionRecord record, TexturePlace place) {
+  precise vec3 at_normal = record.reflectance.xyz;
+  precise float factor = record.reflectance.w;
+  if (record.slots.w != 0u) at_normal *= look_up(record.slots.w, place).xyz;
+  if (record.slots.z != 0u) factor *= look_up(record.slots.z, place).w;
+  precise vec3 reduced = min(at_normal, vec3(1.0)) * factor;
+  return vec4(reduced, factor);
 }
 
 void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 weights, vec3 wound_normal,
@@ -185,21 +224,38 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
     point.normal = turned_normal(point.normal, look_up(normal, place).xyz, is_phong ? 1.0 : material.c.y, tangent,
                                  is_flipped ? -1.0 : 1.0, direction);
   }
-  point.material = material;
-  if (has(FEATURE_COATS) && is_metallic_roughness && slot_number(material.d.x) != 0u) {
-    Coat coat = point.coat;
-    apply_coat_textures(coat, load_coat(VIEW.first_lookup.w + slot_number(material.d.x) - 1u), p, corners, weights, uvs,
-                        place, is_flipped, direction);
-    point.coat = coat;
+  if (HAS_EXTENSIONS && is_metallic_roughness && is_extended(material)) {
+    ExtensionRecord record = extension_of(material);
+    if (has(FEATURE_COATS)) {
+      Coat coat = point.coat;
+      apply_coat_textures(coat, record, p, corners, weights, uvs, place, is_flipped, direction);
+      point.coat = coat;
+    }
+    if (has(FEATURE_SHEENS)) {
+      Sheen sheen = point.sheen;
+      apply_sheen_textures(sheen, record, place);
+      point.sheen = sheen;
+    }
+    if (has(FEATURE_SPECULAR_TEXTURES) && (record.slots.z | record.slots.w) != 0u) {
+      material.b = textured_reflectance(record, place);
+    }
   }
+  point.material = material;
 }
 
-// The coat as the material has it, without its textures; its weight is how much of it there is.
-Coat bare_coat(ShadingPoint point) {
-  bool is_coated = model_of(point) == MATERIAL_METALLIC_ROUGHNESS && slot_number(point.material.d.x) != 0u;
-  if (!is_coated) return Coat(0.0, 0.0, 0.0, point.normal);
-  vec4 factors = load_coat(VIEW.first_lookup.w + slot_number(point.material.d.x) - 1u).factors;
-  return Coat(factors.x, factors.y, 0.0, point.normal);
+// Coat and sheen as the material has them, without their textures; the coat's weight is how much of it there is.
+void put_bare_layers(inout ShadingPoint point) {
+  Coat coat = Coat(0.0, 0.0, 0.0, point.normal);
+  Sheen sheen = Sheen(vec3(0.0), 0.0, 0.0);
+  if (model_of(point) == MATERIAL_METALLIC_ROUGHNESS && is_extended(point.material)) {
+    ExtensionRecord record = extension_of(point.material);
+    coat.weight = record.coat.x;
+    coat.roughness = record.coat.y;
+    sheen.color = record.sheen.xyz;
+    sheen.roughness = record.sheen.w;
+  }
+  point.coat = coat;
+  point.sheen = sheen;
 }
 
 // What the eye sees of the coat: Schlick's factor of an index of refraction of 1.5.
@@ -209,6 +265,10 @@ Coat seen_coat(Coat coat, vec3 direction) {
   precise float p2 = p * p;
   precise float weight = coat.weight * (0.04 + 0.96 * (p2 * p2 * p));
   return Coat(weight, coat.roughness, load_lobe_shares(cosine, coat.roughness).x, coat.normal);
+}
+
+Sheen seen_sheen(Sheen sheen, float cosine) {
+  return Sheen(sheen.color, sheen.roughness, load_sheen_share(max(cosine, LEAST_COSINE), sheen.roughness));
 }
 
 // `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit. The point is not returned
@@ -243,7 +303,7 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, out 
   }
   point.lobe_shares = vec2(1.0, 0.0);
   point.occlusion = 1.0;
-  if (has(FEATURE_COATS)) point.coat = bare_coat(point);
+  if (HAS_LAYERS) put_bare_layers(point);
   if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }
@@ -251,6 +311,7 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, out 
     point.lobe_shares = load_lobe_shares(-dot3(point.normal, direction), point.material.c.x);
   }
   if (has(FEATURE_COATS)) point.coat = seen_coat(point.coat, direction);
+  if (has(FEATURE_SHEENS)) point.sheen = seen_sheen(point.sheen, -dot3(point.normal, direction));
   if (has(FEATURE_RAY_LOG)) {
     log_surface(point.position, point.lift, surface.normal, point.normal,
                 record.corners_material.w & SURFACE_MATERIAL_MASK);

@@ -6,7 +6,7 @@
 // starts at a multiple of its own stride (VIEW.first_index).
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
-layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Coats { CoatRecord coats[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Extensions { ExtensionRecord extensions[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
 layout(set = 0, binding = BINDING_SHADING_TEXELS) uniform usamplerBuffer shading_texels;
@@ -27,10 +27,12 @@ MaterialRecord load_material(uint index) {
 
 uint flags_of(MaterialRecord material) { return floatBitsToUint(material.emissive.w); }
 
-CoatRecord load_coat(uint index) {
-  if (FETCHES_TEXELS == 0u) return coats[index];
-  uint first = COAT_TEXELS * index;
-  return CoatRecord(shading_vector(first), texelFetch(shading_texels, int(first + 1u)));
+ExtensionRecord load_extension(uint index) {
+  if (FETCHES_TEXELS == 0u) return extensions[index];
+  uint first = EXTENSION_TEXELS * index;
+  return ExtensionRecord(shading_vector(first), texelFetch(shading_texels, int(first + 1u)),
+                         shading_vector(first + 2u), shading_vector(first + 3u),
+                         texelFetch(shading_texels, int(first + 4u)));
 }
 
 LightRecord load_light(uint index) {
@@ -55,14 +57,13 @@ vec4 load_vertex_color(uvec3 corners, vec3 weights) {
   return color;
 }
 
-// What a lobe of this roughness does with light from all around, as seen from an eye at the angle of this cosine: the
-// shares x = E1, of what it would reflect if all light were, and y = B, of what Schlick's factor would add
-// (engine/device_scene/lobe_table.h). A texel has the four entries of a cell, each in a word, E1 in its lower half.
-vec2 load_lobe_shares(float cosine, float roughness) {
+// Two numbers of the roughness and the angle of this cosine, by a table whose first texel is given
+// (engine/device_scene/lobe_table.h). A texel has the four entries of a cell, each in a word, x in its lower half.
+vec2 load_shares(uint table, float cosine, float roughness) {
   precise float x = float(LOBE_TABLE_SIDE - 1u) * sqrt(clamp(cosine, 0.0, 1.0));
   precise float y = float(LOBE_TABLE_SIDE - 1u) * clamp(roughness, 0.0, 1.0);
   vec2 cell = min(floor(vec2(x, y)), vec2(float(LOBE_TABLE_SIDE - 2u)));
-  uint index = VIEW.first_lookup.x + uint(cell.y) * (LOBE_TABLE_SIDE - 1u) + uint(cell.x);
+  uint index = table + uint(cell.y) * (LOBE_TABLE_SIDE - 1u) + uint(cell.x);
   uvec4 words = FETCHES_TEXELS == 0u ? surfaces[index].corners_material : texelFetch(shading_texels, int(index));
   precise vec4 shares = vec4(words & 0xFFFFu);
   precise vec4 schlick = vec4(words >> 16);
@@ -72,4 +73,14 @@ vec2 load_lobe_shares(float cosine, float roughness) {
   precise vec2 high = vec2(shares.z + fx * (shares.w - shares.z), schlick.z + fx * (schlick.w - schlick.z));
   precise vec2 result = (low + fy * (high - low)) * (1.0 / 65535.0);
   return result;
+}
+
+// What a lobe of this roughness does with light from all around, as seen from an eye at the angle of this cosine: the
+// shares x = E1, of what it would reflect if all light were, and y = B, of what Schlick's factor would add.
+vec2 load_lobe_shares(float cosine, float roughness) { return load_shares(VIEW.first_lookup.x, cosine, roughness); }
+
+// The share of light from all around that a sheen of colour 1 sends to the eye; its table follows that of lobes.
+float load_sheen_share(float cosine, float roughness) {
+  uint table = VIEW.first_lookup.x + (LOBE_TABLE_SIDE - 1u) * (LOBE_TABLE_SIDE - 1u);
+  return LARGEST_SHEEN_SHARE * load_shares(table, cosine, roughness).x;
 }

@@ -8,6 +8,7 @@
 #include "device/device.h"
 #include "device_scene/lobe_table.h"
 #include "promin/error.h"
+#include "scene/layers.h"
 
 namespace promin {
 namespace {
@@ -47,9 +48,20 @@ void write(gpu::Buffer& buffer, const Placed& placed) {
   if (!placed.bytes.empty()) buffer.write(placed.bytes, placed.offset);
 }
 
-bool look_up_lobes(std::span<const Material> materials) {
-  const auto looks_them_up = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
-  return std::ranges::any_of(materials, looks_them_up);
+/// What these materials look up.
+std::vector<uvec4> make_tables(std::span<const Material> materials) {
+  const auto looks_up_lobes = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
+  const auto looks_up_sheens = [](const Material& m) {
+    const auto* model = std::get_if<MetallicRoughness>(&m.model);
+    return model != nullptr && has_sheen(*model);
+  };
+  std::vector<uvec4> tables;
+  if (std::ranges::any_of(materials, looks_up_lobes)) tables = make_lobe_table();
+  if (std::ranges::any_of(materials, looks_up_sheens)) {
+    const std::vector<uvec4> sheens = make_sheen_table();
+    tables.insert(tables.end(), sheens.begin(), sheens.end());
+  }
+  return tables;
 }
 
 bool are_skies_equal(const Environment& a, const Environment& b) {
@@ -73,8 +85,8 @@ uint64_t total_bytes(const Parts&... parts) {
 struct DeviceScene::PlacedTail {
   Placed materials;
   Placed texture_slots;
-  Placed coats;
-  Placed lobe_table;
+  Placed extensions;
+  Placed lobe_tables;
   Placed sky;
   /// The last, because they change most often in number.
   Placed lights;
@@ -85,9 +97,9 @@ DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   PlacedTail placed;
   placed.materials = place(tail.materials->records, head_bytes_);
   placed.texture_slots = place(tail.materials->slots, placed.materials.end());
-  placed.coats = place(tail.materials->coats, placed.texture_slots.end());
-  placed.lobe_table = place(*tail.lobe_table, placed.coats.end());
-  placed.sky = place(tail.sky->texels, placed.lobe_table.end());
+  placed.extensions = place(tail.materials->extensions, placed.texture_slots.end());
+  placed.lobe_tables = place(*tail.lobe_tables, placed.extensions.end());
+  placed.sky = place(tail.sky->texels, placed.lobe_tables.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
   return placed;
 }
@@ -120,7 +132,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.unbounded_count = packed.unbounded_count;
   take_colors(shading.environment);
   Tail tail{std::make_shared<const PackedMaterials>(pack_materials(shading.materials)),
-            lobe_table_for(shading.materials), std::make_shared<const PackedSky>(pack_sky(shading.environment)),
+            lobe_tables_for(shading.materials), std::make_shared<const PackedSky>(pack_sky(shading.environment)),
             pack_lights(shading.lights)};
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : {surfaces, normals, colors, uvs, tangents, image_words}) write(*shading_, placed);
@@ -131,7 +143,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
 void DeviceScene::set_materials(std::span<const Material> materials) {
   Tail tail = tail_;
   tail.materials = std::make_shared<const PackedMaterials>(pack_materials(materials));
-  tail.lobe_table = lobe_table_for(materials);
+  tail.lobe_tables = lobe_tables_for(materials);
   write_tail(std::move(tail));
 }
 
@@ -150,10 +162,11 @@ void DeviceScene::set_environment(const Environment& environment) {
   take_colors(environment);
 }
 
-std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_table_for(std::span<const Material> materials) const {
-  if (!look_up_lobes(materials)) return std::make_shared<const std::vector<uvec4>>();
-  // It is one and the same for all scenes.
-  return tail_.lobe_table->empty() ? std::make_shared<const std::vector<uvec4>>(make_lobe_table()) : tail_.lobe_table;
+std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_tables_for(std::span<const Material> materials) const {
+  std::vector<uvec4> tables = make_tables(materials);
+  // They are the same for all scenes, so what is there already is not written anew.
+  if (tables == *tail_.lobe_tables) return tail_.lobe_tables;
+  return std::make_shared<const std::vector<uvec4>>(std::move(tables));
 }
 
 void DeviceScene::take_colors(const Environment& environment) {
@@ -164,8 +177,8 @@ void DeviceScene::take_colors(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail_bytes = total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->coats,
-                                          *tail_.lobe_table, tail_.sky->texels, tail_.lights.records);
+  const uint64_t tail_bytes = total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->extensions,
+                                          *tail_.lobe_tables, tail_.sky->texels, tail_.lights.records);
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
 
@@ -229,8 +242,8 @@ void DeviceScene::write_tail(Tail tail) {
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::coats,
-                          &PlacedTail::lobe_table, &PlacedTail::sky, &PlacedTail::lights}) {
+  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::extensions,
+                          &PlacedTail::lobe_tables, &PlacedTail::sky, &PlacedTail::lights}) {
     if (!needs_larger && is_same(placed.*part, last.*part)) continue;
     write(*shading_, placed.*part);
     uploads_.shading += (placed.*part).bytes.size();
@@ -238,7 +251,7 @@ void DeviceScene::write_tail(Tail tail) {
   constants_.first_index.x = placed.materials.first_index;
   constants_.first_index.y = placed.lights.first_index;
   constants_.first_lookup =
-      uvec4(placed.lobe_table.first_index, placed.sky.first_index, tail.sky->side, placed.coats.first_index);
+      uvec4(placed.lobe_tables.first_index, placed.sky.first_index, tail.sky->side, placed.extensions.first_index);
   constants_.first_texture.z = placed.texture_slots.first_index;
   constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());

@@ -70,8 +70,8 @@ class DeviceScene {
   struct Tail {
     // All but the lights are shared by the tails that do not change them.
     std::shared_ptr<const PackedMaterials> materials = std::make_shared<const PackedMaterials>();
-    /// Empty where no material looks it up.
-    std::shared_ptr<const std::vector<uvec4>> lobe_table = std::make_shared<const std::vector<uvec4>>();
+    /// That of lobes and that of sheens, each only where a material looks it up.
+    std::shared_ptr<const std::vector<uvec4>> lobe_tables = std::make_shared<const std::vector<uvec4>>();
     std::shared_ptr<const PackedSky> sky = std::make_shared<const PackedSky>();
     PackedLights lights;
   };
@@ -79,7 +79,7 @@ class DeviceScene {
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
   PackedMaterials pack_materials(std::span<const Material> materials) const;
-  std::shared_ptr<const std::vector<uvec4>> lobe_table_for(std::span<const Material> materials) const;
+  std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
   /// Copies what of the tail is new, or all of it into a larger buffer where it needs one. Where that cannot be made
   /// nothing changes.
   void write_tail(Tail tail);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scene/alpha.h"
+#include "scene/layers.h"
 #include "scene/texture_slots.h"
 
 namespace promin {
@@ -77,14 +78,11 @@ class MaterialPacker {
             {}};
   }
   MaterialRecord pack(const MetallicRoughness& m) {
-    // KHR_materials_ior: 0 stands for a dielectric that reflects all.
-    const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
-    const dvec3 at_normal =
-        glm::min(slope * slope * dvec3(m.specular_color), dvec3(1.0)) * static_cast<double>(m.specular);
+    const dvec3 at_normal = glm::min(reflectance_of(m), dvec3(1.0)) * static_cast<double>(m.specular);
     return {vec4(m.base_color, m.metallic),
             vec4(vec3(at_normal), m.specular),
             vec4(m.roughness, m.normal_scale, m.occlusion_strength, 0.0F),
-            vec4(add_coat(m), add(m.metallic_roughness_texture), add(m.normal_texture), add(m.occlusion_texture)),
+            vec4(add_extension(m), add(m.metallic_roughness_texture), add(m.normal_texture), add(m.occlusion_texture)),
             {},
             {}};
   }
@@ -92,13 +90,23 @@ class MaterialPacker {
     return {vec4(m.color, 0.0F), {}, {}, {}, {}, {}};
   }
 
-  /// The bits of the coat's number, 0 where there is none.
-  float add_coat(const MetallicRoughness& m) {
-    if (m.clearcoat == 0.0F) return 0.0F;
-    packed_.coats.push_back({vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0.0F),
-                             uvec4(number_of(m.clearcoat_texture), number_of(m.clearcoat_roughness_texture),
-                                   number_of(m.clearcoat_normal_texture), 0)});
-    return std::bit_cast<float>(static_cast<uint>(packed_.coats.size()));
+  /// Of the dielectric at normal incidence, before the strength of its reflection.
+  static dvec3 reflectance_of(const MetallicRoughness& m) {
+    // KHR_materials_ior: 0 stands for a dielectric that reflects all.
+    const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
+    return slope * slope * dvec3(m.specular_color);
+  }
+
+  /// The bits of the extension's number, 0 where there is none.
+  float add_extension(const MetallicRoughness& m) {
+    if (!has_coat(m) && !has_sheen(m) && !has_specular_textures(m)) return 0.0F;
+    packed_.extensions.push_back({vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0.0F),
+                                  uvec4(number_of(m.clearcoat_texture), number_of(m.clearcoat_roughness_texture),
+                                        number_of(m.clearcoat_normal_texture), 0),
+                                  vec4(m.sheen_color, m.sheen_roughness), vec4(vec3(reflectance_of(m)), m.specular),
+                                  uvec4(number_of(m.sheen_color_texture), number_of(m.sheen_roughness_texture),
+                                        number_of(m.specular_texture), number_of(m.specular_color_texture))});
+    return std::bit_cast<float>(static_cast<uint>(packed_.extensions.size()));
   }
 
   float add(const TextureSlot& slot) {

@@ -25,8 +25,8 @@ struct PackedMaterials {
   std::vector<layout::MaterialRecord> records;
   /// Of the textures that records name, which number them from 1 on.
   std::vector<layout::TextureSlotRecord> slots;
-  /// Of the coats that records name, likewise.
-  std::vector<layout::CoatRecord> coats;
+  /// Of what few materials have, which their records number likewise.
+  std::vector<layout::ExtensionRecord> extensions;
 };
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables = {});
 

@@ -9,6 +9,7 @@
 #include "core/rounding.h"
 #include "layout.h"
 #include "scene/alpha.h"
+#include "scene/layers.h"
 #include "scene/light_kinds.h"
 #include "scene/texture_slots.h"
 
@@ -92,7 +93,9 @@ struct MaterialFeatures {
     if (material.roughness < ROUGHEST_MIRROR || material.metallic_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;
     }
-    if (material.clearcoat == 0.0F) return features;
+    if (has_sheen(material)) features |= FEATURE_SHEENS;
+    if (has_specular_textures(material)) features |= FEATURE_SPECULAR_TEXTURES;
+    if (!has_coat(material)) return features;
     features |= FEATURE_COATS;
     if (material.clearcoat_roughness < ROUGHEST_MIRROR || material.clearcoat_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;

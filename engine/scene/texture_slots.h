@@ -38,9 +38,13 @@ void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
   visit(model.metallic_roughness_texture, "metallic_roughness_texture", ImageUse::kData);
   visit(model.normal_texture, "normal_texture", ImageUse::kNormal);
   visit(model.occlusion_texture, "occlusion_texture", ImageUse::kData);
+  visit(model.specular_texture, "specular_texture", ImageUse::kData);
+  visit(model.specular_color_texture, "specular_color_texture", ImageUse::kColor);
   visit(model.clearcoat_texture, "clearcoat_texture", ImageUse::kData);
   visit(model.clearcoat_roughness_texture, "clearcoat_roughness_texture", ImageUse::kData);
   visit(model.clearcoat_normal_texture, "clearcoat_normal_texture", ImageUse::kNormal);
+  visit(model.sheen_color_texture, "sheen_color_texture", ImageUse::kColor);
+  visit(model.sheen_roughness_texture, "sheen_roughness_texture", ImageUse::kData);
 }
 
 template <typename Visit>

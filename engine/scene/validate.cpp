@@ -82,6 +82,8 @@ class Validation {
     check(std::isfinite(material.clearcoat_normal_scale), "the scale is not finite", place + ".clearcoat_normal_scale",
           "use a finite one");
     check_color(material.specular_color, place + ".specular_color");
+    for (int i = 0; i < 3; ++i) check_share(material.sheen_color[i], place + ".sheen_color");
+    check_share(material.sheen_roughness, place + ".sheen_roughness");
     check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
           "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
   }

@@ -49,6 +49,10 @@ struct MetallicRoughness {
   float specular = 1.0F;
   /// Colour of the dielectric's reflection at normal incidence (KHR_materials_specular).
   vec3 specular_color{1.0F};
+  /// Factor of the strength of the dielectric's reflection (alpha).
+  TextureSlot specular_texture = {};
+  /// Factors of its colour.
+  TextureSlot specular_color_texture = {};
   /// Factors of the base colour.
   TextureSlot base_color_texture = {};
   /// Factors of roughness (green) and metallic (blue).
@@ -73,6 +77,14 @@ struct MetallicRoughness {
   TextureSlot clearcoat_normal_texture = {};
   /// Factor of x and y of these normals, finite.
   float clearcoat_normal_scale = 1.0F;
+  /// Colour of the sheen of cloth under the coat, 0...1; 0: there is none (KHR_materials_sheen).
+  vec3 sheen_color{0.0F};
+  /// The sheen's perceptual roughness, 0...1; below 0.07 it is taken for that.
+  float sheen_roughness = 0.0F;
+  /// Factors of its colour.
+  TextureSlot sheen_color_texture = {};
+  /// Factor of its roughness (alpha).
+  TextureSlot sheen_roughness_texture = {};
 };
 
 /// A colour that no light changes (KHR_materials_unlit).

@@ -8,6 +8,9 @@ const float LEAST_COSINE = 0.0009765625;        // 2^-10, to the eye
 const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12: the light comes from behind, as seen from the eye
 const float LEAST_ALPHA = 0.002;                 // of sources, whose images would be points (glTF B.3.2 forbids 0)
 const float INVERSE_PI = 0.318309886;
+
+#include "sheen.glsl"
+
 // Between these roughnesses reflected objects fade into the environment alone.
 const float SHARPEST_BLUR = 0.1;
 // A mirror ray of less weight is not traced.
@@ -40,10 +43,17 @@ Lobe dielectric_lobe(ShadingPoint point) {
 }
 Lobe metal_lobe(ShadingPoint point) { return make_lobe(base_color_of(point), 1.0, point.lobe_shares); }
 
-// The share of light from all around that is sent to the eye by reflection.
+// What a sheen of which this share is sent leaves for what is below it.
+float left_below_sheen(Sheen sheen, float share) {
+  precise float left = 1.0 - max_abs(sheen.color) * min(share, 1.0);
+  return left;
+}
+
+// The share of light from all around that is sent to the eye by reflection below the sheen.
 vec3 reflectance_of(ShadingPoint point) {
   float metallic = point.material.a.w;
   precise vec3 sum = (1.0 - metallic) * dielectric_lobe(point).r + metallic * metal_lobe(point).r;
+  if (has(FEATURE_SHEENS)) sum *= left_below_sheen(point.sheen, point.sheen.share);
   return sum;
 }
 
@@ -114,7 +124,12 @@ vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follo
   vec3 around = environment_radiance(
       direction_of_lobe(point.normal, point.geometric_normal, point.material.c.x, direction), point.material.c.x);
   vec3 reflectance = reflectance_of(point);
-  precise vec3 diffuse = albedo_of(point) * ambient_at(point.normal);
+  vec3 ambient = ambient_at(point.normal);
+  precise vec3 diffuse = albedo_of(point) * ambient;
+  if (has(FEATURE_SHEENS)) {
+    diffuse = left_below_sheen(point.sheen, point.sheen.share) * diffuse +
+              min(point.sheen.share, 1.0) * point.sheen.color * ambient;
+  }
   precise vec3 own;
   if (has(FEATURE_TEXTURES)) {
     own = point.material.emissive.xyz + point.occlusion * (diffuse + (1.0 - sharpness) * reflectance * around);
@@ -191,8 +206,25 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   return reflected;
 }
 
+// What a source adds under the coat where there is a sheen: the sheen's light, and what it leaves of the rest both on
+// the way in and on the way out. Where its curves would send more than arrives, as they do at grazing angles, all of it
+// is less by that.
+vec3 contribution_with_sheen(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light,
+                             vec3 without) {
+  Sheen sheen = point.sheen;
+  precise vec3 sum = to_eye + to_light;
+  float size = length3(sum);
+  if (max_abs(sheen.color) == 0.0 || !(cosine > 0.0) || size < LEAST_HALF_VECTOR) return without;
+  float share = max(sheen.share, load_sheen_share(cosine, sheen.roughness));
+  precise vec3 h = sum / size;
+  precise float sent = sheen_of_source(point.normal, sheen.roughness, h, to_eye, cosine) / max(sheen.share, 1.0);
+  precise vec3 all = left_below_sheen(sheen, share) * without + sent * sheen.color * light.specular.xyz;
+  return all;
+}
+
 vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
+  if (has(FEATURE_SHEENS)) below = contribution_with_sheen(point, to_eye, to_light, cosine, light, below);
   if (!is_coated(point)) return below;
   precise vec3 sum =
       (1.0 - point.coat.weight) * below + point.coat.weight * contribution_in_coat(point, to_eye, to_light, light);

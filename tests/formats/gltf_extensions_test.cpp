@@ -158,13 +158,27 @@ TEST_F(GltfExtensionsTest, TexturesOfWebpNameTheirImage) {
   EXPECT_THAT(refusal_of(gltf), HasSubstr("textures[0].extensions.EXT_texture_webp.source"));
 }
 
-TEST_F(GltfExtensionsTest, TexturesOfSpecularAreSaidToBeIgnored) {
+const MetallicRoughness& model_of(const Scene& scene) {
+  return std::get<MetallicRoughness>(scene.materials.at(0).model);
+}
+
+TEST_F(GltfExtensionsTest, TexturesOfLayersAreRead) {
   GltfBuilder gltf = textured_gltf({{"source", 1}});
-  gltf.json["materials"][0]["extensions"]["KHR_materials_specular"]["specularTexture"]["index"] = 0;
+  json& extensions = gltf.json["materials"][0]["extensions"];
+  extensions["KHR_materials_specular"]["specularTexture"]["index"] = 0;
+  extensions["KHR_materials_specular"]["specularColorTexture"]["index"] = 0;
+  extensions["KHR_materials_sheen"]["sheenColorTexture"]["index"] = 0;
+  extensions["KHR_materials_sheen"]["sheenRoughnessTexture"]["index"] = 0;
   const Scene scene = load(gltf);
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("1 material has textures of KHR_materials_specular, which are ignored; the factors hold"));
-  EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kApproximated);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const MetallicRoughness& model = model_of(scene);
+  const auto use_of = [&](const TextureSlot& slot) {
+    return scene.images.at(scene.textures.at(slot.texture).image)->use;
+  };
+  EXPECT_EQ(use_of(model.specular_texture), ImageUse::kData);
+  EXPECT_EQ(use_of(model.specular_color_texture), ImageUse::kColor);
+  EXPECT_EQ(use_of(model.sheen_color_texture), ImageUse::kColor);
+  EXPECT_EQ(use_of(model.sheen_roughness_texture), ImageUse::kData);
 }
 
 // Specular-glossiness
@@ -180,10 +194,6 @@ GltfBuilder glossy_gltf(const json& extension) {
   gltf.json["images"] = {{{"uri", kGlossyPixels}}};
   gltf.json["materials"] = {{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", extension}}}}};
   return gltf;
-}
-
-const MetallicRoughness& model_of(const Scene& scene) {
-  return std::get<MetallicRoughness>(scene.materials.at(0).model);
 }
 
 TEST_F(GltfExtensionsTest, SpecularGlossinessIsADielectricThatReflectsItsSpecularColor) {
@@ -224,15 +234,13 @@ TEST_F(GltfExtensionsTest, TexturesOfGlossinessBecomeSuchOfRoughness) {
         factor == 1.0 ? std::vector<uint32_t>{0xFF000000, 0xFF00CC00} : std::vector<uint32_t>{0xFF008000, 0xFF00E600};
     EXPECT_EQ(image.texels, expected);
     EXPECT_EQ(model.roughness, 1.0F) << "the texture has the factor in it";
-    EXPECT_FLOAT_EQ(model.specular_color.r, 0.5F);
-    EXPECT_FLOAT_EQ(model.specular_color.g, 0.0F);
-    EXPECT_FLOAT_EQ(model.specular_color.b, 0.5F * 0.21586050F) << "80 hexadecimal of sRGB, linear";
-    EXPECT_EQ(scene.images.size(), 2U) << "the diffuse texture keeps its texels";
+    EXPECT_EQ(model.specular_color, vec3(1, 1, 0.5F));
+    EXPECT_EQ(model.specular_color_texture.texture, model.base_color_texture.texture);
+    EXPECT_EQ(scene.images.size(), 2U) << "the diffuse texture and that of specular colours keep their texels";
     EXPECT_EQ(scene.images.at(scene.textures.at(model.base_color_texture.texture).image)->texels,
               (std::vector<uint32_t>{0xFF8000FF, 0x33800000}));
-    EXPECT_THAT(scene.warnings, ElementsAre("1 material has textures of KHR_materials_pbrSpecularGlossiness, whose "
-                                            "specular colours are approximated by their mean"));
-    EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kApproximated);
+    EXPECT_THAT(scene.warnings, IsEmpty());
+    EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kUsed);
   }
 }
 

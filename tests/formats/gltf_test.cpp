@@ -426,6 +426,19 @@ TEST_F(GltfTest, ClearCoatsAreRead) {
   EXPECT_EQ(bare.clearcoat, 0.0F);
 }
 
+TEST_F(GltfTest, SheensAreRead) {
+  const LoadedScene scene = load(material_gltf(
+      {{"extensions",
+        {{"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.75}}}}}}));
+  const auto model = model_of<MetallicRoughness>(scene);
+  EXPECT_EQ(model.sheen_color, vec3(0.5F, 0.25F, 1.0F));
+  EXPECT_EQ(model.sheen_roughness, 0.75F);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const auto bare =
+      model_of<MetallicRoughness>(load(material_gltf({{"extensions", {{"KHR_materials_sheen", json::object()}}}})));
+  EXPECT_EQ(bare.sheen_color, vec3(0.0F));
+}
+
 TEST_F(GltfTest, MetallicRoughnessHasTheSpecificationsDefaults) {
   const auto model = model_of<MetallicRoughness>(load(material_gltf(
       {{"extensions", {{"KHR_materials_ior", json::object()}, {"KHR_materials_specular", json::object()}}}})));

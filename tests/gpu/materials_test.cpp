@@ -131,6 +131,19 @@ TEST_F(MaterialsTest, ColoredSpheresSendNoMoreThanTheyGet) {
   EXPECT_GT(darker, image.pixels.size() / 4);
 }
 
+// What a sheen does not send is left for what is below it.
+TEST_F(MaterialsTest, WhiteSpheresUnderWhiteSheensVanishInAWhiteFurnace) {
+  for (const float roughness : {0.0F, 0.1F, 0.3F, 1.0F}) {
+    world::Scene scene = make_spheres(vec3(1.0F));
+    for (Material& material : scene.materials) {
+      auto& model = std::get<MetallicRoughness>(material.model);
+      model.sheen_color = vec3(1.0F);
+      model.sheen_roughness = roughness;
+    }
+    EXPECT_LE(largest_difference(render(scene, look_at_spheres()), 1.0F), 8.0F * kU) << roughness;
+  }
+}
+
 // A coat gives nothing back of what facets reflect more than once, so a rough one may only lose light.
 TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
   for (const float roughness : {0.0F, 0.05F, 0.3F, 1.0F}) {
@@ -175,6 +188,19 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
         const vec3 color = renderer.render(look_along(-direction_at(cosine))).image.pixels[0];
         EXPECT_NEAR(color.x, 1.0F, 0.002F) << "metallic " << metallic << " roughness " << roughness << " at " << cosine;
       }
+    }
+  }
+  // A sheen takes from what is below on the way in and on the way out, so some light is lost, and none is made.
+  for (const float roughness : {0.3F, 0.6F, 1.0F}) {
+    MetallicRoughness model;
+    model.metallic = 0.0F;
+    model.sheen_color = vec3(1.0F);
+    model.sheen_roughness = roughness;
+    renderer.set_materials(std::vector{make_metallic_roughness(model)});
+    for (const float cosine : {0.999F, 0.8F, 0.5F, 0.25F, 0.1F}) {
+      const float sent = renderer.render(look_along(-direction_at(cosine))).image.pixels[0].x;
+      EXPECT_LE(sent, 1.0F + 0.002F) << roughness << " at " << cosine;
+      EXPECT_GE(sent, 0.7F) << roughness << " at " << cosine;
     }
   }
 }

@@ -115,6 +115,21 @@ TEST_F(OraclePictureTest, ClearCoatsAgreeWithTheOracle) {
   EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
 }
 
+TEST_F(OraclePictureTest, SheensAgreeWithTheOracle) {
+  world::Scene scene = test::make_scene_of_everything(60);
+  const auto cover = [&](size_t material, const vec3& color, float roughness) {
+    auto& model = std::get<MetallicRoughness>(scene.materials[material].model);
+    model.sheen_color = color;
+    model.sheen_roughness = roughness;
+    scene.materials[material].emissive = vec3(0.05F);
+    return std::ref(model);
+  };
+  cover(4, vec3(1.0F, 0.7F, 0.2F), 0.2F);
+  cover(5, vec3(0.6F), 0.8F).get().clearcoat = 0.5F;
+  for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material = i % 2 == 0 ? 4 : 5;
+  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+}
+
 // Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is
 // rounded, for device and oracle alike; colour is not asked, as secondary rays start farther off the surface there.
 TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/rounding.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/validate.h"
@@ -292,6 +293,60 @@ TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
   // Turned away from the light, to +x and -y.
   texel = 0xFF90FFFFU;
   EXPECT_EQ(shaded([](MetallicRoughness& m) { m.normal_texture.texture = 0; }), bare);
+}
+
+TEST_F(TexturesTest, ASheenHasItsOwnFactors) {
+  // Roughness is in alpha.
+  const auto shaded = [&](const vec3& color, float roughness, const std::function<void(MetallicRoughness&)>& change) {
+    Scene scene = make_lit_board(make_image(
+        {1, 1}, [](uint32_t, uint32_t) { return 0x80FF8000U; }, ImageUse::kData));
+    auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
+    material.base_color = vec3(0.0F);
+    material.specular = 0.0F;
+    material.sheen_color = color;
+    material.sheen_roughness = roughness;
+    change(material);
+    return render(scene, make_board_view({8, 8})).pixels[27];
+  };
+  const auto nothing = [](MetallicRoughness&) {};
+  const vec3 bare = shaded(vec3(1.0F), 1.0F, nothing);
+  EXPECT_GT(bare.g, 0.0F);
+  const vec3 colored = shaded(vec3(1.0F), 1.0F, [](MetallicRoughness& m) { m.sheen_color_texture.texture = 0; });
+  EXPECT_EQ(colored.r, 0.0F);
+  EXPECT_NEAR(colored.g, bare.g * 128.0F / 255.0F, 1e-6F);
+  EXPECT_EQ(colored.b, bare.b);
+  const vec3 smoother = shaded(vec3(1.0F), 128.0F / 255.0F, nothing);
+  EXPECT_LT(smoother.g, 0.9F * bare.g);
+  EXPECT_NEAR(shaded(vec3(1.0F), 1.0F, [](MetallicRoughness& m) { m.sheen_roughness_texture.texture = 0; }).g,
+              smoother.g, 1e-6F);
+}
+
+TEST_F(TexturesTest, WhatADielectricReflectsHasFactors) {
+  const auto shaded = [&](const std::function<void(MetallicRoughness&)>& change) {
+    Scene scene = make_lit_board(make_image(
+        {1, 1}, [](uint32_t, uint32_t) { return 0x80FF8000U; }, ImageUse::kData));
+    auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
+    material.base_color = vec3(0.0F);
+    material.metallic = 0.0F;
+    material.roughness = 0.5F;
+    change(material);
+    return render(scene, make_board_view({8, 8})).pixels[27];
+  };
+  constexpr float kHalf = 128.0F / 255.0F;
+  const auto near = [](const vec3& a, const vec3& b) { return max_component(glm::abs(a - b)) <= 1e-6F; };
+  const vec3 weaker = shaded([](MetallicRoughness& m) { m.specular = kHalf; });
+  EXPECT_LT(weaker.r, 0.9F * shaded([](MetallicRoughness&) {}).r);
+  EXPECT_TRUE(near(shaded([](MetallicRoughness& m) { m.specular_texture.texture = 0; }), weaker));
+  const vec3 colored = shaded([](MetallicRoughness& m) { m.specular_color = vec3(0.0F, kHalf, 1.0F); });
+  EXPECT_LT(colored.r, 0.9F * colored.b);
+  EXPECT_TRUE(near(shaded([](MetallicRoughness& m) { m.specular_color_texture.texture = 0; }), colored));
+  // What is above 1 is cut only after the texture.
+  const vec3 strong = shaded([](MetallicRoughness& m) { m.specular_color = vec3(0.0F, 40.0F * kHalf, 40.0F); });
+  EXPECT_TRUE(near(shaded([](MetallicRoughness& m) {
+                     m.specular_color = vec3(40.0F);
+                     m.specular_color_texture.texture = 0;
+                   }),
+                   strong));
 }
 
 TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {

@@ -55,13 +55,29 @@ Real facet_radiance(const LobeAngles& angles, Real alpha) {
          microfacet_density(angles.theta, alpha);
 }
 
+LobeShares mix(const LobeShares& a, const LobeShares& b, Real weight) {
+  return {(1 - weight) * a.all + weight * b.all, (1 - weight) * a.grazing + weight * b.grazing};
+}
+
 /// The numbers of the device's table, which is data: entries of 16 bits in cells of four.
 class LobeTable {
  public:
-  LobeTable() : cells_(make_lobe_table()), side_(static_cast<size_t>(std::lround(std::sqrt(cells_.size()))) + 1) {}
+  explicit LobeTable(std::vector<glm::uvec4> cells)
+      : cells_(std::move(cells)), side_(static_cast<size_t>(std::lround(std::sqrt(cells_.size()))) + 1) {}
 
-  size_t side() const { return side_; }
+  /// Between the entries.
+  LobeShares look_up(Real v, Real roughness) const {
+    const Real last = static_cast<Real>(side_ - 1);
+    const Real x = last * std::sqrt(std::clamp(v, Real(0), Real(1)));
+    const Real y = last * roughness;
+    const size_t column = std::min(static_cast<size_t>(x), side_ - 2);
+    const size_t row = std::min(static_cast<size_t>(y), side_ - 2);
+    const LobeShares low = mix(entry(column, row), entry(column + 1, row), x - column);
+    const LobeShares high = mix(entry(column, row + 1), entry(column + 1, row + 1), x - column);
+    return mix(low, high, y - row);
+  }
 
+ private:
   LobeShares entry(size_t column, size_t row) const {
     const size_t x = std::min(column, side_ - 2);
     const size_t y = std::min(row, side_ - 2);
@@ -69,14 +85,9 @@ class LobeTable {
     return {(word % 65536) / 65535.0L, (word / 65536) / 65535.0L};
   }
 
- private:
   std::vector<glm::uvec4> cells_;
   size_t side_;
 };
-
-LobeShares mix(const LobeShares& a, const LobeShares& b, Real weight) {
-  return {(1 - weight) * a.all + weight * b.all, (1 - weight) * a.grazing + weight * b.grazing};
-}
 
 /// A node and its weight on [0, 1].
 struct GaussNode {
@@ -145,15 +156,13 @@ Real visibility(Real v, Real l, Real alpha) {
 }
 
 LobeShares look_up_lobe_shares(Real v, Real roughness) {
-  static const LobeTable kTable;
-  const Real last = static_cast<Real>(kTable.side() - 1);
-  const Real x = last * std::sqrt(std::clamp(v, Real(0), Real(1)));
-  const Real y = last * roughness;
-  const size_t column = std::min(static_cast<size_t>(x), kTable.side() - 2);
-  const size_t row = std::min(static_cast<size_t>(y), kTable.side() - 2);
-  const LobeShares low = mix(kTable.entry(column, row), kTable.entry(column + 1, row), x - column);
-  const LobeShares high = mix(kTable.entry(column, row + 1), kTable.entry(column + 1, row + 1), x - column);
-  return mix(low, high, y - row);
+  static const LobeTable kTable(make_lobe_table());
+  return kTable.look_up(v, roughness);
+}
+
+Real look_up_sheen_share(Real v, Real roughness) {
+  static const LobeTable kTable(make_sheen_table());
+  return 2 * kTable.look_up(std::max(v, kLeastCosine), roughness).all;
 }
 
 LobeShares integrate_lobe_shares(Real v, Real roughness) {
@@ -190,6 +199,66 @@ LobeShares integrate_lobe_shares(Real v, Real roughness) {
   const Real whole = kPi / 2 - tilt;
   integrate(make_panels(0, whole, alpha / 4, false), add_ring);
   integrate(make_panels(whole, whole + 2 * tilt, std::min(alpha, tilt) / 4, false), add_ring);
+  return sum;
+}
+
+namespace {
+
+constexpr Real kLeastSheenRoughness = 0.07L;
+
+Real sheen_alpha_of(Real roughness) {
+  const Real held = std::max(roughness, kLeastSheenRoughness);
+  return held * held;
+}
+
+/// The curve L of the extension's text, "Sheen visibility", whose numbers hang on alpha between two sets.
+Real fitted_curve(Real x, Real alpha) {
+  const Real smooth = (1 - alpha) * (1 - alpha);
+  const auto between = [&](Real at_one, Real at_zero) { return (1 - smooth) * at_one + smooth * at_zero; };
+  const Real height = between(21.5473L, 25.3245L);
+  const Real width = between(3.82987L, 3.32435L);
+  const Real power = between(0.19823L, 0.16801L);
+  const Real slope = between(-1.97760L, -1.27393L);
+  const Real shift = between(-4.32054L, -4.85967L);
+  return height / (1 + width * std::pow(x, power)) + slope * x + shift;
+}
+
+Real sheen_lambda(Real cosine, Real alpha) {
+  if (cosine < 0.5L) return std::exp(fitted_curve(cosine, alpha));
+  return std::exp(2 * fitted_curve(0.5L, alpha) - fitted_curve(1 - cosine, alpha));
+}
+
+Real sheen_visibility(Real v, Real l, Real alpha) {
+  return std::min(1 / ((1 + sheen_lambda(v, alpha) + sheen_lambda(l, alpha)) * 4 * v * l), Real(1));
+}
+
+}  // namespace
+
+Real integrate_sheen_share(Real v, Real roughness) {
+  constexpr int kRings = 160;
+  constexpr int kAzimuths = 128;
+  const Real alpha = sheen_alpha_of(roughness);
+  const Real sine = std::sqrt(1 - v * v);
+  Real sum = 0;
+  for (int ring = 0; ring < kRings; ++ring) {
+    // Rings crowd at the horizon, near which visibility changes fastest.
+    const Real place = (ring + 0.5L) / kRings;
+    const Real l = place * place * place;
+    const Real across = std::sqrt(1 - l * l);
+    Real density = 0;
+    for (int i = 0; i < kAzimuths; ++i) {
+      const double azimuth = static_cast<double>(kPi) * (i + 0.5) / kAzimuths;
+      // From the eye's azimuth; to double's precision, which is enough and much faster.
+      const double forth = static_cast<double>(sine) + static_cast<double>(across) * std::cos(azimuth);
+      const double aside = static_cast<double>(across) * std::sin(azimuth);
+      const double up = static_cast<double>(v + l);
+      const double across2 = forth * forth + aside * aside;
+      density += std::pow(across2 / (across2 + up * up), static_cast<double>(1 / (2 * alpha)));
+    }
+    // Both halves of the ring.
+    density *= (2 + 1 / alpha) / (2 * kPi) * 2 * kPi / kAzimuths;
+    sum += density * sheen_visibility(v, l, alpha) * l * 3 * place * place / kRings;
+  }
   return sum;
 }
 
@@ -275,6 +344,31 @@ Real ClearCoat::alpha_of_sources() const {
 
 Real ClearCoat::highlight(const LobeAngles& angles) const {
   return facet_radiance(angles, alpha_of_sources());
+}
+
+Sheen::Sheen(const MetallicRoughness& material, Real cosine_to_eye)
+    : color_(material.sheen_color),
+      largest_(largest(color_)),
+      roughness_(material.sheen_roughness),
+      share_(look_up_sheen_share(cosine_to_eye, roughness_)) {}
+
+Vector Sheen::reflectance() const {
+  return std::min(share_, Real(1)) * color_;
+}
+
+Real Sheen::left() const {
+  return 1 - largest_ * std::min(share_, Real(1));
+}
+
+Real Sheen::left(Real cosine_to_light) const {
+  return std::min(left(), 1 - largest_ * std::min(look_up_sheen_share(cosine_to_light, roughness_), Real(1)));
+}
+
+Vector Sheen::highlight(const LobeAngles& angles) const {
+  const Real alpha = sheen_alpha_of(roughness_);
+  const Real density = (2 + 1 / alpha) * std::pow(std::sin(angles.theta), 1 / alpha) / (2 * kPi);
+  const Real sent = density * sheen_visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) * angles.l;
+  return color_ * (sent / std::max(share_, Real(1)));
 }
 
 }  // namespace promin::oracle

@@ -29,6 +29,13 @@ LobeShares look_up_lobe_shares(Real v, Real roughness);
 /// By Gauss's quadrature over directions to the light. Its error is below 1e-4 for v = 0 or > 1e-3, and mostly 1e-6.
 LobeShares integrate_lobe_shares(Real v, Real roughness);
 
+/// What a sheen of colour 1 sends to the eye of light of radiance 1 from everywhere (KHR_materials_sheen), which may be
+/// more than 1. By the device's table.
+Real look_up_sheen_share(Real v, Real roughness);
+
+/// By the midpoint rule over directions to the light, where v >= 2^-10. Its error is below 2e-4.
+Real integrate_sheen_share(Real v, Real roughness);
+
 /// The angles that a lobe hangs on. All but theta are cosines.
 struct LobeAngles {
   /// Between normal and half vector, radians.
@@ -99,6 +106,27 @@ class ClearCoat {
   Real weight_;
   Real roughness_;
   Real reflectance_;
+};
+
+/// A sheen as one eye sees it at one point (KHR_materials_sheen), without textures.
+class Sheen {
+ public:
+  Sheen(const MetallicRoughness& material, Real cosine_to_eye);
+
+  bool exists() const { return largest_ > 0; }
+  /// What it sends of light of 1 from all around.
+  Vector reflectance() const;
+  /// The share that is left for what is below: of light from all around, and of that of a source at this cosine.
+  Real left() const;
+  Real left(Real cosine_to_light) const;
+  /// The radiance that it sends of a source with an irradiance of 1 across its way.
+  Vector highlight(const LobeAngles& angles) const;
+
+ private:
+  Vector color_;
+  Real largest_;
+  Real roughness_;
+  Real share_;
 };
 
 }  // namespace promin::oracle

@@ -216,10 +216,12 @@ class MetallicRoughnessSurface {
         to_eye_(to_eye),
         error_(error),
         lobe_(material, point.vertex_color, look_up_lobe_shares(glm::dot(point.normal, to_eye), material.roughness)),
+        sheen_(material, glm::dot(point.normal, to_eye)),
         coat_(material, glm::dot(point.normal, to_eye)) {}
 
   Vector own(const Vector& emissive, const Vector& ambient) const {
-    const Vector below = emissive + lobe_.albedo() * ambient + (1 - lobe_.sharpness()) * lobe_.reflectance() * ambient;
+    const Vector base = lobe_.albedo() * ambient + (1 - lobe_.sharpness()) * lobe_.reflectance() * ambient;
+    const Vector below = emissive + sheen_.reflectance() * ambient + sheen_.left() * base;
     return (1 - coat_.weight()) * below + coat_.weight() * (1 - coat_.sharpness()) * coat_.reflectance() * ambient;
   }
 
@@ -232,14 +234,20 @@ class MetallicRoughnessSurface {
     const LobeAngles angles = angles_of(point_.normal, to_eye_, illumination.to_light);
     const Real error = angle_error(illumination, apart);
     sum.add(Vector(light.specular), bound_highlight(lobe_, angles, error));
+    Radiance below = sum;
+    if (sheen_.exists()) {
+      below = {};
+      below.add(Vector(sheen_.left(cosine)), sum);
+      below.add(Vector(light.specular), bound_sheen(angles, error));
+    }
     Radiance coated;
-    coated.add(Vector(1 - coat_.weight()), sum);
+    coated.add(Vector(1 - coat_.weight()), below);
     coated.add(coat_.weight() * Vector(light.specular), bound_highlight(coat_, angles, error));
     return coated;
   }
 
   Vector mirror_weight() const {
-    return (1 - coat_.weight()) * lobe_.sharpness() * lobe_.reflectance() +
+    return (1 - coat_.weight()) * sheen_.left() * lobe_.sharpness() * lobe_.reflectance() +
            coat_.weight() * coat_.sharpness() * coat_.reflectance();
   }
   static constexpr bool kMirrorsBackground = false;
@@ -266,10 +274,26 @@ class MetallicRoughnessSurface {
     return {color, std::max({sum.x, sum.y, sum.z})};
   }
 
+  /// A sheen has no angle at which all that it hangs on is at an end, so all corners within the errors are tried. fp32
+  /// errs by a few u of exponents up to 25 and of powers.
+  Radiance bound_sheen(const LobeAngles& at, Real error) const {
+    const Vector color = sheen_.highlight(at);
+    Real off = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto step = [&](int bit) { return (corner & bit) != 0 ? error : -error; };
+      const LobeAngles near{std::clamp(at.theta + step(1), Real(0), std::numbers::pi_v<Real> / 2), at.v + step(2),
+                            std::max(at.l + step(4), Real(1e-9L)), at.v_h};
+      const Vector apart = glm::abs(sheen_.highlight(near) - color);
+      off = std::max({off, apart.x, apart.y, apart.z});
+    }
+    return {color, off + 512 * kRoundoff * std::max({color.x, color.y, color.z})};
+  }
+
   const SurfacePoint& point_;
   Vector to_eye_;
   PointError error_;
   Lobe lobe_;
+  Sheen sheen_;
   ClearCoat coat_;
 };
 

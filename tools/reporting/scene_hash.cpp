@@ -84,6 +84,8 @@ class ContentHash {
     for (const float value : {material.clearcoat, material.clearcoat_roughness, material.clearcoat_normal_scale}) {
       add(value);
     }
+    add(material.sheen_color);
+    add(material.sheen_roughness);
   }
   void add(const Unlit& unlit) { add(unlit.color); }
   void add(const TextureSlot& slot) {

@@ -49,6 +49,13 @@ void read_clearcoat(const json& extension, GltfTextures& textures, MetallicRough
   }
 }
 
+void read_sheen(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
+  material.sheen_color = to_shares(vec3_of(extension, "sheenColorFactor", dvec3(0.0)));
+  material.sheen_roughness = extension.value("sheenRoughnessFactor", 0.0F);
+  material.sheen_color_texture = textures.read_slot(extension, "sheenColorTexture", ImageUse::kColor);
+  material.sheen_roughness_texture = textures.read_slot(extension, "sheenRoughnessTexture", ImageUse::kData);
+}
+
 void read_shared_textures(const json& source, GltfTextures& textures, MetallicRoughness& material) {
   material.normal_texture = textures.read_slot(source, "normalTexture", ImageUse::kNormal);
   if (const auto info = source.find("normalTexture"); info != source.end()) {
@@ -77,6 +84,11 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
   if (const json* extension = find_extension(source, "KHR_materials_specular")) {
     material.specular = extension->value("specularFactor", 1.0F);
     material.specular_color = vec3(vec3_of(*extension, "specularColorFactor", dvec3(1.0)));
+    material.specular_texture = textures.read_slot(*extension, "specularTexture", ImageUse::kData);
+    material.specular_color_texture = textures.read_slot(*extension, "specularColorTexture", ImageUse::kColor);
+  }
+  if (const json* extension = find_extension(source, "KHR_materials_sheen")) {
+    read_sheen(*extension, textures, material);
   }
   if (const json* extension = find_extension(source, "KHR_materials_clearcoat")) {
     read_clearcoat(*extension, textures, material);
@@ -93,6 +105,7 @@ MetallicRoughness specular_glossiness_of(const json& source, const json& extensi
   material.metallic = 0.0F;
   material.ior = 0.0F;
   material.specular_color = to_shares(vec3_of(extension, "specularFactor", dvec3(1.0)));
+  material.specular_color_texture = textures.read_slot(extension, "specularGlossinessTexture", ImageUse::kColor);
   material.base_color_texture = textures.read_slot(extension, "diffuseTexture", ImageUse::kColor);
   material.metallic_roughness_texture =
       textures.read_glossiness_slot(extension, "specularGlossinessTexture", glossiness);

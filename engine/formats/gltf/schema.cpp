@@ -41,6 +41,8 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_SKIES "extensions.OMI_environment_sky.skies"
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
 #define PROMIN_COAT "materials[].extensions.KHR_materials_clearcoat"
+#define PROMIN_SHEEN "materials[].extensions.KHR_materials_sheen"
+#define PROMIN_SPECULAR "materials[].extensions.KHR_materials_specular"
 #define PROMIN_PHONG "materials[].extensions.PROMIN_materials_phong"
 #define PROMIN_GLOSSY "materials[].extensions.KHR_materials_pbrSpecularGlossiness"
 #define PROMIN_VARIANTS "extensions.KHR_materials_variants.variants"
@@ -167,8 +169,14 @@ constexpr JsonRule kRules[] = {
     object("materials[].extensions.*"),
     factor("materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"),
     number("materials[].extensions.KHR_materials_ior.ior", 0.0, kMaxScalar),
-    number("materials[].extensions.KHR_materials_specular.specularFactor", 0.0, 1.0),
-    color("materials[].extensions.KHR_materials_specular.specularColorFactor"),
+    number(PROMIN_SPECULAR ".specularFactor", 0.0, 1.0),
+    color(PROMIN_SPECULAR ".specularColorFactor"),
+    PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularColorTexture"),
+    color(PROMIN_SHEEN ".sheenColorFactor"),
+    number(PROMIN_SHEEN ".sheenRoughnessFactor", 0.0, 1.0),
+    PROMIN_TEXTURE_INFO(PROMIN_SHEEN ".sheenColorTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_SHEEN ".sheenRoughnessTexture"),
     number(PROMIN_COAT ".clearcoatFactor", 0.0, 1.0),
     number(PROMIN_COAT ".clearcoatRoughnessFactor", 0.0, 1.0),
     PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatTexture"),

@@ -5,13 +5,11 @@
 #include <cstdint>
 #include <span>
 
-#include "promin/math.h"
-
 namespace promin {
 
 /// Makes of the texels of a specularGlossinessTexture (KHR_materials_pbrSpecularGlossiness: specular colour of sRGB,
 /// glossiness in alpha) those of a metallicRoughnessTexture, whose green is 1 - glossiness_factor * glossiness: a
-/// roughness that takes no further factor. Returns the mean specular colour, linear.
-dvec3 take_glossiness(std::span<uint32_t> texels, double glossiness_factor);
+/// roughness that takes no further factor.
+void take_glossiness(std::span<uint32_t> texels, double glossiness_factor);
 
 }  // namespace promin

@@ -114,7 +114,7 @@ uint32_t GltfTextures::find_texture(size_t index, const Purpose& purpose) {
 uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
   const auto [known, is_new] = image_numbers_.try_emplace({index, purpose}, static_cast<uint32_t>(images_.size()));
   if (!is_new) return known->second;
-  if (purpose.second) glossiness_[known->second] = {*purpose.second};
+  if (purpose.second) glossiness_factors_[known->second] = *purpose.second;
   PictureSource& source = images_.emplace_back();
   source.image->use = purpose.first;
   source.title = title_of(document_.json, "images", static_cast<size_t>(index));
@@ -123,28 +123,25 @@ uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
   return known->second;
 }
 
-void GltfTextures::take_specular(Material& material) const {
+/// Where the image that has the factor in it is absent.
+void GltfTextures::restore_roughness(Material& material) const {
   auto* model = std::get_if<MetallicRoughness>(&material.model);
   if (model == nullptr || !model->metallic_roughness_texture.exists()) return;
   const uint32_t image = textures_[model->metallic_roughness_texture.texture].image;
-  const auto found = glossiness_.find(image);
-  if (found == glossiness_.end()) return;
-  if (!images_[image].image->texels.empty()) {
-    model->specular_color *= vec3(found->second.mean_specular);
-  } else {
-    model->roughness = 1.0F - found->second.factor;
+  const auto factor = glossiness_factors_.find(image);
+  if (factor != glossiness_factors_.end() && images_[image].image->texels.empty()) {
+    model->roughness = 1.0F - factor->second;
   }
 }
 
 void GltfTextures::finish(Scene& scene) {
   decode_pictures(images_, decodes_images_, report_);
-  for (auto& [image, glossiness] : glossiness_) {
-    std::vector<uint32_t>& texels = images_[image].image->texels;
-    if (!texels.empty()) glossiness.mean_specular = take_glossiness(texels, static_cast<double>(glossiness.factor));
+  for (const auto& [image, factor] : glossiness_factors_) {
+    take_glossiness(images_[image].image->texels, static_cast<double>(factor));
   }
   for (const PictureSource& source : images_) scene.images.push_back(source.image);
   scene.textures = textures_;
-  for (Material& material : scene.materials) take_specular(material);
+  for (Material& material : scene.materials) restore_roughness(material);
   if (const size_t count = textures_without_image_.size(); count > 0) {
     report_.warn(std::to_string(count) + (count == 1 ? " texture has" : " textures have") +
                  " no image that is known; materials are drawn without");

@@ -26,8 +26,7 @@ class GltfTextures {
   TextureSlot read_slot(const nlohmann::json& object, const char* name, ImageUse use);
 
   /// The same of specularGlossinessTexture, as a slot of roughness: its image becomes one whose green is
-  /// 1 - glossiness_factor * glossiness. finish() multiplies the mean of its colours into the specular colour of the
-  /// materials that have the slot.
+  /// 1 - glossiness_factor * glossiness.
   TextureSlot read_glossiness_slot(const nlohmann::json& object, const char* name, float glossiness_factor);
 
   /// Decodes all images, or reads their sizes, on all cores and hands everything over. An image that cannot be decoded
@@ -37,23 +36,18 @@ class GltfTextures {
  private:
   /// What images are made for: the use, and the factor of a specularGlossinessTexture.
   using Purpose = std::pair<ImageUse, std::optional<float>>;
-  /// Of the image of a specularGlossinessTexture.
-  struct Glossiness {
-    float factor = 1.0F;
-    dvec3 mean_specular{1.0};
-  };
 
   TextureSlot read_slot_for(const nlohmann::json& object, const char* name, const Purpose& purpose);
   uint32_t find_texture(size_t index, const Purpose& purpose);
   uint32_t find_image(int index, const Purpose& purpose);
-  void take_specular(Material& material) const;
+  void restore_roughness(Material& material) const;
 
   const GltfDocument& document_;
   bool decodes_images_;
   LoadReport& report_;
   std::vector<PictureSource> images_;
-  /// By the index of the image.
-  std::map<uint32_t, Glossiness> glossiness_;
+  /// The factors of specularGlossinessTextures, by the index of the image.
+  std::map<uint32_t, float> glossiness_factors_;
   std::vector<Texture> textures_;
   std::map<std::pair<int, Purpose>, uint32_t> image_numbers_;
   std::map<std::pair<size_t, Purpose>, uint32_t> texture_numbers_;
