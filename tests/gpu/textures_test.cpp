@@ -299,7 +299,7 @@ TEST_F(TexturesTest, ASheenHasItsOwnFactors) {
   // Roughness is in alpha.
   const auto shaded = [&](const vec3& color, float roughness, const std::function<void(MetallicRoughness&)>& change) {
     Scene scene = make_lit_board(make_image(
-        {1, 1}, [](uint32_t, uint32_t) { return 0x80FF8000U; }, ImageUse::kData));
+        {1, 1}, [](uint32_t, uint32_t) { return 0x60FF8000U; }, ImageUse::kData));
     auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
     material.base_color = vec3(0.0F);
     material.specular = 0.0F;
@@ -315,7 +315,7 @@ TEST_F(TexturesTest, ASheenHasItsOwnFactors) {
   EXPECT_EQ(colored.r, 0.0F);
   EXPECT_NEAR(colored.g, bare.g * 128.0F / 255.0F, 1e-6F);
   EXPECT_EQ(colored.b, bare.b);
-  const vec3 smoother = shaded(vec3(1.0F), 128.0F / 255.0F, nothing);
+  const vec3 smoother = shaded(vec3(1.0F), 96.0F / 255.0F, nothing);
   EXPECT_LT(smoother.g, 0.9F * bare.g);
   EXPECT_NEAR(shaded(vec3(1.0F), 1.0F, [](MetallicRoughness& m) { m.sheen_roughness_texture.texture = 0; }).g,
               smoother.g, 1e-6F);
