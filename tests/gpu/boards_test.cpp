@@ -8,16 +8,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 
-#include "core/file.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
+#include "support/read_spirv.h"
 
 namespace promin::test {
 namespace {
@@ -320,11 +320,7 @@ class FaultyShaders {
 
  private:
   static std::vector<uint32_t> read(const std::string& fault, const std::string& kernel) {
-    const std::vector<std::byte> bytes =
-        read_file(std::filesystem::path(PROMIN_FAULTS_DIR) / fault / (kernel + ".spv"));
-    std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
-    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
-    return words;
+    return read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / fault / (kernel + ".spv"));
   }
 
   std::vector<uint32_t> camera_stage_;
