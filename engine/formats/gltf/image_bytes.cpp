@@ -24,8 +24,10 @@ void read_gltf_image(const GltfDocument& document, size_t index, PictureSource& 
     source.problem = "it has no bytes";
     return;
   }
-  read_picture(source, report, [&](LoadReport& attempt) {
-    return read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", attempt);
+  const auto& uri = image["uri"].get_ref<const std::string&>();
+  const std::string place = "images[" + std::to_string(index) + "].uri";
+  read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
+    return read_gltf_uri(uri, place, attempt, most_bytes);
   });
 }
 

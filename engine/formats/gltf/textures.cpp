@@ -117,6 +117,7 @@ uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
   if (purpose.second) glossiness_[known->second] = {*purpose.second};
   PictureSource& source = images_.emplace_back();
   source.image->use = purpose.first;
+  source.takes_texels = decodes_images_;
   source.title = title_of(document_.json, "images", static_cast<size_t>(index));
   source.image->name = document_.json["images"][static_cast<size_t>(index)].value("name", "");
   read_gltf_image(document_, static_cast<size_t>(index), source, report_);
@@ -137,7 +138,7 @@ void GltfTextures::take_specular(Material& material) const {
 }
 
 void GltfTextures::finish(Scene& scene) {
-  decode_pictures(images_, decodes_images_, report_);
+  decode_pictures(images_, report_);
   for (auto& [image, glossiness] : glossiness_) {
     std::vector<uint32_t>& texels = images_[image].image->texels;
     if (!texels.empty()) glossiness.mean_specular = take_glossiness(texels, static_cast<double>(glossiness.factor));
