@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "core/parallel.h"
@@ -26,12 +25,6 @@ void encode_light(std::span<uint32_t> texels) {
     texel =
         (texel & 0xFF000000U) | codes[texel & 0xFF] | codes[texel >> 8 & 0xFF] << 8 | codes[texel >> 16 & 0xFF] << 16;
   }
-}
-
-bool holds_light(std::span<const std::byte> file) {
-  const PictureFormat* format = find_picture_format(file);
-  const std::string_view name = format == nullptr ? "" : format->name;
-  return name == "hdr" || name == "openexr";
 }
 
 /// Of most files far more than what comes before the size, and little to read.
