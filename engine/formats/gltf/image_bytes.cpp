@@ -14,10 +14,7 @@ using nlohmann::json;
 void read_gltf_image(const GltfDocument& document, size_t index, PictureSource& source, LoadReport& report) {
   const json& image = document.json["images"][index];
   if (image.contains("bufferView")) {
-    const auto number = image["bufferView"].get<size_t>();
-    const GltfBufferView& view = document.views[number];
-    source.file = document.buffers.bytes[static_cast<size_t>(view.buffer)].subspan(
-        view.byte_offset, document.json["bufferViews"][number]["byteLength"].get<size_t>());
+    source.file = bytes_of_view(document, image["bufferView"]);
     return;
   }
   if (!image.contains("uri")) {
