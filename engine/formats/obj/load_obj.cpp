@@ -174,10 +174,7 @@ bool has_texture(const Material& material) {
 
 }  // namespace
 
-Scene load_obj(const LoadOptions& options, LoadReport& report) {
-  if (!options.material_variant.empty()) {
-    throw UsageError({"OBJ has no variants of materials", report.file().string(), "ask for none"});
-  }
+Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
   const std::filesystem::path& file = report.file();
   const std::vector<std::byte> bytes = read_file(file);
   const ObjText text = parse_obj_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
