@@ -104,7 +104,7 @@ GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) 
   fill_views(document);
 
   check_gltf_asset(document.json, report);
-  check_gltf_extensions(document.json, options.is_strict, report);
+  document.extensions = check_gltf_extensions(document.json, options.is_strict, report);
   check_gltf_nodes(document.json, report);
   check_gltf_accessors(document.json, report);
   check_gltf_meshopt(document.json, report);

@@ -98,6 +98,8 @@ struct GltfDocument {
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
   std::vector<GltfNode> nodes;
+  /// See check_gltf_extensions.
+  std::vector<FileExtension> extensions;
   /// The scene that is shown, if there are any.
   size_t scene = 0;
   GltfBuffers buffers;
