@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "formats/gltf/image_bytes.h"
 #include "support/gltf_builder.h"
@@ -95,6 +96,19 @@ TEST_F(PictureSourcesTest, WhatIsBrokenIsReadOnceWhereItIsShort) {
   source.takes_texels = false;
   EXPECT_THAT(read(Bytes(100, std::byte{'x'}), source), ElementsAre(100U));
   EXPECT_EQ(report_.warnings().size(), 1U);
+}
+
+/// Radiance stores a mantissa and an exponent: 128 / 256 * 2^(127 - 128) is a quarter, the byte 64, and the code 137.
+TEST_F(PictureSourcesTest, OfPicturesOfLightColorsBecomeCodes) {
+  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x7F";
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  const Bytes file(first, first + text.size());
+  for (const auto& [use, texel] : {std::pair(ImageUse::kData, 0xFF404040U), std::pair(ImageUse::kColor, 0xFF898989U)}) {
+    PictureSource source;
+    source.image->use = use;
+    read(file, source);
+    EXPECT_THAT(source.image->texels, ElementsAre(texel));
+  }
 }
 
 TEST_F(PictureSourcesTest, GltfReadsHeadsOfFilesAndOfDataUris) {
