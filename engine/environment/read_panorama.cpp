@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "environment/read_panorama.h"
 
-#include <string_view>
-
 #include "core/file.h"
 #include "core/srgb.h"
 #include "image/picture_formats.h"
@@ -42,10 +40,7 @@ Panorama read_panorama(const std::filesystem::path& file) {
 }
 
 Panorama read_panorama(std::span<const std::byte> file, const std::string& name) {
-  const PictureFormat* format = find_picture_format(file);
-  const std::string_view format_name = format == nullptr ? "" : format->name;
-  return make_panorama(read_image_bytes(file, name, kMostPixels), format_name == "hdr" || format_name == "openexr",
-                       name);
+  return make_panorama(read_image_bytes(file, name, kMostPixels), holds_light(file), name);
 }
 
 }  // namespace promin

@@ -21,6 +21,7 @@ namespace {
 struct SceneFormat {
   const char* ending;
   Scene (*load)(const LoadOptions&, LoadReport&);
+  bool has_variants = false;
 };
 
 bool has_anything_to_draw(const Scene& scene) {
@@ -46,7 +47,7 @@ void warn_of_tiny_meshes(Scene& scene) {
 }
 
 constexpr SceneFormat kFormats[] = {
-    {".gltf", load_gltf}, {".glb", load_gltf}, {".obj", load_obj}, {".ply", load_ply}, {".stl", load_stl}};
+    {".gltf", load_gltf, true}, {".glb", load_gltf, true}, {".obj", load_obj}, {".ply", load_ply}, {".stl", load_stl}};
 
 const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
@@ -56,6 +57,15 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
     known += known.empty() ? format.ending : std::string(", ") + format.ending;
   }
   throw InputError({"unknown scene format " + quote(ending), file.string(), "use a file that ends in " + known});
+}
+
+Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
+  const SceneFormat& format = find_format(file);
+  if (!options.material_variant.empty() && !format.has_variants) {
+    throw UsageError({std::string("files that end in ") + format.ending + " have no variants of materials",
+                      file.string(), "ask for none"});
+  }
+  return format.load(options, report);
 }
 
 }  // namespace
@@ -69,7 +79,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
   LoadReport report(file);
   report.add_source(file);
   try {
-    Scene scene = find_format(file).load(options, report);
+    Scene scene = load_by_format(file, options, report);
     sources = report.sources();
     warn_of_tiny_meshes(scene);
     if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");

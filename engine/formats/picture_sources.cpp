@@ -4,7 +4,8 @@
 
 #include <array>
 #include <cmath>
-#include <string_view>
+#include <limits>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/srgb.h"
@@ -26,20 +27,50 @@ void encode_light(std::span<uint32_t> texels) {
   }
 }
 
-bool holds_light(std::span<const std::byte> file) {
-  const PictureFormat* format = find_picture_format(file);
-  const std::string_view name = format == nullptr ? "" : format->name;
-  return name == "hdr" || name == "openexr";
+/// Of most files far more than what comes before the size, and little to read.
+constexpr uint64_t kHeadBytes = uint64_t{1} << 16;
+
+void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureBytes& read, uint64_t most_bytes) {
+  LoadReport attempt(report.file());
+  std::optional<std::vector<std::byte>> bytes;
+  try {
+    bytes = read(attempt, most_bytes);
+    attempt.throw_if_refused();
+  } catch (const InputError& error) {
+    source.problem = error.problems().front().what;
+  }
+  for (const SourceFile& file : attempt.sources()) report.add_source(file.file);
+  if (!source.problem.empty()) return;
+  source.own = std::move(*bytes);
+  source.file = source.own;
+}
+
+bool tells_size(std::span<const std::byte> head) {
+  try {
+    read_picture_size(head);
+    return true;
+  } catch (const PictureError&) {
+    return false;
+  }
 }
 
 }  // namespace
 
-void decode_pictures(std::span<PictureSource> sources, bool takes_texels, LoadReport& report) {
+void read_picture(PictureSource& source, LoadReport& report, const ReadPictureBytes& read) {
+  if (!source.takes_texels) {
+    take_bytes(source, report, read, kHeadBytes);
+    const bool is_whole = source.file.size() < kHeadBytes;
+    if (!source.problem.empty() || is_whole || tells_size(source.file)) return;
+  }
+  take_bytes(source, report, read, std::numeric_limits<uint64_t>::max());
+}
+
+void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
   for_each_index(sources.size(), 0, [&](size_t i) {
     PictureSource& source = sources[i];
     if (!source.problem.empty()) return;
     try {
-      if (takes_texels) {
+      if (source.takes_texels) {
         DecodedPicture picture = decode_picture(source.file);
         source.image->size = picture.size;
         source.image->texels = std::move(picture.texels);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +20,8 @@ namespace promin {
 struct PictureSource {
   /// Gets its size and texels when it is decoded; the rest is the reader's.
   std::shared_ptr<TextureImage> image = std::make_shared<TextureImage>();
+  /// Whether it gets its texels, or its size alone.
+  bool takes_texels = true;
   /// In a buffer that outlives this, or in `own`.
   std::span<const std::byte> file = {};
   std::vector<std::byte> own = {};
@@ -27,26 +31,17 @@ struct PictureSource {
   std::string problem = {};
 };
 
-/// Takes the bytes that `read`, called with a report of its own, gives for the source. What would refuse a scene's
-/// other files is no more than the source's problem: the scene can be shown without.
-template <class Read>
-void read_picture(PictureSource& source, LoadReport& report, const Read& read) {
-  LoadReport attempt(report.file());
-  std::optional<std::vector<std::byte>> bytes;
-  try {
-    bytes = read(attempt);
-    attempt.throw_if_refused();
-  } catch (const InputError& error) {
-    source.problem = error.problems().front().what;
-  }
-  for (const SourceFile& file : attempt.sources()) report.add_source(file.file);
-  if (!source.problem.empty()) return;
-  source.own = std::move(*bytes);
-  source.file = source.own;
-}
+/// Gives the first `most_bytes` of a picture's file, or all where it has no more; a few more are no harm. nullopt once
+/// the report holds the reason.
+using ReadPictureBytes = std::function<std::optional<std::vector<std::byte>>(LoadReport& report, uint64_t most_bytes)>;
 
-/// Decodes all pictures on all cores, or reads their sizes alone. One for which that fails is warned about, and its
-/// image stays without.
-void decode_pictures(std::span<PictureSource> sources, bool takes_texels, LoadReport& report);
+/// Takes the bytes that `read`, called with a report of its own, gives for the source: the whole file, or its first
+/// 64 KiB where the source takes no texels and these tell the size. What would refuse a scene's other files is no more
+/// than the source's problem: the scene can be shown without.
+void read_picture(PictureSource& source, LoadReport& report, const ReadPictureBytes& read);
+
+/// Decodes all pictures on all cores, or reads the sizes of those that take no texels. One for which that fails is
+/// warned about, and its image stays without.
+void decode_pictures(std::span<PictureSource> sources, LoadReport& report);
 
 }  // namespace promin

@@ -58,6 +58,11 @@ const PictureFormat* find_picture_format(std::span<const std::byte> file) {
   return is_targa(file) ? &kTarga : nullptr;
 }
 
+bool holds_light(std::span<const std::byte> file) {
+  const PictureFormat* format = find_picture_format(file);
+  return format != nullptr && (format->name == "openexr"sv || format->name == "hdr"sv);
+}
+
 std::optional<uvec2> read_told_size(std::span<const std::byte> file, const PictureFormat& format) {
   if (format.size_bytes == 0) return std::nullopt;
   const auto number_at = [&](size_t place) {

@@ -28,6 +28,9 @@ struct PictureFormat {
 /// has none, by whether its header can be one. Null where it is none of these.
 const PictureFormat* find_picture_format(std::span<const std::byte> file);
 
+/// Whether a file of such a format holds numbers of light, as OpenEXR and Radiance do, and not codes of sRGB.
+bool holds_light(std::span<const std::byte> file);
+
 /// The size that the header tells; nullopt where that is not known.
 std::optional<uvec2> read_told_size(std::span<const std::byte> file, const PictureFormat& format);
 

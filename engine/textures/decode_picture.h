@@ -30,10 +30,9 @@ struct DecodedPicture {
 /// kMaxTextureSide or kMaxTextureTexels, or the plugin is missing.
 uvec2 read_picture_size(std::span<const std::byte> file);
 
-/// The texels of such a file: grey ones in three channels, without alpha 1, numbers of more bits rounded to 8, what
-/// is beyond 0...1 clamped. Profiles and gamma of
-/// the file are ignored, as glTF 2.0, section 3.8.3, asks for. Throws PictureError, before it takes memory for a
-/// picture that is too large.
+/// The texels of such a file: grey ones in three channels, without alpha 1, numbers of more bits rounded to 8, what is
+/// beyond 0...1 clamped. Profiles and gamma of the file are ignored, as glTF 2.0, section 3.8.3, asks for. Throws
+/// PictureError, before it takes memory for a picture that is too large.
 DecodedPicture decode_picture(std::span<const std::byte> file);
 
 /// Most texels of an image: 512 MiB.

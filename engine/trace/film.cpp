@@ -207,9 +207,7 @@ uint32_t Film::records_per_pixel() const {
 }
 
 bool Film::has_stream() const {
-  FeatureMask leading_on = layout::FEATURE_MIRRORS;
-  leading_on |= layout::FEATURE_BLENDING;
-  return features_.has_any(leading_on);
+  return features_.has_any(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING);
 }
 
 bool Film::fetches_film_texels() const {

@@ -37,9 +37,7 @@ std::vector<gpu::SpecializationConstant> with_query(std::span<const gpu::Special
 
 /// A log tells where shadow rays are blocked, and they go through what blends one surface after the other.
 bool needs_nearest_blocker(FeatureMask features) {
-  FeatureMask nearest = layout::FEATURE_RAY_LOG;
-  nearest |= layout::FEATURE_BLENDING;
-  return features.has_any(nearest);
+  return features.has_any(layout::FEATURE_RAY_LOG | layout::FEATURE_BLENDING);
 }
 
 void wait_for_last(const vk::raii::CommandBuffer& commands) {

@@ -329,6 +329,8 @@ TEST_F(CliTest, VariantsAreChosenByName) {
   expect_failure(run({"render", "cars.gltf", "-o", "a.exr", "--variant", "blue"}), 2, "no variant \"blue\"");
   expect_failure(run({"info", "square.gltf", "--variant", "blue"}), 2,
                  "the scene has no variant \"blue\", nor any other");
+  expect_failure(run({"info", "triangle.obj", "--variant", "blue"}), 2,
+                 "files that end in .obj have no variants of materials");
 }
 
 TEST_F(CliTest, InfoTellsTexturesBySize) {

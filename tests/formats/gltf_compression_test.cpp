@@ -10,6 +10,7 @@
 
 #include "promin/validate.h"
 #include "support/gltf_builder.h"
+#include "support/other_values.h"
 #include "support/scene_folder.h"
 
 namespace promin {
@@ -419,14 +420,11 @@ TEST_F(GltfCompressionTest, DocumentsWithOtherValuesLoadOrAreRefused) {
   packed_text(packed);
   GltfBuilder draco = draco_grid(compress_grid(2, draco::MESH_EDGEBREAKER_ENCODING));
   draco.text();
-  const std::vector<json> values = {
-      nullptr,       -1, 0, 1, 7, 12, 1.5, 2147483647, 18446744073709551615ULL, "x", "TRIANGLES", json::array(),
-      json::object()};
   for (const json& good : {packed.json.flatten(), draco.json.flatten()}) {
     int refused = 0;
     int total = 0;
     for (const auto& [pointer, old] : good.items()) {
-      for (const json& value : values) {
+      for (const json& value : kOtherValues) {
         json document = good.unflatten();
         document[json::json_pointer(pointer)] = value;
         ++total;

@@ -17,6 +17,7 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::ThrowsMessage;
 
 class GltfExtensionsTest : public SceneFolder {
  protected:
@@ -289,8 +290,26 @@ TEST_F(GltfExtensionsTest, UnknownVariantsNameTheKnownOnes) {
   }
   GltfBuilder plain = triangle_gltf();
   EXPECT_THROW(load(plain, {.material_variant = "dusk"}), UsageError);
-  const std::filesystem::path obj = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_THROW(load_scene(obj, {.material_variant = "dusk"}), UsageError);
+}
+
+TEST_F(GltfExtensionsTest, OtherFormatsHaveNoVariants) {
+  const struct {
+    std::string ending;
+    std::string text;
+  } kFiles[] = {{".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+                {".ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+                {".stl",
+                 "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                 "endfacet\nendsolid a\n"}};
+  for (const auto& [ending, text] : kFiles) {
+    const std::filesystem::path file = write("a" + ending, text);
+    EXPECT_EQ(load_scene(file).objects.size(), 1U) << ending;
+    EXPECT_THAT([&] { load_scene(file, {.material_variant = "dusk"}); },
+                ThrowsMessage<UsageError>(HasSubstr("files that end in " + ending + " have no variants")));
+  }
 }
 
 TEST_F(GltfExtensionsTest, VariantsMustBeThere) {

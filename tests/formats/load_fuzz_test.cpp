@@ -6,6 +6,7 @@
 #include "promin/validate.h"
 #include "support/gltf_builder.h"
 #include "support/make_png.h"
+#include "support/other_values.h"
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
 #include "support/stl_builder.h"
@@ -203,12 +204,10 @@ TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
   GltfBuilder gltf = small_gltf();
   gltf.text();
   const json good = gltf.json.flatten();
-  const std::vector<json> values = {
-      nullptr, true, -1, 0, 1, 7, 1.5, 1e300, 18446744073709551615ULL, "x", "", json::array(), json::object()};
   int refused = 0;
   int total = 0;
   for (const auto& [pointer, old] : good.items()) {
-    for (const json& value : values) {
+    for (const json& value : kOtherValues) {
       json document = good.unflatten();
       document[json::json_pointer(pointer)] = value;
       // Also the container around it.

@@ -21,20 +21,8 @@
 namespace promin::test {
 namespace {
 
-Mesh make_board(float z) {
-  Mesh mesh;
-  mesh.positions = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  mesh.uvs = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 1, 0, 0}};
-  return mesh;
-}
-
-Material make_unlit(const vec3& color, float alpha = 1.0F, AlphaMode mode = AlphaMode::kBlend) {
-  Material material;
-  material.model = Unlit{color, {}};
-  material.alpha = alpha;
-  material.alpha_mode = mode;
-  return material;
+Material make_blending(const vec3& color, float alpha = 1.0F) {
+  return make_unlit(color, AlphaMode::kBlend, alpha);
 }
 
 /// A white surface that sends the light that it gets.
@@ -51,24 +39,9 @@ void add_board(Scene& scene, float z, const Material& material) {
 
 /// An image of which each texel has this alpha, named by its number from v = 0 on.
 void add_alpha_texture(Scene& scene, const uvec2& size, const std::vector<uint32_t>& alphas) {
-  auto image = std::make_shared<TextureImage>();
-  image->size = size;
-  image->use = ImageUse::kData;
-  for (const uint32_t alpha : alphas) image->texels.push_back(alpha << 24 | 0xFFFFFFU);
-  scene.images.push_back(image);
-  Texture texture{.image = static_cast<uint32_t>(scene.images.size() - 1)};
-  texture.is_magnified_linearly = texture.has_levels = false;
-  scene.textures.push_back(texture);
-}
-
-/// From z = 2 towards -z; what lies at z > 2 is behind it.
-View make_board_view(const uvec2& size) {
-  View view;
-  view.camera.eye = vec3(0, 0, 2);
-  view.camera.projection = Projection::kOrthographic;
-  view.camera.ymag = 1.0F;
-  view.size = size;
-  return view;
+  std::vector<uint32_t> texels;
+  for (const uint32_t alpha : alphas) texels.push_back(alpha << 24 | 0xFFFFFFU);
+  add_texture(scene, size, texels, ImageUse::kData);
 }
 
 class AlphaTest : public DeviceTest {
@@ -93,11 +66,11 @@ TEST_F(AlphaTest, AMaskIsThereFromItsCutoffOn) {
   for (const uint32_t cutoff : {64U, 128U, 191U}) {
     Scene scene;
     add_alpha_texture(scene, {4, 1}, {0, cutoff - 1, cutoff, 255});
-    Material mask = make_unlit(vec3(0.25F), 1.0F, AlphaMode::kMask);
+    Material mask = make_unlit(vec3(0.25F), AlphaMode::kMask);
     mask.alpha_cutoff = static_cast<float>(cutoff) / 255.0F;
     std::get<Unlit>(mask.model).color_texture.texture = 0;
     add_board(scene, 0.0F, mask);
-    add_board(scene, -1.0F, make_unlit(vec3(0.5F)));
+    add_board(scene, -1.0F, make_blending(vec3(0.5F)));
     EXPECT_THAT(reds(scene, 4), testing::ElementsAre(0.5F, 0.5F, 0.25F, 0.25F)) << cutoff;
   }
 }
@@ -110,7 +83,7 @@ TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
   for (uint32_t i = 0; i < 128 * 128; ++i) alphas.push_back(generator() >> 30 == 0 ? 255 : 0);
   add_alpha_texture(scene, uvec2(128), alphas);
   scene.textures[0].has_levels = true;
-  Material mask = make_unlit(vec3(0.0F), 1.0F, AlphaMode::kMask);
+  Material mask = make_unlit(vec3(0.0F), AlphaMode::kMask);
   std::get<Unlit>(mask.model).color_texture.texture = 0;
   add_board(scene, 0.0F, mask);
   scene.environment.background = vec3(1.0F);
@@ -122,10 +95,10 @@ TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
 
 TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
   Scene scene;
-  add_board(scene, 0.0F, make_unlit(vec3(0.25F), 0.49F, AlphaMode::kMask));
+  add_board(scene, 0.0F, make_unlit(vec3(0.25F), AlphaMode::kMask, 0.49F));
   scene.materials.push_back(scene.materials[0]);
   scene.add("ball", Sphere{.radius = 0.5}, 1);
-  add_board(scene, -1.0F, make_unlit(vec3(0.5F)));
+  add_board(scene, -1.0F, make_blending(vec3(0.5F)));
   EXPECT_THAT(reds(scene, 4), testing::Each(0.5F));
   // AOVs do not see it either; of solids they see what blends with alpha 0.
   TunedRendererOptions options;
@@ -138,7 +111,7 @@ TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
 TEST_F(AlphaTest, AnOpaqueMaterialHasNoAlpha) {
   Scene scene;
   add_alpha_texture(scene, {2, 1}, {0, 128});
-  Material opaque = make_unlit(vec3(0.25F), 0.0F, AlphaMode::kOpaque);
+  Material opaque = make_unlit(vec3(0.25F), AlphaMode::kOpaque, 0.0F);
   std::get<Unlit>(opaque.model).color_texture.texture = 0;
   add_board(scene, 0.0F, opaque);
   EXPECT_THAT(reds(scene, 2), testing::Each(0.25F));
@@ -148,9 +121,9 @@ TEST_F(AlphaTest, WhatBlendsIsOverWhatIsBehind) {
   Scene scene;
   scene.environment.background = vec3(1.0F);
   add_alpha_texture(scene, {3, 1}, {0, 51, 255});
-  Material pane = make_unlit(vec3(0.0F), 0.5F);
+  Material pane = make_blending(vec3(0.0F), 0.5F);
   std::get<Unlit>(pane.model).color_texture.texture = 0;
-  add_board(scene, -1.0F, make_unlit(vec3(0.25F), 0.75F));
+  add_board(scene, -1.0F, make_blending(vec3(0.25F), 0.75F));
   add_board(scene, 0.0F, pane);
   const double behind = 0.75 * 0.25 + 0.25;
   const std::vector<float> pixels = reds(scene, 3);
@@ -163,7 +136,7 @@ TEST_F(AlphaTest, LayersAtTheSamePlaceAllCount) {
   // In the order of their numbers, whichever triangle the tree has first.
   Scene scene;
   scene.environment.background = vec3(1.0F);
-  for (const float color : {0.0F, 0.25F, 0.5F}) add_board(scene, 0.0F, make_unlit(vec3(color), 0.5F));
+  for (const float color : {0.0F, 0.25F, 0.5F}) add_board(scene, 0.0F, make_blending(vec3(color), 0.5F));
   const double expected = 0.5 * 0.0 + 0.5 * (0.5 * 0.25 + 0.5 * (0.5 * 0.5 + 0.5 * 1.0));
   TunedRendererOptions options;
   for (const std::string_view builder : builder_names()) {
@@ -176,7 +149,7 @@ TEST_F(AlphaTest, LayersAtTheSamePlaceAllCount) {
 TEST_F(AlphaTest, BothSidesOfASolidCount) {
   Scene scene;
   scene.environment.background = vec3(1.0F);
-  scene.materials = {make_unlit(vec3(0.0F), 0.5F)};
+  scene.materials = {make_blending(vec3(0.0F), 0.5F)};
   scene.add("ball", Sphere{.radius = 3.0}, 0);
   View view = make_board_view({2, 2});
   view.camera.eye.z = 5.0F;
@@ -191,10 +164,10 @@ TEST_F(AlphaTest, TheLastLayerCountsAsOpaque) {
   Scene scene;
   scene.environment.background = vec3(1.0F);
   for (uint32_t i = 0; i < layout::MOST_LAYERS; ++i) {
-    add_board(scene, -0.01F * static_cast<float>(i), make_unlit(vec3(0.0F), 0.01F));
+    add_board(scene, -0.01F * static_cast<float>(i), make_blending(vec3(0.0F), 0.01F));
   }
   EXPECT_NEAR(reds(scene, 1)[0], std::pow(0.99, layout::MOST_LAYERS), 1e-5);
-  add_board(scene, -1.0F, make_unlit(vec3(0.0F), 0.01F));
+  add_board(scene, -1.0F, make_blending(vec3(0.0F), 0.01F));
   EXPECT_EQ(reds(scene, 1)[0], 0.0F);
 }
 
@@ -203,7 +176,7 @@ TEST_F(AlphaTest, WhatIsFaintIsNotFollowed) {
     Scene scene;
     scene.environment.background = vec3(1.0F);
     const float alpha = is_faint ? 1.0F - 1.0F / 1025.0F : 1.0F - 1.0F / 1023.0F;
-    add_board(scene, 0.0F, make_unlit(vec3(0.5F), alpha));
+    add_board(scene, 0.0F, make_blending(vec3(0.5F), alpha));
     const RenderResult result = trace(scene, make_board_view({1, 1}));
     EXPECT_EQ(result.rays.passed, is_faint ? 0U : 1U);
     EXPECT_EQ(result.image.pixels[0].r == 0.5F, is_faint);
@@ -214,7 +187,7 @@ TEST_F(AlphaTest, VerticesHaveAlpha) {
   for (const AlphaMode mode : {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend}) {
     Scene scene;
     scene.environment.background = vec3(1.0F);
-    scene.materials = {make_unlit(vec3(0.0F), 1.0F, mode)};
+    scene.materials = {make_unlit(vec3(0.0F), mode)};
     Mesh mesh = make_board(0.0F);
     mesh.colors.assign(4, vec4(1, 1, 1, 0.25F));
     scene.add("board", mesh, 0);
@@ -229,15 +202,11 @@ TEST_F(AlphaTest, ShadowsHaveHolesAndLetThrough) {
     add_alpha_texture(scene, {4, 1}, {0, 51, 204, 255});
     add_board(scene, 0.0F, make_matt());
     // Behind the camera, before the light.
-    Material curtain = make_unlit(vec3(1.0F), 1.0F, mode);
+    Material curtain = make_unlit(vec3(1.0F), mode);
     std::get<Unlit>(curtain.model).color_texture.texture = 0;
     curtain.is_double_sided = false;
     add_board(scene, 3.0F, curtain);
-    Light sun;
-    sun.kind = LightKind::kDirectional;
-    sun.direction = vec3(0, 0, -1);
-    sun.diffuse = vec3(1.0F);
-    scene.lights = {sun};
+    scene.lights = {make_sun(vec3(0, 0, -1))};
     const std::vector<float> pixels = reds(scene, 4);
     const std::array<double, 4> expected = mode == AlphaMode::kOpaque ? std::array{0.0, 0.0, 0.0, 0.0}
                                            : mode == AlphaMode::kMask ? std::array{1.0, 1.0, 0.0, 0.0}
@@ -250,7 +219,7 @@ TEST_F(AlphaTest, BacksAreSeenWhereTheMaterialShowsThem) {
   for (const bool is_double_sided : {true, false}) {
     Scene scene;
     scene.environment.background = vec3(1.0F);
-    Material board = make_unlit(vec3(0.25F), 1.0F, AlphaMode::kOpaque);
+    Material board = make_unlit(vec3(0.25F), AlphaMode::kOpaque);
     board.is_double_sided = is_double_sided;
     add_board(scene, 0.0F, board);
     View view = make_board_view({4, 4});
@@ -269,7 +238,7 @@ TEST_F(AlphaTest, MirrorsSeeBacksAsTheCameraDoes) {
     mirror.phong() = Phong{.ambient = vec3(0), .diffuse = vec3(0), .reflection = vec3(1)};
     add_board(scene, 0.0F, mirror);
     scene.environment.background = vec3(1.0F);
-    Material behind_camera = make_unlit(vec3(0.25F), 1.0F, AlphaMode::kOpaque);
+    Material behind_camera = make_unlit(vec3(0.25F), AlphaMode::kOpaque);
     behind_camera.is_double_sided = is_double_sided;
     add_board(scene, 3.0F, behind_camera);
     // Its front faces away from the mirror.
@@ -279,7 +248,7 @@ TEST_F(AlphaTest, MirrorsSeeBacksAsTheCameraDoes) {
 
 TEST_F(AlphaTest, CastsSeeGeometry) {
   Scene scene;
-  Material absent = make_unlit(vec3(1.0F), 0.0F, AlphaMode::kMask);
+  Material absent = make_unlit(vec3(1.0F), AlphaMode::kMask, 0.0F);
   absent.is_double_sided = false;
   add_board(scene, 0.0F, absent);
   const Ray ray{vec3(0.25F, 0.1F, -1.0F), 0.0F, vec3(0, 0, 1), std::numeric_limits<float>::infinity()};

@@ -8,15 +8,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 
-#include "core/file.h"
 #include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
+#include "support/read_spirv.h"
 
 namespace promin::test {
 namespace {
@@ -54,30 +55,17 @@ class Board {
   void end_patch(const vec3& color = vec3(0, 1, 0)) { expected.push_back(color); }
 
   uint32_t add_image(const uvec2& size, const std::vector<uint32_t>& texels, ImageUse use = ImageUse::kColor) {
-    scene.images.push_back(std::make_shared<TextureImage>(TextureImage{"", size, texels, use}));
-    Texture texture{.image = static_cast<uint32_t>(scene.images.size() - 1)};
-    texture.is_magnified_linearly = texture.has_levels = false;
-    scene.textures.push_back(texture);
-    return static_cast<uint32_t>(scene.textures.size() - 1);
+    return add_texture(scene, size, texels, use);
   }
 
   View view() const {
-    View view;
-    view.camera.projection = Projection::kOrthographic;
+    View view = make_board_view(kPatchPixels * uvec2(expected.size(), 1));
     view.camera.eye = vec3(0.5F * left(), 0.5F, 2.0F);
     view.camera.ymag = 0.5F;
-    view.size = kPatchPixels * uvec2(expected.size(), 1);
     return view;
   }
 };
 
-Material make_unlit(const vec3& color, AlphaMode mode = AlphaMode::kOpaque, float alpha = 1.0F) {
-  Material material;
-  material.model = Unlit{color, {}};
-  material.alpha_mode = mode;
-  material.alpha = alpha;
-  return material;
-}
 const vec3 kGreenLight(0, 1, 0);
 const vec3 kRedLight(1, 0, 0);
 
@@ -217,14 +205,6 @@ Material make_matt() {
   return material;
 }
 
-Light make_sun(const vec3& direction, float power) {
-  Light sun;
-  sun.kind = LightKind::kDirectional;
-  sun.direction = glm::normalize(direction);
-  sun.diffuse = sun.specular = vec3(power);
-  return sun;
-}
-
 constexpr float kPi = std::numbers::pi_v<float>;
 
 // Behind the camera hang curtains with holes, and what blends.
@@ -340,11 +320,7 @@ class FaultyShaders {
 
  private:
   static std::vector<uint32_t> read(const std::string& fault, const std::string& kernel) {
-    const std::vector<std::byte> bytes =
-        read_file(std::filesystem::path(PROMIN_FAULTS_DIR) / fault / (kernel + ".spv"));
-    std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
-    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
-    return words;
+    return read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / fault / (kernel + ".spv"));
   }
 
   std::vector<uint32_t> camera_stage_;

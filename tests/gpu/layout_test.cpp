@@ -6,19 +6,18 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <string>
 
 #include "camera_stage.spv.h"
 #include "cast.spv.h"
-#include "core/file.h"
 #include "device/spirv.h"
 #include "follow_paths.spv.h"
 #include "gpu/spirv_module.h"
 #include "list_rays.spv.h"
 #include "place_rays.spv.h"
+#include "support/read_spirv.h"
 #include "trace_shadow_rays.spv.h"
 
 namespace promin {
@@ -141,9 +140,7 @@ TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
 
 // The test above can fail: a lavapipe that does not contract by itself would give the same pictures without `precise`.
 TEST(SpirvTest, RemovedPreciseIsSeen) {
-  const std::vector<std::byte> bytes = read_file(std::filesystem::path(PROMIN_FAULTS_DIR) / "nothing_precise/cast.spv");
-  std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
-  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
+  const std::vector<uint32_t> words = read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / "nothing_precise/cast.spv");
   EXPECT_THAT(test::SpirvModule(words).contractible, Contains(HasSubstr("shear_triangle")));
 }
 

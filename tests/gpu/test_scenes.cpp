@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <random>
 
 namespace promin::test {
@@ -150,6 +151,48 @@ std::vector<Ray> make_rays(size_t count) {
     rays.push_back({eye, 0.0F, target - eye, std::numeric_limits<float>::infinity()});
   }
   return rays;
+}
+
+Mesh make_board(float z, const vec2& lo, const vec2& hi) {
+  Mesh mesh;
+  mesh.positions = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (const vec2& uv : {lo, vec2(hi.x, lo.y), hi, vec2(lo.x, hi.y)}) mesh.uvs.emplace_back(uv, -uv);
+  return mesh;
+}
+
+View make_board_view(const uvec2& size, uint32_t samples) {
+  View view;
+  view.camera.eye = vec3(0, 0, 2);
+  view.camera.projection = Projection::kOrthographic;
+  view.camera.ymag = 1.0F;
+  view.size = size;
+  view.samples_per_pixel = samples;
+  return view;
+}
+
+Material make_unlit(const vec3& color, AlphaMode mode, float alpha) {
+  Material material;
+  material.model = Unlit{color, {}};
+  material.alpha_mode = mode;
+  material.alpha = alpha;
+  return material;
+}
+
+Light make_sun(const vec3& direction, float power) {
+  Light sun;
+  sun.kind = LightKind::kDirectional;
+  sun.direction = glm::normalize(direction);
+  sun.diffuse = sun.specular = vec3(power);
+  return sun;
+}
+
+uint32_t add_texture(Scene& scene, const uvec2& size, const std::vector<uint32_t>& texels, ImageUse use) {
+  scene.images.push_back(std::make_shared<TextureImage>(TextureImage{"", size, texels, use}));
+  Texture texture{.image = static_cast<uint32_t>(scene.images.size() - 1)};
+  texture.is_magnified_linearly = texture.has_levels = false;
+  scene.textures.push_back(texture);
+  return static_cast<uint32_t>(scene.textures.size() - 1);
 }
 
 bool has_same_bits(const Image& a, const Image& b) {

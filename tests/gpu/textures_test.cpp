@@ -20,31 +20,15 @@ double decode_srgb(double code) {
   return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
 }
 
-/// A square of side 2 that fills an orthographic picture, its texture coordinates from `lo` at the lower left corner to
-/// `hi` at the upper right one, both sets alike but for the sign. Unlit, so that the picture shows the texture alone.
-Scene make_board(const TextureImage& image, const vec2& lo = vec2(0), const vec2& hi = vec2(1)) {
+/// A board that is unlit, so that the picture shows the texture alone.
+Scene make_textured_board(const TextureImage& image, const vec2& lo = vec2(0), const vec2& hi = vec2(1)) {
   Scene scene;
-  Mesh mesh;
-  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  for (const vec2& uv : {lo, vec2(hi.x, lo.y), hi, vec2(lo.x, hi.y)}) mesh.uvs.emplace_back(uv, -uv);
-  Material material;
-  material.model = Unlit{vec3(1.0F), {.texture = 0}};
-  scene.materials = {material};
+  scene.materials = {make_unlit(vec3(1.0F))};
+  std::get<Unlit>(scene.materials[0].model).color_texture.texture = 0;
   scene.images = {std::make_shared<TextureImage>(image)};
   scene.textures = {Texture{}};
-  scene.add("board", mesh);
+  scene.add("board", make_board(0.0F, lo, hi));
   return scene;
-}
-
-View make_board_view(const uvec2& size, uint32_t samples = 1) {
-  View view;
-  view.camera.eye = vec3(0, 0, 2);
-  view.camera.projection = Projection::kOrthographic;
-  view.camera.ymag = 1.0F;
-  view.size = size;
-  view.samples_per_pixel = samples;
-  return view;
 }
 
 TextureImage make_image(const uvec2& size, const std::function<uint32_t(uint32_t, uint32_t)>& texel,
@@ -71,9 +55,9 @@ class TexturesTest : public DeviceTest {
 TEST_F(TexturesTest, AConstantTextureIsAFactor) {
   for (const uint32_t code : {0U, 1U, 10U, 11U, 128U, 254U, 255U}) {
     for (const ImageUse use : {ImageUse::kColor, ImageUse::kData}) {
-      Scene scene = make_board(make_image(
-                                   {5, 3}, [&](uint32_t, uint32_t) { return grey(code); }, use),
-                               vec2(-1.5F), vec2(2.25F));
+      Scene scene = make_textured_board(make_image(
+                                            {5, 3}, [&](uint32_t, uint32_t) { return grey(code); }, use),
+                                        vec2(-1.5F), vec2(2.25F));
       const Image image = render(scene, make_board_view({16, 16}));
       const double number = code / 255.0;
       const double expected = use == ImageUse::kColor ? decode_srgb(number) : number;
@@ -85,7 +69,8 @@ TEST_F(TexturesTest, AConstantTextureIsAFactor) {
 
 TEST_F(TexturesTest, TexelsLieWhereTheyBelong) {
   // The first row lies at v = 0, and is the lowest here.
-  Scene scene = make_board(make_image({2, 2}, [](uint32_t x, uint32_t y) { return grey(10 * (1 + x + 2 * y)); }));
+  Scene scene =
+      make_textured_board(make_image({2, 2}, [](uint32_t x, uint32_t y) { return grey(10 * (1 + x + 2 * y)); }));
   scene.textures[0].is_magnified_linearly = false;
   const Image image = render(scene, make_board_view({2, 2}));
   const auto code = [&](size_t i) { return std::lround(255.0F * image.pixels[i].r); };
@@ -105,8 +90,8 @@ TEST_F(TexturesTest, EdgesRepeatMirrorOrHold) {
                 {TextureWrap::kClampToEdge, "00000000012333333333"}};
   for (const auto& [wrap, row] : kCases) {
     for (const bool is_linear : {false, true}) {
-      Scene scene =
-          make_board(make_image({4, 1}, [](uint32_t x, uint32_t) { return grey(60 * x); }), vec2(-2, 0), vec2(3, 1));
+      Scene scene = make_textured_board(make_image({4, 1}, [](uint32_t x, uint32_t) { return grey(60 * x); }),
+                                        vec2(-2, 0), vec2(3, 1));
       scene.textures[0].wrap_u = wrap;
       scene.textures[0].is_magnified_linearly = is_linear;
       View view = make_board_view({20, 20});
@@ -121,7 +106,7 @@ TEST_F(TexturesTest, EdgesRepeatMirrorOrHold) {
 
 TEST_F(TexturesTest, BilinearBetweenTexels) {
   // Of two texels, 0 and 1, clamped: u = 0 ... 1 gives 0 up to 1/4, 1 from 3/4 on, and a line between.
-  Scene scene = make_board(make_image({2, 1}, [](uint32_t x, uint32_t) { return grey(255 * x); }));
+  Scene scene = make_textured_board(make_image({2, 1}, [](uint32_t x, uint32_t) { return grey(255 * x); }));
   scene.textures[0].wrap_u = TextureWrap::kClampToEdge;
   const uint32_t width = 64;
   const Image image = render(scene, make_board_view({width, width}));
@@ -132,7 +117,7 @@ TEST_F(TexturesTest, BilinearBetweenTexels) {
 }
 
 TEST_F(TexturesTest, SetsAndTransformsAreFollowed) {
-  Scene scene = make_board(make_image({4, 4}, [](uint32_t x, uint32_t y) { return grey(10 * (x + 4 * y)); }));
+  Scene scene = make_textured_board(make_image({4, 4}, [](uint32_t x, uint32_t y) { return grey(10 * (x + 4 * y)); }));
   scene.textures[0].is_magnified_linearly = false;
   const Image plain = render(scene, make_board_view({4, 4}));
   auto& slot = std::get<Unlit>(scene.materials[0].model).color_texture;
@@ -154,7 +139,7 @@ TEST_F(TexturesTest, SmallTexelsAreAveraged) {
   // A checkerboard of 256 texels a side in 16 pixels: each covers 16 * 16 of them, light and dark alike.
   const TextureImage checkers = make_image(
       {256, 256}, [](uint32_t x, uint32_t y) { return grey((x + y) % 2 == 0 ? 255 : 0); }, ImageUse::kColor);
-  Scene scene = make_board(checkers);
+  Scene scene = make_textured_board(checkers);
   for (const uint32_t samples : {1U, 4U}) {
     const Image image = render(scene, make_board_view({16, 16}, samples));
     // The code of one half is 188, of which this is the light.
@@ -172,7 +157,7 @@ TEST_F(TexturesTest, TheLevelFollowsTheDistance) {
   const TextureImage noise = make_image(
       {64, 64}, [](uint32_t x, uint32_t y) { return grey(((x * 2654435761U) ^ (y * 2246822519U)) >> 13 & 255); });
   const auto contrast = [&](float distance, const std::function<void(Scene&)>& change) {
-    Scene scene = make_board(noise, vec2(0), vec2(4));
+    Scene scene = make_textured_board(noise, vec2(0), vec2(4));
     change(scene);
     View view;
     view.camera.eye = vec3(0, 0, distance);
@@ -196,17 +181,14 @@ TEST_F(TexturesTest, TheLevelFollowsTheDistance) {
 
 /// A metallic-roughness board with the studio's absence made up for by one light from the upper left.
 Scene make_lit_board(const TextureImage& image) {
-  Scene scene = make_board(image);
+  Scene scene = make_textured_board(image);
   MetallicRoughness material;
   material.metallic = 0.0F;
   material.base_color = vec3(0.8F);
   scene.materials[0].model = material;
   Mesh& mesh = std::get<Mesh>(scene.geometries[0]);
   mesh.normals.assign(4, vec3(0, 0, 1));
-  Light light;
-  light.kind = LightKind::kDirectional;
-  light.direction = glm::normalize(vec3(1, -1, -1));
-  scene.lights = {light};
+  scene.lights = {make_sun(vec3(1, -1, -1))};
   scene.environment.ambient = vec3(0.25F);
   return scene;
 }

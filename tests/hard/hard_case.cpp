@@ -10,17 +10,16 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <ostream>
 
 #include "bounce.spv.h"
-#include "core/file.h"
 #include "core/parallel.h"
 #include "core/rounding.h"
 #include "hard/figures.h"
 #include "promin/caster.h"
 #include "render/caster_access.h"
+#include "support/read_spirv.h"
 
 namespace promin::hard {
 namespace {
@@ -29,10 +28,7 @@ namespace {
 std::vector<uint32_t> load_kernel(const char* name, std::span<const uint32_t> own) {
   const char* folder = std::getenv("PROMIN_TEST_KERNELS");
   if (folder == nullptr) return {own.begin(), own.end()};
-  const std::vector<std::byte> bytes = read_file(std::filesystem::path(folder) / name);
-  std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
-  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
-  return words;
+  return read_spirv(std::filesystem::path(folder) / name);
 }
 
 bool is_well_formed(const Hit& hit) {

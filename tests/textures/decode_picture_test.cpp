@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
-#include <turbojpeg.h>
 
 #include <array>
 #include <cstring>
@@ -18,6 +17,7 @@
 
 #include "image/picture_formats.h"
 #include "promin/textures.h"
+#include "support/make_jpeg.h"
 #include "support/make_png.h"
 
 namespace promin {
@@ -27,20 +27,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 using Bytes = std::vector<std::byte>;
-
-Bytes make_jpeg(const uvec2& size, const std::vector<uint8_t>& rgb) {
-  const tjhandle handle = tjInitCompress();
-  unsigned char* bytes = nullptr;
-  unsigned long count = 0;
-  EXPECT_EQ(tjCompress2(handle, rgb.data(), static_cast<int>(size.x), 0, static_cast<int>(size.y), TJPF_RGB, &bytes,
-                        &count, TJSAMP_444, 100, 0),
-            0);
-  const auto* first = reinterpret_cast<const std::byte*>(bytes);
-  Bytes file(first, first + count);
-  tjFree(bytes);
-  tjDestroy(handle);
-  return file;
-}
 
 TEST(DecodePicture, PngOfEveryKindBecomesRgba) {
   EXPECT_THAT(decode_picture(make_png({2, 1}, PNG_COLOR_TYPE_RGB, 8, {1, 2, 3, 4, 5, 6})).texels,

@@ -61,11 +61,6 @@ void copy(const Source& source, To* out) {
   }
 }
 
-const std::byte* bytes_of_view(const GltfDocument& document, int view) {
-  const GltfBufferView& v = document.views[static_cast<size_t>(view)];
-  return document.buffers.bytes[static_cast<size_t>(v.buffer)].data() + v.byte_offset;
-}
-
 template <class To>
 std::vector<To> read_accessor(const GltfDocument& document, int index, LoadReport& report) {
   const GltfAccessor& accessor = document.accessors[static_cast<size_t>(index)];
@@ -74,18 +69,19 @@ std::vector<To> read_accessor(const GltfDocument& document, int index, LoadRepor
   std::vector<To> values(accessor.count * components, To{});
   if (accessor.view >= 0) {
     const size_t stride = document.views[static_cast<size_t>(accessor.view)].byte_stride;
-    copy(Source{bytes_of_view(document, accessor.view) + accessor.byte_offset, stride == 0 ? packed_stride : stride,
-                accessor.count, components, accessor.component_type, accessor.is_normalized},
+    copy(Source{bytes_of_view(document, accessor.view).data() + accessor.byte_offset,
+                stride == 0 ? packed_stride : stride, accessor.count, components, accessor.component_type,
+                accessor.is_normalized},
          values.data());
   }
   if (!accessor.sparse) return values;
 
   const GltfSparse& sparse = *accessor.sparse;
   std::vector<uint32_t> places(sparse.count);
-  copy(Source{bytes_of_view(document, sparse.index_view) + sparse.index_offset, component_bytes(sparse.index_type),
-              sparse.count, 1, sparse.index_type, false},
+  copy(Source{bytes_of_view(document, sparse.index_view).data() + sparse.index_offset,
+              component_bytes(sparse.index_type), sparse.count, 1, sparse.index_type, false},
        places.data());
-  const std::byte* replacements = bytes_of_view(document, sparse.value_view) + sparse.value_offset;
+  const std::byte* replacements = bytes_of_view(document, sparse.value_view).data() + sparse.value_offset;
   for (size_t i = 0; i < sparse.count; ++i) {
     if (places[i] >= accessor.count) {
       report.refuse("sparse index " + std::to_string(places[i]) + " is out of range, the accessor has " +

@@ -16,7 +16,7 @@
 namespace promin {
 
 /// The bytes that a URI names, in a file beside the scene or in itself, or the first `most_bytes` of them (of a URI
-/// with its own bytes maybe one or two more); nullopt once the report holds the reason.
+/// with its own bytes up to three more); nullopt once the report holds the reason.
 std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, const std::string& place,
                                                     LoadReport& report,
                                                     uint64_t most_bytes = std::numeric_limits<uint64_t>::max());

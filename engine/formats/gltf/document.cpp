@@ -25,7 +25,8 @@ int index_of(const json& object, const char* name) {
 }
 
 GltfBufferView view_of(const json& source) {
-  return {index_of(source, "buffer"), source.value("byteOffset", size_t{0}), source.value("byteStride", size_t{0})};
+  return {index_of(source, "buffer"), source.value("byteOffset", size_t{0}), source["byteLength"],
+          source.value("byteStride", size_t{0})};
 }
 
 GltfSparse sparse_of(const json& source) {
@@ -87,6 +88,11 @@ bool has_morph(const std::vector<double>& weights) {
   return std::ranges::any_of(weights, [](double weight) { return weight != 0.0; });
 }
 
+std::span<const std::byte> bytes_of_view(const GltfDocument& document, int view) {
+  const GltfBufferView& v = document.views[static_cast<size_t>(view)];
+  return document.buffers.bytes[static_cast<size_t>(v.buffer)].subspan(v.byte_offset, v.byte_length);
+}
+
 GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) {
   std::vector<std::byte> bytes = read_file(report.file());
   const GltfContainer container = split_gltf(bytes, report);
@@ -98,7 +104,7 @@ GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) 
   fill_views(document);
 
   check_gltf_asset(document.json, report);
-  check_gltf_extensions(document.json, options.is_strict, report);
+  document.extensions = check_gltf_extensions(document.json, options.is_strict, report);
   check_gltf_nodes(document.json, report);
   check_gltf_accessors(document.json, report);
   check_gltf_meshopt(document.json, report);

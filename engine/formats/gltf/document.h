@@ -25,6 +25,7 @@ inline constexpr int kGltfTriangleStrip = 5;
 struct GltfBufferView {
   int buffer = -1;
   size_t byte_offset = 0;
+  size_t byte_length = 0;
   /// 0: the elements are tightly packed.
   size_t byte_stride = 0;
 };
@@ -97,12 +98,17 @@ struct GltfDocument {
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
   std::vector<GltfNode> nodes;
+  /// See check_gltf_extensions.
+  std::vector<FileExtension> extensions;
   /// The scene that is shown, if there are any.
   size_t scene = 0;
   GltfBuffers buffers;
   /// The bytes of a GLB file, whose binary chunk is a buffer; empty for a text file.
   std::vector<std::byte> glb;
 };
+
+/// The bytes of a buffer view that is needed (find_needed_views), decompressed once the document is.
+std::span<const std::byte> bytes_of_view(const GltfDocument& document, int view);
 
 /// Reads the file that the report is about. Checks come in three rounds (the file's frame, the schema, what the
 /// schema cannot say); each throws InputError with all of its problems.

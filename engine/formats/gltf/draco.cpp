@@ -115,9 +115,7 @@ class PrimitiveDecoder {
       : document_(document), task_(task), primitive_(document.meshes[task.mesh].primitives[task.primitive]) {}
 
   void decode() {
-    const GltfBufferView& view = document_.views[(*task_.extension)["bufferView"].get<size_t>()];
-    const std::span<const std::byte> stream = document_.buffers.bytes[static_cast<size_t>(view.buffer)].subspan(
-        view.byte_offset, document_.json["bufferViews"][(*task_.extension)["bufferView"].get<size_t>()]["byteLength"]);
+    const std::span<const std::byte> stream = bytes_of_view(document_, (*task_.extension)["bufferView"]);
     check_promise(read_promise(stream), stream.size());
     draco::DecoderBuffer buffer = buffer_of(stream);
     draco::Decoder decoder;
@@ -221,6 +219,7 @@ class PrimitiveDecoder {
 int add_accessor(GltfDocument& document, const GltfAccessor& like, Bytes bytes) {
   GltfBufferView view;
   view.buffer = static_cast<int>(document.buffers.bytes.size());
+  view.byte_length = bytes.size();
   document.buffers.bytes.emplace_back(document.buffers.own.emplace_back(std::move(bytes)));
   GltfAccessor accessor = like;
   accessor.view = static_cast<int>(document.views.size());

@@ -175,18 +175,11 @@ ExtensionUse use_of(const Extension& extension) {
 
 }  // namespace
 
-std::vector<FileExtension> list_gltf_extensions(const json& document) {
+std::vector<FileExtension> check_gltf_extensions(const json& document, bool is_strict, LoadReport& report) {
   std::vector<FileExtension> list;
   const ExtensionCensus census(document);
   for (const Extension& extension : census.extensions()) {
     list.push_back({extension.name, use_of(extension), extension.required >= 0});
-  }
-  return list;
-}
-
-void check_gltf_extensions(const json& document, bool is_strict, LoadReport& report) {
-  const ExtensionCensus census(document);
-  for (const Extension& extension : census.extensions()) {
     if (extension.known != nullptr) {
       warn_of_approximation(extension, report);
     } else if (is_strict && extension.required >= 0) {
@@ -200,6 +193,7 @@ void check_gltf_extensions(const json& document, bool is_strict, LoadReport& rep
       warn_of_unknown(extension, report);
     }
   }
+  return list;
 }
 
 }  // namespace promin

@@ -14,18 +14,17 @@ using nlohmann::json;
 void read_gltf_image(const GltfDocument& document, size_t index, PictureSource& source, LoadReport& report) {
   const json& image = document.json["images"][index];
   if (image.contains("bufferView")) {
-    const auto number = image["bufferView"].get<size_t>();
-    const GltfBufferView& view = document.views[number];
-    source.file = document.buffers.bytes[static_cast<size_t>(view.buffer)].subspan(
-        view.byte_offset, document.json["bufferViews"][number]["byteLength"].get<size_t>());
+    source.file = bytes_of_view(document, image["bufferView"]);
     return;
   }
   if (!image.contains("uri")) {
     source.problem = "it has no bytes";
     return;
   }
-  read_picture(source, report, [&](LoadReport& attempt) {
-    return read_gltf_uri(image["uri"].get<std::string>(), "images[" + std::to_string(index) + "].uri", attempt);
+  const auto& uri = image["uri"].get_ref<const std::string&>();
+  const std::string place = "images[" + std::to_string(index) + "].uri";
+  read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
+    return read_gltf_uri(uri, place, attempt, most_bytes);
   });
 }
 

@@ -10,7 +10,6 @@
 
 #include "formats/gltf/cameras.h"
 #include "formats/gltf/document.h"
-#include "formats/gltf/extensions.h"
 #include "formats/gltf/instances.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/lights.h"
@@ -39,7 +38,7 @@ class SceneReader {
   Scene read() {
     scene_.file = report_.file();
     scene_.variants = list_gltf_variants(document_.json);
-    scene_.extensions = list_gltf_extensions(document_.json);
+    scene_.extensions = document_.extensions;
     GltfTextures textures(document_, decodes_images_, report_);
     scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);

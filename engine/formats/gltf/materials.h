@@ -10,9 +10,10 @@
 
 namespace promin {
 
-/// The materials of a document in file order: PROMIN_materials_phong, KHR_materials_unlit or metallic-roughness, each
-/// as it is written, with its textures. Transparency is warned about by the material's name, extensions that are
-/// not known elsewhere (extensions.h).
+/// The materials of a document in file order, each with its textures and its alpha: PROMIN_materials_phong,
+/// KHR_materials_unlit or metallic-roughness as it is written, KHR_materials_pbrSpecularGlossiness as the
+/// metallic-roughness that comes nearest. What a Phong material leaves out, textures and alphaMode, is warned about by
+/// the material's name, extensions that are not known elsewhere (extensions.h).
 std::vector<Material> read_gltf_materials(const GltfDocument& document, GltfTextures& textures, LoadReport& report);
 
 /// What a primitive without a material has: the specification's default material.

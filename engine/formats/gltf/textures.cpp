@@ -117,6 +117,7 @@ uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
   if (purpose.second) glossiness_factors_[known->second] = *purpose.second;
   PictureSource& source = images_.emplace_back();
   source.image->use = purpose.first;
+  source.takes_texels = decodes_images_;
   source.title = title_of(document_.json, "images", static_cast<size_t>(index));
   source.image->name = document_.json["images"][static_cast<size_t>(index)].value("name", "");
   read_gltf_image(document_, static_cast<size_t>(index), source, report_);
@@ -135,7 +136,7 @@ void GltfTextures::restore_roughness(Material& material) const {
 }
 
 void GltfTextures::finish(Scene& scene) {
-  decode_pictures(images_, decodes_images_, report_);
+  decode_pictures(images_, report_);
   for (const auto& [image, factor] : glossiness_factors_) {
     take_glossiness(images_[image].image->texels, static_cast<double>(factor));
   }

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <variant>
 
 #include "core/file.h"
 #include "formats/obj/materials.h"
 #include "formats/obj/text.h"
 #include "formats/obj/textures.h"
 #include "formats/triangulate.h"
+#include "scene/texture_slots.h"
 
 namespace promin {
 namespace {
@@ -164,28 +164,17 @@ std::vector<uint32_t> materials_of(const ObjText& text, const ObjGroup& group, c
   return materials;
 }
 
-bool has_any_texture(const Phong& m) {
-  return m.diffuse_texture.exists() || m.specular_texture.exists() || m.normal_texture.exists();
-}
-bool has_any_texture(const MetallicRoughness& m) {
-  return m.base_color_texture.exists() || m.metallic_roughness_texture.exists() || m.normal_texture.exists();
-}
-bool has_any_texture(const Unlit& m) {
-  return m.color_texture.exists();
-}
-
-/// Whether an OBJ's material shows any.
 bool has_texture(const Material& material) {
-  return material.emissive_texture.exists() ||
-         std::visit([](const auto& model) { return has_any_texture(model); }, material.model);
+  bool has_any = false;
+  for_each_slot(material, [&](const TextureSlot& slot, const char* /*name*/, ImageUse /*use*/) {
+    has_any = has_any || slot.exists();
+  });
+  return has_any;
 }
 
 }  // namespace
 
-Scene load_obj(const LoadOptions& options, LoadReport& report) {
-  if (!options.material_variant.empty()) {
-    throw UsageError({"OBJ has no variants of materials", report.file().string(), "ask for none"});
-  }
+Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
   const std::filesystem::path& file = report.file();
   const std::vector<std::byte> bytes = read_file(file);
   const ObjText text = parse_obj_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);

@@ -27,10 +27,11 @@ constexpr std::array<MapUse, 7> kMapUses = {{{"map_Kd", ImageUse::kColor},
                                              {"map_Pm", ImageUse::kData},
                                              {"norm", ImageUse::kNormal}}};
 
-std::optional<std::vector<std::byte>> read_beside_scene(const std::string& name, LoadReport& report) {
+std::optional<std::vector<std::byte>> read_beside_scene(const std::string& name, LoadReport& report,
+                                                        uint64_t most_bytes) {
   const auto file = find_beside_scene(name, "", true, report);
   if (!file) return std::nullopt;
-  return read_file(*file);
+  return read_file(*file, most_bytes);
 }
 
 /// Calls task with each map of the materials that is read, and its use.
@@ -72,9 +73,11 @@ ObjTextures::ObjTextures(const std::vector<MtlMaterial*>& materials, LoadReport&
     source.image->name = map.file;
     source.title = quote(map.file);
     known->second = source.image;
-    read_picture(source, report, [&](LoadReport& attempt) { return read_beside_scene(map.file, attempt); });
+    read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
+      return read_beside_scene(map.file, attempt, most_bytes);
+    });
   });
-  decode_pictures(sources, true, report);
+  decode_pictures(sources, report);
   for_each_map(materials, [&](MtlMap& map, ImageUse use) { map.is_usable = !find_picture(&map, use)->texels.empty(); });
 }
 
