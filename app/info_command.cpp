@@ -107,16 +107,13 @@ std::string describe_bounds(const Bounds& bounds) {
 
 /// The file's extensions by what has become of them.
 std::vector<std::string> describe_extensions(const Scene& scene) {
-  const std::pair<ExtensionUse, const char*> uses[] = {{ExtensionUse::kUsed, "used"},
-                                                       {ExtensionUse::kApproximated, "approximated"},
-                                                       {ExtensionUse::kIgnored, "ignored"}};
   std::vector<std::string> rows;
-  for (const auto& [use, title] : uses) {
+  for (const bool is_used : {true, false}) {
     std::vector<std::string> names;
     for (const FileExtension& extension : scene.extensions) {
-      if (extension.use == use) names.push_back(extension.name + (extension.is_required ? " (required)" : ""));
+      if (extension.is_used == is_used) names.push_back(extension.name + (extension.is_required ? " (required)" : ""));
     }
-    if (!names.empty()) rows.push_back(fmt::format("{}: {}", title, fmt::join(names, ", ")));
+    if (!names.empty()) rows.push_back(fmt::format("{}: {}", is_used ? "used" : "ignored", fmt::join(names, ", ")));
   }
   return rows.empty() ? std::vector<std::string>{"none"} : rows;
 }

@@ -39,22 +39,12 @@ struct Object {
   dmat4 world_from_object{1.0};
 };
 
-/// What has become of an extension that a scene's file has.
-enum class ExtensionUse : uint32_t {
-  /// The scene has all of it that can be seen.
-  kUsed,
-  /// Some of it is replaced by something like it: there is a warning.
-  kApproximated,
-  /// The scene is as without it.
-  kIgnored,
-};
-
 /// An extension of the format that a scene's file has.
 struct FileExtension {
   /// As "KHR_materials_ior".
   std::string name;
-  /// How much of it the scene has.
-  ExtensionUse use = ExtensionUse::kUsed;
+  /// Whether the scene has what it says, or is as without it.
+  bool is_used = true;
   /// Whether the file says that it cannot be shown without.
   bool is_required = false;
 };

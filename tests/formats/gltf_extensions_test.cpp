@@ -49,7 +49,7 @@ TEST_F(GltfExtensionsTest, UnknownOnesOfMaterialsAreOneWarning) {
                           "drawn without it"));
   ASSERT_EQ(scene.extensions.size(), 1U);
   EXPECT_EQ(scene.extensions[0].name, "KHR_materials_foo");
-  EXPECT_EQ(scene.extensions[0].use, ExtensionUse::kIgnored);
+  EXPECT_FALSE(scene.extensions[0].is_used);
   EXPECT_TRUE(scene.extensions[0].is_required);
   EXPECT_EQ(scene.objects.size(), 1U);
 }
@@ -112,7 +112,7 @@ TEST_F(GltfExtensionsTest, KnownOnesOfNodesAreNotRefused) {
   const Scene scene = load(gltf, {.is_strict = true});
   EXPECT_THAT(scene.warnings, IsEmpty());
   ASSERT_EQ(scene.extensions.size(), 2U);
-  EXPECT_EQ(scene.extensions[0].use, ExtensionUse::kUsed);
+  EXPECT_TRUE(scene.extensions[0].is_used);
 }
 
 /// A PNG of one pixel: 80 hexadecimal of red, 40 of green, 20 of blue.
@@ -208,7 +208,7 @@ TEST_F(GltfExtensionsTest, SpecularGlossinessIsADielectricThatReflectsItsSpecula
   EXPECT_EQ(model_of(scene).metallic, 0.0F);
   EXPECT_EQ(model_of(scene).ior, 0.0F) << "so that the specular colour is the reflectance";
   EXPECT_EQ(model_of(scene).roughness, 0.25F);
-  EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kUsed);
+  EXPECT_TRUE(scene.extensions.at(0).is_used);
 }
 
 TEST_F(GltfExtensionsTest, SpecularGlossinessHasTheExtensionsDefaults) {
@@ -241,7 +241,7 @@ TEST_F(GltfExtensionsTest, TexturesOfGlossinessBecomeSuchOfRoughness) {
     EXPECT_EQ(scene.images.at(scene.textures.at(model.base_color_texture.texture).image)->texels,
               (std::vector<uint32_t>{0xFF8000FF, 0x33800000}));
     EXPECT_THAT(scene.warnings, IsEmpty());
-    EXPECT_EQ(scene.extensions.at(0).use, ExtensionUse::kUsed);
+    EXPECT_TRUE(scene.extensions.at(0).is_used);
   }
 }
 

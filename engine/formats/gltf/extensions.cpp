@@ -3,7 +3,6 @@
 #include "formats/gltf/extensions.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -16,46 +15,32 @@ namespace {
 
 using nlohmann::json;
 
-/// An extension that the loader reads.
-struct Known {
-  std::string_view name;
-  /// Its members in a material that are not shown as they are.
-  std::array<std::string_view, 2> approximated = {};
-  /// What becomes of these.
-  std::string_view approximation = {};
+/// The extensions that the loader reads.
+constexpr std::string_view kKnown[] = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+    "EXT_texture_webp",        "KHR_draco_mesh_compression",
+    "KHR_implicit_shapes",     "KHR_lights_punctual",
+    "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",     "KHR_materials_specular",
+    "KHR_materials_unlit",     "KHR_materials_variants",
+    "KHR_mesh_quantization",   "KHR_meshopt_compression",
+    "KHR_node_visibility",     "KHR_texture_transform",
+    "OMI_environment_sky",     "PROMIN_lights_phong",
+    "PROMIN_materials_phong",  "PROMIN_mesh_primitive_implicit_shape",
 };
-
-constexpr Known kKnown[] = {
-    {.name = "EXT_mesh_gpu_instancing"}, {.name = "EXT_meshopt_compression"},
-    {.name = "EXT_texture_webp"},        {.name = "KHR_draco_mesh_compression"},
-    {.name = "KHR_implicit_shapes"},     {.name = "KHR_lights_punctual"},
-    {.name = "KHR_materials_clearcoat"}, {.name = "KHR_materials_emissive_strength"},
-    {.name = "KHR_materials_ior"},       {.name = "KHR_materials_pbrSpecularGlossiness"},
-    {.name = "KHR_materials_sheen"},     {.name = "KHR_materials_specular"},
-    {.name = "KHR_materials_unlit"},     {.name = "KHR_materials_variants"},
-    {.name = "KHR_mesh_quantization"},   {.name = "KHR_meshopt_compression"},
-    {.name = "KHR_node_visibility"},     {.name = "KHR_texture_transform"},
-    {.name = "OMI_environment_sky"},     {.name = "PROMIN_lights_phong"},
-    {.name = "PROMIN_materials_phong"},  {.name = "PROMIN_mesh_primitive_implicit_shape"},
-};
-
-const Known* find_known(std::string_view name) {
-  const auto* const found = std::ranges::find(kKnown, name, &Known::name);
-  return found == std::end(kKnown) ? nullptr : found;
-}
 
 /// What a document has of one extension.
 struct Extension {
-  Extension(std::string its_name, const Known* its_row) : name(std::move(its_name)), known(its_row) {}
+  explicit Extension(std::string its_name)
+      : name(std::move(its_name)), is_known(std::ranges::find(kKnown, name) != std::end(kKnown)) {}
 
   std::string name;
-  const Known* known;
+  bool is_known;
   /// Its place in extensionsRequired, or -1.
   int required = -1;
   size_t material_count = 0;
   size_t texture_count = 0;
-  /// Materials that are shown by an approximation of it.
-  size_t approximated_count = 0;
   /// The first part of the geometry that carries it; empty where none does.
   std::string geometry_place;
 };
@@ -98,21 +83,14 @@ class ExtensionCensus {
  private:
   Extension& entry(const std::string& name) {
     const auto [place, is_new] = places_.try_emplace(name, extensions_.size());
-    if (is_new) extensions_.emplace_back(name, find_known(name));
+    if (is_new) extensions_.emplace_back(name);
     return extensions_[place->second];
   }
 
   void count_material(const json& material) {
     std::set<std::string> names;
     collect_names(material, names);
-    for (const std::string& name : names) {
-      Extension& extension = entry(name);
-      ++extension.material_count;
-      const json* members = find_extension(material, name.c_str());
-      if (extension.known == nullptr || members == nullptr) continue;
-      const auto has = [&](std::string_view member) { return !member.empty() && members->contains(member); };
-      if (std::ranges::any_of(extension.known->approximated, has)) ++extension.approximated_count;
-    }
+    for (const std::string& name : names) ++entry(name).material_count;
   }
 
   /// Only listed extensions are looked for: of any other nothing is said.
@@ -161,28 +139,15 @@ void warn_of_unknown(const Extension& extension, LoadReport& report) {
   }
 }
 
-void warn_of_approximation(const Extension& extension, LoadReport& report) {
-  if (extension.approximated_count == 0) return;
-  report.warn(say_number(extension.approximated_count, "material") +
-              (extension.approximated_count == 1 ? " has" : " have") + " textures of " + extension.name + ", " +
-              std::string(extension.known->approximation));
-}
-
-ExtensionUse use_of(const Extension& extension) {
-  if (extension.known == nullptr) return ExtensionUse::kIgnored;
-  return extension.approximated_count > 0 ? ExtensionUse::kApproximated : ExtensionUse::kUsed;
-}
-
 }  // namespace
 
 std::vector<FileExtension> check_gltf_extensions(const json& document, bool is_strict, LoadReport& report) {
   std::vector<FileExtension> list;
   const ExtensionCensus census(document);
   for (const Extension& extension : census.extensions()) {
-    list.push_back({extension.name, use_of(extension), extension.required >= 0});
-    if (extension.known != nullptr) {
-      warn_of_approximation(extension, report);
-    } else if (is_strict && extension.required >= 0) {
+    list.push_back({extension.name, extension.is_known, extension.required >= 0});
+    if (extension.is_known) continue;
+    if (is_strict && extension.required >= 0) {
       report.refuse("the required extension " + extension.name + " is not implemented",
                     "extensionsRequired[" + std::to_string(extension.required) + "]", "export the scene without it");
     } else if (extension.required >= 0 && !extension.geometry_place.empty()) {
