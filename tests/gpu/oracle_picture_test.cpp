@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "gpu/device_fixture.h"
+#include "gpu/gallery.h"
 #include "gpu/test_scenes.h"
 #include "oracle/compare_picture.h"
+#include "oracle/sky.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
 #include "render/renderer_impl.h"
@@ -59,12 +62,13 @@ void move(Solid& solid, const vec3& offset) {
 
 class OraclePictureTest : public test::DeviceTest, public testing::WithParamInterface<std::string> {
  protected:
-  static oracle::PictureReport compare(const world::Scene& scene, const View& view) {
+  static oracle::PictureReport compare(const world::Scene& scene, const View& view,
+                                       const oracle::PictureBounds& bounds = {}) {
     TunedRendererOptions options;
     options.with_aovs = true;
     const RenderResult result = make_renderer(device(), scene, options).render(view);
     const oracle::DeviceAovs aovs{result.aovs.depth, result.aovs.normal, result.aovs.object, result.aovs.primitive};
-    oracle::PictureReport report = compare_picture(scene, oracle::render(scene, view), result.image, aovs);
+    oracle::PictureReport report = compare_picture(scene, oracle::render(scene, view), result.image, aovs, bounds);
     std::printf("%s\n", report.summary(scene).c_str());
     return report;
   }
@@ -128,6 +132,82 @@ TEST_F(OraclePictureTest, SheensAgreeWithTheOracle) {
   cover(5, vec3(0.6F), 0.8F).get().clearcoat = 0.5F;
   for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material = i % 2 == 0 ? 4 : 5;
   EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+}
+
+/// Texels differ from pixel to pixel, so a place or a level that is a little wrong shows nearly everywhere.
+constexpr oracle::PictureBounds kOfTextures{
+    .color_error = 0.005L, .color_mean = 1e-5L, .plain_mean = 5e-5L, .unsure_share = 0.002};
+
+TEST_F(OraclePictureTest, TexturesOfMetallicRoughnessAgreeWithTheOracle) {
+  EXPECT_TRUE(compare(test::make_gallery_of_metallic_roughness(), test::make_gallery_view(), kOfTextures).passes());
+}
+
+TEST_F(OraclePictureTest, TexturesOfPhongAgreeWithTheOracle) {
+  EXPECT_TRUE(compare(test::make_gallery_of_phong(), test::make_gallery_view(), kOfTextures).passes());
+}
+
+TEST_F(OraclePictureTest, TexturesOfAlphaAgreeWithTheOracle) {
+  EXPECT_TRUE(compare(test::make_gallery_of_alpha(), test::make_gallery_view(), kOfTextures).passes());
+}
+
+// What the device has of a sky are maps, of texels and of a few roughnesses. White metals show P and nothing else.
+TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
+  constexpr float kRoughnesses[] = {0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.27F, 0.35F, 0.47F, 0.6F, 0.8F, 1.0F};
+  constexpr uint32_t kSide = 24;
+  // With the largest root of the mean square of a roughness, of the range.
+  const struct {
+    const char* name;
+    Environment environment;
+    oracle::Real rms;
+  } kSkies[] = {{"gradient", test::make_gradient(), 0.010L},
+                {"studio", test::make_studio(), 0.013L},
+                {"panorama", test::make_panorama(), 0.008L}};
+  for (const auto& sky : kSkies) {
+    const oracle::Real range = oracle::Surroundings(sky.environment).range();
+    const world::Scene scene = test::make_row_of_metals(sky.environment, kRoughnesses);
+    const View view = test::make_view_of_row(std::size(kRoughnesses), kSide);
+    const Image image = make_renderer(device(), scene).render(view).image;
+    const oracle::Picture expected = oracle::render(scene, view);
+    for (uint32_t ball = 0; ball < std::size(kRoughnesses); ++ball) {
+      oracle::Real largest = 0;
+      oracle::Real squares = 0;
+      oracle::Real allowed = 0;
+      uint32_t count = 0;
+      for (uint32_t y = 0; y < kSide; ++y) {
+        for (uint32_t x = ball * kSide; x < (ball + 1) * kSide; ++x) {
+          const oracle::Pixel& pixel = expected.at(x, y);
+          if (!pixel.hit.exists()) continue;
+          const auto off = glm::abs(oracle::Vector(image.pixels[y * view.size.x + x]) - pixel.color);
+          const oracle::Real error = std::max({off.x, off.y, off.z});
+          largest = std::max(largest, error);
+          allowed = std::max(allowed, pixel.map_error);
+          squares += error * error;
+          ++count;
+        }
+      }
+      const oracle::Real rms = std::sqrt(squares / count);
+      std::printf("%s, roughness %.2f: of the range, largest %.4Lf, rms %.4Lf\n", sky.name,
+                  static_cast<double>(kRoughnesses[ball]), largest / range, rms / range);
+      EXPECT_LE(largest, allowed) << sky.name << " " << kRoughnesses[ball];
+      EXPECT_LE(rms, sky.rms * range) << sky.name << " " << kRoughnesses[ball];
+    }
+  }
+}
+
+// The largest errors that maps may have explain most of what these pictures are off, the rest is little in the mean.
+TEST_F(OraclePictureTest, AGradientAgreesWithTheOracle) {
+  const world::Scene scene = test::make_scene_under_sky(test::make_gradient());
+  EXPECT_TRUE(compare(scene, test::make_gallery_view(), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
+}
+
+TEST_F(OraclePictureTest, TheStudioAgreesWithTheOracle) {
+  const world::Scene scene = test::make_scene_under_sky(test::make_studio());
+  EXPECT_TRUE(compare(scene, test::make_gallery_view(), {.color_mean = 1e-5L, .plain_mean = 2e-3L}).passes());
+}
+
+TEST_F(OraclePictureTest, APanoramaAgreesWithTheOracle) {
+  const world::Scene scene = test::make_scene_under_sky(test::make_panorama());
+  EXPECT_TRUE(compare(scene, test::make_gallery_view(), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
 }
 
 // Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is

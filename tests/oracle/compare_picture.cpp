@@ -60,10 +60,12 @@ class Comparison {
           continue;
         }
         compare_color();
-        if (!aovs_.object.empty()) compare_hit();
+        if (!aovs_.object.empty() && !expected_.pixels[index_].is_at_cutoff) compare_hit();
       }
     }
     if (color_count_ > 0) report_.color_mean = color_sum_ / (3 * static_cast<Real>(color_count_));
+    const uint64_t sure_count = color_count_ - report_.unsure_count;
+    if (sure_count > 0) report_.plain_mean = plain_sum_ / (3 * static_cast<Real>(sure_count));
     return std::move(report_);
   }
 
@@ -79,11 +81,17 @@ class Comparison {
   void compare_color() {
     const Pixel& pixel = expected_.pixels[index_];
     const Vector difference = glm::abs(Vector(image_.pixels[index_]) - pixel.color);
-    const Vector unexplained = glm::max(difference - pixel.highlight_error, Vector(0));
+    const Vector unexplained = glm::max(difference - pixel.explained_error - pixel.map_error, Vector(0));
     const Real error = std::max({unexplained.x, unexplained.y, unexplained.z});
     if (error > report_.bounds.color_error) report_.color_errors.push_back({at_, error});
     color_sum_ += unexplained.x + unexplained.y + unexplained.z;
     ++color_count_;
+    if (pixel.explained_error > report_.bounds.color_error) {
+      ++report_.unsure_count;
+      return;
+    }
+    plain_sum_ += difference.x + difference.y + difference.z;
+    report_.plain_largest = std::max({report_.plain_largest, difference.x, difference.y, difference.z});
   }
 
   void compare_hit() {
@@ -125,12 +133,13 @@ class Comparison {
   uvec2 at_{0};
   size_t index_ = 0;
   Real color_sum_ = 0;
+  Real plain_sum_ = 0;
   uint64_t color_count_ = 0;
 };
 
 template <typename... Values>
 std::string format(const char* pattern, Values... values) {
-  char text[256];
+  char text[512];
   std::snprintf(text, sizeof text, pattern, values...);
   return text;
 }
@@ -166,15 +175,17 @@ bool PictureReport::passes() const {
   return non_finite.empty() && are_ids_explained &&
          static_cast<double>(id_mismatches.size()) <= bounds.id_share * count && depth_errors.empty() &&
          normal_errors.empty() && static_cast<double>(normals_at_creases.size()) <= bounds.id_share * count &&
-         static_cast<double>(color_errors.size()) <= color_share * count && color_mean <= bounds.color_mean;
+         static_cast<double>(color_errors.size()) <= color_share * count && color_mean <= bounds.color_mean &&
+         plain_mean <= bounds.plain_mean && static_cast<double>(unsure_count) <= bounds.unsure_share * count;
 }
 
 std::string PictureReport::summary(const world::Scene& scene, size_t most_lines) const {
   std::string text = passes() ? "passes" : "fails";
   text += format(
       ": %llu pixels, largest error of depth %.3Lg u S, of normals %.3Lg of what is allowed; mean of colour "
-      "%.3Lg",
-      static_cast<unsigned long long>(pixel_count), largest_depth_error, largest_normal_error, color_mean);
+      "%.3Lg; of sure pixels with what is explained mean %.3Lg, largest %.3Lg; %llu unsure",
+      static_cast<unsigned long long>(pixel_count), largest_depth_error, largest_normal_error, color_mean, plain_mean,
+      plain_largest, static_cast<unsigned long long>(unsure_count));
   const auto name_error = [](const PixelError& each) { return name_pixel(each.pixel) + format(": %.4Lg", each.error); };
   text += list("pixels not finite", non_finite, most_lines, name_pixel);
   text += list("pixels of another primitive", id_mismatches, most_lines, [&](const IdMismatch& each) {

@@ -34,12 +34,16 @@ struct PictureBounds {
   double id_share = 0.0005;
   Real depth_error = kB1;
   /// Largest difference of a channel for which a pixel's colour counts as right, and the mean over all pixels; of both
-  /// Pixel::highlight_error is taken off before.
+  /// Pixel::explained_error and map_error are taken off before.
   Real color_error = 0.02L;
   Real color_mean = 1e-4L;
   /// Pixels of another colour. What mirrors show moves farther than they do.
   double color_share = 0.0005;
   double color_share_with_mirrors = 0.005;
+  /// The mean difference, with what is explained, of the pixels that are sure. It holds what maps of skies may be off.
+  Real plain_mean = kInfinity;
+  /// Pixels that are unsure: explained_error is more than color_error, so they hold a device to little.
+  double unsure_share = 0.005;
 };
 
 struct IdMismatch {
@@ -70,8 +74,13 @@ struct PictureReport {
   std::vector<PixelError> normal_errors;
   /// Those where the ray passes a rim or apex within id_margin: either side's normal is right, in a few pixels.
   std::vector<PixelError> normals_at_creases;
-  /// Largest difference of a channel beyond the pixel's highlight_error, where it is beyond the bound.
+  /// Largest difference of a channel beyond what the pixel explains, where it is beyond the bound.
   std::vector<PixelError> color_errors;
+
+  /// Pixels that are unsure, and of all others the mean and the largest difference with what is explained.
+  uint64_t unsure_count = 0;
+  Real plain_mean = 0;
+  Real plain_largest = 0;
 
   /// Over all pixels with the same primitive; normals at creases apart.
   Real largest_depth_error = 0;

@@ -201,6 +201,40 @@ TEST_F(ComparePictureTest, AFewLargeErrorsOfColourCountInTheMean) {
   EXPECT_NEAR(static_cast<double>(compare(device).color_mean), 1.5 / (3 * 4000), 1e-7);
 }
 
+TEST_F(ComparePictureTest, WhatMapsExplainIsNoErrorButCountsInThePlainMean) {
+  Picture expected = picture;
+  for (Pixel& pixel : expected.pixels) pixel.map_error = 0.1L;
+  DevicePicture device = rounded;
+  for (vec3& color : device.image.pixels) color += 0.05F;
+  const auto compare_with = [&](Real plain_mean) {
+    return compare_picture(scene, expected, device.image, {}, {.plain_mean = plain_mean});
+  };
+  EXPECT_TRUE(compare_with(0.051L).passes());
+  EXPECT_FALSE(compare_with(0.049L).passes());
+  EXPECT_NEAR(compare_with(1).plain_mean, 0.05L, 1e-6L);
+  EXPECT_NEAR(compare_with(1).plain_largest, 0.05L, 1e-6L);
+}
+
+TEST_F(ComparePictureTest, AFewPixelsMayBeUnsure) {
+  Picture expected = picture;
+  const auto compare_with = [&] { return compare_picture(scene, expected, rounded.image, {}); };
+  for (size_t i = 0; i < 20; ++i) expected.pixels[100 * i].explained_error = 0.03L;
+  EXPECT_TRUE(compare_with().passes()) << "20 of 4000 are 0.5 %";
+  EXPECT_EQ(compare_with().unsure_count, 20U);
+  expected.pixels[7].explained_error = 0.03L;
+  EXPECT_FALSE(compare_with().passes());
+}
+
+TEST_F(ComparePictureTest, WhereAMaskEndsEitherHitIsRight) {
+  Picture expected = picture;
+  DevicePicture device = rounded;
+  const size_t hit = find_pixel_of(1);
+  device.object[hit] = 2;
+  EXPECT_FALSE(compare_picture(scene, expected, device.image, device.aovs()).passes());
+  expected.pixels[hit].is_at_cutoff = true;
+  EXPECT_TRUE(compare_picture(scene, expected, device.image, device.aovs()).passes());
+}
+
 TEST_F(ComparePictureTest, WhatIsNotFiniteFails) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();

@@ -5,32 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <variant>
+#include <vector>
 
 #include "core/parallel.h"
 #include "oracle/distance.h"
-#include "oracle/lobe.h"
 #include "oracle/normal_error.h"
+#include "oracle/surface.h"
 #include "oracle/verdict.h"
 #include "scene/light_kinds.h"
 
 namespace promin::oracle {
 namespace {
-
-/// A hit as shading sees it. All normals are unit and face the ray.
-struct SurfacePoint {
-  Vector position{0};
-  Vector geometric_normal{0};
-  /// Interpolated where the mesh has vertex normals.
-  Vector normal{0};
-  /// Where shadow rays start from, but for the lift.
-  Vector shadow_position{0};
-  /// How far along the geometric normal secondary rays start.
-  Real lift = 0;
-  Vector vertex_color{1};
-  const Material* material = nullptr;
-};
 
 /// Rounding puts the point of a hit off its primitive, and a ray from behind the surface would meet it again: by a few
 /// 2^-64 of the lengths that the hit was computed from. A thousandfold of that is still 1e-16 of them, less than
@@ -45,17 +31,17 @@ struct Corners {
   glm::uvec3 indices;
   std::array<Real, 3> weights;
 
-  template <typename Values>
-  Vector interpolate(const Values& values) const {
-    Vector sum(0);
-    for (int i = 0; i < 3; ++i) sum += weights[static_cast<size_t>(i)] * Vector(values[indices[i]]);
+  template <typename Sum, typename Values>
+  Sum interpolate(const Values& values) const {
+    Sum sum(0);
+    for (int i = 0; i < 3; ++i) sum += weights[static_cast<size_t>(i)] * Sum(values[indices[i]]);
     return sum;
   }
 };
 
 /// Vertex normals face the ray as the triangle does, by the side of its plane that is seen.
 void apply_vertex_normals(const Mesh& mesh, const Corners& corners, Real side, SurfacePoint& point) {
-  const Vector sum = side * corners.interpolate(mesh.normals);
+  const Vector sum = side * corners.interpolate<Vector>(mesh.normals);
   if (sum == Vector(0)) return;
   point.normal = glm::normalize(sum);
   // Hanika, "Hacking the Shadow Terminator": where the point lies below the tangent plane of a corner, it is projected
@@ -68,24 +54,6 @@ void apply_vertex_normals(const Mesh& mesh, const Corners& corners, Real side, S
     const Vector projected = height < 0 ? point.position - height * n : point.position;
     point.shadow_position += corners.weights[static_cast<size_t>(i)] * projected;
   }
-}
-
-SurfacePoint make_surface_point(const world::Scene& scene, const Ray& ray, const Hit& hit) {
-  const world::Object& object = scene.objects[static_cast<size_t>(hit.object)];
-  const Real side = glm::dot(hit.normal, ray.direction) > 0 ? -1 : 1;
-  SurfacePoint point;
-  point.position = ray.origin + hit.t * ray.direction;
-  point.geometric_normal = point.normal = side * hit.normal;
-  point.shadow_position = point.position;
-  point.lift = lift_of(object.shape, ray, hit, point.position);
-  point.material = &material_of(scene, hit);
-  if (const Mesh* mesh = std::get_if<Mesh>(&object.shape)) {
-    const auto triangle = static_cast<size_t>(hit.primitive);
-    const Corners corners{mesh->triangles[triangle], {1 - hit.u - hit.v, hit.u, hit.v}};
-    if (!mesh->normals.empty()) apply_vertex_normals(*mesh, corners, side, point);
-    if (!mesh->colors.empty()) point.vertex_color = corners.interpolate(mesh->colors);
-  }
-  return point;
 }
 
 /// The share of a source's power that its shape and distance leave, and where it lies.
@@ -121,210 +89,18 @@ Illumination illuminate(const Light& light, const Vector& position) {
 constexpr uint32_t kMostLayers = 64;
 constexpr Real kLeastShareBehind = 1.0L / 1024;
 
-/// How much of what is behind it the material covers, as there are no textures here (glTF 2.0, 3.9.4).
-Real coverage_of(const Material& material) {
-  if (material.alpha_mode == AlphaMode::kBlend) return material.alpha;
-  return material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff ? 0 : 1;
-}
+/// A mirror ray of less weight is not traced where the environment can stand for what it would bring.
+constexpr Real kLeastMirrorWeight = 1.0L / 256;
 
-/// The share of the source's light that reaches the point.
-Real arriving_share(const world::Scene& scene, const SurfacePoint& point, const Light& light, const Vector& to_light) {
-  const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
-  const Ray ray = has_place(light.kind) ? Ray{origin, Vector(light.position) - origin, 0, 1} : Ray{origin, to_light};
-  Real share = 1;
-  Sight sight;
-  for (uint32_t layer = 0; share > 0; ++layer) {
-    sight.passed = find_nearest_hit(scene, ray, sight);
-    if (!sight.passed.exists()) return share;
-    share *= layer < kMostLayers ? 1 - coverage_of(material_of(scene, sight.passed)) : 0;
-    if (share < kLeastShareBehind) share = 0;
-  }
-  return share;
-}
+/// Of d = look + (x right - y up) each product, the difference and the sum are rounded, and d is normalised.
+constexpr Real kCameraRayError = 8 * kRoundoff;
 
-/// How far a device may have the point and the directions from it, because it rounds: lengths in scene units, and
-/// angles.
-struct PointError {
-  Real position = 0;
-  Real normal = 0;
-  Real to_eye = 0;
-};
-
-/// Light, and how far a device may be off it because its highlights lie a little aside.
-struct Radiance {
-  Vector color{0};
-  Real error = 0;
-
-  void add(const Radiance& other) { add(Vector(1), other); }
-  void add(const Vector& weight, const Radiance& other) {
-    color += weight * other.color;
-    error += std::max({weight.x, weight.y, weight.z}) * other.error;
-  }
-};
-
-/// How a material answers the light at one point, seen from one eye. Each model has these functions.
-class PhongSurface {
- public:
-  PhongSurface(const Phong& phong, const SurfacePoint& point, const Vector& to_eye, const PointError&)
-      : phong_(phong), point_(point), to_eye_(to_eye) {}
-
-  /// What is sent without any source or mirror ray.
-  Vector own(const Vector& emissive, const Vector& ambient) const {
-    return emissive + Vector(phong_.ambient) * point_.vertex_color * ambient;
-  }
-  /// What a source adds where nothing is between, of strength 1.
-  Radiance contribution(const Light& light, const Illumination& illumination) const {
-    const Real cosine = glm::dot(point_.normal, illumination.to_light);
-    Vector share = Vector(phong_.diffuse) * point_.vertex_color * Vector(light.diffuse) * cosine;
-    const Real highlight = glm::dot(2 * cosine * point_.normal - illumination.to_light, to_eye_);
-    if (phong_.shininess > 0 && highlight > 0) {
-      share += Vector(phong_.specular) * Vector(light.specular) * std::pow(highlight, Real(phong_.shininess));
-    }
-    return {share};
-  }
-  /// The weight of what the mirror ray brings.
-  Vector mirror_weight() const { return Vector(phong_.reflection); }
-  /// Whether a mirror ray brings the background where it leaves the scene, and nothing where it is not traced; else
-  /// both times the ambient light.
-  static constexpr bool kMirrorsBackground = true;
-
- private:
-  const Phong& phong_;
-  const SurfacePoint& point_;
-  Vector to_eye_;
-};
-
-class UnlitSurface {
- public:
-  UnlitSurface(const Unlit& unlit, const SurfacePoint& point, const Vector&, const PointError&)
-      : color_(Vector(unlit.color) * point.vertex_color) {}
-
-  Vector own(const Vector& emissive, const Vector&) const { return emissive + color_; }
-  Radiance contribution(const Light&, const Illumination&) const { return {}; }
-  Vector mirror_weight() const { return Vector(0); }
-  static constexpr bool kMirrorsBackground = true;
-
- private:
-  Vector color_;
-};
-
-class MetallicRoughnessSurface {
- public:
-  MetallicRoughnessSurface(const MetallicRoughness& material, const SurfacePoint& point, const Vector& to_eye,
-                           const PointError& error)
-      : point_(point),
-        to_eye_(to_eye),
-        error_(error),
-        lobe_(material, point.vertex_color, look_up_lobe_shares(glm::dot(point.normal, to_eye), material.roughness)),
-        sheen_(material, glm::dot(point.normal, to_eye)),
-        coat_(material, glm::dot(point.normal, to_eye)) {}
-
-  Vector own(const Vector& emissive, const Vector& ambient) const {
-    const Vector base = lobe_.albedo() * ambient + (1 - lobe_.sharpness()) * lobe_.reflectance() * ambient;
-    const Vector below = emissive + sheen_.reflectance() * ambient + sheen_.left() * base;
-    return (1 - coat_.weight()) * below + coat_.weight() * (1 - coat_.sharpness()) * coat_.reflectance() * ambient;
-  }
-
-  Radiance contribution(const Light& light, const Illumination& illumination) const {
-    const Real cosine = glm::dot(point_.normal, illumination.to_light);
-    Radiance sum{lobe_.albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
-    // From behind, as seen from the eye, there is no half vector.
-    const Real apart = glm::length(to_eye_ + illumination.to_light);
-    if (apart < 0x1p-12L) return sum;
-    const LobeAngles angles = angles_of(point_.normal, to_eye_, illumination.to_light);
-    const Real error = angle_error(illumination, apart);
-    sum.add(Vector(light.specular), bound_highlight(lobe_, angles, error));
-    Radiance below = sum;
-    if (sheen_.exists()) {
-      below = {};
-      below.add(Vector(sheen_.left(cosine)), sum);
-      below.add(Vector(light.specular), bound_sheen(angles, error));
-    }
-    Radiance coated;
-    coated.add(Vector(1 - coat_.weight()), below);
-    coated.add(coat_.weight() * Vector(light.specular), bound_highlight(coat_, angles, error));
-    return coated;
-  }
-
-  Vector mirror_weight() const {
-    return (1 - coat_.weight()) * sheen_.left() * lobe_.sharpness() * lobe_.reflectance() +
-           coat_.weight() * coat_.sharpness() * coat_.reflectance();
-  }
-  static constexpr bool kMirrorsBackground = false;
-
- private:
-  /// By how much any of the lobe's angles may be off.
-  Real angle_error(const Illumination& illumination, Real apart) const {
-    const Real to_light = 4 * kRoundoff + error_.position / illumination.distance;
-    return std::min(error_.normal + (error_.to_eye + to_light) / std::min(apart, Real(1)), Real(1));
-  }
-
-  /// The lobe grows as the half vector nears the normal, l grows, v falls and V.H falls, so its largest and least
-  /// values within the angles' errors are at the ends. Beside that fp32 errs by 64 u + 8 u / alpha.
-  template <class AnyLobe>
-  static Radiance bound_highlight(const AnyLobe& lobe, const LobeAngles& at, Real error) {
-    const auto highlight_at = [&](Real step) {
-      return Vector(lobe.highlight({std::clamp(at.theta - step, Real(0), std::numbers::pi_v<Real> / 2), at.v - step,
-                                    std::max(at.l + step, Real(0)), std::clamp(at.v_h - step, Real(0), Real(1))}));
-    };
-    const Vector color(lobe.highlight(at));
-    const Vector off = glm::max(highlight_at(error) - color, color - highlight_at(-error));
-    const Vector rounding = (64 + 8 / lobe.alpha_of_sources()) * kRoundoff * color;
-    const Vector sum = off + rounding;
-    return {color, std::max({sum.x, sum.y, sum.z})};
-  }
-
-  /// A sheen has no angle at which all that it hangs on is at an end, so all corners within the errors are tried. fp32
-  /// errs by a few u of exponents up to 25 and of powers.
-  Radiance bound_sheen(const LobeAngles& at, Real error) const {
-    const Vector color = sheen_.highlight(at);
-    Real off = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto step = [&](int bit) { return (corner & bit) != 0 ? error : -error; };
-      const LobeAngles near{std::clamp(at.theta + step(1), Real(0), std::numbers::pi_v<Real> / 2), at.v + step(2),
-                            std::max(at.l + step(4), Real(1e-9L)), at.v_h};
-      const Vector apart = glm::abs(sheen_.highlight(near) - color);
-      off = std::max({off, apart.x, apart.y, apart.z});
-    }
-    return {color, off + 512 * kRoundoff * std::max({color.x, color.y, color.z})};
-  }
-
-  const SurfacePoint& point_;
-  Vector to_eye_;
-  PointError error_;
-  Lobe lobe_;
-  Sheen sheen_;
-  ClearCoat coat_;
-};
-
-PhongSurface make_surface(const Phong& model, const SurfacePoint& point, const Vector& to_eye, const PointError& e) {
-  return {model, point, to_eye, e};
-}
-UnlitSurface make_surface(const Unlit& model, const SurfacePoint& point, const Vector& to_eye, const PointError& e) {
-  return {model, point, to_eye, e};
-}
-MetallicRoughnessSurface make_surface(const MetallicRoughness& model, const SurfacePoint& point, const Vector& to_eye,
-                                      const PointError& e) {
-  return {model, point, to_eye, e};
-}
-
-/// What the point sends by itself and from the visible sources.
-template <class Surface>
-Radiance shade(const world::Scene& scene, const SurfacePoint& point, const Surface& surface) {
-  Radiance sum{surface.own(Vector(point.material->emissive), Vector(scene.environment.ambient))};
-  for (const Light& light : scene.lights) {
-    const Illumination illumination = illuminate(light, point.position);
-    const Real cosine = glm::dot(point.normal, illumination.to_light);
-    if (!(cosine > 0) || !(illumination.strength > 0)) continue;
-    const Real share = arriving_share(scene, point, light, illumination.to_light);
-    if (share > 0) sum.add(Vector(share * illumination.strength), surface.contribution(light, illumination));
-  }
-  return sum;
-}
+/// The error of what may show one thing or quite another.
+constexpr Real kUnknown = 1000;
 
 /// About the shading normal; what that would send into the surface, the surface itself mirrors back.
-Vector mirror(const SurfacePoint& point, const Vector& direction) {
-  const Vector mirrored = glm::reflect(direction, point.normal);
+Vector mirror(const SurfacePoint& point, const Vector& normal, const Vector& direction) {
+  const Vector mirrored = glm::reflect(direction, normal);
   const bool is_inward = glm::dot(mirrored, point.geometric_normal) < 0;
   return is_inward ? glm::reflect(mirrored, point.geometric_normal) : mirrored;
 }
@@ -350,6 +126,22 @@ Real radius_of_shading(const world::Shape& shape, const Ray& ray, const Hit& hit
   return radius;
 }
 
+/// By how much vertex normals turn per length along the triangle's edges, outwards; 0 without them. On the corners of a
+/// sphere each edge says 1 / radius.
+Real curvature_of(const TrianglePoint& at) {
+  if (at.mesh == nullptr || at.mesh->normals.empty()) return 0;
+  const glm::uvec3 corners = at.mesh->triangles[static_cast<size_t>(at.triangle)];
+  Real sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t a = corners[i];
+    const uint32_t b = corners[(i + 1) % 3];
+    const Vector edge = Vector(at.mesh->positions[b]) - Vector(at.mesh->positions[a]);
+    const Vector turn = glm::normalize(Vector(at.mesh->normals[b])) - glm::normalize(Vector(at.mesh->normals[a]));
+    sum += glm::dot(turn, edge) / glm::dot(edge, edge) / 3;
+  }
+  return sum;
+}
+
 /// The hit's own rounding, by the bounds that hold for hits and normals, and what the ray brings.
 PointError error_at(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray) {
   const world::Shape& shape = scene.objects[static_cast<size_t>(hit.object)].shape;
@@ -362,60 +154,275 @@ PointError error_at(const world::Scene& scene, const Ray& ray, const Hit& hit, c
   return error;
 }
 
-/// A mirror ray of less weight is not traced where the environment can stand for what it would bring.
-constexpr Real kLeastMirrorWeight = 1.0L / 256;
+Real largest(const Vector& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+Real largest_difference(const Vector& a, const Vector& b) {
+  return largest(glm::abs(a - b));
+}
+
+/// How much of what is behind it a surface covers, and how far a device may be off that.
+struct Coverage {
+  Real value = 1;
+  Real error = 0;
+};
+
+/// What a ray sees first, and whether a device may see something else because a mask ends there.
+struct Seen {
+  Hit hit;
+  bool is_at_cutoff = false;
+};
 
 /// Where a ray is on its way from the eye.
 struct Way {
-  /// What it would bring where it leaves the scene.
-  Vector beyond{0};
   /// How many mirrors may follow.
   uint32_t bounces = 0;
   /// How many surfaces it went through.
   uint32_t layers = 0;
   /// The largest part of what it brings that a pixel sees.
   Real weight = 1;
+  /// Whether it comes from a mirror, one of a metallic-roughness material among them, and the largest roughness of all.
+  bool is_mirrored = false;
+  bool is_of_metal = false;
+  Real roughness = 0;
+  Cone cone;
+  RayError error;
 };
 
-/// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends brings
-/// alpha of what it sends, with the environment instead of a mirror ray, and 1 - alpha of what is behind.
-Radiance radiance(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray, const Way& way) {
-  if (!hit.exists()) return {way.beyond};
-  const SurfacePoint point = make_surface_point(scene, ray, hit);
-  const Vector direction = glm::normalize(ray.direction);
-  const PointError error = error_at(scene, ray, hit, of_ray);
-  const Real coverage = coverage_of(*point.material);
-  const Real behind = way.weight * (1 - coverage);
-  const bool goes_on = coverage < 1 && way.layers < kMostLayers && behind >= kLeastShareBehind;
-  const uint32_t bounces = goes_on ? 0 : way.bounces;
-  const auto follow = [&](const auto& model) {
-    const auto surface = make_surface(model, point, -direction, error);
-    Radiance sum = shade(scene, point, surface);
-    const Vector weight = surface.mirror_weight();
-    if (weight == Vector(0)) return sum;
-    const Vector ambient(scene.environment.ambient);
-    const bool is_faint = std::max({weight.x, weight.y, weight.z}) < kLeastMirrorWeight;
-    if constexpr (surface.kMirrorsBackground) {
-      if (bounces == 0) return sum;
-    } else if (bounces == 0 || is_faint) {
-      sum.color += weight * ambient;
+class Tracer {
+ public:
+  explicit Tracer(const world::Scene& scene) : scene_(scene), textures_(scene), surroundings_(scene.environment) {}
+
+  /// The nearest hit that is not where a mask has cut its triangle out.
+  Seen find(const Ray& ray, const Way& way, Sight sight) const {
+    Seen seen;
+    for (;;) {
+      seen.hit = find_nearest_hit(scene_, ray, sight);
+      if (!seen.hit.exists()) return seen;
+      const Material& material = material_of(scene_, seen.hit);
+      const TrianglePoint at = triangle_point(ray, seen.hit, way.cone, error_at(scene_, ray, seen.hit, way.error));
+      if (material.alpha_mode != AlphaMode::kMask || at.mesh == nullptr) return seen;
+      const Coverage alpha = alpha_of(material, at);
+      seen.is_at_cutoff = seen.is_at_cutoff || std::abs(alpha.value - material.alpha_cutoff) <= alpha.error;
+      if (alpha.value >= material.alpha_cutoff) return seen;
+      sight.passed = seen.hit;
+    }
+  }
+
+  /// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends brings
+  /// alpha of what it sends, with the environment instead of a mirror ray, and 1 - alpha of what is behind.
+  Radiance trace(const Ray& ray, const Seen& seen, const Way& way) const {
+    Radiance sum = trace_hit(ray, seen.hit, way);
+    if (seen.is_at_cutoff) sum.error += kUnknown;
+    return sum;
+  }
+
+ private:
+  TrianglePoint triangle_point(const Ray& ray, const Hit& hit, const Cone& cone, const PointError& error) const {
+    TrianglePoint at;
+    at.mesh = std::get_if<Mesh>(&scene_.objects[static_cast<size_t>(hit.object)].shape);
+    at.triangle = hit.primitive;
+    at.u = hit.u;
+    at.v = hit.v;
+    at.width = std::abs(cone.width + cone.spread * hit.t * glm::length(ray.direction));
+    at.cosine = std::abs(glm::dot(hit.normal, glm::normalize(ray.direction)));
+    at.place_error = error.position;
+    at.cosine_error = error.normal + error.to_eye;
+    return at;
+  }
+
+  SurfacePoint make_surface_point(const Ray& ray, const Hit& hit, const Way& way, const PointError& error) const {
+    const world::Object& object = scene_.objects[static_cast<size_t>(hit.object)];
+    SurfacePoint point;
+    point.side = glm::dot(hit.normal, ray.direction) > 0 ? -1 : 1;
+    point.position = ray.origin + hit.t * ray.direction;
+    point.geometric_normal = point.normal = point.side * hit.normal;
+    point.shadow_position = point.position;
+    point.lift = lift_of(object.shape, ray, hit, point.position);
+    point.material = &material_of(scene_, hit);
+    point.on_triangle = triangle_point(ray, hit, way.cone, error);
+    if (const Mesh* mesh = point.on_triangle.mesh) {
+      const Corners corners{mesh->triangles[static_cast<size_t>(hit.primitive)], {1 - hit.u - hit.v, hit.u, hit.v}};
+      if (!mesh->normals.empty()) apply_vertex_normals(*mesh, corners, point.side, point);
+      if (!mesh->colors.empty()) point.vertex_color = corners.interpolate<Texel>(mesh->colors);
+    }
+    point.slots = slots_of(*point.material);
+    for (TextureSlot& slot : point.slots) {
+      if (!textures_.shows(slot, point.on_triangle)) slot = {};
+    }
+    return point;
+  }
+
+  /// The factor, times that of the base colour's texture, times that of the vertices (glTF 2.0, 3.9.4).
+  Coverage alpha_of(const Material& material, const TrianglePoint& at) const {
+    const Shown shown = textures_.look_up(slots_of(material)[kBaseSlot], at);
+    Real factor = material.alpha;
+    if (at.mesh != nullptr && !at.mesh->colors.empty()) {
+      const Corners corners{at.mesh->triangles[static_cast<size_t>(at.triangle)], {1 - at.u - at.v, at.u, at.v}};
+      factor *= corners.interpolate<Texel>(at.mesh->colors).a;
+    }
+    return {factor * shown.value.a, factor * shown.error.a};
+  }
+
+  /// How much of what is behind it is covered where a ray has found a hit.
+  Coverage coverage_of(const Material& material, const TrianglePoint& at) const {
+    if (material.alpha_mode == AlphaMode::kBlend) return alpha_of(material, at);
+    return {material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff ? Real(0) : Real(1)};
+  }
+
+  /// Of a shadow ray: what a mask leaves, too, by the finest level.
+  Coverage coverage_in_shadow(const Ray& ray, const Hit& hit, const RayError& of_ray) const {
+    const Material& material = material_of(scene_, hit);
+    const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
+    if (material.alpha_mode != AlphaMode::kMask || at.mesh == nullptr) return coverage_of(material, at);
+    const Coverage alpha = alpha_of(material, at);
+    const bool is_at_cutoff = std::abs(alpha.value - material.alpha_cutoff) <= alpha.error;
+    return {alpha.value >= material.alpha_cutoff ? Real(1) : Real(0), is_at_cutoff ? Real(1) : Real(0)};
+  }
+
+  /// The share of the source's light that reaches the point, and how far a device may be off it.
+  Coverage arriving_share(const SurfacePoint& point, const Light& light, const Vector& to_light,
+                          const PointError& error) const {
+    const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
+    const Ray ray = has_place(light.kind) ? Ray{origin, Vector(light.position) - origin, 0, 1} : Ray{origin, to_light};
+    const RayError of_ray{error.position, 4 * kRoundoff};
+    Coverage share;
+    Sight sight;
+    for (uint32_t layer = 0; share.value > 0 || share.error > 0; ++layer) {
+      sight.passed = find_nearest_hit(scene_, ray, sight);
+      if (!sight.passed.exists()) return share;
+      if (layer >= kMostLayers) return {0};
+      const Coverage covered = coverage_in_shadow(ray, sight.passed, of_ray);
+      share.error = std::max(share.value, share.error) * covered.error + share.error * (1 - covered.value);
+      share.value *= 1 - covered.value;
+      if (share.value < kLeastShareBehind) share.value = 0;
+      if (share.error < 1e-9L) share.error = 0;
+    }
+    return share;
+  }
+
+  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error) const {
+    // Textures of normals show the front what lies behind a little.
+    const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
+    std::vector<ArrivingLight> arriving;
+    for (const Light& light : scene_.lights) {
+      const Illumination illumination = illuminate(light, point.position);
+      const bool is_behind = !has_normals && !(glm::dot(point.normal, illumination.to_light) > 0);
+      if (is_behind || !(illumination.strength > 0)) continue;
+      const Coverage share = arriving_share(point, light, illumination.to_light, error);
+      if (share.value == 0 && share.error == 0) continue;
+      arriving.push_back({&light, illumination.to_light, illumination.distance, share.value * illumination.strength,
+                          share.error * illumination.strength});
+    }
+    return arriving;
+  }
+
+  /// What the surface does with light, and with the error that its textures bring: that of each by itself.
+  struct BoundedResponse : Response {
+    Real weight_error = 0;
+    Real normal_error = 0;
+  };
+  BoundedResponse respond_with_textures(const SurfacePoint& point, const Vector& direction,
+                                        const PointError& error) const {
+    const std::vector<ArrivingLight> lights = arriving_lights(point, error);
+    SlotTexels texels;
+    SlotTexels errors;
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      const Shown shown = textures_.look_up(point.slots[slot], point.on_triangle);
+      texels[slot] = shown.value;
+      errors[slot] = shown.error;
+    }
+    BoundedResponse bounded{respond(point, texels, direction, error, lights, surroundings_)};
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      if (errors[slot] == Texel(0)) continue;
+      const Response whole = bounded;
+      for (const Real sign : {-1, 1}) {
+        SlotTexels off = texels;
+        off[slot] = glm::clamp(off[slot] + sign * errors[slot], Real(0), Real(1));
+        const Response other = respond(point, off, direction, error, lights, surroundings_);
+        add_difference(whole, other, bounded);
+      }
+    }
+    return bounded;
+  }
+  static void add_difference(const Response& whole, const Response& other, BoundedResponse& bounded) {
+    bounded.sent.error += largest_difference(other.sent.color, whole.sent.color);
+    bounded.instead.error += largest_difference(other.instead.color, whole.instead.color);
+    bounded.weight_error += largest_difference(other.mirror_weight, whole.mirror_weight);
+    bounded.normal_error += glm::distance(other.mirror_normal, whole.mirror_normal);
+  }
+
+  /// What a ray brings that meets nothing.
+  Radiance beyond(const Ray& ray, const Way& way) const {
+    const Environment& environment = scene_.environment;
+    if (!way.is_mirrored && !(surroundings_.has_sky() && environment.shows_sky)) {
+      return {Vector(environment.background)};
+    }
+    if (!surroundings_.has_sky()) return {Vector(way.is_of_metal ? environment.ambient : environment.background)};
+    return {surroundings_.lobe_mean(glm::normalize(ray.direction), way.roughness), 0,
+            surroundings_.map_error(way.roughness)};
+  }
+
+  Radiance trace_hit(const Ray& ray, const Hit& hit, const Way& way) const {
+    if (!hit.exists()) return beyond(ray, way);
+    const PointError error = error_at(scene_, ray, hit, way.error);
+    const SurfacePoint point = make_surface_point(ray, hit, way, error);
+    const Coverage coverage = coverage_of(*point.material, point.on_triangle);
+    const Real behind = way.weight * (1 - coverage.value);
+    const bool goes_on = coverage.value < 1 && way.layers < kMostLayers && behind >= kLeastShareBehind;
+    const Radiance seen = trace_surface(ray, hit, point, error, way, goes_on ? 0 : way.bounces);
+    if (!goes_on) return seen;
+    Radiance blended;
+    blended.add(Vector(coverage.value), seen);
+    Way on = way;
+    ++on.layers;
+    on.weight = behind;
+    const Radiance beyond_it = trace(ray, find(ray, on, {.passes_backs = true, .passed = hit}), on);
+    blended.add(Vector(1 - coverage.value), beyond_it);
+    blended.error += coverage.error * largest_difference(seen.color, beyond_it.color);
+    return blended;
+  }
+
+  Radiance trace_surface(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
+                         const Way& way, uint32_t bounces) const {
+    const Vector direction = glm::normalize(ray.direction);
+    const BoundedResponse response = respond_with_textures(point, direction, error);
+    Radiance sum = response.sent;
+    const Real weight = largest(response.mirror_weight);
+    if (weight == 0) return sum;
+    const bool is_of_metal = std::holds_alternative<MetallicRoughness>(point.material->model);
+    if (bounces == 0 || (is_of_metal && weight < kLeastMirrorWeight)) {
+      sum.add(response.instead);
       return sum;
     }
-    const Ray next{point.position + point.lift * point.geometric_normal, mirror(point, direction)};
-    const RayError of_next{error.position, of_ray.direction + 2 * error.normal};
-    const Way on{surface.kMirrorsBackground ? way.beyond : ambient, bounces - 1, way.layers,
-                 way.weight * std::max({weight.x, weight.y, weight.z})};
-    sum.add(weight, radiance(scene, next, find_nearest_hit(scene, next, {.passes_backs = true}), of_next, on));
+    const Ray next{point.position + point.lift * point.geometric_normal,
+                   mirror(point, response.mirror_normal, direction)};
+    Way on = way;
+    on.bounces = bounces - 1;
+    on.weight *= weight;
+    on.is_mirrored = true;
+    on.is_of_metal = way.is_of_metal || is_of_metal;
+    on.roughness = std::max(way.roughness, response.mirror_roughness);
+    on.cone.width = way.cone.width + way.cone.spread * hit.t * glm::length(ray.direction);
+    const Real cosine = std::abs(glm::dot(point.normal, direction));
+    on.cone.spread += 2 * point.side * curvature_of(point.on_triangle) * on.cone.width / cosine;
+    on.error = {error.position, way.error.direction + 2 * (error.normal + response.normal_error)};
+    const Radiance brought = trace(next, find(next, on, {.passes_backs = true}), on);
+    sum.add(response.mirror_weight, brought);
+    sum.error += response.weight_error * largest(brought.color);
     return sum;
-  };
-  const Radiance seen = std::visit(follow, point.material->model);
-  if (!goes_on) return seen;
-  Radiance blended;
-  blended.add(Vector(coverage), seen);
-  const Hit next = find_nearest_hit(scene, ray, {.passes_backs = true, .passed = hit});
-  blended.add(Vector(1 - coverage),
-              radiance(scene, ray, next, of_ray, {way.beyond, way.bounces, way.layers + 1, behind}));
-  return blended;
+  }
+
+  const world::Scene& scene_;
+  Textures textures_;
+  Surroundings surroundings_;
+};
+
+/// How a pixel's cone begins.
+Cone camera_cone(const Camera& camera, const uvec2& size) {
+  if (camera.projection == Projection::kOrthographic) return {2 * Real(camera.ymag) / size.y, 0};
+  return {0, 2 * std::tan(Real(camera.yfov) / 2) / size.y};
 }
 
 }  // namespace
@@ -435,13 +442,6 @@ Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) 
   return is_orthographic ? Ray{eye + on_film, look, tmin} : Ray{eye, look + on_film, tmin};
 }
 
-namespace {
-
-/// Of d = look + (x right - y up) each product, the difference and the sum are rounded, and d is normalised.
-constexpr Real kCameraRayError = 8 * kRoundoff;
-
-}  // namespace
-
 Picture render(const world::Scene& scene, const View& view) {
   world::Scene lit = scene;
   for (Light& light : lit.lights) {
@@ -449,6 +449,11 @@ Picture render(const world::Scene& scene, const View& view) {
     light.kind = LightKind::kDirectional;
     light.direction = view.camera.look;
   }
+  const Tracer tracer(lit);
+  Way way;
+  way.bounces = view.max_depth;
+  way.cone = camera_cone(view.camera, view.size);
+  way.error = {0, kCameraRayError};
   Picture picture;
   picture.size = view.size;
   picture.pixels.resize(static_cast<size_t>(view.size.x) * view.size.y);
@@ -457,11 +462,13 @@ Picture render(const world::Scene& scene, const View& view) {
     for (uint32_t x = 0; x < view.size.x; ++x) {
       Pixel& pixel = picture.pixels[row * view.size.x + x];
       pixel.ray = camera_ray(view.camera, view.size, x, y);
-      pixel.hit = find_nearest_hit(lit, pixel.ray, {.passes_backs = true});
-      const Radiance seen = radiance(lit, pixel.ray, pixel.hit, {0, kCameraRayError},
-                                     {Vector(scene.environment.background), view.max_depth});
-      pixel.color = seen.color;
-      pixel.highlight_error = seen.error;
+      const Seen seen = tracer.find(pixel.ray, way, {.passes_backs = true});
+      pixel.hit = seen.hit;
+      pixel.is_at_cutoff = seen.is_at_cutoff;
+      const Radiance light = tracer.trace(pixel.ray, seen, way);
+      pixel.color = light.color;
+      pixel.explained_error = light.error;
+      pixel.map_error = light.map_error;
     }
   });
   return picture;

@@ -308,7 +308,7 @@ TEST(OraclePicture, UnlitIsItsColor) {
   scene.materials[0].model = Unlit{vec3(0.25F, 0.5F, 2.0F)};
   scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
   expect_color(color_of(scene, look_down_at(0)), {0.25L, 0.5L, 3});
-  EXPECT_EQ(render(scene, look_down_at(0)).at(0, 0).highlight_error, 0);
+  EXPECT_EQ(render(scene, look_down_at(0)).at(0, 0).explained_error, 0);
 }
 
 // The sharper a highlight, the more a rounded normal does to it, in its flank the most.
@@ -321,10 +321,10 @@ TEST(OraclePicture, HighlightsAreAsUncertainAsTheyAreSharp) {
   const Pixel sharp = pixel_with(0.1F, 0.01F);
   const Pixel blunt = pixel_with(0.5F, 0.25F);
   // Of a flank a normal's error of 1e-6 makes about 2e-6 / alpha.
-  EXPECT_GT(sharp.highlight_error, 1e-4L * sharp.color.x);
-  EXPECT_LT(sharp.highlight_error, 1e-3L * sharp.color.x);
-  EXPECT_LT(blunt.highlight_error, 1e-4L * blunt.color.x);
-  EXPECT_GT(blunt.highlight_error, 0);
+  EXPECT_GT(sharp.explained_error, 1e-4L * sharp.color.x);
+  EXPECT_LT(sharp.explained_error, 1e-3L * sharp.color.x);
+  EXPECT_LT(blunt.explained_error, 1e-4L * blunt.color.x);
+  EXPECT_GT(blunt.explained_error, 0);
 }
 
 TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {

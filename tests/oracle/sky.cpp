@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <variant>
+#include <vector>
+
+namespace promin::oracle {
+namespace {
+
+// Skies are integrated over thousands of directions for each pixel: in double, which errs by far less than quadrature.
+constexpr double kPi = std::numbers::pi;
+
+double radians(double degrees) {
+  return degrees * kPi / 180;
+}
+
+double smoothstep(double lo, double hi, double x) {
+  const double t = std::clamp((x - lo) / (hi - lo), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+double elevation_of(const dvec3& d) {
+  return std::atan2(d.y, std::hypot(d.x, d.z));
+}
+
+/// A lamp of the studio, in degrees from its viewer to the right.
+struct Lamp {
+  double azimuth;
+  double elevation;
+  double width;
+  double height;
+  double radiance;
+};
+constexpr Lamp kLamps[] = {{-45, 35, 44, 34, 2.0}, {65, 15, 14, 60, 2.4}, {165, 30, 60, 18, 2.0}};
+
+/// Of an angle from a lamp's middle: 1 within, 0 beyond, by smoothstep within 15 % of the half size from its edge.
+double within(double angle, double size_deg) {
+  const double half = radians(size_deg) / 2;
+  return 1 - smoothstep(0.85 * half, 1.15 * half, std::abs(angle));
+}
+
+/// What comes from a direction of the sky as it is before it is turned: +Z is 0, +X a quarter to the right of a viewer
+/// who stands there and looks at the scene.
+struct Radiance {
+  const dvec3& d;
+
+  dvec3 operator()(const std::monostate&) const { return dvec3(0); }
+
+  dvec3 operator()(const GradientSky& sky) const {
+    const double e = std::abs(elevation_of(d)) / (kPi / 2);
+    const double curve = static_cast<double>(d.y >= 0 ? sky.top_curve : sky.bottom_curve);
+    const double way = 1 - std::pow(std::max(1 - e, 0.0), 1 / curve);
+    return glm::mix(dvec3(sky.horizon), dvec3(d.y >= 0 ? sky.top : sky.bottom), way);
+  }
+
+  dvec3 operator()(const Studio& studio) const {
+    double sum = d.y >= 0 ? 0.36 + 0.04 * d.y : 0.36 + (0.20 - 0.36) * smoothstep(0, 0.35, -d.y);
+    for (const Lamp& lamp : kLamps) {
+      const double azimuth = static_cast<double>(studio.front) + radians(lamp.azimuth);
+      const double elevation = radians(lamp.elevation);
+      const dvec3 middle(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                         std::cos(azimuth) * std::cos(elevation));
+      const dvec3 right(std::cos(azimuth), 0, -std::sin(azimuth));
+      const dvec3 up = glm::cross(middle, right);
+      const double ahead = glm::dot(d, middle);
+      if (ahead <= 0) continue;
+      sum += lamp.radiance * within(std::atan2(glm::dot(d, right), ahead), lamp.width) *
+             within(std::atan2(glm::dot(d, up), ahead), lamp.height);
+    }
+    return dvec3(sum);
+  }
+
+  /// Pixels are the radiance of their middles, between which it is interpolated.
+  dvec3 operator()(const Panorama& panorama) const {
+    const Image& image = *panorama.image;
+    const double column = (0.5 + std::atan2(d.x, -d.z) / (2 * kPi)) * image.size.x - 0.5;
+    const double row = (0.5 - elevation_of(d) / kPi) * image.size.y - 0.5;
+    const auto pixel = [&](int64_t x, int64_t y) {
+      const int64_t width = image.size.x;
+      const auto in_row = static_cast<size_t>((x + width) % width);
+      const auto in_column = static_cast<size_t>(std::clamp<int64_t>(y, 0, image.size.y - 1));
+      return dvec3(image.pixels[in_column * image.size.x + in_row]);
+    };
+    const auto x = static_cast<int64_t>(std::floor(column));
+    const auto y = static_cast<int64_t>(std::floor(row));
+    const double part_x = column - static_cast<double>(x);
+    const double part_y = row - static_cast<double>(y);
+    return glm::mix(glm::mix(pixel(x, y), pixel(x + 1, y), part_x),
+                    glm::mix(pixel(x, y + 1), pixel(x + 1, y + 1), part_x), part_y);
+  }
+};
+
+dvec3 radiance_of(const Environment& environment, const dvec3& direction) {
+  // The sky is turned from +Z towards +X, so what is seen lies as far the other way in it.
+  const double sine = std::sin(static_cast<double>(environment.rotation));
+  const double cosine = std::cos(static_cast<double>(environment.rotation));
+  const dvec3 in_sky(direction.x * cosine - direction.z * sine, direction.y, direction.x * sine + direction.z * cosine);
+  return static_cast<double>(environment.intensity) * std::visit(Radiance{in_sky}, environment.sky);
+}
+
+/// Coefficients of the bands by what they multiply, and the constants of docs/model.md.
+std::array<double, 9> band_functions(const dvec3& n) {
+  return {1, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3 * n.z * n.z - 1, n.z * n.x, n.x * n.x - n.y * n.y};
+}
+constexpr double kBandFactors[] = {1 / (4 * kPi),   1 / (2 * kPi),  1 / (2 * kPi),   1 / (2 * kPi),  15 / (16 * kPi),
+                                   15 / (16 * kPi), 5 / (64 * kPi), 15 / (16 * kPi), 15 / (64 * kPi)};
+
+}  // namespace
+
+std::array<QuadratureNode, 8> gauss_nodes(double a, double b) {
+  // Abramowitz and Stegun, table 25.4.
+  constexpr double kPlaces[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+  constexpr double kWeights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  std::array<QuadratureNode, 8> nodes;
+  for (size_t i = 0; i < 4; ++i) {
+    const double weight = kWeights[i] * (b - a) / 2;
+    nodes[2 * i] = {(a + b) / 2 - kPlaces[i] * (b - a) / 2, weight};
+    nodes[2 * i + 1] = {(a + b) / 2 + kPlaces[i] * (b - a) / 2, weight};
+  }
+  return nodes;
+}
+
+Surroundings::Surroundings(const Environment& environment) : environment_(environment) {
+  if (!has_sky()) return;
+  std::array<dvec3, 9> sums{};
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  // Panels begin at the horizon, where skies have a crease.
+  constexpr int kPanels = 64;
+  constexpr int kAzimuths = 1024;
+  for (int panel = -kPanels; panel < kPanels; ++panel) {
+    for (const QuadratureNode& y : gauss_nodes(panel / double{kPanels}, (panel + 1) / double{kPanels})) {
+      const double across = std::sqrt(1 - y.place * y.place);
+      for (int i = 0; i < kAzimuths; ++i) {
+        const double azimuth = 2 * kPi * (i + 0.5) / kAzimuths;
+        const dvec3 direction(across * std::sin(azimuth), y.place, across * std::cos(azimuth));
+        const dvec3 radiance = radiance_of(environment_, direction);
+        const dvec3 light = y.weight * 2 * kPi / kAzimuths * radiance;
+        least = std::min({least, radiance.x, radiance.y, radiance.z});
+        most = std::max({most, radiance.x, radiance.y, radiance.z});
+        const std::array<double, 9> functions = band_functions(direction);
+        for (size_t band = 0; band < 9; ++band) sums[band] += functions[band] * light;
+      }
+    }
+  }
+  range_ = most - least;
+  for (size_t band = 0; band < 9; ++band) bands_[band] = Vector(kBandFactors[band] * sums[band]);
+}
+
+Vector Surroundings::radiance(const Vector& direction) const {
+  return has_sky() ? Vector(radiance_of(environment_, dvec3(direction))) : Vector(environment_.ambient);
+}
+
+Vector Surroundings::irradiance(const Vector& normal) const {
+  if (!has_sky()) return Vector(environment_.ambient);
+  const std::array<double, 9> functions = band_functions(dvec3(normal));
+  Vector sum(0);
+  for (size_t band = 0; band < 9; ++band) sum += Real(functions[band]) * bands_[band];
+  return glm::max(sum, Vector(0));
+}
+
+Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
+  if (!has_sky() || roughness <= 0) return radiance(direction);
+  const double alpha2 = std::pow(static_cast<double>(roughness), 4);
+  const dvec3 axis(direction);
+  const dvec3 aside =
+      glm::normalize(std::abs(axis.y) < 0.9 ? glm::cross(axis, dvec3(0, 1, 0)) : glm::cross(axis, dvec3(1, 0, 0)));
+  const dvec3 other = glm::cross(axis, aside);
+  // With V = N the light is at twice the half vector's angle: tau, of which s = sin^2(tau / 2) goes from 0 to 1/2 and
+  // dw = 2 ds d(azimuth). D is alpha^2 / (pi (alpha^2 + (1 - alpha^2) s)^2), so its integral q over s, in parts of the
+  // whole, is a quotient, and nodes in q have the same share of D each.
+  const double end = alpha2 + (1 - alpha2) / 2;
+  constexpr double kPanels[] = {0, 0.17, 0.33, 0.5, 0.65, 0.8, 0.9, 0.98, 1};
+  constexpr int kAzimuths = 64;
+  dvec3 sum(0);
+  double weights = 0;
+  int ring = 0;
+  for (size_t panel = 0; panel + 1 < std::size(kPanels); ++panel) {
+    for (const QuadratureNode& q : gauss_nodes(kPanels[panel], kPanels[panel + 1])) {
+      const double s = alpha2 * q.place / (2 * (end - (1 - alpha2) / 2 * q.place));
+      const double cosine = 1 - 2 * s;
+      const double sine = std::sqrt(1 - cosine * cosine);
+      ++ring;
+      dvec3 of_ring(0);
+      for (int i = 0; i < kAzimuths; ++i) {
+        // Rings are turned against each other.
+        const double azimuth = 2 * kPi * (i + 0.618 * ring) / kAzimuths;
+        const dvec3 way = cosine * axis + sine * (std::cos(azimuth) * aside + std::sin(azimuth) * other);
+        of_ring += radiance_of(environment_, way);
+      }
+      sum += q.weight * cosine / kAzimuths * of_ring;
+      weights += q.weight * cosine;
+    }
+  }
+  return Vector(sum / weights);
+}
+
+Real Surroundings::map_error(Real roughness) const {
+  // As tests/gpu/oracle_picture_test.cpp measures it, and some more.
+  if (std::holds_alternative<Studio>(environment_.sky)) {
+    return range_ * (roughness < 0.1L ? 0.13L : 0.065L);
+  }
+  return range_ * (std::holds_alternative<GradientSky>(environment_.sky) ? 0.02L : 0.035L);
+}
+
+}  // namespace promin::oracle

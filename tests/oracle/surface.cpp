@@ -1,0 +1,367 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "oracle/distance.h"
+#include "oracle/lobe.h"
+
+namespace promin::oracle {
+namespace {
+
+Vector rgb(const Texel& texel) {
+  return Vector(texel);
+}
+
+/// A direction in which a texture's first coordinate grows, and the side of the bitangent; 0 where there is none.
+struct Tangent {
+  Vector direction{0};
+  Real side = 1;
+};
+
+/// As baking tools have it, of (u, 1 - v) before the slot's transform.
+Tangent tangent_of_triangle(const SurfacePoint& point, const TextureSlot& slot) {
+  const TrianglePoint& at = point.on_triangle;
+  TextureSlot plain;
+  plain.uv_set = slot.uv_set;
+  const UvEdges uv = uv_edges(plain, at);
+  const glm::uvec3 corners = at.mesh->triangles[static_cast<size_t>(at.triangle)];
+  const Vector a(at.mesh->positions[corners.x]);
+  const Vector to_b = Vector(at.mesh->positions[corners.y]) - a;
+  const Vector to_c = Vector(at.mesh->positions[corners.z]) - a;
+  // The first coordinate grows along the combination of the edges in which 1 - v stays.
+  const Real area = -(uv.to_b.x * uv.to_c.y - uv.to_c.x * uv.to_b.y);
+  if (area == 0) return {};
+  return {(uv.to_b.y * to_c - uv.to_c.y * to_b) / area, area > 0 ? Real(1) : Real(-1)};
+}
+
+Tangent tangent_at(const SurfacePoint& point, const TextureSlot& slot) {
+  const TrianglePoint& at = point.on_triangle;
+  if (at.mesh->tangents.empty()) return tangent_of_triangle(point, slot);
+  const glm::uvec3 corners = at.mesh->triangles[static_cast<size_t>(at.triangle)];
+  const std::array<Real, 3> weights{1 - at.u - at.v, at.u, at.v};
+  Tangent tangent;
+  for (int i = 0; i < 3; ++i) {
+    tangent.direction += weights[static_cast<size_t>(i)] * Vector(at.mesh->tangents[corners[i]]);
+  }
+  tangent.side = at.mesh->tangents[corners.x].w;
+  return tangent;
+}
+
+/// From which roughness and direction the environment is reflected: the mirrored one, turned to the normal.
+Vector off_mirror(const Vector& direction, const Vector& normal, Real roughness) {
+  const Vector mirrored = glm::reflect(direction, normal);
+  return glm::normalize(mirrored + (normal - mirrored) * std::pow(roughness, Real(4)));
+}
+
+Radiance environment_of(const Surroundings& surroundings, const Vector& direction, const Vector& normal,
+                        Real roughness) {
+  return {surroundings.lobe_mean(off_mirror(direction, normal, roughness), roughness), 0,
+          surroundings.map_error(roughness)};
+}
+
+/// By how much any of a lobe's angles may be off.
+Real angle_error(const ArrivingLight& arriving, const PointError& error, Real apart) {
+  const Real to_light = 4 * kRoundoff + error.position / arriving.distance;
+  return std::min(error.normal + (error.to_eye + to_light) / std::min(apart, Real(1)), Real(1));
+}
+
+/// The lobe grows as the half vector nears the normal, l grows, v falls and V.H falls, so its largest and least values
+/// within the angles' errors are at the ends. Beside that fp32 errs by 64 u + 8 u / alpha.
+template <class AnyLobe>
+Radiance bound_highlight(const AnyLobe& lobe, const LobeAngles& at, Real error) {
+  const auto highlight_at = [&](Real step) {
+    return Vector(lobe.highlight({std::clamp(at.theta - step, Real(0), std::numbers::pi_v<Real> / 2), at.v - step,
+                                  std::max(at.l + step, Real(0)), std::clamp(at.v_h - step, Real(0), Real(1))}));
+  };
+  const Vector color(lobe.highlight(at));
+  const Vector off = glm::max(highlight_at(error) - color, color - highlight_at(-error));
+  const Vector rounding = (64 + 8 / lobe.alpha_of_sources()) * kRoundoff * color;
+  const Vector sum = off + rounding;
+  return {color, std::max({sum.x, sum.y, sum.z})};
+}
+
+/// A sheen has no angle at which all that it hangs on is at an end, so all corners within the errors are tried. fp32
+/// errs by a few u of exponents up to 25 and of powers.
+Radiance bound_sheen(const Sheen& sheen, const LobeAngles& at, Real error) {
+  const Vector color = sheen.highlight(at);
+  Real off = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto step = [&](int bit) { return (corner & bit) != 0 ? error : -error; };
+    const LobeAngles near{std::clamp(at.theta + step(1), Real(0), std::numbers::pi_v<Real> / 2), at.v + step(2),
+                          std::max(at.l + step(4), Real(1e-9L)), at.v_h};
+    const Vector apart = glm::abs(sheen.highlight(near) - color);
+    off = std::max({off, apart.x, apart.y, apart.z});
+  }
+  return {color, off + 512 * kRoundoff * std::max({color.x, color.y, color.z})};
+}
+
+/// All that a model needs to know.
+struct Glimpse {
+  const SurfacePoint& point;
+  const SlotTexels& texels;
+  const Vector& direction;
+  const PointError& error;
+  const Surroundings& surroundings;
+
+  Vector to_eye() const { return -direction; }
+  Vector emission() const { return Vector(point.material->emissive) * rgb(texels[kEmissionSlot]); }
+  Vector vertex_color() const { return rgb(point.vertex_color); }
+};
+
+/// How a material answers the light at one point, seen from one eye. Each model has these functions.
+class PhongSurface {
+ public:
+  PhongSurface(const Phong& phong, const Glimpse& at)
+      : shininess_(phong.shininess),
+        at_(at),
+        normal_(bend_normal(at.point, kNormalSlot, at.texels[kNormalSlot], 1, at.direction)),
+        ambient_(Vector(phong.ambient) * rgb(at.texels[kBaseSlot]) * at.vertex_color()),
+        diffuse_(Vector(phong.diffuse) * rgb(at.texels[kBaseSlot]) * at.vertex_color()),
+        specular_(Vector(phong.specular) * rgb(at.texels[kMetallicRoughnessSlot])),
+        reflection_(Vector(phong.reflection) * rgb(at.texels[kMetallicRoughnessSlot])) {}
+
+  Radiance own() const { return {at_.emission() + ambient_ * at_.surroundings.irradiance(normal_)}; }
+
+  Radiance contribution(const ArrivingLight& arriving) const {
+    const Real cosine = glm::dot(normal_, arriving.to_light);
+    if (!(cosine > 0)) return {};
+    Vector share = diffuse_ * Vector(arriving.light->diffuse) * cosine;
+    const Real highlight = glm::dot(2 * cosine * normal_ - arriving.to_light, at_.to_eye());
+    if (shininess_ > 0 && highlight > 0) {
+      share += specular_ * Vector(arriving.light->specular) * std::pow(highlight, shininess_);
+    }
+    return {share};
+  }
+
+  Response finish(const Radiance& sent) const { return {sent, reflection_, normal_, 0, {}}; }
+
+ private:
+  Real shininess_;
+  const Glimpse& at_;
+  Vector normal_;
+  Vector ambient_;
+  Vector diffuse_;
+  Vector specular_;
+  Vector reflection_;
+};
+
+class UnlitSurface {
+ public:
+  UnlitSurface(const Unlit& unlit, const Glimpse& at)
+      : color_(Vector(unlit.color) * rgb(at.texels[kBaseSlot]) * at.vertex_color() +
+               Vector(at.point.material->emissive)) {}
+
+  Radiance own() const { return {color_}; }
+  Radiance contribution(const ArrivingLight&) const { return {}; }
+  Response finish(const Radiance& sent) const { return {sent, Vector(0), Vector(0), 0, {}}; }
+
+ private:
+  Vector color_;
+};
+
+/// With what its textures show, but for normals, occlusion and emission; of the base colour they are factors of the
+/// vertices'.
+MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& texels) {
+  const auto scale = [](float& number, Real factor) { number = static_cast<float>(number * factor); };
+  scale(material.roughness, texels[kMetallicRoughnessSlot].g);
+  scale(material.metallic, texels[kMetallicRoughnessSlot].b);
+  scale(material.clearcoat, texels[kCoatSlot].r);
+  scale(material.clearcoat_roughness, texels[kCoatRoughnessSlot].g);
+  scale(material.specular, texels[kSpecularSlot].a);
+  material.specular_color = vec3(Vector(material.specular_color) * rgb(texels[kSpecularColorSlot]));
+  material.sheen_color = vec3(Vector(material.sheen_color) * rgb(texels[kSheenColorSlot]));
+  scale(material.sheen_roughness, texels[kSheenRoughnessSlot].a);
+  return material;
+}
+
+class MetallicRoughnessSurface {
+ public:
+  MetallicRoughnessSurface(const MetallicRoughness& material, const Glimpse& at)
+      : material_(with_textures(material, at.texels)),
+        at_(at),
+        normal_(bend_normal(at.point, kNormalSlot, at.texels[kNormalSlot], material.normal_scale, at.direction)),
+        coat_normal_(bend_normal(at.point, kCoatNormalSlot, at.texels[kCoatNormalSlot], material.clearcoat_normal_scale,
+                                 at.direction)),
+        lobe_(material_, at.vertex_color() * rgb(at.texels[kBaseSlot]),
+              look_up_lobe_shares(glm::dot(normal_, at.to_eye()), material_.roughness)),
+        sheen_(material_, glm::dot(normal_, at.to_eye())),
+        coat_(material_, glm::dot(coat_normal_, at.to_eye())),
+        has_coat_(material.clearcoat > 0),
+        is_dull_below_(has_coat_ && normal_ != coat_normal_) {
+    const Real occlusion = 1 + material.occlusion_strength * (at.texels[kOcclusionSlot].r - 1);
+    below_ = reflect_environment(normal_, material_.roughness, occlusion);
+    if (has_coat_) above_ = reflect_environment(coat_normal_, material_.clearcoat_roughness, occlusion);
+    body_ = occlusion * (sheen_.left() * lobe_.albedo() + sheen_.reflectance()) * at.surroundings.irradiance(normal_);
+  }
+
+  Radiance own() const {
+    Radiance sum;
+    sum.add(Vector(1 - coat_.weight()), {at_.emission() + body_});
+    sum.add((1 - coat_.weight()) * (1 - sharpness_below()) * reflectance(), below_);
+    sum.add(Vector(coat_.weight() * (1 - coat_.sharpness()) * coat_.reflectance()), above_);
+    return sum;
+  }
+
+  Radiance contribution(const ArrivingLight& arriving) const {
+    const Light& light = *arriving.light;
+    Radiance coated;
+    const Real cosine = glm::dot(normal_, arriving.to_light);
+    // From behind, as seen from the eye, there is no half vector.
+    const Real apart = glm::length(at_.to_eye() + arriving.to_light);
+    const bool has_highlight = apart >= 0x1p-12L;
+    const Real error = angle_error(arriving, at_.error, apart);
+    if (cosine > 0) {
+      Radiance sum{lobe_.albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
+      const LobeAngles at = angles(normal_, arriving);
+      if (has_highlight) sum.add(Vector(light.specular), bound_highlight(lobe_, at, error));
+      if (has_highlight && sheen_.exists()) {
+        Radiance below;
+        below.add(Vector(sheen_.left(cosine)), sum);
+        below.add(Vector(light.specular), bound_sheen(sheen_, at, error));
+        sum = below;
+      }
+      coated.add(Vector(1 - coat_.weight()), sum);
+    }
+    if (has_coat_ && has_highlight && glm::dot(coat_normal_, arriving.to_light) > 0) {
+      coated.add(coat_.weight() * Vector(light.specular),
+                 bound_highlight(coat_, angles(coat_normal_, arriving), error));
+    }
+    return coated;
+  }
+
+  Response finish(const Radiance& sent) const {
+    Response response;
+    response.sent = sent;
+    const Vector of_material = (1 - coat_.weight()) * sharpness_below() * reflectance();
+    const Vector of_coat(coat_.weight() * coat_.sharpness() * coat_.reflectance());
+    response.mirror_weight = of_material + of_coat;
+    response.mirror_normal = has_coat_ ? coat_normal_ : normal_;
+    response.mirror_roughness = material_.roughness;
+    if (has_coat_) {
+      response.mirror_roughness =
+          is_dull_below_ ? material_.clearcoat_roughness : std::min(material_.roughness, material_.clearcoat_roughness);
+    }
+    response.instead.add(of_material, below_);
+    response.instead.add(of_coat, above_);
+    return response;
+  }
+
+ private:
+  LobeAngles angles(const Vector& normal, const ArrivingLight& arriving) const {
+    return angles_of(normal, at_.to_eye(), arriving.to_light);
+  }
+  /// Of light from all around, below coat and sheen.
+  Vector reflectance() const { return sheen_.left() * lobe_.reflectance(); }
+  Real sharpness_below() const { return is_dull_below_ ? 0 : lobe_.sharpness(); }
+  Radiance reflect_environment(const Vector& normal, Real roughness, Real occlusion) const {
+    Radiance dimmed;
+    dimmed.add(Vector(occlusion), environment_of(at_.surroundings, at_.direction, normal, roughness));
+    return dimmed;
+  }
+
+  MetallicRoughness material_;
+  const Glimpse& at_;
+  Vector normal_;
+  Vector coat_normal_;
+  Lobe lobe_;
+  Sheen sheen_;
+  ClearCoat coat_;
+  bool has_coat_;
+  /// Whether the material reflects the environment alone, because the mirror ray is that of a coat of another normal.
+  bool is_dull_below_;
+  /// What material and coat reflect of the environment, were they white, and what the body sends of it.
+  Radiance below_;
+  Radiance above_;
+  Vector body_{0};
+};
+
+PhongSurface make_surface(const Phong& model, const Glimpse& at) {
+  return {model, at};
+}
+UnlitSurface make_surface(const Unlit& model, const Glimpse& at) {
+  return {model, at};
+}
+MetallicRoughnessSurface make_surface(const MetallicRoughness& model, const Glimpse& at) {
+  return {model, at};
+}
+
+struct PlaceSlots {
+  Slots slots;
+
+  void operator()(const Phong& model) {
+    slots[kBaseSlot] = model.diffuse_texture;
+    slots[kMetallicRoughnessSlot] = model.specular_texture;
+    slots[kNormalSlot] = model.normal_texture;
+  }
+  void operator()(const Unlit& model) { slots[kBaseSlot] = model.color_texture; }
+  void operator()(const MetallicRoughness& model) {
+    slots[kBaseSlot] = model.base_color_texture;
+    slots[kMetallicRoughnessSlot] = model.metallic_roughness_texture;
+    slots[kNormalSlot] = model.normal_texture;
+    slots[kOcclusionSlot] = model.occlusion_texture;
+    slots[kCoatSlot] = model.clearcoat_texture;
+    slots[kCoatRoughnessSlot] = model.clearcoat_roughness_texture;
+    slots[kCoatNormalSlot] = model.clearcoat_normal_texture;
+    slots[kSpecularSlot] = model.specular_texture;
+    slots[kSpecularColorSlot] = model.specular_color_texture;
+    slots[kSheenColorSlot] = model.sheen_color_texture;
+    slots[kSheenRoughnessSlot] = model.sheen_roughness_texture;
+  }
+};
+
+}  // namespace
+
+void Radiance::add(const Vector& weight, const Radiance& other) {
+  color += weight * other.color;
+  const Real largest = std::max({weight.x, weight.y, weight.z});
+  error += largest * other.error;
+  map_error += largest * other.map_error;
+}
+
+Slots slots_of(const Material& material) {
+  PlaceSlots place;
+  std::visit(place, material.model);
+  if (!std::holds_alternative<Unlit>(material.model)) place.slots[kEmissionSlot] = material.emissive_texture;
+  return place.slots;
+}
+
+Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Real scale, const Vector& direction) {
+  if (!point.slots[slot].exists()) return point.normal;
+  const Tangent tangent = tangent_at(point, point.slots[slot]);
+  // All of the texture's space is the front's, and turns with the normal where the back is seen.
+  const Vector normal = point.side * point.normal;
+  const Vector across = tangent.direction - glm::dot(tangent.direction, normal) * normal;
+  if (across == Vector(0)) return point.normal;
+  const Vector t = glm::normalize(across);
+  const Vector b = tangent.side * glm::cross(normal, t);
+  const Vector in_texture = Real(2) * rgb(texel) - Real(1);
+  Vector bent = point.side * glm::normalize(scale * (in_texture.x * t + in_texture.y * b) + in_texture.z * normal);
+  // What is turned away from the eye is seen edge-on.
+  const Real away = glm::dot(bent, direction);
+  if (away > 0) bent = glm::normalize(bent - away * direction);
+  return bent;
+}
+
+Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
+                 std::span<const ArrivingLight> lights, const Surroundings& surroundings) {
+  const Glimpse at{point, texels, direction, error, surroundings};
+  return std::visit(
+      [&](const auto& model) {
+        const auto surface = make_surface(model, at);
+        Radiance sent = surface.own();
+        for (const ArrivingLight& arriving : lights) {
+          const Radiance whole = surface.contribution(arriving);
+          sent.add(Vector(arriving.strength), whole);
+          sent.error += arriving.strength_error * std::max({whole.color.x, whole.color.y, whole.color.z});
+        }
+        return surface.finish(sent);
+      },
+      point.material->model);
+}
+
+}  // namespace promin::oracle

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "oracle/oracle.h"
+
+/// Textures as docs/model.md ("Textures") and glTF 2.0, section 3.8, have them, with exact sRGB, and how far a device
+/// may be off them.
+namespace promin::oracle {
+
+using Vector2 = glm::vec<2, Real>;
+using Texel = glm::vec<4, Real>;
+
+/// IEC 61966-2-1: the light of a code, both 0...1, and the code of a light.
+Real decode_srgb(Real code);
+Real encode_srgb(Real light);
+
+/// The cone of a ray: its width where the ray begins, and by how much it grows per length.
+struct Cone {
+  Real width = 0;
+  Real spread = 0;
+};
+
+/// A triangle's point as textures see it.
+struct TrianglePoint {
+  const Mesh* mesh = nullptr;
+  int32_t triangle = 0;
+  /// Of the second and third corner.
+  Real u = 0;
+  Real v = 0;
+  /// The width of the ray's cone there; 0 asks for the finest level.
+  Real width = 0;
+  /// |G.D| of the geometric normal and the ray's unit direction.
+  Real cosine = 1;
+  /// How far off a device may have the place, in scene units along the triangle, and the cosine.
+  Real place_error = 0;
+  Real cosine_error = 0;
+};
+
+/// What a texture shows, RGBA, and by how much a device may be off each.
+struct Shown {
+  Texel value{1};
+  Texel error{0};
+};
+
+/// The point's texture coordinates of the slot, transformed.
+Vector2 coordinates_at(const TextureSlot& slot, const TrianglePoint& point);
+
+/// By how much they change along an edge of the triangle: of the second corner and of the third.
+struct UvEdges {
+  Vector2 to_b{0};
+  Vector2 to_c{0};
+};
+UvEdges uv_edges(const TextureSlot& slot, const TrianglePoint& point);
+
+/// The images of a scene with their levels, decoded.
+class Textures {
+ public:
+  explicit Textures(const world::Scene& scene);
+
+  /// Whether the slot shows anything on a mesh with texture coordinates.
+  bool shows(const TextureSlot& slot, const TrianglePoint& point) const;
+
+  /// What is shown; 1 where nothing is. The error is how far the picture moves within the errors of place and level.
+  Shown look_up(const TextureSlot& slot, const TrianglePoint& point) const;
+
+  /// The level of detail, 0 or less where texels are larger than the cone.
+  Real level_at(const TextureSlot& slot, const TrianglePoint& point) const;
+
+  /// What is shown at a place and a level of detail.
+  Texel filter(const TextureSlot& slot, const Vector2& place, Real level) const;
+
+ private:
+  struct Level {
+    uvec2 size{0};
+    std::vector<Texel> texels;
+  };
+  /// An image is the number of its level 0 and how many it has; none where it is absent.
+  using Levels = std::vector<Level>;
+
+  static Level make_level(const TextureImage& image, uint32_t number);
+  static Texel sample(const Level& level, const Texture& texture, const Vector2& place, bool is_linear);
+
+  const world::Scene& scene_;
+  std::vector<Levels> images_;
+};
+
+}  // namespace promin::oracle
