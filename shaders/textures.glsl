@@ -75,15 +75,16 @@ vec4 load_texel(TextureSlotRecord slot, Level level, ivec2 place) {
   return numbers;
 }
 
+// Between the texels around a place, or where `is_linear` is not set of the one it lies in: then it is at the corner of
+// those around, which has all of the weight.
 vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) {
   Level level = Level(slot.image.x + load_image_word(slot.image.x + number), max(slot.image.yz >> number, uvec2(1u)));
   vec2 wrapped = vec2(wrap(uv.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT)), wrap(uv.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT)));
   precise vec2 place = wrapped * vec2(level.size) - (is_linear ? 0.5 : 0.0);
   vec2 corner = floor(place);
   ivec2 first = ivec2(corner);
+  precise vec2 part = is_linear ? place - corner : vec2(0.0);
   vec4 nearest = load_texel(slot, level, first);
-  if (!is_linear) return nearest;
-  precise vec2 part = place - corner;
   vec4 right = load_texel(slot, level, first + ivec2(1, 0));
   vec4 below = load_texel(slot, level, first + ivec2(0, 1));
   vec4 across = load_texel(slot, level, first + ivec2(1, 1));
@@ -134,31 +135,51 @@ TexturePlace texture_place(Primitive p, CornerUvs corners, vec3 weights, float f
                                 log2_about(max(coverage.y, SMALLEST_NORMAL))));
 }
 
-// A lookup at the level whose texels are as large as the pixel. Where levels are interpolated and a pixel has four
-// samples or more, each sample takes one level: their mean is that of both.
-vec4 look_up(uint number, TexturePlace place) {
-  TextureSlotRecord slot = load_slot(number);
-  bool is_second = has_flag(slot, TEXTURE_UV_SET);
-  vec2 st = is_second ? place.uvs.zw : place.uvs.xy;
-  precise vec2 uv = vec2(slot.to_u.x * st.x + slot.to_u.y * st.y + slot.to_u.z,
-                         slot.to_v.x * st.x + slot.to_v.y * st.y + slot.to_v.z);
+// The level of a texture whose texels are as large as the pixel, and how the next is mixed in.
+struct LevelChoice {
+  uint first;
+  uint end;
+  float part;  // of what the second adds to the first
+  bool is_linear;
+};
+
+// Where levels are interpolated and a pixel has four samples or more, each sample takes one level: their mean is that
+// of both.
+LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   precise float scale = abs(slot.to_u.x * slot.to_v.y - slot.to_u.y * slot.to_v.x);
   precise float texels = max(scale * float(slot.image.y) * float(slot.image.z), SMALLEST_NORMAL);
-  precise float level = 0.5 * ((is_second ? place.log_coverage.y : place.log_coverage.x) + log2_about(texels));
+  precise float level = 0.5 * (log_coverage + log2_about(texels));
+  bool is_magnified = !(level > 0.0);
+  bool is_linear = has_flag(slot, is_magnified ? TEXTURE_MAGNIFIED_LINEARLY : TEXTURE_MINIFIED_LINEARLY);
+  if (is_magnified || !has_flag(slot, TEXTURE_HAS_LEVELS)) return LevelChoice(0u, 1u, 0.0, is_linear);
+  bool are_levels_linear = has_flag(slot, TEXTURE_LEVELS_LINEAR);
+  bool takes_one = !are_levels_linear || samples_per_pixel() >= 4u;
+  precise float shift = are_levels_linear ? (float(sample_at_hand()) + 0.5) / float(samples_per_pixel()) : 0.5;
   float last = float(slot.image.w - 1u);
-  if (!(level > 0.0)) return filter_level(slot, 0u, uv, has_flag(slot, TEXTURE_MAGNIFIED_LINEARLY));
-  bool is_linear = has_flag(slot, TEXTURE_MINIFIED_LINEARLY);
-  if (!has_flag(slot, TEXTURE_HAS_LEVELS)) return filter_level(slot, 0u, uv, is_linear);
-  float samples = float(samples_per_pixel());
-  bool takes_one = !has_flag(slot, TEXTURE_LEVELS_LINEAR) || samples_per_pixel() >= 4u;
-  precise float shift =
-      has_flag(slot, TEXTURE_LEVELS_LINEAR) ? (float(sample_at_hand()) + 0.5) / samples : 0.5;
   precise float at = min(level, last);
-  float below = floor(takes_one ? min(at + shift, last) : at);
-  vec4 finer = filter_level(slot, uint(below), uv, is_linear);
-  if (takes_one || below >= last) return finer;
-  vec4 coarser = filter_level(slot, uint(below) + 1u, uv, is_linear);
-  precise vec4 result = finer + (at - below) * (coarser - finer);
+  float first = floor(takes_one ? min(at + shift, last) : at);
+  precise float part = at - first;
+  return LevelChoice(uint(first), uint(first) + (takes_one || first >= last ? 1u : 2u), part, is_linear);
+}
+
+// What a slot shows at a place; 1 where its number is 0. All is done in loops, because CPU drivers leave a loop out where
+// no lane is in it, but execute both sides of a branch, and most surfaces lack most of the textures that they may have.
+vec4 look_up(uint number, TexturePlace place) {
+  vec4 result = vec4(1.0);
+  while (number != 0u) {
+    TextureSlotRecord slot = load_slot(number);
+    number = 0u;
+    bool is_second = has_flag(slot, TEXTURE_UV_SET);
+    vec2 st = is_second ? place.uvs.zw : place.uvs.xy;
+    precise vec2 uv = vec2(slot.to_u.x * st.x + slot.to_u.y * st.y + slot.to_u.z,
+                           slot.to_v.x * st.x + slot.to_v.y * st.y + slot.to_v.z);
+    LevelChoice levels = choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x);
+    for (uint level = levels.first; level < levels.end; ++level) {
+      vec4 seen = filter_level(slot, level, uv, levels.is_linear);
+      precise vec4 between = result + levels.part * (seen - result);
+      result = level == levels.first ? seen : between;
+    }
+  }
   return result;
 }
 
