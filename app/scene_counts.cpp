@@ -18,7 +18,8 @@ SceneCounts count_scene(const Scene& scene) {
   for (const Geometry& geometry : scene.geometries) {
     if (const auto* mesh = std::get_if<Mesh>(&geometry)) {
       counts.geometry_bytes += bytes_of(mesh->positions) + bytes_of(mesh->normals) + bytes_of(mesh->colors) +
-                               bytes_of(mesh->triangles) + bytes_of(mesh->triangle_materials);
+                               bytes_of(mesh->uvs) + bytes_of(mesh->tangents) + bytes_of(mesh->triangles) +
+                               bytes_of(mesh->triangle_materials);
     }
   }
   for (const Object& object : scene.objects) {
