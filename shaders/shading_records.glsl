@@ -82,5 +82,6 @@ vec2 load_lobe_shares(float cosine, float roughness) { return load_shares(VIEW.f
 // The share of light from all around that a sheen of colour 1 sends to the eye; its table follows that of lobes.
 float load_sheen_share(float cosine, float roughness) {
   uint table = VIEW.first_lookup.x + (LOBE_TABLE_SIDE - 1u) * (LOBE_TABLE_SIDE - 1u);
-  return LARGEST_SHEEN_SHARE * load_shares(table, cosine, roughness).x;
+  precise float share = LARGEST_SHEEN_SHARE * load_shares(table, cosine, roughness).x;
+  return share;
 }

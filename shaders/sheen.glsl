@@ -26,9 +26,11 @@ float fitted_lambda(float x, float alpha) {
 
 // How much more fibres hide of one another than they show, as seen at the angle of this cosine.
 float sheen_lambda(float cosine, float alpha) {
-  if (cosine < 0.5) return power_of_two(LOG2_E * fitted_lambda(cosine, alpha));
-  precise float mirrored = 2.0 * fitted_lambda(0.5, alpha) - fitted_lambda(1.0 - cosine, alpha);
-  return power_of_two(LOG2_E * mirrored);
+  precise float from_normal = 1.0 - cosine;
+  precise float logarithm = cosine < 0.5 ? fitted_lambda(cosine, alpha)
+                                         : 2.0 * fitted_lambda(0.5, alpha) - fitted_lambda(from_normal, alpha);
+  precise float exponent = LOG2_E * logarithm;
+  return power_of_two(exponent);
 }
 
 // The radiance that a sheen of colour 1 sends to the eye of a source with an irradiance of 1 across its way. h is the
@@ -40,7 +42,8 @@ float sheen_of_source(vec3 normal, float roughness, vec3 h, vec3 to_eye, float c
   precise float q = dot3(apart, apart);
   precise float s2 = min(q * (1.0 - 0.25 * q), 1.0);
   precise float inverse_alpha = 1.0 / alpha;
-  precise float density = (2.0 + inverse_alpha) * power(s2, 0.5 * inverse_alpha) * (0.5 * INVERSE_PI);
+  precise float exponent = 0.5 * inverse_alpha;
+  precise float density = (2.0 + inverse_alpha) * power(s2, exponent) * (0.5 * INVERSE_PI);
   precise float visibility =
       min(1.0 / ((1.0 + sheen_lambda(v, alpha) + sheen_lambda(cosine, alpha)) * (4.0 * v * cosine)), 1.0);
   precise float sent = density * visibility * cosine;
