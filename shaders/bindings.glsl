@@ -24,7 +24,8 @@ layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 // A macro, so that what hangs on it is known before functions are put into one another (engine/device/spirv.h).
 #define has(FEATURE) (FEATURE_BIT(FEATURE) != 0u)
 
-// The numbers of kinds of primitive in the tree and behind it, and the numbers of kinds of lights and of models of materials.
+// The numbers of kinds of primitive in the tree and behind it, and the numbers of kinds of lights and of models of
+// materials.
 const uint TREE_KIND_COUNT = 0u
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/primitives.def"

@@ -131,8 +131,8 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
 }
 
 // The coat's textures: its factors, and its normal.
-void apply_coat_textures(inout Coat coat, ExtensionRecord record, Primitive p, uvec4 corners, vec3 weights, CornerUvs uvs,
-                         TexturePlace place, bool is_flipped, vec3 direction) {
+void apply_coat_textures(inout Coat coat, ExtensionRecord record, Primitive p, uvec4 corners, vec3 weights,
+                         CornerUvs uvs, TexturePlace place, bool is_flipped, vec3 direction) {
   uvec4 slots = record.coat_slots;
   if (slots.x != 0u) {
     precise float weight = coat.weight * look_up(slots.x, place).x;

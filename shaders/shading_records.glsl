@@ -65,12 +65,12 @@ vec2 load_shares(uint table, float cosine, float roughness) {
   vec2 cell = min(floor(vec2(x, y)), vec2(float(LOBE_TABLE_SIDE - 2u)));
   uint index = table + uint(cell.y) * (LOBE_TABLE_SIDE - 1u) + uint(cell.x);
   uvec4 words = FETCHES_TEXELS == 0u ? surfaces[index].corners_material : texelFetch(shading_texels, int(index));
-  precise vec4 shares = vec4(words & 0xFFFFu);
-  precise vec4 schlick = vec4(words >> 16);
+  precise vec4 firsts = vec4(words & 0xFFFFu);
+  precise vec4 seconds = vec4(words >> 16);
   precise float fx = x - cell.x;
   precise float fy = y - cell.y;
-  precise vec2 low = vec2(shares.x + fx * (shares.y - shares.x), schlick.x + fx * (schlick.y - schlick.x));
-  precise vec2 high = vec2(shares.z + fx * (shares.w - shares.z), schlick.z + fx * (schlick.w - schlick.z));
+  precise vec2 low = vec2(firsts.x + fx * (firsts.y - firsts.x), seconds.x + fx * (seconds.y - seconds.x));
+  precise vec2 high = vec2(firsts.z + fx * (firsts.w - firsts.z), seconds.z + fx * (seconds.w - seconds.z));
   precise vec2 result = (low + fy * (high - low)) * (1.0 / 65535.0);
   return result;
 }

@@ -173,6 +173,18 @@ float facet_scale(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosin
   return scale;
 }
 
+// What a source adds where there is a sheen: its light, and what it leaves of the rest both on the way in and on the way
+// out. Where its curves would send more than arrives, as they do at grazing angles, all of it is less by that. h is the
+// half vector.
+vec3 contribution_with_sheen(ShadingPoint point, vec3 h, vec3 to_eye, float cosine, LightRecord light, vec3 rest) {
+  Sheen sheen = point.sheen;
+  if (max_abs(sheen.color) == 0.0 || !(cosine > 0.0)) return rest;
+  float share = max(sheen.share, load_sheen_share(cosine, sheen.roughness));
+  precise float sent = sheen_of_source(point.normal, sheen.roughness, h, to_eye, cosine) / max(sheen.share, 1.0);
+  precise vec3 all = left_below_sheen(sheen, share) * rest + sent * sheen.color * light.specular.xyz;
+  return all;
+}
+
 // What a source adds to what is under the coat, or without one to all.
 vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
@@ -191,6 +203,7 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
       metallic * metal.k * (metal.f0 + (metal.f90 - metal.f0) * p5);
   float scale = facet_scale(point.normal, point.material.c.x, h, to_eye, cosine);
   contribution += reflected * light.specular.xyz * scale;
+  if (has(FEATURE_SHEENS)) contribution = contribution_with_sheen(point, h, to_eye, cosine, light, contribution);
   return contribution;
 }
 
@@ -206,25 +219,8 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   return reflected;
 }
 
-// What a source adds under the coat where there is a sheen: the sheen's light, and what it leaves of the rest both on
-// the way in and on the way out. Where its curves would send more than arrives, as they do at grazing angles, all of it
-// is less by that.
-vec3 contribution_with_sheen(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light,
-                             vec3 without) {
-  Sheen sheen = point.sheen;
-  precise vec3 sum = to_eye + to_light;
-  float size = length3(sum);
-  if (max_abs(sheen.color) == 0.0 || !(cosine > 0.0) || size < LEAST_HALF_VECTOR) return without;
-  float share = max(sheen.share, load_sheen_share(cosine, sheen.roughness));
-  precise vec3 h = sum / size;
-  precise float sent = sheen_of_source(point.normal, sheen.roughness, h, to_eye, cosine) / max(sheen.share, 1.0);
-  precise vec3 all = left_below_sheen(sheen, share) * without + sent * sheen.color * light.specular.xyz;
-  return all;
-}
-
 vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
-  precise vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
-  if (has(FEATURE_SHEENS)) below = contribution_with_sheen(point, to_eye, to_light, cosine, light, below);
+  vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
   if (!is_coated(point)) return below;
   precise vec3 sum =
       (1.0 - point.coat.weight) * below + point.coat.weight * contribution_in_coat(point, to_eye, to_light, light);

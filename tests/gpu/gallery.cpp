@@ -6,18 +6,12 @@
 #include <numbers>
 #include <random>
 
+#include "gpu/test_scenes.h"
+
 namespace promin::test {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-
-Light make_sun(const vec3& direction, float power) {
-  Light light;
-  light.kind = LightKind::kDirectional;
-  light.direction = glm::normalize(direction);
-  light.diffuse = light.specular = vec3(power);
-  return light;
-}
 
 Material make_phong(const vec3& diffuse, const vec3& specular, float shininess, float reflection) {
   Material material;

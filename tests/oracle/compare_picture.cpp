@@ -82,7 +82,7 @@ class Comparison {
     const Pixel& pixel = expected_.pixels[index_];
     const Vector difference = glm::abs(Vector(image_.pixels[index_]) - pixel.color);
     const Vector unexplained = glm::max(difference - pixel.explained_error - pixel.map_error, Vector(0));
-    const Real error = std::max({unexplained.x, unexplained.y, unexplained.z});
+    const Real error = largest(unexplained);
     if (error > report_.bounds.color_error) report_.color_errors.push_back({at_, error});
     color_sum_ += unexplained.x + unexplained.y + unexplained.z;
     ++color_count_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device_scene/lobe_table.h"
+#include "oracle/quadrature.h"
 
 namespace promin::oracle {
 namespace {
@@ -24,10 +25,6 @@ constexpr Real kSharpestBlur = 0.1L;
 constexpr Real kRoughestMirror = 0.4L;
 /// The mean over the hemisphere of (1 - c)^5, weighted by the cosine c.
 constexpr Real kMeanGrazing = 1.0L / 21;
-
-Real largest(const Vector& v) {
-  return std::max({v.x, v.y, v.z});
-}
 
 Real fifth_power(Real x) {
   return x * x * x * x * x;
@@ -89,36 +86,6 @@ class LobeTable {
   size_t side_;
 };
 
-/// A node and its weight on [0, 1].
-struct GaussNode {
-  Real place;
-  Real weight;
-};
-
-constexpr int kGaussOrder = 12;
-
-/// Roots of Legendre's polynomial by Newton's method.
-std::array<GaussNode, kGaussOrder> make_gauss_nodes() {
-  std::array<GaussNode, kGaussOrder> nodes{};
-  for (int i = 0; i < kGaussOrder; ++i) {
-    Real x = std::cos(kPi * (i + 0.75L) / (kGaussOrder + 0.5L));
-    Real slope = 1;
-    for (int step = 0; step < 50; ++step) {
-      Real last = 1;
-      Real value = x;
-      for (int n = 2; n <= kGaussOrder; ++n) {
-        const Real next = ((2 * n - 1) * x * value - (n - 1) * last) / n;
-        last = value;
-        value = next;
-      }
-      slope = kGaussOrder * (x * value - last) / (x * x - 1);
-      x -= value / slope;
-    }
-    nodes[static_cast<size_t>(i)] = {(1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
-  }
-  return nodes;
-}
-
 /// Edges of panels on [a, b] that grow by 3 from `finest` at a, and with `is_two_sided` at b too.
 std::vector<Real> make_panels(Real a, Real b, Real finest, bool is_two_sided) {
   std::vector<Real> edges = {a};
@@ -135,11 +102,9 @@ std::vector<Real> make_panels(Real a, Real b, Real finest, bool is_two_sided) {
 
 template <typename Function>
 void integrate(const std::vector<Real>& panels, const Function& add) {
-  static const std::array<GaussNode, kGaussOrder> kNodes = make_gauss_nodes();
   for (size_t i = 0; i + 1 < panels.size(); ++i) {
-    const Real width = panels[i + 1] - panels[i];
-    if (!(width > 0)) continue;
-    for (const GaussNode& node : kNodes) add(panels[i] + node.place * width, node.weight * width);
+    if (!(panels[i + 1] > panels[i])) continue;
+    for (const QuadratureNode& node : gauss_nodes<12>(panels[i], panels[i + 1])) add(node.place, node.weight);
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -16,6 +17,10 @@ using Real = long double;
 using Vector = glm::vec<3, Real>;
 
 inline constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+
+inline Real largest(const Vector& v) {
+  return std::max({v.x, v.y, v.z});
+}
 
 /// P(t) = origin + t * direction. The direction has any length; a hit has tmin < t < tmax, and a negative tmin counts
 /// as 0. Nothing is met by a ray with NaN anywhere, with infinity in origin or direction, or without a direction.

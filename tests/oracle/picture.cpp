@@ -154,10 +154,6 @@ PointError error_at(const world::Scene& scene, const Ray& ray, const Hit& hit, c
   return error;
 }
 
-Real largest(const Vector& v) {
-  return std::max({v.x, v.y, v.z});
-}
-
 Real largest_difference(const Vector& a, const Vector& b) {
   return largest(glm::abs(a - b));
 }

@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "oracle/quadrature.h"
+
 namespace promin::oracle {
 namespace {
 
@@ -112,19 +114,6 @@ constexpr double kBandFactors[] = {1 / (4 * kPi),   1 / (2 * kPi),  1 / (2 * kPi
 
 }  // namespace
 
-std::array<QuadratureNode, 8> gauss_nodes(double a, double b) {
-  // Abramowitz and Stegun, table 25.4.
-  constexpr double kPlaces[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-  constexpr double kWeights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-  std::array<QuadratureNode, 8> nodes;
-  for (size_t i = 0; i < 4; ++i) {
-    const double weight = kWeights[i] * (b - a) / 2;
-    nodes[2 * i] = {(a + b) / 2 - kPlaces[i] * (b - a) / 2, weight};
-    nodes[2 * i + 1] = {(a + b) / 2 + kPlaces[i] * (b - a) / 2, weight};
-  }
-  return nodes;
-}
-
 Surroundings::Surroundings(const Environment& environment) : environment_(environment) {
   if (!has_sky()) return;
   std::array<dvec3, 9> sums{};
@@ -134,13 +123,14 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
   constexpr int kPanels = 64;
   constexpr int kAzimuths = 1024;
   for (int panel = -kPanels; panel < kPanels; ++panel) {
-    for (const QuadratureNode& y : gauss_nodes(panel / double{kPanels}, (panel + 1) / double{kPanels})) {
-      const double across = std::sqrt(1 - y.place * y.place);
+    for (const QuadratureNode& y : gauss_nodes<8>(panel / Real{kPanels}, (panel + 1) / Real{kPanels})) {
+      const auto height = static_cast<double>(y.place);
+      const double across = std::sqrt(1 - height * height);
       for (int i = 0; i < kAzimuths; ++i) {
         const double azimuth = 2 * kPi * (i + 0.5) / kAzimuths;
-        const dvec3 direction(across * std::sin(azimuth), y.place, across * std::cos(azimuth));
+        const dvec3 direction(across * std::sin(azimuth), height, across * std::cos(azimuth));
         const dvec3 radiance = radiance_of(environment_, direction);
-        const dvec3 light = y.weight * 2 * kPi / kAzimuths * radiance;
+        const dvec3 light = static_cast<double>(y.weight) * 2 * kPi / kAzimuths * radiance;
         least = std::min({least, radiance.x, radiance.y, radiance.z});
         most = std::max({most, radiance.x, radiance.y, radiance.z});
         const std::array<double, 9> functions = band_functions(direction);
@@ -181,8 +171,9 @@ Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
   double weights = 0;
   int ring = 0;
   for (size_t panel = 0; panel + 1 < std::size(kPanels); ++panel) {
-    for (const QuadratureNode& q : gauss_nodes(kPanels[panel], kPanels[panel + 1])) {
-      const double s = alpha2 * q.place / (2 * (end - (1 - alpha2) / 2 * q.place));
+    for (const QuadratureNode& q : gauss_nodes<8>(kPanels[panel], kPanels[panel + 1])) {
+      const auto place = static_cast<double>(q.place);
+      const double s = alpha2 * place / (2 * (end - (1 - alpha2) / 2 * place));
       const double cosine = 1 - 2 * s;
       const double sine = std::sqrt(1 - cosine * cosine);
       ++ring;
@@ -193,8 +184,9 @@ Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
         const dvec3 way = cosine * axis + sine * (std::cos(azimuth) * aside + std::sin(azimuth) * other);
         of_ring += radiance_of(environment_, way);
       }
-      sum += q.weight * cosine / kAzimuths * of_ring;
-      weights += q.weight * cosine;
+      const double weight = static_cast<double>(q.weight) * cosine;
+      sum += weight / kAzimuths * of_ring;
+      weights += weight;
     }
   }
   return Vector(sum / weights);

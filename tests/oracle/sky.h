@@ -40,11 +40,4 @@ class Surroundings {
   Real range_ = 0;
 };
 
-/// The quadrature's nodes and weights on [a, b] (Gauss and Legendre, 8 nodes).
-struct QuadratureNode {
-  double place = 0;
-  double weight = 0;
-};
-std::array<QuadratureNode, 8> gauss_nodes(double a, double b);
-
 }  // namespace promin::oracle

@@ -82,7 +82,7 @@ Radiance bound_highlight(const AnyLobe& lobe, const LobeAngles& at, Real error) 
   const Vector off = glm::max(highlight_at(error) - color, color - highlight_at(-error));
   const Vector rounding = (64 + 8 / lobe.alpha_of_sources()) * kRoundoff * color;
   const Vector sum = off + rounding;
-  return {color, std::max({sum.x, sum.y, sum.z})};
+  return {color, largest(sum)};
 }
 
 /// A sheen has no angle at which all that it hangs on is at an end, so all corners within the errors are tried. fp32
@@ -97,7 +97,7 @@ Radiance bound_sheen(const Sheen& sheen, const LobeAngles& at, Real error) {
     const Vector apart = glm::abs(sheen.highlight(near) - color);
     off = std::max({off, apart.x, apart.y, apart.z});
   }
-  return {color, off + 512 * kRoundoff * std::max({color.x, color.y, color.z})};
+  return {color, off + 512 * kRoundoff * largest(color)};
 }
 
 /// All that a model needs to know.
@@ -318,9 +318,9 @@ struct PlaceSlots {
 
 void Radiance::add(const Vector& weight, const Radiance& other) {
   color += weight * other.color;
-  const Real largest = std::max({weight.x, weight.y, weight.z});
-  error += largest * other.error;
-  map_error += largest * other.map_error;
+  const Real heaviest = largest(weight);
+  error += heaviest * other.error;
+  map_error += heaviest * other.map_error;
 }
 
 Slots slots_of(const Material& material) {
@@ -357,7 +357,7 @@ Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vect
         for (const ArrivingLight& arriving : lights) {
           const Radiance whole = surface.contribution(arriving);
           sent.add(Vector(arriving.strength), whole);
-          sent.error += arriving.strength_error * std::max({whole.color.x, whole.color.y, whole.color.z});
+          sent.error += arriving.strength_error * largest(whole.color);
         }
         return surface.finish(sent);
       },
