@@ -105,32 +105,41 @@ void put_albedo(uint pixel, Hit hit, ShadingPoint point) {
   pixels[2u * window_pixel_count() + pixel] = record;
 }
 
-// Shades what the camera rays hit, without any source.
+// Shades what a pixel's camera ray hit, without any source.
+void arrive_at(uint i) {
+  is_lit[i] = false;
+  if (!is_inside[i]) return;
+  Ray ray = packet[i];
+  put_record(paths[i], ray, found[i]);
+  begin_path_log(ray, found[i], 0u, paths[i].weight);
+  if (SHADES_POINTS != 0u && found[i].primitive != NO_PRIMITIVE) {
+    widen_cone(paths[i], ray, found[i]);
+    make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width, points[i]);
+  }
+  if (has(FEATURE_AOVS)) put_albedo(paths[i].pixel, found[i], points[i]);
+  if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
+    seen[i] = debug_color(ray, found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
+    return;
+  }
+  seen[i] = radiance_behind(paths[i].direction);
+  if (found[i].primitive != NO_PRIMITIVE) {
+    is_lit[i] = true;
+    bool is_opaque = coverage_of(paths[i], points[i]) == 1.0;
+    seen[i] = own_light(points[i], paths[i].direction, is_opaque && leads_on(points[i], 0u));
+    paths[i].passed_t = found[i].t;
+    paths[i].passed_order = found[i].order;
+  }
+  log_own_light(seen[i]);
+}
+
+// Written out, because drivers unroll no loop with a loop within, such as textures have, and arrays whose place is not
+// constant are slow on CPUs: with one pixel's lookups in such a loop a picture took twice the time.
 void arrive() {
-  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    is_lit[i] = false;
-    if (!is_inside[i]) continue;
-    Ray ray = packet[i];
-    put_record(paths[i], ray, found[i]);
-    begin_path_log(ray, found[i], 0u, paths[i].weight);
-    if (SHADES_POINTS != 0u && found[i].primitive != NO_PRIMITIVE) {
-      widen_cone(paths[i], ray, found[i]);
-      make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width, points[i]);
-    }
-    if (has(FEATURE_AOVS)) put_albedo(paths[i].pixel, found[i], points[i]);
-    if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
-      seen[i] = debug_color(ray, found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
-      continue;
-    }
-    seen[i] = radiance_behind(paths[i].direction);
-    if (found[i].primitive != NO_PRIMITIVE) {
-      is_lit[i] = true;
-      bool is_opaque = coverage_of(paths[i], points[i]) == 1.0;
-      seen[i] = own_light(points[i], paths[i].direction, is_opaque && leads_on(points[i], 0u));
-      paths[i].passed_t = found[i].t;
-      paths[i].passed_order = found[i].order;
-    }
-    log_own_light(seen[i]);
+  arrive_at(0u);
+  if (PACKET_SIZE > 1u) arrive_at(1u);
+  if (PACKET_SIZE > 2u) {
+    arrive_at(2u);
+    arrive_at(3u);
   }
 }
 
@@ -155,21 +164,26 @@ void aim_at_source(LightRecord light) {
   }
 }
 
-// Sends the shadow rays that have met a surface that blends on behind it. Whether there are any.
+// Sends a shadow ray that has met a surface that blends on behind it. Whether there is one.
+bool goes_through_layer(uint i, uint layers) {
+  Hit hit = found[i];
+  // Rays that are through, or blocked, take no part any more.
+  packet[i].tmin = INFINITY;
+  if (hit.primitive == NO_PRIMITIVE) return false;
+  blockers[i] = hit;
+  arriving[i] = share_behind(hit, packet[i].direction, arriving[i], layers);
+  if (!(arriving[i] > 0.0)) return false;
+  pass(i, hit.t, hit.order);
+  ++pass_count;
+  return true;
+}
+
+// Written out, as arrive.
 bool go_through_layers(uint layers) {
-  bool is_any_left = false;
-  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    Hit hit = found[i];
-    // Rays that are through, or blocked, take no part any more.
-    packet[i].tmin = INFINITY;
-    if (hit.primitive == NO_PRIMITIVE) continue;
-    blockers[i] = hit;
-    arriving[i] = share_behind(hit, packet[i].direction, arriving[i], layers);
-    if (!(arriving[i] > 0.0)) continue;
-    pass(i, hit.t, hit.order);
-    is_any_left = true;
-    ++pass_count;
-  }
+  bool is_any_left = goes_through_layer(0u, layers);
+  if (PACKET_SIZE > 1u && goes_through_layer(1u, layers)) is_any_left = true;
+  if (PACKET_SIZE > 2u && goes_through_layer(2u, layers)) is_any_left = true;
+  if (PACKET_SIZE > 2u && goes_through_layer(3u, layers)) is_any_left = true;
   return is_any_left;
 }
 
@@ -233,35 +247,38 @@ void leave() {
 }
 
 // The first turn traces camera rays, each of the others shadow rays to one source. So there is one copy of the
-// traversal for both, which halves what drivers compile.
+// traversal for both, which halves what drivers compile. Shading is in the loop around that of the turns, as CPU drivers
+// execute all of a loop's body in each of its turns: so it is twice what it has to be, instead of once a source.
 void trace_pixels() {
   uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
   uint source = 0u;
   uint layers = 0u;
   bool is_first_turn = true;
-  for (;;) {
-    // Of what blends the nearest comes first.
-    trace_packet(!is_first_turn && !has(FEATURE_BLENDING));
-    passes_backs = false;
-    sight_width = 0.0;
-    sight_spread = 0.0;
-    if (!is_first_turn) {
-      if (has(FEATURE_BLENDING) && go_through_layers(layers)) {
-        ++layers;
-        continue;
+  bool aims = false;
+  do {
+    do {
+      if (aims) aim_at_source(load_light(VIEW.first_index.y + source));
+      aims = false;
+      // Of what blends the nearest comes first.
+      trace_packet(!is_first_turn && !has(FEATURE_BLENDING));
+      passes_backs = false;
+      sight_width = 0.0;
+      sight_spread = 0.0;
+      if (!is_first_turn) {
+        if (has(FEATURE_BLENDING) && go_through_layers(layers)) {
+          ++layers;
+          continue;
+        }
+        add_contributions(source);
+        ++source;
+        layers = 0u;
+        aims = true;
       }
-      add_contributions(source);
-      ++source;
-    }
-    // This is a loop because CPU drivers leave a loop out where no lane is in it, but execute both sides of a branch.
-    while (is_first_turn) {
-      arrive();
-      is_first_turn = false;
-    }
-    if (source >= sources) break;
-    aim_at_source(load_light(VIEW.first_index.y + source));
-    layers = 0u;
-  }
+    } while (!is_first_turn && source < sources);
+    aims = is_first_turn && sources > 0u;
+    if (is_first_turn) arrive();
+    is_first_turn = false;
+  } while (aims);
 }
 
 void main() {

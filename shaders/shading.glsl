@@ -35,11 +35,8 @@ struct ShadingPoint {
 
 #include "materials.glsl"
 #include "textures.glsl"
+#include "texture_slots.glsl"
 #include "cutouts.glsl"
-
-// Whether materials may have layers above them, and what of them else few have (ExtensionRecord).
-const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
-const bool HAS_EXTENSIONS = HAS_LAYERS || has(FEATURE_SPECULAR_TEXTURES);
 
 bool is_extended(MaterialRecord material) { return slot_number(material.d.x) != 0u; }
 ExtensionRecord extension_of(MaterialRecord material) {
@@ -130,44 +127,30 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
   return is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
 }
 
-// The coat's textures: its factors, and its normal.
-void apply_coat_textures(inout Coat coat, ExtensionRecord record, Primitive p, uvec4 corners, vec3 weights,
-                         CornerUvs uvs, TexturePlace place, bool is_flipped, vec3 direction) {
-  uvec4 slots = record.coat_slots;
-  if (slots.x != 0u) {
-    precise float weight = coat.weight * look_up(slots.x, place).x;
-    coat.weight = weight;
-  }
-  if (slots.y != 0u) {
-    precise float roughness = coat.roughness * look_up(slots.y, place).y;
-    coat.roughness = roughness;
-  }
-  if (slots.z != 0u) {
-    coat.normal =
-        turned_normal(coat.normal, look_up(slots.z, place).xyz, record.coat.z,
-                      tangent_at(corners, weights, p, uvs, slots.z), is_flipped ? -1.0 : 1.0, direction);
-  }
-}
-
-void apply_sheen_textures(inout Sheen sheen, ExtensionRecord record, TexturePlace place) {
-  if (record.slots.x != 0u) {
-    precise vec3 color = sheen.color * look_up(record.slots.x, place).xyz;
-    sheen.color = color;
-  }
-  if (record.slots.y != 0u) {
-    precise float roughness = sheen.roughness * look_up(record.slots.y, place).w;
-    sheen.roughness = roughness;
-  }
+// `number` is that of the slot with the normals; `texel` is what it shows.
+vec3 textured_normal(vec3 normal, uint number, vec3 texel, float scale, Primitive p, uvec4 corners, vec3 weights,
+                     CornerUvs uvs, bool is_flipped, vec3 direction) {
+  if (number == 0u) return normal;
+  return turned_normal(normal, texel, scale, tangent_at(corners, weights, p, uvs, number), is_flipped ? -1.0 : 1.0,
+                       direction);
 }
 
 // KHR_materials_specular: the dielectric's reflectance at normal and at grazing incidence.
-vec4 textured_reflectance(ExtensionRecord record, TexturePlace place) {
-  precise vec3 at_normal = record.reflectance.xyz;
-  precise float factor = record.reflectance.w;
-  if (record.slots.w != 0u) at_normal *= look_up(record.slots.w, place).xyz;
-  if (record.slots.z != 0u) factor *= look_up(record.slots.z, place).w;
+vec4 textured_reflectance(ExtensionRecord record) {
+  precise vec3 at_normal = record.reflectance.xyz * shown[SPECULAR_COLOR_SLOT].xyz;
+  precise float factor = record.reflectance.w * shown[SPECULAR_SLOT].w;
   precise vec3 reduced = min(at_normal, vec3(1.0)) * factor;
   return vec4(reduced, factor);
+}
+
+void put_slot_numbers_of(ExtensionRecord record) {
+  slot_numbers[COAT_SLOT] = record.coat_slots.x;
+  slot_numbers[COAT_ROUGHNESS_SLOT] = record.coat_slots.y;
+  slot_numbers[COAT_NORMAL_SLOT] = record.coat_slots.z;
+  slot_numbers[SHEEN_COLOR_SLOT] = record.slots.x;
+  slot_numbers[SHEEN_ROUGHNESS_SLOT] = record.slots.y;
+  slot_numbers[SPECULAR_SLOT] = record.slots.z;
+  slot_numbers[SPECULAR_COLOR_SLOT] = record.slots.w;
 }
 
 void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 weights, vec3 wound_normal,
@@ -178,66 +161,68 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   MaterialRecord material = point.material;
   bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
   bool is_metallic_roughness = has(FEATURE_METALLIC_ROUGHNESS) && model_of(point) == MATERIAL_METALLIC_ROUGHNESS;
-  uint base = slot_number(material.cover.z);
-  if (base != 0u) {
-    vec4 texel = look_up(base, place);
-    precise vec3 color = material.a.xyz * texel.xyz;
-    material.a = vec4(color, material.a.w);
-    precise float alpha = material.cover.x * texel.w;
-    material.cover = vec4(alpha, material.cover.yzw);
-    if (is_phong) {
-      precise vec3 diffuse = material.b.xyz * texel.xyz;
-      material.b = vec4(diffuse, material.b.w);
-    }
-  }
-  uint emissive = slot_number(material.cover.w);
-  if (emissive != 0u) {
-    precise vec3 color = material.emissive.xyz * look_up(emissive, place).xyz;
-    material.emissive = vec4(color, material.emissive.w);
-  }
-  if (is_phong) {
-    uint specular = slot_number(material.d.w);
-    if (specular != 0u) {
-      vec3 factors = look_up(specular, place).xyz;
-      precise vec3 color = material.c.xyz * factors;
-      precise vec3 reflection = material.d.xyz * factors;
-      material.c = vec4(color, material.c.w);
-      material.d = vec4(reflection, material.d.w);
-    }
-  }
-  if (is_metallic_roughness) {
-    uint metallic_roughness = slot_number(material.d.y);
-    if (metallic_roughness != 0u) {
-      precise vec2 factors = vec2(material.c.x, material.a.w) * look_up(metallic_roughness, place).yz;
-      material.c = vec4(factors.x, material.c.yzw);
-      material.a = vec4(material.a.xyz, factors.y);
-    }
-    uint occlusion = slot_number(material.d.w);
-    if (occlusion != 0u) {
-      precise float left = 1.0 + material.c.z * (look_up(occlusion, place).x - 1.0);
-      point.occlusion = left;
-    }
-  }
+  bool has_extension = HAS_EXTENSIONS && is_metallic_roughness && is_extended(material);
   uint normal = slot_number(is_phong ? material.b.w : material.d.z);
-  if ((is_phong || is_metallic_roughness) && normal != 0u) {
-    vec4 tangent = tangent_at(corners, weights, p, uvs, normal);
-    point.normal = turned_normal(point.normal, look_up(normal, place).xyz, is_phong ? 1.0 : material.c.y, tangent,
-                                 is_flipped ? -1.0 : 1.0, direction);
+  normal = is_phong || is_metallic_roughness ? normal : 0u;
+  [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) slot_numbers[i] = 0u;
+  slot_numbers[BASE_SLOT] = slot_number(material.cover.z);
+  slot_numbers[EMISSIVE_SLOT] = slot_number(material.cover.w);
+  if (is_phong) slot_numbers[SURFACE_SLOT] = slot_number(material.d.w);
+  if (is_metallic_roughness) {
+    slot_numbers[SURFACE_SLOT] = slot_number(material.d.y);
+    slot_numbers[OCCLUSION_SLOT] = slot_number(material.d.w);
   }
-  if (HAS_EXTENSIONS && is_metallic_roughness && is_extended(material)) {
+  slot_numbers[NORMAL_SLOT] = normal;
+  if (has_extension) put_slot_numbers_of(extension_of(material));
+  look_up_slots(place);
+
+  vec4 base = shown[BASE_SLOT];
+  precise vec3 color = material.a.xyz * base.xyz;
+  precise float alpha = material.cover.x * base.w;
+  precise vec3 emissive = material.emissive.xyz * shown[EMISSIVE_SLOT].xyz;
+  material.a = vec4(color, material.a.w);
+  material.cover = vec4(alpha, material.cover.yzw);
+  material.emissive = vec4(emissive, material.emissive.w);
+  vec4 surface = shown[SURFACE_SLOT];
+  if (is_phong) {
+    precise vec3 diffuse = material.b.xyz * base.xyz;
+    precise vec3 specular = material.c.xyz * surface.xyz;
+    precise vec3 reflection = material.d.xyz * surface.xyz;
+    material.b = vec4(diffuse, material.b.w);
+    material.c = vec4(specular, material.c.w);
+    material.d = vec4(reflection, material.d.w);
+  }
+  point.normal = textured_normal(point.normal, normal, shown[NORMAL_SLOT].xyz, is_phong ? 1.0 : material.c.y, p,
+                                 corners, weights, uvs, is_flipped, direction);
+  if (is_metallic_roughness) {
+    precise vec2 factors = vec2(material.c.x, material.a.w) * surface.yz;
+    precise float left = 1.0 + material.c.z * (shown[OCCLUSION_SLOT].x - 1.0);
+    material.c = vec4(factors.x, material.c.yzw);
+    material.a = vec4(material.a.xyz, factors.y);
+    point.occlusion = left;
+  }
+  if (has_extension) {
     ExtensionRecord record = extension_of(material);
     if (has(FEATURE_COATS)) {
       Coat coat = point.coat;
-      apply_coat_textures(coat, record, p, corners, weights, uvs, place, is_flipped, direction);
+      precise float weight = coat.weight * shown[COAT_SLOT].x;
+      precise float roughness = coat.roughness * shown[COAT_ROUGHNESS_SLOT].y;
+      coat.weight = weight;
+      coat.roughness = roughness;
+      coat.normal = textured_normal(coat.normal, record.coat_slots.z, shown[COAT_NORMAL_SLOT].xyz, record.coat.z, p,
+                                    corners, weights, uvs, is_flipped, direction);
       point.coat = coat;
     }
     if (has(FEATURE_SHEENS)) {
       Sheen sheen = point.sheen;
-      apply_sheen_textures(sheen, record, place);
+      precise vec3 sheen_color = sheen.color * shown[SHEEN_COLOR_SLOT].xyz;
+      precise float roughness = sheen.roughness * shown[SHEEN_ROUGHNESS_SLOT].w;
+      sheen.color = sheen_color;
+      sheen.roughness = roughness;
       point.sheen = sheen;
     }
     if (has(FEATURE_SPECULAR_TEXTURES) && (record.slots.z | record.slots.w) != 0u) {
-      material.b = textured_reflectance(record, place);
+      material.b = textured_reflectance(record);
     }
   }
   point.material = material;

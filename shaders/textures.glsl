@@ -162,24 +162,22 @@ LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   return LevelChoice(uint(first), uint(first) + (takes_one || first >= last ? 1u : 2u), part, is_linear);
 }
 
-// What a slot shows at a place; 1 where its number is 0. All is done in loops, because CPU drivers leave a loop out where
-// no lane is in it, but execute both sides of a branch, and most surfaces lack most of the textures that they may have.
+// What a slot shows at a place. Its number is not 0.
 vec4 look_up(uint number, TexturePlace place) {
-  vec4 result = vec4(1.0);
-  while (number != 0u) {
-    TextureSlotRecord slot = load_slot(number);
-    number = 0u;
-    bool is_second = has_flag(slot, TEXTURE_UV_SET);
-    vec2 st = is_second ? place.uvs.zw : place.uvs.xy;
-    precise vec2 uv = vec2(slot.to_u.x * st.x + slot.to_u.y * st.y + slot.to_u.z,
-                           slot.to_v.x * st.x + slot.to_v.y * st.y + slot.to_v.z);
-    LevelChoice levels = choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x);
-    for (uint level = levels.first; level < levels.end; ++level) {
-      vec4 seen = filter_level(slot, level, uv, levels.is_linear);
-      precise vec4 between = result + levels.part * (seen - result);
-      result = level == levels.first ? seen : between;
-    }
-  }
+  TextureSlotRecord slot = load_slot(number);
+  bool is_second = has_flag(slot, TEXTURE_UV_SET);
+  vec2 st = is_second ? place.uvs.zw : place.uvs.xy;
+  precise vec2 uv = vec2(slot.to_u.x * st.x + slot.to_u.y * st.y + slot.to_u.z,
+                         slot.to_v.x * st.x + slot.to_v.y * st.y + slot.to_v.z);
+  LevelChoice levels = choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x);
+  vec4 result = vec4(0.0);
+  uint level = levels.first;
+  do {
+    vec4 seen = filter_level(slot, level, uv, levels.is_linear);
+    precise vec4 between = result + levels.part * (seen - result);
+    result = level == levels.first ? seen : between;
+    ++level;
+  } while (level < levels.end);
   return result;
 }
 

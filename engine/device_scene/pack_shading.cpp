@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -41,6 +42,7 @@ class MaterialPacker {
   explicit MaterialPacker(const TextureTables& tables) : tables_(tables) {}
 
   void add(const Material& material) {
+    first_slot_ = packed_.slots.size();
     MaterialRecord record = std::visit([&](const auto& model) { return pack(model); }, material.model);
     record.cover = pack_cover(material);
     record.emissive = vec4(material.emissive, std::bit_cast<float>(pack_flags(material)));
@@ -113,19 +115,25 @@ class MaterialPacker {
     return std::bit_cast<float>(number_of(slot));
   }
 
-  /// The slot's number, from 1 on; 0 where there is no texture or no image.
+  /// The slot's number, from 1 on; 0 where there is no texture or no image. Slots of a material that show the same, as
+  /// those of occlusion, roughness and metal often do, have one number, and are looked up once.
   uint number_of(const TextureSlot& slot) {
     if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0;
     const Texture& texture = tables_.textures[slot.texture];
     const PlacedImage& image = tables_.images[texture.image];
     if (image.levels == 0) return 0;
-    packed_.slots.push_back({vec4(slot.to_u, std::bit_cast<float>(flags_of(slot, texture, image.use))),
-                             vec4(slot.to_v, 0.0F), uvec4(image.first, image.size, image.levels)});
+    const TextureSlotRecord record{vec4(slot.to_u, std::bit_cast<float>(flags_of(slot, texture, image.use))),
+                                   vec4(slot.to_v, 0.0F), uvec4(image.first, image.size, image.levels)};
+    for (size_t i = first_slot_; i < packed_.slots.size(); ++i) {
+      if (std::memcmp(&packed_.slots[i], &record, sizeof(record)) == 0) return static_cast<uint>(i + 1);
+    }
+    packed_.slots.push_back(record);
     return static_cast<uint>(packed_.slots.size());
   }
 
   const TextureTables& tables_;
   PackedMaterials packed_;
+  size_t first_slot_ = 0;  // of the material at hand
 };
 
 /// The least difference of the cosines of a spot's angles for which fp32 still tells points between them apart.

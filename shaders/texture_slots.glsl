@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The textures of a material at a point.
+
+// Whether materials may have layers above them, and what of them else few have (ExtensionRecord).
+const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
+const bool HAS_EXTENSIONS = HAS_LAYERS || has(FEATURE_SPECULAR_TEXTURES);
+
+// What may be looked up at a point, each in a place of its own. What only few materials have comes last.
+const uint BASE_SLOT = 0u;  // colour and alpha
+const uint EMISSIVE_SLOT = 1u;
+const uint SURFACE_SLOT = 2u;  // metal and roughness, or Phong's specular colour
+const uint OCCLUSION_SLOT = 3u;
+const uint NORMAL_SLOT = 4u;
+const uint COAT_SLOT = 5u;
+const uint COAT_ROUGHNESS_SLOT = 6u;
+const uint COAT_NORMAL_SLOT = 7u;
+const uint SHEEN_COLOR_SLOT = 8u;
+const uint SHEEN_ROUGHNESS_SLOT = 9u;
+const uint SPECULAR_SLOT = 10u;
+const uint SPECULAR_COLOR_SLOT = 11u;
+const uint MOST_SLOTS = 12u;
+const uint SLOT_COUNT =
+    5u + 7u * (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS) | FEATURE_BIT(FEATURE_SPECULAR_TEXTURES));
+
+uint slot_numbers[MOST_SLOTS];  // 0 where there is no texture; by who calls look_up_slots
+vec4 shown[MOST_SLOTS];         // by look_up_slots
+
+uint next_slot_number() {
+  uint number = 0u;
+  [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) number = number == 0u ? slot_numbers[i] : number;
+  return number;
+}
+
+// Fills `shown`, with 1 where there is no texture, and empties `slot_numbers`. One after the other, in one place: CPU
+// drivers execute for all lanes what any of them may need, and most materials lack most of the textures that there may
+// be. What has one number is looked up once.
+void look_up_slots(TexturePlace place) {
+  [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) shown[i] = vec4(1.0);
+  uint number = next_slot_number();
+  if (number == 0u) return;
+  do {
+    vec4 seen = look_up(number, place);
+    [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) {
+      bool is_seen = slot_numbers[i] == number;
+      shown[i] = is_seen ? seen : shown[i];
+      slot_numbers[i] = is_seen ? 0u : slot_numbers[i];
+    }
+    number = next_slot_number();
+  } while (number != 0u);
+}
