@@ -105,42 +105,56 @@ void put_albedo(uint pixel, Hit hit, ShadingPoint point) {
   pixels[2u * window_pixel_count() + pixel] = record;
 }
 
-// Shades what a pixel's camera ray hit, without any source.
-void arrive_at(uint i) {
-  is_lit[i] = false;
-  if (!is_inside[i]) return;
-  Ray ray = packet[i];
-  put_record(paths[i], ray, found[i]);
-  begin_path_log(ray, found[i], 0u, paths[i].weight);
-  if (SHADES_POINTS != 0u && found[i].primitive != NO_PRIMITIVE) {
-    widen_cone(paths[i], ray, found[i]);
-    make_shading_point(ray, paths[i].direction, found[i], paths[i].cone_width, points[i]);
+// Shades what a pixel's camera ray hit, without any source. Returns what is seen of it so far.
+vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
+  put_record(path, ray, hit);
+  begin_path_log(ray, hit, 0u, path.weight);
+  bool is_hit = hit.primitive != NO_PRIMITIVE;
+  if (SHADES_POINTS != 0u && is_hit) {
+    widen_cone(path, ray, hit);
+    make_shading_point(ray, path.direction, hit, path.cone_width, point);
   }
-  if (has(FEATURE_AOVS)) put_albedo(paths[i].pixel, found[i], points[i]);
-  if (DEBUG_VIEW != DEBUG_VIEW_NONE) {
-    seen[i] = debug_color(ray, found[i], uintBitsToFloat(normal_and_depth(ray, found[i])));
-    return;
+  if (has(FEATURE_AOVS)) put_albedo(path.pixel, hit, point);
+  if (DEBUG_VIEW != DEBUG_VIEW_NONE) return debug_color(ray, hit, uintBitsToFloat(normal_and_depth(ray, hit)));
+  vec3 light = radiance_behind(path.direction);
+  if (is_hit) {
+    bool is_opaque = coverage_of(path, point) == 1.0;
+    light = own_light(point, path.direction, is_opaque && leads_on(point, 0u));
+    path.passed_t = hit.t;
+    path.passed_order = hit.order;
   }
-  seen[i] = radiance_behind(paths[i].direction);
-  if (found[i].primitive != NO_PRIMITIVE) {
-    is_lit[i] = true;
-    bool is_opaque = coverage_of(paths[i], points[i]) == 1.0;
-    seen[i] = own_light(points[i], paths[i].direction, is_opaque && leads_on(points[i], 0u));
-    paths[i].passed_t = found[i].t;
-    paths[i].passed_order = found[i].order;
-  }
-  log_own_light(seen[i]);
+  log_own_light(light);
+  return light;
 }
 
-// Written out, because drivers unroll no loop with a loop within, such as textures have, and arrays whose place is not
-// constant are slow on CPUs: with one pixel's lookups in such a loop a picture took twice the time.
+// One pixel after the other. It is copied out of the packet and back, because CPU drivers are slow at arrays whose place
+// is not constant, and drivers unroll no loop with a loop within, such as textures have.
 void arrive() {
-  arrive_at(0u);
-  if (PACKET_SIZE > 1u) arrive_at(1u);
-  if (PACKET_SIZE > 2u) {
-    arrive_at(2u);
-    arrive_at(3u);
-  }
+  uint at = 0u;
+  do {
+    Path path = paths[0];
+    Ray ray = packet[0];
+    Hit hit = found[0];
+    bool takes_part = is_inside[0];
+    [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
+      if (i != at) continue;
+      path = paths[i];
+      ray = packet[i];
+      hit = found[i];
+      takes_part = is_inside[i];
+    }
+    vec3 light = vec3(0.0);
+    ShadingPoint point;
+    if (takes_part) light = arrive_at(path, ray, hit, point);
+    [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+      if (i != at) continue;
+      paths[i] = path;
+      points[i] = point;
+      seen[i] = light;
+      is_lit[i] = takes_part && DEBUG_VIEW == DEBUG_VIEW_NONE && hit.primitive != NO_PRIMITIVE;
+    }
+    ++at;
+  } while (at < PACKET_SIZE);
 }
 
 // One source's contributions, and a packet of the shadow rays that they need.

@@ -162,22 +162,35 @@ LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   return LevelChoice(uint(first), uint(first) + (takes_one || first >= last ? 1u : 2u), part, is_linear);
 }
 
-// What a slot shows at a place. Its number is not 0.
-vec4 look_up(uint number, TexturePlace place) {
+// What a slot is asked for at a place.
+struct Lookup {
+  TextureSlotRecord slot;
+  vec2 uv;
+  LevelChoice levels;
+};
+
+Lookup lookup_of(uint number, TexturePlace place) {
   TextureSlotRecord slot = load_slot(number);
   bool is_second = has_flag(slot, TEXTURE_UV_SET);
   vec2 st = is_second ? place.uvs.zw : place.uvs.xy;
   precise vec2 uv = vec2(slot.to_u.x * st.x + slot.to_u.y * st.y + slot.to_u.z,
                          slot.to_v.x * st.x + slot.to_v.y * st.y + slot.to_v.z);
-  LevelChoice levels = choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x);
+  return Lookup(slot, uv, choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x));
+}
+
+// What the first levels show, and with it the one that has just been looked up.
+vec4 mix_level(Lookup lookup, uint level, vec4 first, vec4 seen) {
+  precise vec4 between = first + lookup.levels.part * (seen - first);
+  return level == lookup.levels.first ? seen : between;
+}
+
+// What a slot shows at a place. Its number is not 0.
+vec4 look_up(uint number, TexturePlace place) {
+  Lookup lookup = lookup_of(number, place);
   vec4 result = vec4(0.0);
-  uint level = levels.first;
-  do {
-    vec4 seen = filter_level(slot, level, uv, levels.is_linear);
-    precise vec4 between = result + levels.part * (seen - result);
-    result = level == levels.first ? seen : between;
-    ++level;
-  } while (level < levels.end);
+  for (uint level = lookup.levels.first; level < lookup.levels.end; ++level) {
+    result = mix_level(lookup, level, result, filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear));
+  }
   return result;
 }
 

@@ -96,23 +96,17 @@ void intersect_solids(bool asks_for_any) {
 #include "promin/kinds/primitives.def"
 }
 
-bool has_triangle_next() {
-  return has(FEATURE_TRIANGLES) && !leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE);
-}
-
 // What is left of a leaf, up to what waits: a triangle that needs a second look, until no lane has another triangle to
 // glance at, and solids.
 void intersect_leaf(bool asks_for_any) {
-  if (has_triangle_next()) {
-    do {
-      Primitive p = load_primitive(leaf.next);
-      if (ALL_ASK_FOR_ANY != 0u) {
-        leaf.needs_second_look = glance_at_triangle(p, leaf.next);
-      } else {
-        intersect_packet_with_triangle(p, leaf.next, asks_for_any);
-      }
-      ++leaf.next;
-    } while (has_triangle_next());
+  while (has(FEATURE_TRIANGLES) && !leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE)) {
+    Primitive p = load_primitive(leaf.next);
+    if (ALL_ASK_FOR_ANY != 0u) {
+      leaf.needs_second_look = glance_at_triangle(p, leaf.next);
+    } else {
+      intersect_packet_with_triangle(p, leaf.next, asks_for_any);
+    }
+    ++leaf.next;
   }
   if (leaf.needs_second_look) return;
   if (SOLIDS_WAIT != 0u) {
@@ -137,20 +131,16 @@ void descend(bool asks_for_any) {
   descent = Descent(NO_FAMILY, 0u);
   leaf.needs_second_look = false;
   leaf.has_solids_next = false;
-  if (!any_takes_part()) return;
-  uint current = 0u;
-  bool has_waited;
-  // CPU drivers execute both sides of a branch under a mask, and leave a loop at its end, once no lane is in it: one
-  // with its condition at the top is executed once more for no lane.
-  do {
-    do {
+  uint current = any_takes_part() ? 0u : DONE;
+  // Loops rather than branches around the parts: CPU drivers execute both sides of a branch under a mask, but leave a
+  // loop as soon as no lane is in it.
+  for (;;) {
+    while (current != DONE && !waits()) {
       if (STEPS_TOGETHER == 0u) {
-        if (is_inner(current)) {
-          do {
-            count_steps(1u, 0u);
-            enter_family(meet_children(current));
-            current = take_child(true);
-          } while (is_inner(current));
+        while (is_inner(current)) {
+          count_steps(1u, 0u);
+          enter_family(meet_children(current));
+          current = take_child(true);
         }
       } else {
         for (uint i = 0u; i < STEPS_TOGETHER; ++i) current = step_together(current);
@@ -162,8 +152,8 @@ void descend(bool asks_for_any) {
       current = IN_LEAF;
       if (waits()) break;
       current = asks_for_any && !any_takes_part() ? DONE : take_child(true);
-    } while (current != DONE);
-    has_waited = waits();
+    }
+    if ((ALL_ASK_FOR_ANY == 0u && SOLIDS_WAIT == 0u) || !waits()) break;
     if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
       intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
       leaf.needs_second_look = false;
@@ -172,17 +162,15 @@ void descend(bool asks_for_any) {
       intersect_solids(asks_for_any);
       leaf.has_solids_next = false;
     }
-  } while (has_waited);
+  }
 }
 
 // One octant after the other: the first ray's, then the first's of those that are left.
 void descend_by_octants(bool asks_for_any) {
   float waiting[PACKET_SIZE];
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) waiting[slot] = limits[slot];
-  bool are_some_left;
-  do {
+  for (;;) {
     bool is_chosen = false;
-    are_some_left = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
       vec3 inverse = packet[slot].inverse_direction;
       bool waits = waiting[slot] >= 0.0;
@@ -191,10 +179,10 @@ void descend_by_octants(bool asks_for_any) {
       bool joins = waits && all(equal(lessThan(inverse, vec3(0.0)), lessThan(octant, vec3(0.0))));
       limits[slot] = joins ? waiting[slot] : -1.0;
       waiting[slot] = joins ? -1.0 : waiting[slot];
-      are_some_left = are_some_left || waiting[slot] >= 0.0;
     }
+    if (!is_chosen) break;
     descend(asks_for_any);
-  } while (are_some_left);
+  }
 }
 
 void descend_as_they_are(bool asks_for_any) {
