@@ -156,7 +156,8 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
             [&](const OptionValues& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--max-depth", "N",
-            fmt::format("Mirror bounces, 0 to {}; 0 traces no mirror rays [{}]", kMaxDepth, View{}.max_depth),
+            fmt::format("Bounces, 0 to {}; 0 traces neither mirror nor refracted rays [{}, with glass {}]", kMaxDepth,
+                        View{}.max_depth, kMaxDepthOfGlass),
             [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
   table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(debug_view_names(), ", ")),
             [&](const OptionValues& w) { view.debug_view = read_name<DebugView>(w, debug_view_names()); });

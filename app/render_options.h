@@ -61,7 +61,8 @@ struct ViewOptions {
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
   uint32_t samples_per_pixel = View{}.samples_per_pixel;
-  uint32_t max_depth = View{}.max_depth;
+  /// As the scene needs where it is not given.
+  std::optional<uint32_t> max_depth = std::nullopt;
   DebugView debug_view = DebugView::kNone;
   bool has_no_shadows = false;
   LookOptions look;

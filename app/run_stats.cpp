@@ -97,7 +97,9 @@ std::string to_json(const RunStats& stats) {
        {{"primary", stats.rays.primary},
         {"shadow", stats.rays.shadow},
         {"reflection", stats.rays.reflection},
-        {"passed", stats.rays.passed}}},
+        {"refraction", stats.rays.refraction},
+        {"primary_hits", stats.rays.primary_hits},
+        {"pass_through", stats.rays.passed}}},
       {"mrays_per_s", stats.mrays_per_s()},
   };
   if (stats.frames.empty()) {

@@ -29,7 +29,9 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "lights.glsl"
 #include "environment.glsl"
 #include "shading.glsl"
+#include "light_way.glsl"
 #include "path.glsl"
+#include "tree.glsl"
 #include "group_rows.glsl"
 #include "camera.glsl"
 #include "loop_check.glsl"
@@ -43,10 +45,12 @@ Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
 vec3 seen[PACKET_SIZE];  // from the hit, so far
 vec3 contributions[PACKET_SIZE];
-// With FEATURE_BLENDING, of the shadow rays:
-float arriving[PACKET_SIZE];  // the share of the light that they let through so far
-Hit blockers[PACKET_SIZE];    // what they have met last
+// Where rays pass through surfaces, of the shadow rays:
+LightWay ways[PACKET_SIZE];
+Hit blockers[PACKET_SIZE];  // what they have met last
 uint pass_count = 0u;
+uint refraction_count = 0u;
+uint hit_count = 0u;
 
 // The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
@@ -72,7 +76,7 @@ bool begin_packet() {
     ray_count.x += is_inside[i] ? 1u : 0u;
     uint index = pixel.y * window_size().x + pixel.x;
     paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
-                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u);
+                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, LOG_CAMERA);
   }
   passes_backs = true;
   sight_width = CAMERA.look.w;
@@ -108,11 +112,13 @@ void put_albedo(uint pixel, Hit hit, ShadingPoint point) {
 // Shades what a pixel's camera ray hit, without any source. Returns what is seen of it so far.
 vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   put_record(path, ray, hit);
-  begin_path_log(ray, hit, 0u, path.weight);
   bool is_hit = hit.primitive != NO_PRIMITIVE;
+  hit_count += is_hit ? 1u : 0u;
+  if (is_hit) absorb(path, ray, hit);
+  begin_path_log(ray, hit, 0u, path.weight, path.kind);
   if (SHADES_POINTS != 0u && is_hit) {
     widen_cone(path, ray, hit);
-    make_shading_point(ray, path.direction, hit, path.cone_width, point);
+    make_shading_point(ray, path.direction, hit, path.cone_width, path.media, point);
   }
   if (has(FEATURE_AOVS)) put_albedo(path.pixel, hit, point);
   if (DEBUG_VIEW != DEBUG_VIEW_NONE) return debug_color(ray, hit, uintBitsToFloat(normal_and_depth(ray, hit)));
@@ -162,7 +168,7 @@ void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     contributions[i] = vec3(0.0);
     packet[i].tmax = -1.0;
-    arriving[i] = 1.0;
+    ways[i] = light_way(paths[i].media);
     blockers[i].primitive = NO_PRIMITIVE;
     forget_passed(i);
     if (!is_lit[i]) continue;
@@ -185,8 +191,10 @@ bool goes_through_layer(uint i, uint layers) {
   packet[i].tmin = INFINITY;
   if (hit.primitive == NO_PRIMITIVE) return false;
   blockers[i] = hit;
-  arriving[i] = share_behind(hit, packet[i].direction, arriving[i], layers);
-  if (!(arriving[i] > 0.0)) return false;
+  LightWay way = ways[i];
+  bool is_light_left = goes_on_behind(way, packet[i], hit, layers);
+  ways[i] = way;
+  if (!is_light_left) return false;
   pass(i, hit.t, hit.order);
   ++pass_count;
   return true;
@@ -205,22 +213,25 @@ void add_contributions(uint source) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     if (!is_lit[i]) continue;
     begin_source_log(source);
-    if (has(FEATURE_BLENDING)) {
+    if (PASSES != 0u) {
       packet[i].tmin = 0.0;
       found[i] = blockers[i];
+      LightWay way = ways[i];
+      if (packet[i].tmax >= 0.0) end_way(way, packet[i]);
+      ways[i] = way;
     }
     if (packet[i].tmax >= 0.0) log_shadow_ray(packet[i], found[i]);
     precise vec3 contribution =
-        has(FEATURE_BLENDING) ? arriving[i] * contributions[i]
-                              : (found[i].primitive == NO_PRIMITIVE ? contributions[i] : vec3(0.0));
+        PASSES != 0u ? ways[i].arriving * contributions[i]
+                     : (found[i].primitive == NO_PRIMITIVE ? contributions[i] : vec3(0.0));
     end_source_log(contribution);
     precise vec3 sum = seen[i] + contribution;
     seen[i] = sum;
   }
 }
 
-// Hands a path over to the stream, as one of its turn -1.
-void put_path(Path path) {
+// Hands a path over to the stream, as one of its turn -1. Returns its number.
+uint put_path(Path path) {
   begin_stream();
   uint number = atomicAdd(stream.turn.z, 1u);
   uint record = record_of_path(number);
@@ -236,6 +247,25 @@ void put_path(Path path) {
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
   words[path_list(turn) + number] = number;
+  return number;
+}
+
+// Puts the path that leads on from a surface of glass, and lets another of its rays wait.
+void leave_glass(Path path, ShadingPoint point) {
+  Path through;
+  bool is_mirrored;
+  bool is_refracted;
+  part_path(path, point, through, is_mirrored, is_refracted);
+  ray_count.z += is_mirrored ? 1u : 0u;
+  refraction_count += is_refracted ? 1u : 0u;
+  if (!is_mirrored && !is_refracted) {
+    finish_path(path);
+    return;
+  }
+  bool is_one_waiting = is_mirrored && is_refracted;
+  uint number = put_path(path);
+  store_glass(number, path, is_one_waiting ? 1u : 0u, false);
+  if (is_one_waiting) store_waiting(number, 0u, through);
 }
 
 void leave() {
@@ -249,10 +279,14 @@ void leave() {
       uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
       path.cone_width = CAMERA.look.w;
       go_through(path, camera_ray(pixel, sample_at_hand()), path.passed_t, path.passed_order, coverage);
-      put_path(path);
+      uint number = put_path(path);
+      if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
       ++pass_count;
+    } else if (has(FEATURE_GLASS) && is_lit[i] && is_glass(points[i])) {
+      leave_glass(path, points[i]);
     } else if (is_lit[i] && leads_on(points[i], 0u) && bounce(path, points[i])) {
-      put_path(path);
+      uint number = put_path(path);
+      if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
       ++ray_count.z;
     } else {
       finish_path(path);
@@ -274,12 +308,12 @@ void trace_pixels() {
       if (aims) aim_at_source(load_light(VIEW.first_index.y + source));
       aims = false;
       // Of what blends the nearest comes first.
-      trace_packet(!is_first_turn && !has(FEATURE_BLENDING));
+      trace_packet(!is_first_turn && PASSES == 0u);
       passes_backs = false;
       sight_width = 0.0;
       sight_spread = 0.0;
       if (!is_first_turn) {
-        if (has(FEATURE_BLENDING) && go_through_layers(layers)) {
+        if (PASSES != 0u && go_through_layers(layers)) {
           ++layers;
           continue;
         }
@@ -302,6 +336,6 @@ void main() {
     trace_pixels();
     leave();
   }
-  add_passes(pass_count);
+  add_passes(uvec3(pass_count, refraction_count, hit_count));
   add_counts(ray_count, were_loops_cut());
 }

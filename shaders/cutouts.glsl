@@ -19,6 +19,10 @@ bool has_holes(MaterialRecord material, SurfaceRecord surface) {
   return is_all_hole(material) || (may_vary && (flags_of(material) & MATERIAL_HAS_HOLES) != 0u);
 }
 
+bool is_seen_through(MaterialRecord material) {
+  return (flags_of(material) & MATERIAL_BLENDS) != 0u || is_clear(material);
+}
+
 bool may_have_holes(uint index) {
   SurfaceRecord surface = load_surface(index);
   return has_holes(material_of(surface), surface);
@@ -42,7 +46,7 @@ float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge) {
   SurfaceRecord surface = load_surface(index);
   MaterialRecord material = material_of(surface);
-  if (has(FEATURE_BLENDING) && is_on_open_edge && (flags_of(material) & MATERIAL_BLENDS) != 0u) return true;
+  if (PASSES != 0u && is_on_open_edge && is_seen_through(material)) return true;
   // As shading has it.
   float facing = dot3(triangle_normal(p), direction);
   if (has(FEATURE_ONE_SIDED) && passes_backs && facing > 0.0 && (flags_of(material) & MATERIAL_IS_ONE_SIDED) != 0u) {

@@ -5,8 +5,8 @@
 // `pixels` holds, for each pixel, the bits of its sum over samples and the `order` of what it shows. With FEATURE_AOVS
 // the bits of each pixel's geometric normal and depth follow, then those of its albedo and its material, and then the
 // stream of paths that camera_stage.comp leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y =
-// shadow, z = reflection) and how often loops were cut (w), `pass_counts` how often rays passed through a surface that
-// blends (x). Each lane of a workgroup has a counter of its own, because all lanes would queue for a single one, and a
+// shadow, z = reflection) and how often loops were cut (w), `pass_counts` how often rays passed through a surface (x),
+// refracted rays (y) and primary rays that have met something (z). Each lane of a workgroup has a counter of its own, because all lanes would queue for a single one, and a
 // sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per subgroup and leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   FILM_HEAD(dispatch, film_stream, ray_counts, pass_counts)
@@ -15,8 +15,12 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 
 #include "dispatch.glsl"
 
-void add_passes(uint count) {
-  if (has(FEATURE_BLENDING) && count > 0u) atomicAdd(pass_counts[gl_LocalInvocationIndex].x, count);
+// x = passes, y = refracted rays, z = primary rays that have met something.
+void add_passes(uvec3 counts) {
+  uint lane = gl_LocalInvocationIndex;
+  if (counts.x > 0u) atomicAdd(pass_counts[lane].x, counts.x);
+  if (has(FEATURE_GLASS) && counts.y > 0u) atomicAdd(pass_counts[lane].y, counts.y);
+  if (counts.z > 0u) atomicAdd(pass_counts[lane].z, counts.z);
 }
 
 // Adds this lane's counts. Call it last in main().

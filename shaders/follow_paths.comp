@@ -30,6 +30,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "environment.glsl"
 #include "shading.glsl"
 #include "path.glsl"
+#include "tree.glsl"
 #include "turns.glsl"
 #include "ray_bins.glsl"
 #include "group_rows.glsl"
@@ -37,10 +38,11 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
 uint shadow_ray_count = 0u;
 uint mirror_ray_count = 0u;
+uint refraction_count = 0u;
 uint pass_count = 0u;
 
 // Of the path's ray, the number of mirrors that it comes from.
-uint bounces_of(Path path) { return has(FEATURE_BLENDING) ? path.bounces : turn / turns_of_bounce() + 1u; }
+uint bounces_of(Path path) { return KEEPS_PROGRESS != 0u ? path.bounces : turn / turns_of_bounce() + 1u; }
 
 // Adds the sources of the last turn to what is seen.
 vec3 add_contributions(uint path, vec3 seen) {
@@ -49,7 +51,6 @@ vec3 add_contributions(uint path, vec3 seen) {
     vec3 unshadowed = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).xyz;
     bool is_blocked = load_word(ask_of_source(path, source)) == ASK_BLOCKED;
     precise vec3 contribution = is_blocked ? vec3(0.0) : unshadowed;
-    if (has(FEATURE_BLENDING)) contribution *= load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).w;
     precise vec3 sum = seen + contribution;
     seen = sum;
     if (has(FEATURE_RAY_LOG)) log_sum(entry_of_source(source), contribution);
@@ -65,9 +66,6 @@ void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
     LightSample sampled = sample_light(light, point.position);
     vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
     store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
-    if (has(FEATURE_BLENDING)) {
-      pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(1.0);
-    }
     begin_source_log(first_source(turn) + source);
     end_source_log(contribution);
     uint asked = ASK_NOTHING;
@@ -98,9 +96,18 @@ vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
   return seen;
 }
 
-// Asks for the path's mirror ray, or else for the turn after the shadow rays that it waits for.
-uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
-  if (!leads_on(point, bounces_of(path)) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+// Where the path's ray comes from.
+uint kind_of_ray(Path path) {
+  if (has(FEATURE_GLASS)) return path.kind;
+  return has(FEATURE_BLENDING) && path.passed_t >= 0.0 ? LOG_THROUGH : LOG_REFLECTION;
+}
+
+// The numbers of the path at hand that store_passed and store_glass keep, by prepare_sight.
+uint path_progress;
+uvec4 path_glass;
+
+// Asks for the path's next ray.
+uint ask_ray(uint number, Path path) {
   store_vector(record_of_weight(number, turn + 1u), path.weight);
   store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
   store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
@@ -110,8 +117,71 @@ uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
     pixels[record_of_path(number) + RECORD_RADIANCE].w = floatBitsToUint(path.cone_width);
     pixels[record_of_path(number) + RECORD_SEEN].w = floatBitsToUint(path.cone_spread);
   }
-  ++mirror_ray_count;
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
+}
+
+// Asks for the path's mirror ray, or else for the turn after the shadow rays that it waits for.
+uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
+  if (!leads_on(point, bounces_of(path)) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+  ++mirror_ray_count;
+  return ask_ray(number, path);
+}
+
+// With FEATURE_GLASS, where a ray leads no further: asks for the last of those that wait, or else as ask_mirror. Of the
+// path rays and radiance are those so far.
+uint ask_waiting(uint number, Path path, bool has_seen) {
+  uint waiting = path_glass.w & ((1u << KIND_SHIFT) - 1u);
+  if (waiting == 0u) {
+    store_glass(number, path, 0u, has_seen);
+    return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+  }
+  --waiting;
+  uint record = record_of_waiting(number, waiting);
+  vec4 origin = load_record(record);
+  vec4 direction = load_record(record + 1u);
+  vec4 weight = load_record(record + 2u);
+  uvec4 rest = floatBitsToUint(load_record(record + 3u));
+  path.origin = origin.xyz;
+  path.cone_width = origin.w;
+  path.direction = direction.xyz;
+  path.cone_spread = direction.w;
+  path.weight = weight.xyz;
+  path.roughness = weight.w;
+  path.media = rest.xy;
+  path.bounces = rest.z;
+  path.kind = LOG_REFRACTION;
+  path.passed_t = -1.0;
+  path.passed_order = 0u;
+  store_glass(number, path, waiting, has_seen);
+  return ask_ray(number, path);
+}
+
+// Asks for the rays that a point on glass sends the path on.
+uint ask_beyond(uint number, inout Path path, ShadingPoint point) {
+  Path through;
+  bool is_mirrored;
+  bool is_refracted;
+  part_path(path, point, through, is_mirrored, is_refracted);
+  store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
+  mirror_ray_count += is_mirrored ? 1u : 0u;
+  refraction_count += is_refracted ? 1u : 0u;
+  if (!is_mirrored && !is_refracted) return ask_waiting(number, path, true);
+  uint waiting = path_glass.w & ((1u << KIND_SHIFT) - 1u);
+  if (is_mirrored && is_refracted) {
+    store_waiting(number, waiting, through);
+    ++waiting;
+  }
+  store_glass(number, path, waiting, true);
+  return ask_ray(number, path);
+}
+
+// With FEATURE_GLASS, what a path asks for whose ray has met nothing while others wait: they begin with a bounce, so until
+// then it asks for the same ray.
+uint ask_after_miss(uint number, Path path, Ray ray) {
+  for (uint source = 0u; source < sources_of_turn; ++source) words[ask_of_source(number, source)] = ASK_NOTHING;
+  if (begins_bounce(turn + 1u)) return ask_waiting(number, path, false);
+  store_vector(record_of_weight(number, turn + 1u), path.weight);
+  return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
 }
 
 // Asks for the path's ray from behind what it has met on.
@@ -122,6 +192,7 @@ uint ask_through(uint number, inout Path path, Ray ray, Hit hit, float coverage)
   store_vector(record_of_weight(number, turn + 1u), path.weight);
   store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
   store_passed(number, path);
+  if (has(FEATURE_GLASS)) store_glass(number, path, path_glass.w & ((1u << KIND_SHIFT) - 1u), true);
   ++pass_count;
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
@@ -129,20 +200,30 @@ uint ask_through(uint number, inout Path path, Ray ray, Hit hit, float coverage)
 // Shades what the path's ray has met. Returns what the path asks for.
 uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   uint bounces = bounces_of(path);
-  begin_path_log(ray, hit, bounces, path.weight);
   if (hit.primitive == NO_PRIMITIVE) {
+    bool has_waiting = has(FEATURE_GLASS) && (path_glass.w & ((1u << KIND_SHIFT) - 1u)) != 0u;
+    // While others wait the same ray may be traced several times.
+    if (has_waiting && !begins_bounce(turn + 1u)) return ask_after_miss(number, path, ray);
+    begin_path_log(ray, hit, bounces, path.weight, kind_of_ray(path));
     vec3 beyond = has(FEATURE_BLENDING) && bounces == 0u ? radiance_behind(normalize3(ray.direction))
                                                          : radiance_beyond(ray.direction, path.roughness);
     add_radiance(path, beyond, 1.0);
     log_own_light(beyond);
     end_path_log(path.radiance, 1.0);
+    if (has_waiting) {
+      store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
+      return ask_after_miss(number, path, ray);
+    }
     finish_path(path);
     return ASK_NOTHING;
   }
+  vec3 weight_at_start = path.weight;
+  absorb(path, ray, hit);
+  begin_path_log(ray, hit, bounces, path.weight, kind_of_ray(path));
   path.direction = normalize3(ray.direction);
   widen_cone(path, ray, hit);
   ShadingPoint point;
-  make_shading_point(ray, path.direction, hit, path.cone_width, point);
+  make_shading_point(ray, path.direction, hit, path.cone_width, path.media, point);
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
   log_own_light(own);
@@ -154,18 +235,18 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   }
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   store_vector(record_of_path(number) + RECORD_SEEN, seen);
+  if (has(FEATURE_GLASS)) pixels[record_of_glass(number) + RECORD_SHADOW_MEDIA].xy = path.media;
   if (begins_bounce(turn + 1u)) {
     end_path_log(path.radiance, coverage);
+    if (has(FEATURE_GLASS)) store_vector(record_of_weight(number, turn), path.weight);
     if (has(FEATURE_BLENDING) && coverage < 1.0) return ask_through(number, path, ray, hit, coverage);
+    if (has(FEATURE_GLASS)) return ask_beyond(number, path, point);
     return ask_mirror(number, path, point);
   }
   // The same ray once more.
-  store_vector(record_of_weight(number, turn + 1u), path.weight);
+  store_vector(record_of_weight(number, turn + 1u), weight_at_start);
   return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
 }
-
-// The word of the path at hand that store_passed keeps beside what it has passed.
-uint path_progress;
 
 void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   uint record = record_of_path(number);
@@ -177,15 +258,22 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
     path.cone_width = load_record(record + RECORD_RADIANCE).w;
     path.cone_spread = load_record(record + RECORD_SEEN).w;
   }
-  if (has(FEATURE_BLENDING)) {
+  if (KEEPS_PROGRESS != 0u) {
     path.passed_t = passed_t[0];
     path.passed_order = passed_order[0];
     path.layers = path_progress >> LAYERS_SHIFT;
     path.bounces = path_progress & ((1u << LAYERS_SHIFT) - 1u);
   }
+  bool has_seen = turn > 0u;
+  if (has(FEATURE_GLASS)) {
+    path.media = path_glass.xy;
+    path.rays = path_glass.z & ((1u << HAS_SEEN_SHIFT) - 1u);
+    path.kind = path_glass.w >> KIND_SHIFT;
+    has_seen = (path_glass.z >> HAS_SEEN_SHIFT) != 0u;
+  }
   path.roughness = SEES_ENVIRONMENT ? load_record(record + RECORD_DIRECTION).w : NO_ENVIRONMENT;
   vec3 seen = vec3(0.0);
-  if (turn > 0u) {
+  if (has_seen) {
     seen = load_record(record + RECORD_SEEN).xyz;
     if (has(FEATURE_SHADOWS)) seen = add_contributions(number, seen);
     if (begins_bounce(turn)) {
@@ -211,7 +299,8 @@ void prepare_sight(uint number) {
     sight_width = load_record(record_of_path(number) + RECORD_RADIANCE).w;
     sight_spread = load_record(record_of_path(number) + RECORD_SEEN).w;
   }
-  if (!has(FEATURE_BLENDING)) return;
+  if (has(FEATURE_GLASS)) path_glass = floatBitsToUint(load_record(record_of_glass(number) + RECORD_MEDIA));
+  if (KEEPS_PROGRESS == 0u) return;
   forget_passed(0u);
   float t = load_record(record_of_weight(number, 0u)).w;
   if (t >= 0.0) pass(0u, t, floatBitsToUint(load_record(record_of_weight(number, 1u)).w));
@@ -233,6 +322,6 @@ void main() {
     Hit hit = found[0];
     follow(path, has_ray, ray, hit);
   }
-  add_passes(pass_count);
+  add_passes(uvec3(pass_count, refraction_count, 0u));
   add_counts(uvec3(0u, shadow_ray_count, mirror_ray_count), were_loops_cut());
 }

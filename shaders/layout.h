@@ -142,6 +142,8 @@ LAYOUT_CONSTANT MATERIAL_MODEL_MASK = 0xFFu;
 LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;    // where the texture's alpha says so
 LAYOUT_CONSTANT MATERIAL_IS_ONE_SIDED = 0x200u;
 LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;       // with what is behind, by alpha
+LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;     // the number of its GlassRecord, from 1 on, 0: it has none
+LAYOUT_CONSTANT MOST_GLASSES = 0x3FFFu;
 // A ray passes through so many surfaces that blend; the next counts as opaque.
 LAYOUT_CONSTANT MOST_LAYERS = 64u;
 // Where less than this is seen of what is behind a surface, it counts as opaque.
@@ -159,6 +161,22 @@ struct ExtensionRecord {
   uvec4 slots;       // x = of the sheen's colour, y = of its roughness; of reflectance: z = of w, w = of xyz
 };
 LAYOUT_CONSTANT EXTENSION_TEXELS = 5u;
+
+// What materials have through which light goes, or whose mirrors hang on the angle (glass.glsl).
+struct GlassRecord {
+  vec4 transmission;  // xyz = share of light that goes through; w = index of refraction
+  vec4 absorption;    // xyz = of light that is left after a length x the share is 2^(-absorption x)
+  vec4 reflectance;   // xyz = of metallic-roughness materials: factor of the reflectance at normal incidence
+  uvec4 bits;         // x = GLASS_*; y = number of the texture slot of what goes through
+};
+LAYOUT_CONSTANT GLASS_TEXELS = 4u;
+LAYOUT_CONSTANT GLASS_IS_CLEAR = 1u;    // light goes through
+LAYOUT_CONSTANT GLASS_IS_THIN = 2u;     // a wall without an inside, which bends nothing
+LAYOUT_CONSTANT GLASS_IS_FRESNEL = 4u;  // of Phong's: reflection hangs on the angle
+// A sample of a picture with glass has so many rays from surfaces at most, and a ray at least this weight; in place of
+// others the environment is seen.
+LAYOUT_CONSTANT MOST_TREE_RAYS = 64u;
+LAYOUT_FLOAT LEAST_TREE_WEIGHT = 0.001953125f;
 
 // A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
 struct TextureSlotRecord {
@@ -211,6 +229,7 @@ struct ViewConstants {
   uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
                        // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
+  uvec4 first_glass;    // x = GlassRecords; y, z = the media in which the camera is (glass.glsl)
   vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
 
@@ -230,7 +249,7 @@ struct StreamState {
   uvec4 place;           // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
   uvec4 turn;            // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
                          // of this turn's have a ray
-  uvec4 shadow_rays;     // x = how many are listed
+  uvec4 shadow_rays;     // x = how many are listed; y = records of a path, its sources among them
   uvec4 list_groups;     // workgroups of each dispatch of the turn, as Vulkan takes them
   uvec4 shadow_groups;
   uvec4 path_groups;
@@ -238,6 +257,9 @@ struct StreamState {
 // What a path takes, and it takes for each source of a turn: records of uvec4.
 LAYOUT_CONSTANT STREAM_PATH_RECORDS = 7u;
 LAYOUT_CONSTANT STREAM_SOURCE_RECORDS = 1u;
+// With FEATURE_GLASS a path takes these too, and for each ray that waits until the path has come to its end.
+LAYOUT_CONSTANT STREAM_GLASS_RECORDS = 2u;
+LAYOUT_CONSTANT STREAM_WAITING_RECORDS = 4u;
 LAYOUT_CONSTANT STREAM_SOURCES = 16u;  // most sources of a turn
 LAYOUT_CONSTANT STREAM_LISTS = 2u;
 LAYOUT_CONSTANT STREAM_BIN_BITS = 9u;  // of the bins by which rays are sorted (ray_bins.glsl)
@@ -275,7 +297,8 @@ LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 // its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is
 // in [1, 2), and t is in its units.
 struct RayLog {
-  uvec4 ids;  // x = LOG_*; y = the bounce or the source; z = the material; w = 1 where a source has a shadow ray
+  uvec4 ids;  // x = LOG_PATH or LOG_SOURCE; y = the bounce or the source; z = the material; w = where a ray comes from,
+              // or 1 where a source has a shadow ray
   vec4 origin_tmin;
   vec4 direction_tmax;
   uvec4 hit;            // as HitRecord::a; for a shadow ray, what it met first
@@ -288,12 +311,17 @@ struct RayLog {
 };
 LAYOUT_CONSTANT LOG_PATH = 0u;
 LAYOUT_CONSTANT LOG_SOURCE = 1u;
+// Where a path's ray comes from.
+LAYOUT_CONSTANT LOG_CAMERA = 0u;
+LAYOUT_CONSTANT LOG_REFLECTION = 1u;
+LAYOUT_CONSTANT LOG_REFRACTION = 2u;
+LAYOUT_CONSTANT LOG_THROUGH = 3u;  // the same ray, behind a surface that blends
 
 #ifdef __cplusplus
 static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 320);
+static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 336);
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 struct FilmHead {
   FILM_HEAD(dispatch, stream, ray_counts, pass_counts)
@@ -302,7 +330,7 @@ static_assert(sizeof(FilmHead) == 16 * FILM_HEAD_TEXELS);
 #undef FILM_HEAD
 static_assert(sizeof(Node) == 16 * NODE_TEXELS && sizeof(Primitive) == 16 * PRIMITIVE_TEXELS);
 static_assert(sizeof(MaterialRecord) == 16 * MATERIAL_TEXELS && sizeof(LightRecord) == 16 * LIGHT_TEXELS);
-static_assert(sizeof(ExtensionRecord) == 16 * EXTENSION_TEXELS);
+static_assert(sizeof(ExtensionRecord) == 16 * EXTENSION_TEXELS && sizeof(GlassRecord) == 16 * GLASS_TEXELS);
 static_assert(sizeof(RayRecord) == 16 * RAY_TEXELS && sizeof(TextureSlotRecord) == 16 * TEXTURE_SLOT_TEXELS);
 #undef LAYOUT_CONSTANT
 #undef LAYOUT_FLOAT

@@ -20,8 +20,9 @@ vec3 octant;
 bool passes_backs = false;  // with FEATURE_ONE_SIDED
 float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
 float sight_spread = 0.0;   // and how much it grows at a distance of 1
-// With FEATURE_BLENDING: what a ray has passed counts no more, which is all that is nearer than this, and at this t
+// Where rays pass through surfaces (PASSES): what a ray has passed counts no more, which is all that is nearer than this, and at this t
 // what has no higher order. By the entry point.
+const uint PASSES = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];
 
@@ -40,10 +41,10 @@ void pass(uint slot, float t, uint order) {
 }
 
 // Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, its back
-// where that is not shown, or of what blends an edge that is a neighbour's (cutouts.glsl; cast.comp has rays that see
-// geometry alone).
+// where that is not shown, or of what is seen through an edge that is a neighbour's (cutouts.glsl; cast.comp has rays
+// that see geometry alone).
 const uint MAY_BE_CUT_OUT =
-    FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | FEATURE_BIT(FEATURE_BLENDING);
+    FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | PASSES;
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge);
 bool may_have_holes(uint index);
 
@@ -63,7 +64,7 @@ bool any_takes_part() {
 // A ray as a solid of this order takes it: of the surfaces of one that it has passed the next is sought.
 Ray ray_past(uint slot, uint order) {
   Ray ray = packet[slot];
-  if (has(FEATURE_BLENDING) && order <= passed_order[slot] && passed_t[slot] > 0.0) {
+  if (PASSES != 0u && order <= passed_order[slot] && passed_t[slot] > 0.0) {
     ray.tmin = shifts[slot] > 0.0 ? shifted_tmin(passed_t[slot], shifts[slot]) : passed_t[slot];
   }
   return ray;
@@ -72,7 +73,7 @@ Ray ray_past(uint slot, uint order) {
 // Takes the crossing if it is nearer, or as near and of a lower number: the hit does not depend on the tree.
 void keep_nearest(uint slot, Crossing crossing, uint primitive, uint order, bool asks_for_any) {
   precise float t = crossing.t + shifts[slot];
-  if (has(FEATURE_BLENDING)) {
+  if (PASSES != 0u) {
     if (t < passed_t[slot] || (t == passed_t[slot] && order <= passed_order[slot])) return;
   }
   if (crossing.t > packet[slot].tmin && (t < limits[slot] || (t == limits[slot] && order < found[slot].order))) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A path is Whitted's recursion without refraction, written as a loop: I = sum of (product of mirror weights so far) *
-// what a point sends.
+// A path is Whitted's recursion, written as a loop: I = sum of (product of weights so far) * what a point sends. Where
+// glass parts it, tree.glsl says in which order.
 
 struct Path {
   vec3 origin;     // origin of the next ray
@@ -17,7 +17,19 @@ struct Path {
   uint layers;   // surfaces that it passed through so far
   float passed_t;  // where its next ray has come from behind a surface: t and order of that, or -1
   uint passed_order;
+  // With FEATURE_GLASS:
+  uvec2 media;  // that its next ray is in
+  uint rays;    // of its sample so far, without the camera's
+  uint kind;    // LOG_*, of its next ray
 };
+
+// Takes what the medium absorbs on the way to a hit.
+void absorb(inout Path path, Ray ray, Hit hit) {
+  if (!has(FEATURE_GLASS)) return;
+  precise float way = hit.t * length3(ray.direction);
+  precise vec3 weight = path.weight * left_after(last_entered(path.media), way);
+  path.weight = weight;
+}
 
 // Follows the path's cone to where its ray is met.
 void widen_cone(inout Path path, Ray ray, Hit hit) {
@@ -48,6 +60,7 @@ void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
   path.weight = weight;
   path.origin = ray.origin;
   path.direction = ray.direction;
+  path.kind = LOG_THROUGH;
   path.passed_t = t;
   path.passed_order = order;
   ++path.layers;
@@ -74,13 +87,17 @@ bool bounce(inout Path path, ShadingPoint point) {
   ++path.bounces;
   path.passed_t = -1.0;
   path.passed_order = 0u;
+  path.kind = LOG_REFLECTION;
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
   return true;
 }
 
+// Whether the number of a path's bounces is its own and not that of the turn.
+const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
+
 // Keeps in the stream what tells a path that may go through surfaces from others.
 void store_passed(uint number, Path path) {
-  if (!has(FEATURE_BLENDING)) return;
+  if (KEEPS_PROGRESS == 0u) return;
   pixels[record_of_weight(number, 0u)].w = floatBitsToUint(path.passed_t);
   pixels[record_of_weight(number, 1u)].w = path.passed_order;
   pixels[record_of_path(number) + RECORD_SHADOW_ORIGIN].w = path.layers << LAYERS_SHIFT | path.bounces;

@@ -52,9 +52,10 @@ void end_source_log(vec3 contribution) {
   append_log(source_log);
 }
 
-void begin_path_log(Ray ray, Hit hit, uint bounce, vec3 weight) {
+void begin_path_log(Ray ray, Hit hit, uint bounce, vec3 weight, uint kind) {
   if (!has(FEATURE_RAY_LOG)) return;
   path_log = empty_log(LOG_PATH, bounce);
+  path_log.ids.w = kind;
   log_ray(path_log, ray, hit);
   path_log.weight = vec4(weight, 0.0);
 }

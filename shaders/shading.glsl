@@ -17,6 +17,17 @@ struct Sheen {
   float share;  // of light from all around, what it sends were its colour 1; what is above 1 is not sent
 };
 
+// What glass does with the ray that has met it (tree.glsl), with FEATURE_GLASS or FEATURE_FRESNEL.
+struct Glass {
+  vec3 mirror;       // Phong's weight of the mirror ray
+  vec3 through;      // weight of what is seen beyond; 0: nothing
+  vec3 direction;    // unit, of the ray beyond
+  uvec2 beyond;      // the media that it is in
+  float bend;        // ratio of the indices of refraction, on this side over beyond
+  float roughness;   // at which it sees the environment, or NO_ENVIRONMENT
+  float share;       // of light that is not reflected, how much goes through
+};
+
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
@@ -31,7 +42,13 @@ struct ShadingPoint {
   float curvature;   // with FEATURE_TEXTURES: how fast the normal turns along the surface
   Coat coat;         // with FEATURE_COATS
   Sheen sheen;       // with FEATURE_SHEENS
+  Glass glass;       // with FEATURE_GLASS or FEATURE_FRESNEL
 };
+
+#include "glass.glsl"
+
+// Whether some faces part light by their angle.
+const bool HAS_FACES = (FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_FRESNEL)) != 0u;
 
 #include "materials.glsl"
 #include "textures.glsl"
@@ -174,6 +191,8 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   }
   slot_numbers[NORMAL_SLOT] = normal;
   if (has_extension) put_slot_numbers_of(extension_of(material));
+  uint glass = glass_number(material);
+  if (has(FEATURE_GLASS)) slot_numbers[TRANSMISSION_SLOT] = glass == 0u ? 0u : load_glass(glass).bits.y;
   look_up_slots(place);
 
   vec4 base = shown[BASE_SLOT];
@@ -225,6 +244,12 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
       material.b = textured_reflectance(record);
     }
   }
+  if (has(FEATURE_GLASS)) {
+    Glass seen_glass = point.glass;
+    precise float share = seen_glass.share * shown[TRANSMISSION_SLOT].x;
+    seen_glass.share = share;
+    point.glass = seen_glass;
+  }
   point.material = material;
 }
 
@@ -256,10 +281,13 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
   return Sheen(sheen.color, sheen.roughness, load_sheen_share(max(cosine, LEAST_COSINE), sheen.roughness));
 }
 
-// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit. The point is not returned
+#include "faces.glsl"
+
+// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit; `media` are those that the
+// ray is in. The point is not returned
 // but written to: of a call that is assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the
 // eighth of every argument, and crash where one of these is built from fewer (propagateNoContraction.cpp).
-void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, out ShadingPoint point) {
+void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, out ShadingPoint point) {
   Primitive p = load_primitive(hit.primitive);
   SurfaceRecord record = load_surface(hit.primitive);
   SurfacePoint surface = surface_point(ray, p, hit);
@@ -289,14 +317,16 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, out 
   point.lobe_shares = vec2(1.0, 0.0);
   point.occlusion = 1.0;
   if (HAS_LAYERS) put_bare_layers(point);
+  if (HAS_FACES) put_bare_glass(point, direction, media);
   if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }
-  if (has(FEATURE_METALLIC_ROUGHNESS)) {
-    point.lobe_shares = load_lobe_shares(-dot3(point.normal, direction), point.material.c.x);
-  }
+  float cosine = -dot3(point.normal, direction);
+  if (HAS_FACES) cosine = meet_face(point, direction, media, is_flipped);
+  if (has(FEATURE_METALLIC_ROUGHNESS)) point.lobe_shares = load_lobe_shares(cosine, point.material.c.x);
   if (has(FEATURE_COATS)) point.coat = seen_coat(point.coat, direction);
   if (has(FEATURE_SHEENS)) point.sheen = seen_sheen(point.sheen, -dot3(point.normal, direction));
+  if (has(FEATURE_GLASS) && has(FEATURE_METALLIC_ROUGHNESS)) let_through(point);
   if (has(FEATURE_RAY_LOG)) {
     log_surface(point.position, point.lift, surface.normal, point.normal,
                 record.corners_material.w & SURFACE_MATERIAL_MASK);

@@ -7,6 +7,7 @@
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Extensions { ExtensionRecord extensions[]; };
+layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Glasses { GlassRecord glasses[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Lights { LightRecord lights[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Vertices { vec4 vertices[]; };
 layout(set = 0, binding = BINDING_SHADING_TEXELS) uniform usamplerBuffer shading_texels;
@@ -33,6 +34,15 @@ ExtensionRecord load_extension(uint index) {
   return ExtensionRecord(shading_vector(first), texelFetch(shading_texels, int(first + 1u)),
                          shading_vector(first + 2u), shading_vector(first + 3u),
                          texelFetch(shading_texels, int(first + 4u)));
+}
+
+// `number` counts from 1 on.
+GlassRecord load_glass(uint number) {
+  uint index = VIEW.first_glass.x + max(number, 1u) - 1u;
+  if (FETCHES_TEXELS == 0u) return glasses[index];
+  uint first = GLASS_TEXELS * index;
+  return GlassRecord(shading_vector(first), shading_vector(first + 1u), shading_vector(first + 2u),
+                     texelFetch(shading_texels, int(first + 3u)));
 }
 
 LightRecord load_light(uint index) {

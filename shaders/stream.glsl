@@ -16,8 +16,14 @@ const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the point that i
 const uint RECORD_SEEN = 5u;       // xyz = light that this point sends, so far; w = spread of its cone
 const uint RECORD_SHADOW_ORIGIN = 6u;  // w = bounces so far, and from LAYERS_SHIFT on surfaces that it passed
 const uint LAYERS_SHIFT = 16u;
-const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between; with FEATURE_BLENDING
-                                      // w = the share of it that arrives
+const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between; where rays pass
+                                      // through surfaces, after the shadow ray what arrives of it
+// With FEATURE_GLASS there are behind these, and of each ray that waits 4 more (tree.glsl):
+const uint RECORD_MEDIA = 0u;         // x, y = the media that its ray is in; z = rays so far, and above HAS_SEEN_SHIFT
+                                      // whether there is something in RECORD_SEEN; w = rays that wait, and the ray's kind
+const uint RECORD_SHADOW_MEDIA = 1u;  // x, y = the media that its shadow rays begin in
+const uint HAS_SEEN_SHIFT = 16u;
+const uint KIND_SHIFT = 16u;
 
 // Then come words: what each path asks for, a word for its own ray and one for each source; the list of the paths of
 // even turns and that of odd ones; the list of shadow rays; and of paths and shadow rays the bins: how many are in
@@ -39,21 +45,26 @@ uint first_record;
 uint most_paths;
 uint sources_of_turn;
 uint turn;
+uint records_of_path;
 void begin_stream() {
   first_record = stream.place.x;
   most_paths = stream.place.y;
   sources_of_turn = stream.place.z;
   turn = stream.turn.x;
+  records_of_path = has(FEATURE_GLASS) ? stream.shadow_rays.y
+                                       : STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * sources_of_turn;
 }
 
 uint paths_of_turn(uint which) { return (which & 1u) == 0u ? stream.turn.y : stream.turn.z; }
 uint paths_with_ray() { return stream.turn.w; }
 
-uint record_of_path(uint path) {
-  return first_record + (STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * sources_of_turn) * path;
-}
+uint record_of_path(uint path) { return first_record + records_of_path * path; }
 uint record_of_source(uint path, uint source) {
   return record_of_path(path) + STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * source;
+}
+uint record_of_glass(uint path) { return record_of_source(path, sources_of_turn); }
+uint record_of_waiting(uint path, uint place) {
+  return record_of_glass(path) + STREAM_GLASS_RECORDS + STREAM_WAITING_RECORDS * place;
 }
 uint record_of_weight(uint path, uint which) { return record_of_path(path) + RECORD_WEIGHTS + (which & 1u); }
 

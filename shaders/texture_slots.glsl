@@ -19,9 +19,10 @@ const uint SHEEN_COLOR_SLOT = 8u;
 const uint SHEEN_ROUGHNESS_SLOT = 9u;
 const uint SPECULAR_SLOT = 10u;
 const uint SPECULAR_COLOR_SLOT = 11u;
-const uint MOST_SLOTS = 12u;
-const uint SLOT_COUNT =
+const uint MOST_SLOTS = 13u;
+const uint TRANSMISSION_SLOT =
     5u + 7u * (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS) | FEATURE_BIT(FEATURE_SPECULAR_TEXTURES));
+const uint SLOT_COUNT = TRANSMISSION_SLOT + FEATURE_BIT(FEATURE_GLASS);
 
 uint slot_numbers[MOST_SLOTS];  // 0 where there is no texture; by who calls look_up_slots
 vec4 shown[MOST_SLOTS];         // by look_up_slots

@@ -23,17 +23,18 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "traversal.glsl"
 #include "ray_log.glsl"
 #include "shading_records.glsl"
+#include "glass.glsl"
 #include "textures.glsl"
 #include "cutouts.glsl"
 #include "lights.glsl"
+#include "light_way.glsl"
 #include "turns.glsl"
 #include "group_rows.glsl"
 #include "loop_check.glsl"
 
-// The nearest first, so that the product does not hang on the tree. What blocks the ray, or the last surface that it has
-// gone through.
-Hit go_through_layers(uint record) {
-  float arriving = 1.0;
+// What blocks the ray, or the last surface that it has gone through. `record` is that of the source's contribution.
+Hit go_through_layers(uint record, uvec2 media) {
+  LightWay way = light_way(media);
   Hit last = Hit(INFINITY, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
   uint layers = 0u;
   forget_passed(0u);
@@ -41,13 +42,14 @@ Hit go_through_layers(uint record) {
     trace_packet(false);
     if (found[0].primitive == NO_PRIMITIVE) break;
     last = found[0];
-    arriving = share_behind(last, packet[0].direction, arriving, layers);
-    if (!(arriving > 0.0)) break;
+    if (!goes_on_behind(way, packet[0], last, layers)) break;
     pass(0u, last.t, last.order);
     ++layers;
   }
-  pixels[record].w = floatBitsToUint(arriving);
-  add_passes(layers);
+  end_way(way, packet[0]);
+  precise vec3 contribution = way.arriving * load_record(record).xyz;
+  store_vector(record, contribution);
+  add_passes(uvec3(layers, 0u, 0u));
   return last;
 }
 
@@ -63,8 +65,10 @@ void main() {
   step_counts = uvec2(0u);
   packet[0] = ray;
   Hit blocker;
-  if (has(FEATURE_BLENDING)) {
-    blocker = go_through_layers(record_of_source(path, source) + RECORD_CONTRIBUTION);
+  if (PASSES != 0u) {
+    uvec2 media = has(FEATURE_GLASS) ? floatBitsToUint(load_record(record_of_glass(path) + RECORD_SHADOW_MEDIA).xy)
+                                     : uvec2(NO_MEDIUM);
+    blocker = go_through_layers(record_of_source(path, source) + RECORD_CONTRIBUTION, media);
     words[ask_of_source(path, source)] = ASK_NOTHING;
     if (has(FEATURE_RAY_LOG)) log_answer(entry_of_source(source), ray, blocker);
     add_counts(uvec3(0u), were_loops_cut());

@@ -146,7 +146,7 @@ void FrameStatistics::add(const FinishedFrame& frame) {
   follow(stages_.display, frame.stages.display);
   follow(stages_.overlay, frame.stages.overlay);
   if (!(frame.stages.trace > 0.0)) return;
-  const dvec3 rays(frame.rays.primary, frame.rays.shadow, frame.rays.reflection);
+  const dvec3 rays(frame.rays.primary, frame.rays.shadow, frame.rays.reflection + frame.rays.refraction);
   mrays_per_s_ += share * (1e-3 / frame.stages.trace * rays - mrays_per_s_);
 }
 

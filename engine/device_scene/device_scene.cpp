@@ -86,6 +86,7 @@ struct DeviceScene::PlacedTail {
   Placed materials;
   Placed texture_slots;
   Placed extensions;
+  Placed glasses;
   Placed lobe_tables;
   Placed sky;
   /// The last, because they change most often in number.
@@ -98,7 +99,8 @@ DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   placed.materials = place(tail.materials->records, head_bytes_);
   placed.texture_slots = place(tail.materials->slots, placed.materials.end());
   placed.extensions = place(tail.materials->extensions, placed.texture_slots.end());
-  placed.lobe_tables = place(*tail.lobe_tables, placed.extensions.end());
+  placed.glasses = place(tail.materials->glasses, placed.extensions.end());
+  placed.lobe_tables = place(*tail.lobe_tables, placed.glasses.end());
   placed.sky = place(tail.sky->texels, placed.lobe_tables.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
   return placed;
@@ -177,8 +179,9 @@ void DeviceScene::take_colors(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail_bytes = total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->extensions,
-                                          *tail_.lobe_tables, tail_.sky->texels, tail_.lights.records);
+  const uint64_t tail_bytes =
+      total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->extensions,
+                  tail_.materials->glasses, *tail_.lobe_tables, tail_.sky->texels, tail_.lights.records);
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
 
@@ -243,7 +246,7 @@ void DeviceScene::write_tail(Tail tail) {
     take_shading_buffer(std::move(larger));
   }
   for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::extensions,
-                          &PlacedTail::lobe_tables, &PlacedTail::sky, &PlacedTail::lights}) {
+                          &PlacedTail::glasses, &PlacedTail::lobe_tables, &PlacedTail::sky, &PlacedTail::lights}) {
     if (!needs_larger && is_same(placed.*part, last.*part)) continue;
     write(*shading_, placed.*part);
     uploads_.shading += (placed.*part).bytes.size();
@@ -253,6 +256,7 @@ void DeviceScene::write_tail(Tail tail) {
   constants_.first_lookup =
       uvec4(placed.lobe_tables.first_index, placed.sky.first_index, tail.sky->side, placed.extensions.first_index);
   constants_.first_texture.z = placed.texture_slots.first_index;
+  constants_.first_glass.x = placed.glasses.first_index;
   constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());
   tail_ = std::move(tail);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "scene/alpha.h"
+#include "scene/glass.h"
 #include "scene/layers.h"
 #include "scene/texture_slots.h"
 
@@ -59,9 +60,11 @@ class MaterialPacker {
 #include "promin/kinds/materials.def"
   };
 
-  static uint pack_flags(const Material& material) {
-    return std::visit(ModelNumber(), material.model) | flag(has_holes(material), MATERIAL_HAS_HOLES) |
-           flag(blends(material), MATERIAL_BLENDS) | flag(!material.is_double_sided, MATERIAL_IS_ONE_SIDED);
+  uint pack_flags(const Material& material) {
+    const uint glass = std::visit([&](const auto& model) { return add_glass(model); }, material.model);
+    return glass << MATERIAL_GLASS_SHIFT | std::visit(ModelNumber(), material.model) |
+           flag(has_holes(material), MATERIAL_HAS_HOLES) | flag(blends(material), MATERIAL_BLENDS) |
+           flag(!material.is_double_sided, MATERIAL_IS_ONE_SIDED);
   }
 
   vec4 pack_cover(const Material& material) {
@@ -109,6 +112,34 @@ class MaterialPacker {
                                   uvec4(number_of(m.sheen_color_texture), number_of(m.sheen_roughness_texture),
                                         number_of(m.specular_texture), number_of(m.specular_color_texture))});
     return std::bit_cast<float>(static_cast<uint>(packed_.extensions.size()));
+  }
+
+  uint number_of_glass(const GlassRecord& record) {
+    packed_.glasses.push_back(record);
+    return static_cast<uint>(packed_.glasses.size());
+  }
+  /// The glass's number, 0 where it is none.
+  uint add_glass(const Phong& m) {
+    if (!is_clear(m) && !hangs_on_angle(m)) return 0;
+    return number_of_glass(
+        {vec4(m.transmission, m.ior), vec4(0.0F), vec4(0.0F),
+         uvec4(flag(is_clear(m), GLASS_IS_CLEAR) | flag(hangs_on_angle(m), GLASS_IS_FRESNEL), 0, 0, 0)});
+  }
+  uint add_glass(const MetallicRoughness& m) {
+    if (!is_clear(m)) return 0;
+    dvec3 absorption(0.0);
+    for (int i = 0; i < 3; ++i) {
+      // Of what absorbs all, a little is left over a 2^-24th of the distance.
+      const double left = std::max(static_cast<double>(m.attenuation_color[i]), 0x1p-24);
+      absorption[i] = std::max(0.0, -std::log2(left)) / static_cast<double>(m.attenuation_distance);
+    }
+    const vec3 reflectance = vec3(dvec3(m.specular_color) * static_cast<double>(m.specular));
+    return number_of_glass(
+        {vec4(vec3(m.transmission), m.ior), vec4(vec3(absorption), 0.0F), vec4(reflectance, 0.0F),
+         uvec4(GLASS_IS_CLEAR | flag(m.thickness == 0.0F, GLASS_IS_THIN), number_of(m.transmission_texture), 0, 0)});
+  }
+  static uint add_glass(const Unlit& /*m*/) {
+    return 0;
   }
 
   float add(const TextureSlot& slot) {

@@ -27,6 +27,8 @@ struct PackedMaterials {
   std::vector<layout::TextureSlotRecord> slots;
   /// Of what few materials have, which their records number likewise.
   std::vector<layout::ExtensionRecord> extensions;
+  /// Of what lets light through, likewise.
+  std::vector<layout::GlassRecord> glasses;
 };
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables = {});
 

@@ -41,6 +41,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
       .first_index = scene.first_index,
       .first_lookup = scene.first_lookup,
       .first_texture = scene.first_texture,
+      .first_glass = scene.first_glass,
       .irradiance = {}};
   std::ranges::copy(scene.irradiance, constants.irradiance);
   return constants;

@@ -21,6 +21,7 @@ struct SceneConstants {
   uvec4 first_index{0};
   uvec4 first_lookup{0};
   uvec4 first_texture{0};
+  uvec4 first_glass{0};
   /// The unbounded primitives, which lie behind those of the tree.
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;

@@ -138,7 +138,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   /// Traces one band: `window` of the picture, on a film of its size.
   void trace_band(const PixelWindow& window, const View& view, RenderResult& result,
                   const ProgressCallback& on_progress) {
-    TileOptions cut = film->piece_options();
+    TileOptions cut = film->piece_options(view.max_depth);
     cut.blocks_per_piece = options.blocks_per_dispatch;
     const auto collect = [&] {
       const FilmCounts taken = film->take_counts();

@@ -9,6 +9,7 @@
 #include "core/rounding.h"
 #include "layout.h"
 #include "scene/alpha.h"
+#include "scene/glass.h"
 #include "scene/layers.h"
 #include "scene/light_kinds.h"
 #include "scene/texture_slots.h"
@@ -85,6 +86,9 @@ struct MaterialFeatures {
     FeatureMask features = FEATURE_PHONG;
     if (phong.shininess > 0.0F && max_component(phong.specular) > 0.0F) features |= FEATURE_SPECULAR;
     if (max_component(phong.reflection) > 0.0F) features |= FEATURE_MIRRORS;
+    if (hangs_on_angle(phong)) features |= FEATURE_FRESNEL;
+    // Glass mirrors where it reflects totally.
+    if (is_clear(phong)) features |= FEATURE_GLASS | FEATURE_MIRRORS;
     return features;
   }
   FeatureMask operator()(const MetallicRoughness& material) const {
@@ -93,6 +97,7 @@ struct MaterialFeatures {
     if (material.roughness < ROUGHEST_MIRROR || material.metallic_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;
     }
+    if (is_clear(material)) features |= FEATURE_GLASS | FEATURE_MIRRORS;
     if (has_sheen(material)) features |= FEATURE_SHEENS;
     if (has_specular_textures(material)) features |= FEATURE_SPECULAR_TEXTURES;
     if (!has_coat(material)) return features;

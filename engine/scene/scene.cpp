@@ -12,6 +12,7 @@
 #include "promin/error.h"
 #include "promin/view.h"
 #include "scene/framing.h"
+#include "scene/glass.h"
 #include "shapes/shapes.h"
 
 namespace promin {
@@ -194,6 +195,11 @@ Camera frame_bounds(const Bounds& frame, float aspect_ratio, Framing framing) {
 bool shows_same(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
          a.ymag == b.ymag && a.near == b.near;
+}
+
+uint32_t default_max_depth(const Scene& scene) {
+  const bool has_glass = std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); });
+  return has_glass ? kMaxDepthOfGlass : View{}.max_depth;
 }
 
 bool shows_same(const View& a, const View& b) {

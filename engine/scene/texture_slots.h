@@ -38,6 +38,7 @@ void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
   visit(model.metallic_roughness_texture, "metallic_roughness_texture", ImageUse::kData);
   visit(model.normal_texture, "normal_texture", ImageUse::kNormal);
   visit(model.occlusion_texture, "occlusion_texture", ImageUse::kData);
+  visit(model.transmission_texture, "transmission_texture", ImageUse::kData);
   visit(model.specular_texture, "specular_texture", ImageUse::kData);
   visit(model.specular_color_texture, "specular_color_texture", ImageUse::kColor);
   visit(model.clearcoat_texture, "clearcoat_texture", ImageUse::kData);

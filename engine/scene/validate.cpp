@@ -67,6 +67,9 @@ class Validation {
     check_color(phong.diffuse, place + ".diffuse");
     check_color(phong.specular, place + ".specular");
     check_color(phong.reflection, place + ".reflection");
+    check_color(phong.transmission, place + ".transmission");
+    check(phong.ior > 0.0F && std::isfinite(phong.ior), "the index of refraction is not positive and finite",
+          place + ".ior", "use a number above 0");
     check(std::isfinite(phong.shininess), "the shininess is not finite", place + ".shininess", "use a finite exponent");
   }
 
@@ -84,6 +87,12 @@ class Validation {
     check_color(material.specular_color, place + ".specular_color");
     for (int i = 0; i < 3; ++i) check_share(material.sheen_color[i], place + ".sheen_color");
     check_share(material.sheen_roughness, place + ".sheen_roughness");
+    check_share(material.transmission, place + ".transmission");
+    check(material.thickness >= 0.0F, "the thickness is negative or not a number", place + ".thickness",
+          "use 0 or a positive number");
+    for (int i = 0; i < 3; ++i) check_share(material.attenuation_color[i], place + ".attenuation_color");
+    check(material.attenuation_distance > 0.0F, "the distance is not positive", place + ".attenuation_distance",
+          "use a positive number, or an infinite one where nothing is absorbed");
     check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
           "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
   }

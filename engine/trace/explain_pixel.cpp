@@ -21,8 +21,9 @@ constexpr uint64_t kMostLogBytes = 64U << 20;
 
 /// Entries of the log of one sample of the view at most, whatever the sample meets.
 uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View& view) {
-  const uint64_t layers = features.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
-  const uint64_t entries = (1 + layers + view.max_depth) * (uint64_t{1} + scene.constants().light_count);
+  const uint32_t layers = features.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
+  const uint64_t steps = most_steps(view.max_depth, features.has_any(layout::FEATURE_GLASS), layers);
+  const uint64_t entries = (1 + steps) * (uint64_t{1} + scene.constants().light_count);
   if (entries > kMostLogBytes / sizeof(layout::RayLog)) {
     throw RunError({"a pixel may take " + std::to_string(entries) + " rays and sources, too many to explain",
                     "in this scene with so many bounces", "take a smaller depth", Setting::kDepth});
@@ -56,7 +57,7 @@ Explanation explain_pixel(const gpu::Device& device, const std::shared_ptr<const
   Film film(device, scene, features | layout::FEATURE_RAY_LOG,
             {.packet_size = 1,
              .log_records = static_cast<uint32_t>(1 + most_entries(*scene, features, view) * kEntryRecords)});
-  TileScheduler samples = film.cut(view, {pixel, pixel + 1U}, film.piece_options());
+  TileScheduler samples = film.cut(view, {pixel, pixel + 1U}, film.piece_options(view.max_depth));
   Explanation explanation;
   explanation.pixel = pixel;
   film.begin(samples);

@@ -109,7 +109,7 @@ void Film::bind_scene() {
 void Film::reserve(uint32_t pixel_count) {
   pixel_count = std::max(pixel_count, capacity_);
   const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + log_records_;
-  const uint64_t bytes = sizeof(layout::FilmHead) + records * sizeof(uvec4) + stream_shape(pixel_count).bytes();
+  const uint64_t bytes = sizeof(layout::FilmHead) + records * sizeof(uvec4) + bytes_of_stream(pixel_count);
   if (buffer_ && buffer_->size_bytes() >= bytes && capacity_ == pixel_count) return;
   using Usage = vk::BufferUsageFlagBits;
   // There before the old one goes: where memory is short the film stays whole.
@@ -125,14 +125,15 @@ void Film::reserve(uint32_t pixel_count) {
   }
 }
 
-TileOptions Film::piece_options() const {
+TileOptions Film::piece_options(uint32_t depth) const {
   const gpu::DeviceProfile& profile = device_->profile();
   // A piece's paths have room in the stream, be they all of its pixels.
-  const uint32_t most_paths = stream_shape(TileOptions::kMaxBlocks * kLanes).most_paths;
+  const uint32_t most_paths = stream_shape(TileOptions::kMaxBlocks * kLanes, depth).most_paths;
   return {.packet_size = packet_size_,
           .most_group_rows = profile.most_group_rows,
           .most_blocks = has_stream() ? most_paths / kLanes : TileOptions::kMaxBlocks,
-          .most_layers = most_layers()};
+          .most_layers = most_layers(),
+          .has_glass = features_.has_any(layout::FEATURE_GLASS)};
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
@@ -148,12 +149,11 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {
-  const StreamShape shape = stream_shape(capacity_);
-  const uint32_t steps = piece.bounces + most_layers();
-  const bool takes_stream = stream_ && steps > 0;
+  const StreamShape shape = stream_shape(capacity_, piece.depth);
+  const bool takes_stream = stream_ && piece.steps > 0;
   if (takes_stream) stream_->record_begin(commands, *buffer_, shape);
   kernel_->record(commands, piece.dispatch, *buffer_, piece.group_count);
-  if (takes_stream) stream_->record_turns(commands, *buffer_, shape, steps);
+  if (takes_stream) stream_->record_turns(commands, *buffer_, shape, piece.steps);
 }
 
 void Film::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
@@ -185,14 +185,14 @@ FilmCounts Film::take_counts() const {
 void Film::warm_up() const {
   if (stream_) {
     device_->run([&](const vk::raii::CommandBuffer& commands) {
-      stream_->record_begin(commands, *buffer_, stream_shape(capacity_));
+      stream_->record_begin(commands, *buffer_, stream_shape(capacity_, 0));
       stream_->record_warm_up(commands);
     });
   }
   View one_pixel;
   one_pixel.size = uvec2(1);
   one_pixel.max_depth = 0;
-  TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, piece_options());
+  TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, piece_options(one_pixel.max_depth));
   begin(picture);
   const TileSample piece = picture.next(1.0);
   run({&piece, 1});
@@ -206,6 +206,16 @@ uint32_t Film::records_per_pixel() const {
   return features_.has_any(layout::FEATURE_AOVS) ? 3 : 1;
 }
 
+uint64_t Film::bytes_of_stream(uint32_t pixel_count) const {
+  uint64_t bytes = stream_shape(pixel_count, 0).bytes();
+  // With glass deep pictures need more for a path, and have room for fewer paths.
+  if (!features_.has_any(layout::FEATURE_GLASS)) return bytes;
+  for (uint32_t depth = 1; depth <= layout::MOST_TREE_RAYS; ++depth) {
+    bytes = std::max(bytes, stream_shape(pixel_count, depth).bytes());
+  }
+  return bytes;
+}
+
 bool Film::has_stream() const {
   return features_.has_any(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING);
 }
@@ -216,10 +226,10 @@ bool Film::fetches_film_texels() const {
   return profile.fetches_film_texels && holds_any_film && !avoids_texels_;
 }
 
-StreamShape Film::stream_shape(uint32_t pixel_count) const {
+StreamShape Film::stream_shape(uint32_t pixel_count, uint32_t depth) const {
   if (!has_stream()) return {};
   const uint32_t most_paths = std::min(device_->profile().most_stream_paths, divide_up(pixel_count, kLanes) * kLanes);
-  StreamShape shape = StreamShape::of(scene_->constants().light_count, features_, most_paths);
+  StreamShape shape = StreamShape::of(scene_->constants().light_count, features_, most_paths, depth);
   shape.first_record = pixel_count * records_per_pixel() + log_records_;
   return shape;
 }
@@ -241,7 +251,12 @@ RayCounts sum_counts(std::span<const std::byte> counters) {
   RayCounts sum;
   const auto [rays, passes] = lanes_of(counters);
   for (size_t lane = 0; lane < rays.size(); ++lane) {
-    sum += {rays[lane].x, rays[lane].y, rays[lane].z, passes[lane].x};
+    sum += {.primary = rays[lane].x,
+            .shadow = rays[lane].y,
+            .reflection = rays[lane].z,
+            .refraction = passes[lane].y,
+            .passed = passes[lane].x,
+            .primary_hits = passes[lane].z};
   }
   return sum;
 }

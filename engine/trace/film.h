@@ -55,8 +55,8 @@ class Film {
   /// Takes note that the scene has changed parts; the device is idle with respect to the film.
   void bind_scene();
 
-  /// How the device wants pictures cut.
-  TileOptions piece_options() const;
+  /// How the device wants pictures of so many bounces cut.
+  TileOptions piece_options(uint32_t depth) const;
   /// A picture of the film's scene, on the film as large as it is now: reserve() comes first.
   TileScheduler cut(const View& view, const PixelWindow& window, const TileOptions& options) const;
 
@@ -90,8 +90,10 @@ class Film {
   /// How many surfaces that blend a ray goes through.
   uint32_t most_layers() const;
   bool fetches_film_texels() const;
-  /// Of a film of so many pixels.
-  StreamShape stream_shape(uint32_t pixel_count) const;
+  /// Of a film of so many pixels, for a picture of this depth.
+  StreamShape stream_shape(uint32_t pixel_count, uint32_t depth) const;
+  /// The most that any of them takes.
+  uint64_t bytes_of_stream(uint32_t pixel_count) const;
   std::array<gpu::BoundBuffer, 2> film_buffers() const;
   std::vector<gpu::BoundBuffer> buffers() const;
 

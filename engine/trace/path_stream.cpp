@@ -35,9 +35,9 @@ std::vector<gpu::SpecializationConstant> with_query(std::span<const gpu::Special
   return all;
 }
 
-/// A log tells where shadow rays are blocked, and they go through what blends one surface after the other.
+/// A log tells where shadow rays are blocked, and they go through what blends and glass one surface after the other.
 bool needs_nearest_blocker(FeatureMask features) {
-  return features.has_any(layout::FEATURE_RAY_LOG | layout::FEATURE_BLENDING);
+  return features.has_any(layout::FEATURE_RAY_LOG | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
 }
 
 void wait_for_last(const vk::raii::CommandBuffer& commands) {
@@ -49,8 +49,10 @@ void wait_for_last(const vk::raii::CommandBuffer& commands) {
 
 }  // namespace
 
-StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t most_paths) {
+StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth) {
   StreamShape shape;
+  shape.has_glass = features.has_any(layout::FEATURE_GLASS);
+  if (shape.has_glass) shape.waiting_rays = std::min(depth, layout::MOST_TREE_RAYS);
   shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
   shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(light_count, shape.sources);
   const auto fitting = static_cast<uint32_t>(kMostBytes / shape.path_bytes());
@@ -58,8 +60,14 @@ StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t
   return shape;
 }
 
+uint32_t StreamShape::records_of_path() const {
+  const uint32_t of_glass =
+      has_glass ? layout::STREAM_GLASS_RECORDS + layout::STREAM_WAITING_RECORDS * waiting_rays : 0;
+  return layout::STREAM_PATH_RECORDS + layout::STREAM_SOURCE_RECORDS * sources + of_glass;
+}
+
 uint64_t StreamShape::path_bytes() const {
-  const uint64_t records = layout::STREAM_PATH_RECORDS + layout::STREAM_SOURCE_RECORDS * uint64_t{sources};
+  const uint64_t records = records_of_path();
   // What it asks for, and its places in the lists.
   const uint64_t words = (1 + sources) + (2 + sources);
   return sizeof(uvec4) * records + sizeof(uint32_t) * words;
@@ -86,6 +94,7 @@ void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu
                               const StreamShape& shape) const {
   layout::StreamState state{};
   state.place = uvec4(shape.first_record, shape.most_paths, shape.sources, most_group_rows_);
+  state.shadow_rays.y = shape.records_of_path();
   // So that the first turn is 0.
   state.turn.x = ~0U;
   const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead,

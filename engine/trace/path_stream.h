@@ -14,8 +14,8 @@ namespace promin {
 
 /// Where the stream of a film lies (shaders/stream.glsl), and what it takes.
 struct StreamShape {
-  /// For a scene of so many lights, of at most so many paths, within kMostBytes.
-  static StreamShape of(uint32_t light_count, FeatureMask features, uint32_t most_paths);
+  /// For a scene of so many lights, of at most so many paths, within kMostBytes; with glass for pictures of this depth.
+  static StreamShape of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth);
 
   /// Of a path: its records, what it asks for, its places in the lists.
   uint64_t path_bytes() const;
@@ -28,6 +28,12 @@ struct StreamShape {
   /// Whose shadow rays a turn takes at most; 0 where nothing casts shadows.
   uint32_t sources = 0;
   uint32_t turns_of_bounce = 1;
+  /// How many rays of a path may wait; only with glass.
+  uint32_t waiting_rays = 0;
+  bool has_glass = false;
+
+  /// Of a path, its sources among them.
+  uint32_t records_of_path() const;
 
   static constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
   /// Beside the pixels of a film it is less than what Vulkan guarantees for a storage buffer.

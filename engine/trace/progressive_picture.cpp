@@ -93,7 +93,7 @@ uvec2 ProgressivePicture::first_size() const {
 void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const View& view) {
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
-  picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options());
+  picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options(view.max_depth));
   picture_when_done_ = {film, view.size, view.samples_per_pixel};
   picture_version_ = wanted_version_;
   films_[film].record_begin(commands, *picture_);

@@ -12,6 +12,13 @@
 
 namespace promin {
 
+uint32_t most_steps(uint32_t depth, bool has_glass, uint32_t most_layers) {
+  if (!has_glass) return depth + most_layers;
+  // At each bounce twice as many as before.
+  const uint32_t in_tree = depth < 6 ? (2U << depth) - 2 : layout::MOST_TREE_RAYS;
+  return std::min(in_tree, layout::MOST_TREE_RAYS) + most_layers;
+}
+
 TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,
                              const TileOptions& options)
     : scene_(scene),
@@ -41,9 +48,10 @@ TileSample TileScheduler::next(double units) {
                                        .sample = sample_,
                                        .lattice_generator = lattice_generator_});
   piece.group_count = arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows);
-  piece.bounces = view_.max_depth;
+  piece.steps = most_steps(view_.max_depth, options_.has_glass, options_.most_layers);
+  piece.depth = view_.max_depth;
   piece.units = block_count_;
-  const double most_hits = 1.0 + view_.max_depth + options_.most_layers;
+  const double most_hits = 1.0 + piece.steps;
   piece.most_rays_a_lane = most_hits * (1.0 + scene_.light_count) * (1.0 + options_.most_layers) * piece.units;
 
   ++sample_;

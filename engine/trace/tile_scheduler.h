@@ -15,8 +15,10 @@ struct TileSample {
   layout::Dispatch dispatch{};
   /// Workgroups of shaders/camera_stage.comp; y = rows.
   uvec2 group_count{0};
+  /// The most rays that follow a camera ray.
+  uint32_t steps = 0;
   /// Of the view.
-  uint32_t bounces = 0;
+  uint32_t depth = 0;
   /// The amount of its work, counted in blocks of 8x8 pixels.
   double units = 0.0;
   /// The largest number of rays that a lane may count in it.
@@ -34,9 +36,14 @@ struct TileOptions {
   uint32_t most_blocks = kMaxBlocks;
   /// How many surfaces a ray goes through at most.
   uint32_t most_layers = 0;
+  /// Whether glass parts paths (shaders/tree.glsl).
+  bool has_glass = false;
   /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
+
+/// The most rays of a sample that follow the camera's: mirrors', refracted ones, and those from behind surfaces.
+uint32_t most_steps(uint32_t depth, bool has_glass, uint32_t most_layers);
 
 /// Cuts a picture into pieces: it takes a range of blocks at a time, and of that range a sample at a time. Every cut
 /// gives the same bits. Vulkan-free.

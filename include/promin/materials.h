@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <variant>
 
@@ -26,6 +27,14 @@ struct Phong {
   float shininess = 0.0F;
   /// Weight of what the mirror ray brings; 0 traces none.
   vec3 reflection{0.0F};
+  /// Weight of what the refracted ray brings: what makes it glass; 0 traces none. Where a ray is reflected totally the
+  /// mirror ray takes it. Shadow rays go straight through, times this at each face.
+  vec3 transmission{0.0F};
+  /// Index of refraction, positive and finite; 1 bends nothing.
+  float ior = 1.0F;
+  /// Whether Fresnel's reflectance F for the index of refraction is a factor of the reflection, and 1 - F of the
+  /// transmission.
+  bool fresnel = false;
   /// Factors of ambient and diffuse.
   TextureSlot diffuse_texture = {};
   /// Factors of specular and reflection.
@@ -53,6 +62,17 @@ struct MetallicRoughness {
   TextureSlot specular_texture = {};
   /// Factors of its colour.
   TextureSlot specular_color_texture = {};
+  /// The share of light that goes through instead of being scattered, 0...1 (KHR_materials_transmission).
+  float transmission = 0.0F;
+  /// Factor of it (red).
+  TextureSlot transmission_texture = {};
+  /// 0: the surface is a thin wall, which bends no light; else it bounds a volume (KHR_materials_volume). How thick it
+  /// is the scene says, so the number itself is not needed. Not negative.
+  float thickness = 0.0F;
+  /// Of white light the colour that is left in the volume after attenuation_distance, 0...1.
+  vec3 attenuation_color{1.0F};
+  /// In units of the world, positive; infinite: nothing is absorbed.
+  float attenuation_distance = std::numeric_limits<float>::infinity();
   /// Factors of the base colour.
   TextureSlot base_color_texture = {};
   /// Factors of roughness (green) and metallic (blue).

@@ -113,6 +113,9 @@ PROMIN_EXPORT std::span<const std::string_view> framing_names();
 /// Throws UsageError where that is not a positive finite number, and InputError as bounds_of() does.
 PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio, Framing framing = Framing::kFront);
 
+/// The bounces that show a scene well (View::max_depth): more where it has glass.
+PROMIN_EXPORT uint32_t default_max_depth(const Scene& scene);
+
 /// What add_default_lights has added.
 struct AddedLights {
   /// Whether a headlight was added.

@@ -49,11 +49,14 @@ struct View {
   std::optional<PixelWindow> crop;
   /// Samples a pixel, 1...kMaxSamplesPerPixel, at fixed points of a lattice; 1 samples the centre.
   uint32_t samples_per_pixel = 1;
-  /// Mirror bounces, 0...kMaxDepth; 0 traces no mirror rays.
+  /// Bounces, 0...kMaxDepth; 0 traces neither mirror nor refracted rays. See default_max_depth.
   uint32_t max_depth = 5;
   /// What is shown; another mode than the last one's is compiled first.
   RenderMode mode;
 };
+
+/// The bounces that pictures of scenes with glass take unless others are asked for.
+inline constexpr uint32_t kMaxDepthOfGlass = 8;
 
 /// Whether two cameras see the same: names and aspect ratios aside.
 PROMIN_EXPORT bool shows_same(const Camera& a, const Camera& b);

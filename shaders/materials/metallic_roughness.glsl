@@ -62,6 +62,7 @@ vec3 albedo_of(ShadingPoint point) {
   Lobe lobe = dielectric_lobe(point);
   precise vec3 albedo =
       (1.0 - point.material.a.w) * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z))) * base_color_of(point);
+  if (has(FEATURE_GLASS)) albedo *= 1.0 - point.glass.share;
   return albedo;
 }
 

@@ -22,7 +22,7 @@ vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float co
   return contribution;
 }
 
-vec3 mirror_weight_phong(ShadingPoint point) { return point.material.d.xyz; }
+vec3 mirror_weight_phong(ShadingPoint point) { return HAS_FACES ? point.glass.mirror : point.material.d.xyz; }
 
 // Perfect, so its rays see the environment as it is; where there is none, the background.
 float mirror_roughness_phong(ShadingPoint point) { return perfect_mirror_roughness(); }

@@ -71,8 +71,12 @@ class ContentHash {
     add(box.turn);
   }
   void add(const Phong& phong) {
-    for (const vec3& factor : {phong.ambient, phong.diffuse, phong.specular, phong.reflection}) add(factor);
+    for (const vec3& factor : {phong.ambient, phong.diffuse, phong.specular, phong.reflection, phong.transmission}) {
+      add(factor);
+    }
     add(phong.shininess);
+    add(phong.ior);
+    add(uint64_t{phong.fresnel});
     for (const TextureSlot& slot : {phong.diffuse_texture, phong.specular_texture, phong.normal_texture}) add(slot);
   }
   void add(const MetallicRoughness& material) {
@@ -86,6 +90,8 @@ class ContentHash {
     }
     add(material.sheen_color);
     add(material.sheen_roughness);
+    for (const float value : {material.transmission, material.thickness, material.attenuation_distance}) add(value);
+    add(material.attenuation_color);
   }
   void add(const Unlit& unlit) { add(unlit.color); }
   void add(const TextureSlot& slot) {

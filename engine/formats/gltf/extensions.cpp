@@ -17,17 +17,18 @@ using nlohmann::json;
 
 /// The extensions that the loader reads.
 constexpr std::string_view kKnown[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
-    "EXT_texture_webp",        "KHR_draco_mesh_compression",
-    "KHR_implicit_shapes",     "KHR_lights_punctual",
-    "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",     "KHR_materials_specular",
-    "KHR_materials_unlit",     "KHR_materials_variants",
-    "KHR_mesh_quantization",   "KHR_meshopt_compression",
-    "KHR_node_visibility",     "KHR_texture_transform",
-    "OMI_environment_sky",     "PROMIN_lights_phong",
-    "PROMIN_materials_phong",  "PROMIN_mesh_primitive_implicit_shape",
+    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
+    "EXT_texture_webp",           "KHR_draco_mesh_compression",
+    "KHR_implicit_shapes",        "KHR_lights_punctual",
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",        "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_variants",     "KHR_materials_volume",
+    "KHR_mesh_quantization",      "KHR_meshopt_compression",
+    "KHR_node_visibility",        "KHR_texture_transform",
+    "OMI_environment_sky",        "PROMIN_lights_phong",
+    "PROMIN_materials_phong",     "PROMIN_mesh_primitive_implicit_shape",
 };
 
 /// What a document has of one extension.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/materials.h"
 
+#include <limits>
+
 #include "formats/gltf/json_lookup.h"
 
 namespace promin {
@@ -23,6 +25,9 @@ Phong phong_of(const json& extension, const dvec3& base) {
   phong.specular = vec3(vec3_of(extension, "specularFactor", dvec3(0.0)));
   phong.shininess = extension.value("shininess", 0.0F);
   phong.reflection = vec3(vec3_of(extension, "reflectionFactor", dvec3(0.0)));
+  phong.transmission = vec3(vec3_of(extension, "transmissionFactor", dvec3(0.0)));
+  phong.ior = extension.value("ior", 1.0F);
+  phong.fresnel = extension.value("fresnel", false);
   return phong;
 }
 
@@ -56,6 +61,18 @@ void read_sheen(const json& extension, GltfTextures& textures, MetallicRoughness
   material.sheen_roughness_texture = textures.read_slot(extension, "sheenRoughnessTexture", ImageUse::kData);
 }
 
+void read_transmission(const json& source, GltfTextures& textures, MetallicRoughness& material) {
+  if (const json* extension = find_extension(source, "KHR_materials_transmission")) {
+    material.transmission = extension->value("transmissionFactor", 0.0F);
+    material.transmission_texture = textures.read_slot(*extension, "transmissionTexture", ImageUse::kData);
+  }
+  if (const json* extension = find_extension(source, "KHR_materials_volume")) {
+    material.thickness = extension->value("thicknessFactor", 0.0F);
+    material.attenuation_color = to_shares(vec3_of(*extension, "attenuationColor", dvec3(1.0)));
+    material.attenuation_distance = extension->value("attenuationDistance", std::numeric_limits<float>::infinity());
+  }
+}
+
 void read_shared_textures(const json& source, GltfTextures& textures, MetallicRoughness& material) {
   material.normal_texture = textures.read_slot(source, "normalTexture", ImageUse::kNormal);
   if (const auto info = source.find("normalTexture"); info != source.end()) {
@@ -87,6 +104,7 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
     material.specular_texture = textures.read_slot(*extension, "specularTexture", ImageUse::kData);
     material.specular_color_texture = textures.read_slot(*extension, "specularColorTexture", ImageUse::kColor);
   }
+  read_transmission(source, textures, material);
   if (const json* extension = find_extension(source, "KHR_materials_sheen")) {
     read_sheen(*extension, textures, material);
   }

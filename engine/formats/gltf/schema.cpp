@@ -42,6 +42,8 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
 #define PROMIN_COAT "materials[].extensions.KHR_materials_clearcoat"
 #define PROMIN_SHEEN "materials[].extensions.KHR_materials_sheen"
+#define PROMIN_TRANSMISSION "materials[].extensions.KHR_materials_transmission"
+#define PROMIN_VOLUME "materials[].extensions.KHR_materials_volume"
 #define PROMIN_SPECULAR "materials[].extensions.KHR_materials_specular"
 #define PROMIN_PHONG "materials[].extensions.PROMIN_materials_phong"
 #define PROMIN_GLOSSY "materials[].extensions.KHR_materials_pbrSpecularGlossiness"
@@ -169,6 +171,11 @@ constexpr JsonRule kRules[] = {
     object("materials[].extensions.*"),
     factor("materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"),
     number("materials[].extensions.KHR_materials_ior.ior", 0.0, kMaxScalar),
+    number(PROMIN_TRANSMISSION ".transmissionFactor", 0.0, 1.0),
+    PROMIN_TEXTURE_INFO(PROMIN_TRANSMISSION ".transmissionTexture"),
+    factor(PROMIN_VOLUME ".thicknessFactor"),
+    number(PROMIN_VOLUME ".attenuationDistance", 1e-30, kMaxScalar),
+    color(PROMIN_VOLUME ".attenuationColor"),
     number(PROMIN_SPECULAR ".specularFactor", 0.0, 1.0),
     color(PROMIN_SPECULAR ".specularColorFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularTexture"),
@@ -193,6 +200,9 @@ constexpr JsonRule kRules[] = {
     color(PROMIN_PHONG ".specularFactor"),
     color(PROMIN_PHONG ".reflectionFactor"),
     factor(PROMIN_PHONG ".shininess"),
+    color(PROMIN_PHONG ".transmissionFactor"),
+    number(PROMIN_PHONG ".ior", kTiny, kMaxCoordinate),
+    boolean(PROMIN_PHONG ".fresnel"),
 
     array("images"),
     object("images[]"),

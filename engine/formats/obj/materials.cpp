@@ -3,7 +3,6 @@
 #include "formats/obj/materials.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <string>
@@ -12,9 +11,17 @@
 #include "core/file.h"
 #include "formats/scene_path.h"
 #include "formats/text_lines.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {
+
+/// An index of refraction.
+constexpr double kGlass = 1.5;
+
+bool is_index(double number) {
+  return number > kMinSize && number <= kMaxCoordinate;
+}
 
 double illum_of(const MtlMaterial& source) {
   return std::floor(source.find("illum", 2.0).x);
@@ -54,12 +61,25 @@ float opacity_of(const MtlMaterial& source) {
   return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
+/// Whether light goes through, and is bent: illum 6 and 7.
+bool is_refracting(const MtlMaterial& source) {
+  return illum_of(source) == 6.0 || illum_of(source) == 7.0;
+}
+
+/// Whether the transmission filter Tf says what goes through: of what refracts always, of the glass of illum 4 and 9
+/// where a file has one, else their d alone tells.
+bool is_filtering(const MtlMaterial& source) {
+  const bool is_unbent = illum_of(source) == 4.0 || illum_of(source) == 9.0;
+  return is_refracting(source) || (is_unbent && source.numbers.contains("Tf") && opacity_of(source) < 1.0F);
+}
+
 /// Of map_Kd with the alpha of map_d.
 TextureSlot read_base_color(const MtlMaterial& source, ObjTextures& textures) {
   return textures.read_base_color(source.find_map("map_Kd"), source.find_map("map_d"));
 }
 
 void take_alpha(const MtlMaterial& source, Material& material) {
+  if (is_filtering(source)) return;
   material.alpha = opacity_of(source);
   const bool has_map = source.find_map("map_d") != nullptr;
   if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
@@ -102,6 +122,17 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures) {
     phong.specular_texture = textures.read_slot(source.find_map("map_Ks"), ImageUse::kColor);
   }
   if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
+  if (is_filtering(source)) {
+    // A material that is opaque by d and yet refracts is all glass.
+    const double through = opacity_of(source) < 1.0F ? 1.0 - static_cast<double>(opacity_of(source)) : 1.0;
+    phong.transmission = vec3(through * glm::clamp(source.find("Tf", 1.0), dvec3(0.0), dvec3(kMaxCoordinate)));
+  }
+  phong.fresnel = illum == 5.0 || illum == 7.0;
+  if (is_refracting(source) || phong.fresnel) {
+    // Glass where the file does not say.
+    const double ior = source.find("Ni", kGlass).x;
+    phong.ior = static_cast<float>(is_index(ior) ? ior : kGlass);
+  }
   return phong;
 }
 
@@ -120,11 +151,13 @@ void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& ma
 
 void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
-  const std::array<double, 4> kTransparent = {4, 6, 7, 9};
-  if (opacity_of(source) == 1.0F &&
-      std::find(kTransparent.begin(), kTransparent.end(), illum_of(source)) != kTransparent.end()) {
+  if (opacity_of(source) == 1.0F && (illum_of(source) == 4.0 || illum_of(source) == 9.0)) {
     report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
-                "), it is drawn opaque");
+                ") with a d of 1, it is drawn opaque");
+  }
+  const bool is_bending = is_refracting(source) || illum_of(source) == 5.0;
+  if (is_bending && source.numbers.contains("Ni") && !is_index(source.find("Ni", kGlass).x)) {
+    report.warn(title + ": its Ni is no index of refraction, 1.5 is taken");
   }
   if (illum_of(source) == 10.0) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
   // Most exporters name one file for both.

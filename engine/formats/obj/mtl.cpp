@@ -14,8 +14,14 @@
 namespace promin {
 namespace {
 
-/// Statements with factors of light, which are checked, unlike d and Tr, opacity and transparency.
+/// Statements with factors of light, which are checked.
 constexpr std::array<std::string_view, 8> kFactors = {"Ka", "Kd", "Ks", "Ke", "Ns", "illum", "Pr", "Pm"};
+/// Statements that others write without much care: what is no number counts as what is given here.
+struct LenientNumber {
+  std::string_view keyword;
+  double otherwise;
+};
+constexpr std::array<LenientNumber, 4> kLenient = {{{"d", 1.0}, {"Tr", 0.0}, {"Tf", 1.0}, {"Ni", 0.0}}};
 constexpr std::array<std::string_view, 8> kMaps = {"map_Ka", "map_Kd", "map_d",  "map_Ks",
                                                    "map_Ke", "map_Pr", "map_Pm", "norm"};
 /// Maps of another name, and heights, which are no normals.
@@ -103,7 +109,9 @@ class MtlParser {
       std::string_view rest = lines_.line();
       const std::string keyword(take_word(rest));
       if (keyword == "newmtl") begin_material(std::string(trim(rest)));
-      if (is_among(kFactors, keyword) || keyword == "d" || keyword == "Tr") read_numbers(keyword, rest);
+      const auto lenient = std::ranges::find(kLenient, std::string_view(keyword), &LenientNumber::keyword);
+      if (lenient != kLenient.end()) read_lenient(*lenient, rest);
+      if (is_among(kFactors, keyword)) read_factors(keyword, rest);
       if (is_among(kMaps, keyword)) {
         read_map(keyword, rest);
       } else if (keyword.starts_with("map_") || is_among(kOtherMaps, keyword) || is_among(kHeights, keyword)) {
@@ -120,17 +128,24 @@ class MtlParser {
     has_ignored_map_ = false;
   }
 
-  void read_numbers(const std::string& keyword, std::string_view rest) {
-    const bool is_factor = is_among(kFactors, keyword);
+  void read_lenient(const LenientNumber& number, std::string_view rest) {
+    dvec3 numbers(number.otherwise);
+    int count = 0;
+    for (std::string_view word = take_word(rest); !word.empty() && count < 3; word = take_word(rest)) {
+      // The opacity of what is seen edge-on, which is drawn as that of all.
+      if (word == "-halo") continue;
+      numbers[count++] = parse_number(word).value_or(number.otherwise);
+    }
+    if (count > 0) materials_.back().numbers[std::string(number.keyword)] = count == 1 ? dvec3(numbers.x) : numbers;
+  }
+
+  void read_factors(const std::string& keyword, std::string_view rest) {
     dvec3 numbers(0.0);
     int count = 0;
     for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
-      // The opacity of what is seen edge-on, which is drawn as that of all.
-      if (keyword == "d" && word == "-halo") word = take_word(rest);
-      // An opacity that is no number counts as opaque.
-      const double number = parse_number(word).value_or(is_factor ? -1.0 : keyword == "d" ? 1.0 : 0.0);
+      const double number = parse_number(word).value_or(-1.0);
       if (count < 3) numbers[count] = number;
-      if (!is_factor || (number >= 0.0 && number <= kMaxCoordinate)) continue;
+      if (number >= 0.0 && number <= kMaxCoordinate) continue;
       report_.refuse(quote(word) + " is no factor of light", "mtllib " + name_ + " " + lines_.place(),
                      "use numbers from 0, with a decimal point");
     }

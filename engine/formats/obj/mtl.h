@@ -40,10 +40,10 @@ struct MtlMaterial {
   const MtlMap* find_map(const std::string& keyword) const;
 };
 
-/// Parses the statements Ka, Kd, Ks, Ke, Ns, illum, Pr and Pm, which are checked, d and Tr, of which what is no number
-/// counts as opaque, and map_Ka, map_Kd, map_d, map_Ks, map_Ke, map_Pr, map_Pm and norm with their options; other maps
-/// are warned about. `name` is that of the file for messages, `folder` its own, relative to the scene: empty or with a
-/// slash at its end.
+/// Parses the statements Ka, Kd, Ks, Ke, Ns, illum, Pr and Pm, which are checked, d, Tr, Tf and Ni, of which
+/// what is no number counts as not there, and map_Ka, map_Kd, map_d, map_Ks, map_Ke, map_Pr, map_Pm and norm with their
+/// options; other maps are warned about. `name` is that of the file for messages, `folder` its own, relative to the
+/// scene: empty or with a slash at its end.
 std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, const std::string& folder,
                                    LoadReport& report);
 

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What a ray meets at a face of glass, and at mirrors that hang on the angle (docs/model.md, "Glass").
+
+// The material's glass, without its texture.
+void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media) {
+  Glass glass = Glass(vec3(0.0), vec3(0.0), direction, media, 1.0, NO_ENVIRONMENT, 0.0);
+  uint number = glass_number(point.material);
+  if (number != 0u && model_of(point) == MATERIAL_METALLIC_ROUGHNESS) glass.share = load_glass(number).transmission.x;
+  point.glass = glass;
+}
+
+// Sends the ray on about this normal. Whether it can go on.
+bool refract_about(vec3 normal, vec3 direction, Face face, out vec3 refracted) {
+  float cosine = min(-dot3(normal, direction), 1.0);
+  float k = cosine2_beyond(face, cosine);
+  precise float ratio = face.from / face.to;
+  precise vec3 sum = ratio * direction + (ratio * cosine - sqrt(max(k, 0.0))) * normal;
+  refracted = normalize3(sum);
+  return k > 0.0;
+}
+
+// Where the ray goes on, and what Phong's material reflects and lets through. `hangs_on_angle`: by Fresnel; `reflected` is
+// the share then.
+void meet_phong(inout ShadingPoint point, GlassRecord record, bool lets_through, bool is_total, float reflected) {
+  Glass glass = point.glass;
+  bool hangs_on_angle = has(FEATURE_FRESNEL) && (record.bits.x & GLASS_IS_FRESNEL) != 0u;
+  precise vec3 mirror = (hangs_on_angle ? reflected : 1.0) * glass.mirror;
+  // Total reflection takes the share of what would go through.
+  if (lets_through && !hangs_on_angle && is_total) mirror += record.transmission.xyz;
+  precise vec3 through = (hangs_on_angle ? 1.0 - reflected : 1.0) * record.transmission.xyz;
+  glass.mirror = mirror;
+  glass.through = lets_through && !is_total ? through : vec3(0.0);
+  point.glass = glass;
+}
+
+// The reflectance of a metallic-roughness material beside the medium that it is in.
+void meet_metallic_roughness(inout ShadingPoint point, GlassRecord record, bool is_total, Face face) {
+  MaterialRecord material = point.material;
+  Glass glass = point.glass;
+  if (is_total) {
+    material.b = vec4(1.0);
+    glass.share = 0.0;
+  } else if (face.from == face.to) {
+    material.b = vec4(0.0);
+  } else {
+    // The material has what it is beside air.
+    float in_air = normal_reflectance(Face(1.0, record.transmission.w, face.beyond));
+    precise vec3 reflectance = in_air > 0.0 ? material.b.xyz * (normal_reflectance(face) / in_air)
+                                            : record.reflectance.xyz * normal_reflectance(face);
+    material.b = vec4(min(reflectance, vec3(1.0)), material.b.w);
+  }
+  point.material = material;
+  point.glass = glass;
+}
+
+// Returns the cosine at which a lobe is seen: that on the face's thinner side.
+float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, bool leaves) {
+  float seen = -dot3(point.normal, direction);
+  Glass glass = point.glass;
+  // By now with what a texture shows.
+  glass.mirror = point.material.d.xyz;
+  point.glass = glass;
+  uint number = glass_number(point.material);
+  if (number == 0u) return seen;
+  GlassRecord record = load_glass(number);
+  bool lets_through = has(FEATURE_GLASS) && (record.bits.x & GLASS_IS_CLEAR) != 0u;
+  bool is_thin = (record.bits.x & GLASS_IS_THIN) != 0u;
+  Face face;
+  make_face(number, is_thin || !lets_through, lets_through && leaves, media, face);
+  // An interpolated normal may be turned away from the eye.
+  vec3 normal = seen > 0.0 ? point.normal : point.geometric_normal;
+  float cosine = clamp(-dot3(normal, direction), SMALLEST_NORMAL, 1.0);
+  float k = cosine2_beyond(face, cosine);
+  float beyond = sqrt(max(k, 0.0));
+  bool is_total = !(k > 0.0);
+  bool is_bent = lets_through && !is_thin && face.from != face.to;
+  if (is_bent) {
+    vec3 refracted;
+    bool goes_on = refract_about(normal, direction, face, refracted);
+    // What an interpolated normal would keep on this side is bent by the surface itself.
+    if (goes_on && dot3(refracted, point.geometric_normal) >= 0.0) {
+      goes_on = refract_about(point.geometric_normal, direction, face, refracted);
+    }
+    is_total = !goes_on;
+    precise float bend = face.from / face.to;
+    glass.bend = bend;
+    glass.direction = refracted;
+  }
+  glass.beyond = face.beyond;
+  if (model_of(point) == MATERIAL_METALLIC_ROUGHNESS) {
+    precise float blur = is_thin ? clamp(2.0 * record.transmission.w - 2.0, 0.0, 1.0) * point.material.c.x
+                                 : point.material.c.x;
+    glass.roughness = is_bent || blur > 0.0 ? blur : NO_ENVIRONMENT;
+  } else if (is_bent) {
+    glass.roughness = perfect_mirror_roughness();
+  }
+  point.glass = glass;
+  if (has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG) {
+    meet_phong(point, record, lets_through, is_total, is_total ? 1.0 : fresnel_reflectance(face, cosine, beyond));
+    return seen;
+  }
+  if (lets_through) meet_metallic_roughness(point, record, is_total, face);
+  if (!is_bent) return seen;
+  return face.from <= face.to ? cosine : beyond;
+}
+
+// Of metallic-roughness materials, what goes through: what is not reflected, in the base colour, half of it at each face
+// of a volume. A coat and a sheen are above it.
+void let_through(inout ShadingPoint point) {
+  uint number = glass_number(point.material);
+  if (model_of(point) != MATERIAL_METALLIC_ROUGHNESS || number == 0u) return;
+  Glass glass = point.glass;
+  bool is_thin = (load_glass(number).bits.x & GLASS_IS_THIN) != 0u;
+  Lobe lobe = dielectric_lobe(point);
+  vec3 base = base_color_of(point);
+  precise float share =
+      (1.0 - point.material.a.w) * glass.share * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z)));
+  if (has(FEATURE_SHEENS)) share *= left_below_sheen(point.sheen, point.sheen.share);
+  if (has(FEATURE_COATS)) share *= 1.0 - point.coat.weight;
+  precise vec3 through = share * (is_thin ? base : sqrt(base));
+  glass.through = through;
+  point.glass = glass;
+}

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Glass (docs/model.md, "Glass"): the media that a ray is in, what a face of glass sends back and lets through, and what
+// shadow rays take along.
+
+uint glass_number(MaterialRecord material) { return flags_of(material) >> MATERIAL_GLASS_SHIFT; }
+
+// Whether light goes through it.
+bool is_clear(MaterialRecord material) {
+  if (!has(FEATURE_GLASS) || glass_number(material) == 0u) return false;
+  return (load_glass(glass_number(material)).bits.x & GLASS_IS_CLEAR) != 0u;
+}
+
+// Of the media that a ray is in the numbers of their glasses, 16 bits each, the last entered first, in the lower half of
+// x. Where there are more than four the first is forgotten.
+const uint NO_MEDIUM = 0u;
+uint last_entered(uvec2 media) { return media.x & 0xFFFFu; }
+uvec2 enter(uvec2 media, uint medium) { return uvec2(media.x << 16 | medium, media.y << 16 | media.x >> 16); }
+bool is_within(uvec2 media, uint medium) {
+  uvec2 lower = media & 0xFFFFu;
+  uvec2 upper = media >> 16;
+  return any(equal(lower, uvec2(medium))) || any(equal(upper, uvec2(medium)));
+}
+// Without the last entry of the medium.
+uvec2 leave(uvec2 media, uint medium) {
+  uvec2 lower = media & 0xFFFFu;
+  uvec2 upper = media >> 16;
+  if (lower.x == medium) return uvec2(upper.x | lower.y << 16, upper.y);
+  if (upper.x == medium) return uvec2(lower.x | lower.y << 16, upper.y);
+  if (lower.y == medium) return uvec2(media.x, upper.y);
+  if (upper.y == medium) return uvec2(media.x, lower.y);
+  return media;
+}
+
+float index_of(uint medium) { return medium == NO_MEDIUM ? 1.0 : load_glass(medium).transmission.w; }
+
+// The share of light that is left after this way through a medium (Beer and Lambert).
+vec3 left_after(uint medium, float way) {
+  if (medium == NO_MEDIUM) return vec3(1.0);
+  vec3 absorption = load_glass(medium).absorption.xyz;
+  precise vec3 exponent = -absorption * way;
+  // Without absorption any way is free, be it infinite.
+  return vec3(absorption.x > 0.0 ? power_of_two(exponent.x) : 1.0, absorption.y > 0.0 ? power_of_two(exponent.y) : 1.0,
+              absorption.z > 0.0 ? power_of_two(exponent.z) : 1.0);
+}
+
+// A face between two media: the indices of refraction on the ray's side and beyond, and the media beyond.
+struct Face {
+  float from;
+  float to;
+  uvec2 beyond;
+};
+
+// Solids that overlap count as the one that was entered last; the faces of the others within bend nothing (Schmidt and
+// Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2)). What is left without having been entered has held
+// the camera, or belongs to a mesh that is not closed.
+void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, out Face face) {
+  float outside = index_of(last_entered(media));
+  float inside = index_of(medium);
+  face.from = outside;
+  face.to = outside;
+  face.beyond = media;
+  if (is_thin) {
+    face.to = inside;
+  } else if (!leaves) {
+    face.to = inside;
+    face.beyond = enter(media, medium);
+  } else {
+    face.beyond = leave(media, medium);
+    bool is_last = last_entered(media) == medium;
+    if (is_last || !is_within(media, medium)) {
+      face.from = inside;
+      face.to = is_last ? index_of(last_entered(face.beyond)) : outside;
+    }
+  }
+}
+
+// 1 - (sine beyond)^2 of a ray that meets the face at an angle of this cosine; not positive where it is reflected
+// totally.
+float cosine2_beyond(Face face, float cosine) {
+  precise float ratio = face.from / face.to;
+  precise float k = 1.0 - ratio * ratio * ((1.0 - cosine) * (1.0 + cosine));
+  return k;
+}
+
+// Schlick's weight, of the cosine on the thinner side.
+float schlick_weight(float cosine) {
+  precise float p = clamp(1.0 - cosine, 0.0, 1.0);
+  precise float p2 = p * p;
+  precise float p5 = p2 * p2 * p;
+  return p5;
+}
+
+// What dielectrics reflect of unpolarised light, by Fresnel; the cosines are those on either side.
+float fresnel_reflectance(Face face, float cosine, float cosine_beyond) {
+  precise float s_from = face.from * cosine;
+  precise float s_to = face.to * cosine_beyond;
+  precise float p_from = face.from * cosine_beyond;
+  precise float p_to = face.to * cosine;
+  precise float s = (s_from - s_to) / (s_from + s_to);
+  precise float p = (p_from - p_to) / (p_from + p_to);
+  precise float mean = 0.5 * (s * s + p * p);
+  return mean;
+}
+
+// The factor of a reflectance at normal incidence that the record of a glass leaves open: ((n2 - n1) / (n2 + n1))^2.
+float normal_reflectance(Face face) {
+  precise float slope = (face.to - face.from) / (face.to + face.from);
+  precise float square = slope * slope;
+  return square;
+}

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The way of light along a shadow ray, through surfaces that blend and through glass (docs/model.md, "Glass"): straight
+// on, the nearest surface first, so that the product does not hang on the tree.
+
+struct LightWay {
+  vec3 arriving;  // the share of the source's light that is left so far
+  // With FEATURE_GLASS:
+  uvec2 media;  // that the ray is in
+  float t;      // where it has come to
+};
+
+LightWay light_way(uvec2 media) { return LightWay(vec3(1.0), media, 0.0); }
+
+// What is left after the way in the medium that the ray is in, up to t.
+void absorb_until(inout LightWay way, Ray ray, float t) {
+  precise float length = (t - way.t) * length3(ray.direction);
+  precise vec3 arriving = way.arriving * left_after(last_entered(way.media), length);
+  way.arriving = arriving;
+  way.t = t;
+}
+
+vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord material) {
+  precise vec3 tint = material.a.xyz;
+  uvec4 corners = surface.corners_material;
+  precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
+  if (has(FEATURE_VERTEX_COLORS) && (corners.w & SURFACE_IS_COLORED) != 0u) {
+    tint *= load_vertex_color(corners.xyz, weights).xyz;
+  }
+  uint slot = slot_number(material.cover.z);
+  if (has(FEATURE_TEXTURES) && slot != 0u && (corners.w & SURFACE_HAS_UVS) != 0u) {
+    tint *= look_up(slot, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0)).xyz;
+  }
+  return min(tint, vec3(1.0));
+}
+
+float transmission_at_hit(Hit hit, Primitive p, SurfaceRecord surface, GlassRecord record) {
+  precise float share = record.transmission.x;
+  uvec4 corners = surface.corners_material;
+  if (has(FEATURE_TEXTURES) && record.bits.y != 0u && (corners.w & SURFACE_HAS_UVS) != 0u) {
+    precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
+    share *= look_up(record.bits.y, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0)).x;
+  }
+  return share;
+}
+
+// What a face lets through, and the media behind it. Rays that go straight on meet each face as if from its thinner
+// side, so that none is reflected totally.
+vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord material, inout uvec2 media) {
+  Primitive p = load_primitive(hit.primitive);
+  GlassRecord record = load_glass(glass_number(material));
+  bool is_thin = (record.bits.x & GLASS_IS_THIN) != 0u;
+  vec3 normal = surface_point(ray, p, hit).normal;
+  float along = dot3(normal, normalize3(ray.direction));
+  float cosine = min(abs(along), 1.0);
+  Face face;
+  make_face(glass_number(material), is_thin, along > 0.0, media, face);
+  media = face.beyond;
+  Face outside = Face(min(face.from, face.to), max(face.from, face.to), face.beyond);
+  if (has(FEATURE_PHONG) && (flags_of(material) & MATERIAL_MODEL_MASK) == MATERIAL_PHONG) {
+    if (!has(FEATURE_FRESNEL) || (record.bits.x & GLASS_IS_FRESNEL) == 0u) return record.transmission.xyz;
+    float beyond = sqrt(max(cosine2_beyond(outside, cosine), 0.0));
+    precise vec3 left = record.transmission.xyz * (1.0 - fresnel_reflectance(outside, max(cosine, SMALLEST_NORMAL), beyond));
+    return left;
+  }
+  if (face.from == face.to) return vec3(transmission_at_hit(hit, p, surface, record));
+  precise vec3 f0 = min(record.reflectance.xyz * normal_reflectance(face), vec3(1.0));
+  precise vec3 reflected = f0 + (material.b.w - f0) * schlick_weight(cosine);
+  vec3 tint = tint_at_hit(hit, p, surface, material);
+  precise float share = (1.0 - material.a.w) * transmission_at_hit(hit, p, surface, record) *
+                        (1.0 - max(reflected.x, max(reflected.y, reflected.z)));
+  precise vec3 left = share * (is_thin ? tint : sqrt(tint));
+  return left;
+}
+
+// Takes the way on behind a hit that the ray meets after so many others. Whether any light is left.
+bool goes_on_behind(inout LightWay way, Ray ray, Hit hit, uint layers) {
+  if (!has(FEATURE_GLASS)) {
+    way.arriving = vec3(share_behind(hit, ray.direction, way.arriving.x, layers));
+    return way.arriving.x > 0.0;
+  }
+  SurfaceRecord surface = load_surface(hit.primitive);
+  MaterialRecord material = material_of(surface);
+  absorb_until(way, ray, hit.t);
+  float coverage = coverage_of_hit(hit, ray.direction);
+  precise vec3 left = vec3(1.0 - coverage);
+  if (is_clear(material) && coverage > 0.0) left += coverage * share_through(hit, ray, surface, material, way.media);
+  precise vec3 arriving = layers < MOST_LAYERS ? way.arriving * left : vec3(0.0);
+  way.arriving = max_abs(arriving) >= LEAST_SHARE_BEHIND ? arriving : vec3(0.0);
+  return max_abs(way.arriving) > 0.0;
+}
+
+// The way to the source, behind the last surface.
+void end_way(inout LightWay way, Ray ray) {
+  if (has(FEATURE_GLASS) && ray.tmax < INFINITY && max_abs(way.arriving) > 0.0) absorb_until(way, ray, ray.tmax);
+}

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The tree of rays that glass makes of a path, with FEATURE_GLASS. A lane follows it depth first, the mirror ray before
+// the refracted one, which waits in the stream until the path has come to its end: so the order of a pixel's sum hangs on
+// nothing but the tree, at most one ray waits for each bounce, and no path outgrows its place.
+
+bool is_glass(ShadingPoint point) { return max_abs(point.glass.through) > 0.0 || is_clear(point.material); }
+
+// Whether a ray is worth to be followed. In place of others what they would see of the environment is added, of Phong's
+// materials nothing.
+bool is_followed(inout Path parent, ShadingPoint point, Path child) {
+  bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
+  if (parent.rays < MOST_TREE_RAYS && child.bounces <= most_bounces() && max_abs(child.weight) >= LEAST_TREE_WEIGHT) {
+    ++parent.rays;
+    return true;
+  }
+  if (!is_phong) {
+    precise vec3 sum = parent.radiance + child.weight * radiance_beyond(child.direction, child.roughness);
+    parent.radiance = sum;
+  }
+  return false;
+}
+
+// Turns the path into the ray that goes through the point's surface.
+void go_beyond(inout Path path, ShadingPoint point) {
+  precise vec3 weight = path.weight * point.glass.through;
+  path.weight = weight;
+  path.origin = lift_off(point.position, -point.geometric_normal, point.lift);
+  if (has(FEATURE_TEXTURES)) {
+    // What is curved spreads or gathers the cone.
+    precise float spread =
+        point.glass.bend * path.cone_spread + (point.glass.bend - 1.0) * point.curvature * path.cone_width;
+    path.cone_spread = spread;
+  }
+  path.direction = point.glass.direction;
+  path.media = point.glass.beyond;
+  path.roughness = max(path.roughness, point.glass.roughness);
+  path.kind = LOG_REFRACTION;
+  ++path.bounces;
+  path.passed_t = -1.0;
+  path.passed_order = 0u;
+}
+
+// Parts a path at a surface: it becomes its mirror ray, or where there is none the ray beyond; where there are both
+// `through` is that one.
+void part_path(inout Path path, ShadingPoint point, out Path through, out bool is_mirrored, out bool is_refracted) {
+  through = path;
+  go_beyond(through, point);
+  Path mirrored = path;
+  // Where no bounce is left, own_light has had the environment in the mirror.
+  is_mirrored = leads_on(point, path.bounces) && bounce(mirrored, point) && is_followed(path, point, mirrored);
+  is_refracted = max_abs(through.weight) > 0.0 && is_followed(path, point, through);
+  through.rays = path.rays;
+  mirrored.rays = path.rays;
+  mirrored.radiance = path.radiance;
+  through.radiance = path.radiance;
+  if (is_mirrored) {
+    path = mirrored;
+  } else if (is_refracted) {
+    path = through;
+  }
+}
+
+// Keeps what tells the path from others. `has_seen`: the point that it has reached is still to be added.
+void store_glass(uint number, Path path, uint waiting, bool has_seen) {
+  pixels[record_of_glass(number) + RECORD_MEDIA] =
+      uvec4(path.media, path.rays | (has_seen ? 1u << HAS_SEEN_SHIFT : 0u), waiting | path.kind << KIND_SHIFT);
+}
+
+// Keeps the ray that a path follows when those before it have come to their ends.
+void store_waiting(uint number, uint place, Path path) {
+  uint record = record_of_waiting(number, place);
+  pixels[record] = uvec4(floatBitsToUint(path.origin), floatBitsToUint(path.cone_width));
+  pixels[record + 1u] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.cone_spread));
+  pixels[record + 2u] = uvec4(floatBitsToUint(path.weight), floatBitsToUint(path.roughness));
+  pixels[record + 3u] = uvec4(path.media, path.bounces, 0u);
+}
