@@ -282,7 +282,7 @@ void leave() {
       uint number = put_path(path);
       if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
       ++pass_count;
-    } else if (has(FEATURE_GLASS) && is_lit[i] && is_glass(points[i])) {
+    } else if (has(FEATURE_GLASS) && is_lit[i]) {
       leave_glass(path, points[i]);
     } else if (is_lit[i] && leads_on(points[i], 0u) && bounce(path, points[i])) {
       uint number = put_path(path);

@@ -4,8 +4,6 @@
 // the refracted one, which waits in the stream until the path has come to its end: so the order of a pixel's sum hangs on
 // nothing but the tree, at most one ray waits for each bounce, and no path outgrows its place.
 
-bool is_glass(ShadingPoint point) { return max_abs(point.glass.through) > 0.0 || is_clear(point.material); }
-
 // Whether a ray is worth to be followed. In place of others what they would see of the environment is added, of Phong's
 // materials nothing.
 bool is_followed(inout Path parent, ShadingPoint point, Path child) {

@@ -105,6 +105,13 @@ TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
   EXPECT_TRUE(compare(test::make_scene_of_alpha(), test::make_view(uvec2(96, 72))).passes());
 }
 
+TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
+  View view = test::make_view(uvec2(96, 72));
+  view.max_depth = kMaxDepthOfGlass;
+  // Where total reflection is near, little is sure.
+  EXPECT_TRUE(compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1}).passes());
+}
+
 TEST_F(OraclePictureTest, ClearCoatsAgreeWithTheOracle) {
   world::Scene scene = test::make_scene_of_everything(60);
   const auto coat = [&](size_t material, float clearcoat, float roughness) {

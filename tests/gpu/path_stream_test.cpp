@@ -10,7 +10,7 @@ namespace {
 TEST(StreamShapeTest, ItsMemoryIsBoundedWhateverTheLights) {
   for (const uint32_t lights : {0U, 1U, 3U, 16U, 17U, 1000U}) {
     SCOPED_TRACE(lights);
-    const StreamShape shape = StreamShape::of(lights, layout::FEATURE_SHADOWS, 1U << 18);
+    const StreamShape shape = StreamShape::of(lights, layout::FEATURE_SHADOWS, 1U << 18, 5);
     EXPECT_LE(shape.path_bytes() * shape.most_paths, StreamShape::kMostBytes);
     EXPECT_EQ(shape.most_paths % StreamShape::kLanes, 0U);
     EXPECT_GE(shape.most_paths, 1U << 16);
@@ -22,7 +22,7 @@ TEST(StreamShapeTest, ItsMemoryIsBoundedWhateverTheLights) {
 }
 
 TEST(StreamShapeTest, WithoutShadowsNoSourceTakesRoom) {
-  const StreamShape shape = StreamShape::of(1000, FeatureMask(), 64);
+  const StreamShape shape = StreamShape::of(1000, FeatureMask(), 64, 5);
   EXPECT_EQ(shape.sources, 0U);
   EXPECT_EQ(shape.turns_of_bounce, 1U);
   EXPECT_EQ(shape.path_bytes(), 124U);

@@ -132,6 +132,59 @@ world::Scene make_scene_of_alpha() {
   return scene;
 }
 
+world::Scene make_scene_of_glass() {
+  world::Scene scene = make_scene_of_everything(60);
+  const auto add = [&](const world::Shape& shape, const Material& material) {
+    scene.objects.push_back({"", shape, static_cast<uint32_t>(scene.materials.size())});
+    scene.materials.push_back(material);
+  };
+  const auto make_phong = [](float ior, const vec3& transmission, float reflection, bool is_fresnel) {
+    Phong phong;
+    phong.ambient = phong.diffuse = vec3(0.02F);
+    phong.specular = vec3(0.4F);
+    phong.shininess = 80.0F;
+    phong.reflection = vec3(reflection);
+    phong.transmission = transmission;
+    phong.ior = ior;
+    phong.fresnel = is_fresnel;
+    Material material;
+    material.model = phong;
+    return material;
+  };
+  const auto make_clear = [](float ior, float transmission, float thickness, float roughness, float distance) {
+    MetallicRoughness model;
+    model.base_color = vec3(0.9F, 0.95F, 0.7F);
+    model.metallic = 0.0F;
+    model.roughness = roughness;
+    model.ior = ior;
+    model.transmission = transmission;
+    model.thickness = thickness;
+    model.attenuation_color = vec3(0.3F, 0.6F, 0.9F);
+    model.attenuation_distance = distance;
+    Material material;
+    material.model = model;
+    return material;
+  };
+  // One within another, and a bubble in it.
+  add(world::Sphere{vec3(-0.9F, 1.5F, 3.2F), 0.7F}, make_phong(1.5F, vec3(0.9F, 0.85F, 0.8F), 0.1F, false));
+  add(world::Sphere{vec3(-0.8F, 1.6F, 3.2F), 0.4F}, make_phong(1.2F, vec3(0.9F), 0.05F, true));
+  add(world::Sphere{vec3(-0.7F, 1.6F, 3.3F), 0.15F}, make_phong(1.0F, vec3(1.0F), 0.0F, false));
+  // Overlapping.
+  add(world::Sphere{vec3(0.7F, 1.5F, 3.0F), 0.5F}, make_clear(1.5F, 0.9F, 1.0F, 0.0F, 0.5F));
+  add(world::Sphere{vec3(1.2F, 1.6F, 3.1F), 0.45F}, make_clear(1.33F, 1.0F, 1.0F, 0.05F, 2.0F));
+  add(world::Cylinder{vec3(1.9F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.3F}, make_phong(1.8F, vec3(0.8F), 1.0F, true));
+  add(world::Cone{vec3(-2.0F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.5F, 0.1F}, make_clear(2.4F, 0.7F, 0.1F, 0.2F, 0.3F));
+  add(make_smooth_mesh(vec3(0.1F, 0.6F, 3.9F), 0.4F), make_clear(1.5F, 1.0F, 1.0F, 0.0F, 1.0F));
+  // Thin.
+  Mesh pane;
+  pane.positions = {vec3(-0.4F, 2.0F, 3.4F), vec3(1.6F, 2.1F, 3.5F), vec3(1.6F, 2.9F, 3.1F), vec3(-0.4F, 2.8F, 3.0F)};
+  pane.triangles = {{0, 1, 2}, {0, 2, 3}};
+  add(pane, make_clear(1.5F, 0.8F, 0.0F, 0.3F, 1.0F));
+  // A mirror that hangs on the angle, and lets nothing through.
+  add(world::Sphere{vec3(-2.3F, 2.0F, 2.0F), 0.4F}, make_phong(1.6F, vec3(0.0F), 1.0F, true));
+  return scene;
+}
+
 View make_view(uvec2 size) {
   View view;
   view.size = size;

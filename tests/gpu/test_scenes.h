@@ -19,6 +19,10 @@ world::Scene make_scene_of_everything(uint32_t sphere_count = 200);
 /// ones.
 world::Scene make_scene_of_alpha();
 
+/// The same with glass of both models before it: solids, one within another, overlapping ones, a bubble, a smooth mesh,
+/// thin walls, mirrors that hang on the angle, absorption.
+world::Scene make_scene_of_glass();
+
 /// A view of these scenes.
 View make_view(uvec2 size);
 

@@ -271,7 +271,8 @@ Lobe::Lobe(const MetallicRoughness& material, const Vector& vertex_color, const 
       metal_(base_of(material, vertex_color), 1, shares) {
   const Vector of_dielectric = dielectric_.reflectance(shares);
   reflectance_ = (1 - metallic_) * of_dielectric + metallic_ * metal_.reflectance(shares);
-  albedo_ = (1 - metallic_) * (1 - largest(of_dielectric)) * base_of(material, vertex_color);
+  let_in_ = (1 - metallic_) * (1 - largest(of_dielectric));
+  albedo_ = let_in_ * base_of(material, vertex_color);
 }
 
 Real Lobe::sharpness() const {

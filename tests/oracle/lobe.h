@@ -59,6 +59,8 @@ class Lobe {
   /// Of light from all around: what is reflected, and the share that the body under the surface sends, both of 1.
   const Vector& reflectance() const { return reflectance_; }
   const Vector& albedo() const { return albedo_; }
+  /// The share that comes into the dielectric.
+  Real let_in() const { return let_in_; }
   /// The part of the reflected light that a mirror ray brings, 0...1.
   Real sharpness() const;
   /// The radiance that the surface reflects of a source with an irradiance of 1 across its way.
@@ -85,6 +87,7 @@ class Lobe {
   Part metal_;
   Vector reflectance_{0};
   Vector albedo_{0};
+  Real let_in_ = 0;
 };
 
 /// A clear coat as one eye sees it at one point (KHR_materials_clearcoat), without textures: it has the material's

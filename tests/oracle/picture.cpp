@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -92,6 +93,10 @@ constexpr Real kLeastShareBehind = 1.0L / 1024;
 /// A mirror ray of less weight is not traced where the environment can stand for what it would bring.
 constexpr Real kLeastMirrorWeight = 1.0L / 256;
 
+/// Where there is glass, a sample follows so many rays from surfaces, and none of less weight.
+constexpr uint32_t kMostTreeRays = 64;
+constexpr Real kLeastTreeWeight = 1.0L / 512;
+
 /// Of d = look + (x right - y up) each product, the difference and the sum are rounded, and d is normalised.
 constexpr Real kCameraRayError = 8 * kRoundoff;
 
@@ -164,6 +169,12 @@ struct Coverage {
   Real error = 0;
 };
 
+/// Of a source's light, the share that reaches a point.
+struct ArrivingShare {
+  Vector value{1};
+  Real error = 0;
+};
+
 /// What a ray sees first, and whether a device may see something else because a mask ends there.
 struct Seen {
   Hit hit;
@@ -176,19 +187,27 @@ struct Way {
   uint32_t bounces = 0;
   /// How many surfaces it went through.
   uint32_t layers = 0;
-  /// The largest part of what it brings that a pixel sees.
-  Real weight = 1;
+  /// The part of what it brings that a pixel sees.
+  Vector weight{1};
   /// Whether it comes from a mirror, one of a metallic-roughness material among them, and the largest roughness of all.
   bool is_mirrored = false;
   bool is_of_metal = false;
   Real roughness = 0;
   Cone cone;
   RayError error;
+  /// With glass: what it is in, and how many rays its sample has followed.
+  Media media;
+  uint32_t* rays = nullptr;
 };
 
 class Tracer {
  public:
-  explicit Tracer(const world::Scene& scene) : scene_(scene), textures_(scene), surroundings_(scene.environment) {}
+  explicit Tracer(const world::Scene& scene)
+      : scene_(scene),
+        textures_(scene),
+        surroundings_(scene.environment),
+        has_glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const Material& m) { return glass_of(m).is_clear; })) {}
 
   /// The nearest hit that is not where a mask has cut its triangle out.
   Seen find(const Ray& ray, const Way& way, Sight sight) const {
@@ -228,7 +247,8 @@ class Tracer {
     return at;
   }
 
-  SurfacePoint make_surface_point(const Ray& ray, const Hit& hit, const Way& way, const PointError& error) const {
+  SurfacePoint make_surface_point(const Ray& ray, const Hit& hit, const Way& way, const PointError& error,
+                                  Media& beyond) const {
     const world::Object& object = scene_.objects[static_cast<size_t>(hit.object)];
     SurfacePoint point;
     point.side = glm::dot(hit.normal, ray.direction) > 0 ? -1 : 1;
@@ -243,6 +263,8 @@ class Tracer {
       if (!mesh->normals.empty()) apply_vertex_normals(*mesh, corners, point.side, point);
       if (!mesh->colors.empty()) point.vertex_color = corners.interpolate<Texel>(mesh->colors);
     }
+    beyond = way.media;
+    if (glass_of(*point.material).exists) point.face = way.media.meet(*point.material, point.side < 0, beyond);
     point.slots = slots_of(*point.material);
     for (TextureSlot& slot : point.slots) {
       if (!textures_.shows(slot, point.on_triangle)) slot = {};
@@ -277,28 +299,85 @@ class Tracer {
     return {alpha.value >= material.alpha_cutoff ? Real(1) : Real(0), is_at_cutoff ? Real(1) : Real(0)};
   }
 
+  /// What a surface of glass lets through of light that goes straight on, and the media behind it.
+  Vector share_of_glass(const Ray& ray, const Hit& hit, const RayError& of_ray, Media& media) const {
+    const Material& material = material_of(scene_, hit);
+    const Real along = glm::dot(hit.normal, glm::normalize(ray.direction));
+    Media beyond;
+    const Face face = media.meet(material, along > 0, beyond);
+    media = beyond;
+    Vector tint(1);
+    Real transmission = 1;
+    if (const auto* model = std::get_if<MetallicRoughness>(&material.model)) {
+      const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
+      tint = Vector(model->base_color);
+      if (at.mesh != nullptr && !at.mesh->colors.empty()) {
+        const Corners corners{at.mesh->triangles[static_cast<size_t>(at.triangle)], {1 - at.u - at.v, at.u, at.v}};
+        tint *= Vector(corners.interpolate<Texel>(at.mesh->colors));
+      }
+      const Slots slots = slots_of(material);
+      const auto look_up = [&](Slot slot) {
+        return textures_.shows(slots[slot], at) ? textures_.look_up(slots[slot], at).value : Texel(1);
+      };
+      tint = glm::min(tint * Vector(look_up(kBaseSlot)), Vector(1));
+      transmission = look_up(kTransmissionSlot).r;
+    }
+    return straight_share(material, face, std::min(std::abs(along), Real(1)), tint, transmission);
+  }
+
+  /// The share of the source's light that reaches a point through glass, one surface after the other.
+  ArrivingShare share_through_glass(const Ray& ray, const RayError& of_ray, Media media) const {
+    const Real length = glm::length(ray.direction);
+    ArrivingShare share;
+    Sight sight;
+    Real t = 0;
+    for (uint32_t layer = 0;; ++layer) {
+      sight.passed = find_nearest_hit(scene_, ray, sight);
+      const bool is_through = !sight.passed.exists();
+      const Real end = is_through ? ray.tmax : sight.passed.t;
+      if (end < kInfinity) share.value *= media.left_after((end - t) * length);
+      if (is_through) return share;
+      t = end;
+      const Coverage covered = coverage_in_shadow(ray, sight.passed, of_ray);
+      Vector left(1 - covered.value);
+      if (glass_of(material_of(scene_, sight.passed)).is_clear && covered.value > 0) {
+        left += covered.value * share_of_glass(ray, sight.passed, of_ray, media);
+      }
+      share.error = std::max(largest(share.value), share.error) * covered.error + share.error * largest(left);
+      share.value = layer < kMostLayers ? share.value * left : Vector(0);
+      // Next to the least share a device may see the other.
+      if (std::abs(largest(share.value) - kLeastShareBehind) < 1e-4L * kLeastShareBehind)
+        share.error += kLeastShareBehind;
+      if (largest(share.value) < kLeastShareBehind) share.value = Vector(0);
+      if (share.error < 1e-9L) share.error = 0;
+      if (share.value == Vector(0) && share.error == 0) return share;
+    }
+  }
+
   /// The share of the source's light that reaches the point, and how far a device may be off it.
-  Coverage arriving_share(const SurfacePoint& point, const Light& light, const Vector& to_light,
-                          const PointError& error) const {
+  ArrivingShare arriving_share(const SurfacePoint& point, const Light& light, const Vector& to_light,
+                               const PointError& error, const Media& media) const {
     const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
     const Ray ray = has_place(light.kind) ? Ray{origin, Vector(light.position) - origin, 0, 1} : Ray{origin, to_light};
     const RayError of_ray{error.position, 4 * kRoundoff};
+    if (has_glass_) return share_through_glass(ray, of_ray, media);
     Coverage share;
     Sight sight;
     for (uint32_t layer = 0; share.value > 0 || share.error > 0; ++layer) {
       sight.passed = find_nearest_hit(scene_, ray, sight);
-      if (!sight.passed.exists()) return share;
-      if (layer >= kMostLayers) return {0};
+      if (!sight.passed.exists()) break;
+      if (layer >= kMostLayers) return {Vector(0), 0};
       const Coverage covered = coverage_in_shadow(ray, sight.passed, of_ray);
       share.error = std::max(share.value, share.error) * covered.error + share.error * (1 - covered.value);
       share.value *= 1 - covered.value;
       if (share.value < kLeastShareBehind) share.value = 0;
       if (share.error < 1e-9L) share.error = 0;
     }
-    return share;
+    return {Vector(share.value), share.error};
   }
 
-  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error) const {
+  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error,
+                                             const Media& media) const {
     // Textures of normals show the front what lies behind a little.
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
@@ -306,8 +385,8 @@ class Tracer {
       const Illumination illumination = illuminate(light, point.position);
       const bool is_behind = !has_normals && !(glm::dot(point.normal, illumination.to_light) > 0);
       if (is_behind || !(illumination.strength > 0)) continue;
-      const Coverage share = arriving_share(point, light, illumination.to_light, error);
-      if (share.value == 0 && share.error == 0) continue;
+      const ArrivingShare share = arriving_share(point, light, illumination.to_light, error, media);
+      if (share.value == Vector(0) && share.error == 0) continue;
       arriving.push_back({&light, illumination.to_light, illumination.distance, share.value * illumination.strength,
                           share.error * illumination.strength});
     }
@@ -318,10 +397,12 @@ class Tracer {
   struct BoundedResponse : Response {
     Real weight_error = 0;
     Real normal_error = 0;
+    Real through_error = 0;
+    Real direction_error = 0;
   };
-  BoundedResponse respond_with_textures(const SurfacePoint& point, const Vector& direction,
-                                        const PointError& error) const {
-    const std::vector<ArrivingLight> lights = arriving_lights(point, error);
+  BoundedResponse respond_with_textures(const SurfacePoint& point, const Vector& direction, const PointError& error,
+                                        const Media& media) const {
+    const std::vector<ArrivingLight> lights = arriving_lights(point, error, media);
     SlotTexels texels;
     SlotTexels errors;
     for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -330,6 +411,7 @@ class Tracer {
       errors[slot] = shown.error;
     }
     BoundedResponse bounded{respond(point, texels, direction, error, lights, surroundings_)};
+    if (point.face) add_errors_of_face(point, texels, direction, error, bounded);
     for (size_t slot = 0; slot < kSlotCount; ++slot) {
       if (errors[slot] == Texel(0)) continue;
       const Response whole = bounded;
@@ -342,11 +424,33 @@ class Tracer {
     }
     return bounded;
   }
+  /// A face answers another angle otherwise: near that of total reflection much so.
+  void add_errors_of_face(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction,
+                          const PointError& error, BoundedResponse& bounded) const {
+    const Real off = error.normal + error.to_eye + 8 * kRoundoff;
+    const Vector across = direction - glm::dot(direction, point.normal) * point.normal;
+    const Vector aside = glm::length(across) > 1e-9L ? glm::normalize(across) : Vector(0);
+    const Response whole = bounded;
+    for (const Real sign : {-1, 1}) {
+      SurfacePoint turned = point;
+      turned.normal = glm::normalize(point.normal + sign * off * aside);
+      const Response other = respond(turned, texels, direction, error, {}, surroundings_);
+      bounded.weight_error =
+          std::max(bounded.weight_error, largest_difference(other.mirror_weight, whole.mirror_weight));
+      bounded.through_error = std::max(bounded.through_error, largest_difference(other.through, whole.through));
+      // Where it is reflected totally no ray goes on.
+      const bool go_both = !other.beyond.is_total && !whole.beyond.is_total;
+      const Real apart = go_both ? glm::distance(other.beyond.direction, whole.beyond.direction) : Real(0);
+      bounded.direction_error = std::max(bounded.direction_error, apart);
+    }
+  }
   static void add_difference(const Response& whole, const Response& other, BoundedResponse& bounded) {
     bounded.sent.error += largest_difference(other.sent.color, whole.sent.color);
     bounded.instead.error += largest_difference(other.instead.color, whole.instead.color);
     bounded.weight_error += largest_difference(other.mirror_weight, whole.mirror_weight);
     bounded.normal_error += glm::distance(other.mirror_normal, whole.mirror_normal);
+    bounded.through_error += largest_difference(other.through, whole.through);
+    bounded.direction_error += glm::distance(other.beyond.direction, whole.beyond.direction);
   }
 
   /// What a ray brings that meets nothing.
@@ -363,11 +467,14 @@ class Tracer {
   Radiance trace_hit(const Ray& ray, const Hit& hit, const Way& way) const {
     if (!hit.exists()) return beyond(ray, way);
     const PointError error = error_at(scene_, ray, hit, way.error);
-    const SurfacePoint point = make_surface_point(ray, hit, way, error);
+    Media beyond;
+    const SurfacePoint point = make_surface_point(ray, hit, way, error, beyond);
     const Coverage coverage = coverage_of(*point.material, point.on_triangle);
-    const Real behind = way.weight * (1 - coverage.value);
-    const bool goes_on = coverage.value < 1 && way.layers < kMostLayers && behind >= kLeastShareBehind;
-    const Radiance seen = trace_surface(ray, hit, point, error, way, goes_on ? 0 : way.bounces);
+    const Vector behind = way.weight * (1 - coverage.value);
+    const bool goes_on = coverage.value < 1 && way.layers < kMostLayers && largest(behind) >= kLeastShareBehind;
+    const Radiance seen = has_glass_ && !goes_on
+                              ? trace_glass(ray, hit, point, error, way, beyond)
+                              : trace_surface(ray, hit, point, error, way, goes_on ? 0 : way.bounces);
     if (!goes_on) return seen;
     Radiance blended;
     blended.add(Vector(coverage.value), seen);
@@ -383,7 +490,7 @@ class Tracer {
   Radiance trace_surface(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
                          const Way& way, uint32_t bounces) const {
     const Vector direction = glm::normalize(ray.direction);
-    const BoundedResponse response = respond_with_textures(point, direction, error);
+    const BoundedResponse response = respond_with_textures(point, direction, error, way.media);
     Radiance sum = response.sent;
     const Real weight = largest(response.mirror_weight);
     if (weight == 0) return sum;
@@ -392,11 +499,29 @@ class Tracer {
       sum.add(response.instead);
       return sum;
     }
+    const Sent mirrored = send_mirrored(ray, hit, point, error, way, response);
+    const Radiance brought =
+        trace(mirrored.ray, find(mirrored.ray, mirrored.way, {.passes_backs = true}), mirrored.way);
+    sum.add(response.mirror_weight, brought);
+    sum.error += response.weight_error * largest(brought.color);
+    return sum;
+  }
+
+  /// A ray that leads on from a point.
+  struct Sent {
+    Ray ray;
+    Way way;
+  };
+
+  Sent send_mirrored(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error, const Way& way,
+                     const BoundedResponse& response) const {
+    const Vector direction = glm::normalize(ray.direction);
+    const bool is_of_metal = std::holds_alternative<MetallicRoughness>(point.material->model);
     const Ray next{point.position + point.lift * point.geometric_normal,
                    mirror(point, response.mirror_normal, direction)};
     Way on = way;
-    on.bounces = bounces - 1;
-    on.weight *= weight;
+    on.bounces = way.bounces - 1;
+    on.weight *= response.mirror_weight;
     on.is_mirrored = true;
     on.is_of_metal = way.is_of_metal || is_of_metal;
     on.roughness = std::max(way.roughness, response.mirror_roughness);
@@ -404,15 +529,76 @@ class Tracer {
     const Real cosine = std::abs(glm::dot(point.normal, direction));
     on.cone.spread += 2 * point.side * curvature_of(point.on_triangle) * on.cone.width / cosine;
     on.error = {error.position, way.error.direction + 2 * (error.normal + response.normal_error)};
-    const Radiance brought = trace(next, find(next, on, {.passes_backs = true}), on);
-    sum.add(response.mirror_weight, brought);
-    sum.error += response.weight_error * largest(brought.color);
-    return sum;
+    return {next, on};
+  }
+
+  Sent send_beyond(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error, const Way& way,
+                   const BoundedResponse& response, const Media& beyond) const {
+    Way on = way;
+    on.bounces = way.bounces - 1;
+    on.weight *= response.through;
+    on.media = beyond;
+    if (response.is_deflected) {
+      on.is_mirrored = true;
+      on.is_of_metal = way.is_of_metal || std::holds_alternative<MetallicRoughness>(point.material->model);
+      on.roughness = std::max(way.roughness, response.blur);
+    }
+    const Real bend = point.face->is_thin ? Real(1) : point.face->from / point.face->to;
+    on.cone.width = way.cone.width + way.cone.spread * hit.t * glm::length(ray.direction);
+    on.cone.spread = bend * way.cone.spread + (bend - 1) * point.side * curvature_of(point.on_triangle) * on.cone.width;
+    // As far as what comes aside is bent itself, and the face turns.
+    on.error = {error.position, way.error.direction * bend_of_angles(response.beyond, bend) + response.direction_error};
+    return {Ray{point.position - point.lift * point.geometric_normal, response.beyond.direction}, on};
+  }
+  static Real bend_of_angles(const Refraction& at, Real bend) {
+    return std::max(Real(1), bend * at.cosine / std::max(at.cosine_beyond, 1e-6L));
+  }
+
+  /// In a scene with glass: what both rays bring, within the limits of the tree.
+  Radiance trace_glass(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
+                       const Way& way, const Media& beyond) const {
+    const BoundedResponse response = respond_with_textures(point, glm::normalize(ray.direction), error, way.media);
+    const Vector left = way.media.left_after(hit.t * glm::length(ray.direction));
+    Way here = way;
+    here.weight *= left;
+    const bool is_of_metal = std::holds_alternative<MetallicRoughness>(point.material->model);
+    Radiance sum = response.sent;
+    const Real weight = largest(response.mirror_weight);
+    const bool is_mirrored = way.bounces > 0 && weight > (is_of_metal ? kLeastMirrorWeight : 0);
+    if (!is_mirrored) sum.add(response.instead);
+    // Both are counted before either is followed.
+    std::array<std::optional<Sent>, 2> sent;
+    if (is_mirrored) sent[0] = send_mirrored(ray, hit, point, error, here, response);
+    if (response.through != Vector(0)) sent[1] = send_beyond(ray, hit, point, error, here, response, beyond);
+    std::array<bool, 2> is_followed{};
+    for (size_t i = 0; i < 2; ++i) {
+      if (!sent[i]) continue;
+      const bool has_bounces = i == 0 || way.bounces > 0;
+      is_followed[i] = has_bounces && *way.rays < kMostTreeRays && largest(sent[i]->way.weight) >= kLeastTreeWeight;
+      if (is_followed[i]) ++*way.rays;
+      // Next to the least weight a device may do the other.
+      if (std::abs(largest(sent[i]->way.weight) - kLeastTreeWeight) < 1e-4L * kLeastTreeWeight) sum.error += kUnknown;
+    }
+    for (size_t i = 0; i < 2; ++i) {
+      if (!sent[i]) continue;
+      Radiance brought;
+      if (is_followed[i]) {
+        brought = trace(sent[i]->ray, find(sent[i]->ray, sent[i]->way, {.passes_backs = true}), sent[i]->way);
+      } else if (is_of_metal) {
+        brought = this->beyond(sent[i]->ray, sent[i]->way);
+      }
+      sum.add(i == 0 ? response.mirror_weight : response.through, brought);
+      sum.error += (i == 0 ? response.weight_error : response.through_error) * (largest(brought.color) + 1);
+    }
+    Radiance dimmed;
+    dimmed.add(left, sum);
+    return dimmed;
   }
 
   const world::Scene& scene_;
   Textures textures_;
   Surroundings surroundings_;
+  bool has_glass_;
 };
 
 /// How a pixel's cone begins.
@@ -453,10 +639,13 @@ Picture render(const world::Scene& scene, const View& view) {
   Picture picture;
   picture.size = view.size;
   picture.pixels.resize(static_cast<size_t>(view.size.x) * view.size.y);
-  for_each_index(view.size.y, 0, [&](size_t row) {
+  for_each_index(view.size.y, 0, [&, of_camera = way](size_t row) {
     const auto y = static_cast<uint32_t>(row);
+    Way way = of_camera;
     for (uint32_t x = 0; x < view.size.x; ++x) {
       Pixel& pixel = picture.pixels[row * view.size.x + x];
+      uint32_t rays = 0;
+      way.rays = &rays;
       pixel.ray = camera_ray(view.camera, view.size, x, y);
       const Seen seen = tracer.find(pixel.ray, way, {.passes_backs = true});
       pixel.hit = seen.hit;

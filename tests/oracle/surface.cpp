@@ -123,7 +123,21 @@ class PhongSurface {
         ambient_(Vector(phong.ambient) * rgb(at.texels[kBaseSlot]) * at.vertex_color()),
         diffuse_(Vector(phong.diffuse) * rgb(at.texels[kBaseSlot]) * at.vertex_color()),
         specular_(Vector(phong.specular) * rgb(at.texels[kMetallicRoughnessSlot])),
-        reflection_(Vector(phong.reflection) * rgb(at.texels[kMetallicRoughnessSlot])) {}
+        reflection_(Vector(phong.reflection) * rgb(at.texels[kMetallicRoughnessSlot])) {
+    const std::optional<Face>& face = at.point.face;
+    if (!face) return;
+    is_bent_ = !face->is_thin && face->from != face->to;
+    refraction_ = refract(at.direction, normal_, at.point.geometric_normal, *face);
+    if (phong.fresnel) {
+      const Real reflected = fresnel(*face, refraction_);
+      reflection_ *= reflected;
+      through_ = (1 - reflected) * Vector(phong.transmission);
+    } else if (refraction_.is_total) {
+      reflection_ += Vector(phong.transmission);
+    } else {
+      through_ = Vector(phong.transmission);
+    }
+  }
 
   Radiance own() const { return {at_.emission() + ambient_ * at_.surroundings.irradiance(normal_)}; }
 
@@ -138,7 +152,9 @@ class PhongSurface {
     return {share};
   }
 
-  Response finish(const Radiance& sent) const { return {sent, reflection_, normal_, 0, {}}; }
+  Response finish(const Radiance& sent) const {
+    return {sent, reflection_, normal_, 0, {}, through_, refraction_, is_bent_, 0};
+  }
 
  private:
   Real shininess_;
@@ -148,6 +164,9 @@ class PhongSurface {
   Vector diffuse_;
   Vector specular_;
   Vector reflection_;
+  Refraction refraction_;
+  Vector through_{0};
+  bool is_bent_ = false;
 };
 
 class UnlitSurface {
@@ -176,6 +195,22 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
   material.specular_color = vec3(Vector(material.specular_color) * rgb(texels[kSpecularColorSlot]));
   material.sheen_color = vec3(Vector(material.sheen_color) * rgb(texels[kSheenColorSlot]));
   scale(material.sheen_roughness, texels[kSheenRoughnessSlot].a);
+  scale(material.transmission, texels[kTransmissionSlot].r);
+  return material;
+}
+
+/// As the dielectric reflects beside another medium than air: by the quotient of the indices.
+MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_total) {
+  if (is_total) {
+    // KHR_materials_ior: what reflects all.
+    material.ior = 0.0F;
+    material.specular = 1.0F;
+    material.specular_color = vec3(1.0F);
+  } else if (face.from == face.to) {
+    material.specular = 0.0F;
+  } else {
+    material.ior = static_cast<float>(face.to / face.from);
+  }
   return material;
 }
 
@@ -187,8 +222,9 @@ class MetallicRoughnessSurface {
         normal_(bend_normal(at.point, kNormalSlot, at.texels[kNormalSlot], material.normal_scale, at.direction)),
         coat_normal_(bend_normal(at.point, kCoatNormalSlot, at.texels[kCoatNormalSlot], material.clearcoat_normal_scale,
                                  at.direction)),
+        cosine_(meet_face()),
         lobe_(material_, at.vertex_color() * rgb(at.texels[kBaseSlot]),
-              look_up_lobe_shares(glm::dot(normal_, at.to_eye()), material_.roughness)),
+              look_up_lobe_shares(cosine_, material_.roughness)),
         sheen_(material_, glm::dot(normal_, at.to_eye())),
         coat_(material_, glm::dot(coat_normal_, at.to_eye())),
         has_coat_(material.clearcoat > 0),
@@ -196,7 +232,7 @@ class MetallicRoughnessSurface {
     const Real occlusion = 1 + material.occlusion_strength * (at.texels[kOcclusionSlot].r - 1);
     below_ = reflect_environment(normal_, material_.roughness, occlusion);
     if (has_coat_) above_ = reflect_environment(coat_normal_, material_.clearcoat_roughness, occlusion);
-    body_ = occlusion * (sheen_.left() * lobe_.albedo() + sheen_.reflectance()) * at.surroundings.irradiance(normal_);
+    body_ = occlusion * (sheen_.left() * albedo() + sheen_.reflectance()) * at.surroundings.irradiance(normal_);
   }
 
   Radiance own() const {
@@ -216,7 +252,7 @@ class MetallicRoughnessSurface {
     const bool has_highlight = apart >= 0x1p-12L;
     const Real error = angle_error(arriving, at_.error, apart);
     if (cosine > 0) {
-      Radiance sum{lobe_.albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
+      Radiance sum{albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
       const LobeAngles at = angles(normal_, arriving);
       if (has_highlight) sum.add(Vector(light.specular), bound_highlight(lobe_, at, error));
       if (has_highlight && sheen_.exists()) {
@@ -248,10 +284,34 @@ class MetallicRoughnessSurface {
     }
     response.instead.add(of_material, below_);
     response.instead.add(of_coat, above_);
+    response.beyond = refraction_;
+    if (share_ > 0) {
+      const Face& face = *at_.point.face;
+      const Vector base =
+          glm::min(Vector(material_.base_color) * at_.vertex_color() * rgb(at_.texels[kBaseSlot]), Vector(1));
+      response.through =
+          lobe_.let_in() * share_ * sheen_.left() * (1 - coat_.weight()) * (face.is_thin ? base : glm::sqrt(base));
+      const Real glass = glass_of(*at_.point.material).index;
+      response.blur = material_.roughness * (face.is_thin ? std::clamp(2 * glass - 2, Real(0), Real(1)) : Real(1));
+      response.is_deflected = response.blur > 0 || (!face.is_thin && face.from != face.to);
+    }
     return response;
   }
 
  private:
+  /// The cosine on the face's thinner side, by which the lobe is seen.
+  Real meet_face() {
+    const Real seen = glm::dot(normal_, at_.to_eye());
+    if (!at_.point.face) return seen;
+    const Face& face = *at_.point.face;
+    refraction_ = refract(at_.direction, normal_, at_.point.geometric_normal, face);
+    material_ = beside(material_, face, refraction_.is_total);
+    if (!refraction_.is_total) share_ = material_.transmission;
+    if (face.is_thin || face.from == face.to) return seen;
+    return face.from <= face.to ? refraction_.cosine : refraction_.cosine_beyond;
+  }
+  /// What is scattered, not let through.
+  Vector albedo() const { return (1 - share_) * lobe_.albedo(); }
   LobeAngles angles(const Vector& normal, const ArrivingLight& arriving) const {
     return angles_of(normal, at_.to_eye(), arriving.to_light);
   }
@@ -268,6 +328,10 @@ class MetallicRoughnessSurface {
   const Glimpse& at_;
   Vector normal_;
   Vector coat_normal_;
+  Refraction refraction_;
+  /// Of the light that comes into the dielectric, how much goes through.
+  Real share_ = 0;
+  Real cosine_;
   Lobe lobe_;
   Sheen sheen_;
   ClearCoat coat_;
@@ -311,6 +375,7 @@ struct PlaceSlots {
     slots[kSpecularColorSlot] = model.specular_color_texture;
     slots[kSheenColorSlot] = model.sheen_color_texture;
     slots[kSheenRoughnessSlot] = model.sheen_roughness_texture;
+    slots[kTransmissionSlot] = model.transmission_texture;
   }
 };
 
@@ -356,7 +421,7 @@ Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vect
         Radiance sent = surface.own();
         for (const ArrivingLight& arriving : lights) {
           const Radiance whole = surface.contribution(arriving);
-          sent.add(Vector(arriving.strength), whole);
+          sent.add(arriving.strength, whole);
           sent.error += arriving.strength_error * largest(whole.color);
         }
         return surface.finish(sent);

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
+#include "oracle/glass.h"
 #include "oracle/oracle.h"
 #include "oracle/sky.h"
 #include "oracle/texture.h"
@@ -47,6 +49,7 @@ enum Slot : size_t {
   kSpecularColorSlot,
   kSheenColorSlot,
   kSheenRoughnessSlot,
+  kTransmissionSlot,
   kSlotCount
 };
 using Slots = std::array<TextureSlot, kSlotCount>;
@@ -65,6 +68,8 @@ struct SurfacePoint {
   /// How far along the geometric normal secondary rays start.
   Real lift = 0;
   Texel vertex_color{1};
+  /// Of glass, and of mirrors that hang on the angle.
+  std::optional<Face> face;
   const Material* material = nullptr;
   /// As textures see it; without a mesh on analytic shapes.
   TrianglePoint on_triangle;
@@ -82,7 +87,7 @@ struct ArrivingLight {
   /// Infinite for a source without a place.
   Real distance = kInfinity;
   /// What shape, distance and shadows leave of its power, and how far a device may be off that.
-  Real strength = 1;
+  Vector strength{1};
   Real strength_error = 0;
 };
 
@@ -97,6 +102,12 @@ struct Response {
   Real mirror_roughness = 0;
   /// What is seen in place of what a mirror ray would bring.
   Radiance instead;
+  /// The weight of what is seen beyond the surface, the direction of the ray there, and how much it is blurred; where
+  /// it is neither bent nor blurred it sees what is behind.
+  Vector through{0};
+  Refraction beyond;
+  bool is_deflected = false;
+  Real blur = 0;
 };
 
 /// The normal of a texture, seen along `direction`: it turns the point's in the plane of its tangent, where it has one.
