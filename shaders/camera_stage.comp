@@ -76,7 +76,7 @@ bool begin_packet() {
     ray_count.x += is_inside[i] ? 1u : 0u;
     uint index = pixel.y * window_size().x + pixel.x;
     paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
-                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, LOG_CAMERA);
+                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, 0.0, 0u, LOG_CAMERA);
   }
   passes_backs = true;
   sight_width = CAMERA.look.w;
@@ -255,7 +255,7 @@ void leave_glass(Path path, ShadingPoint point) {
   Path through;
   bool is_mirrored;
   bool is_refracted;
-  part_path(path, point, through, is_mirrored, is_refracted);
+  part_path(path, point, false, through, is_mirrored, is_refracted);
   ray_count.z += is_mirrored ? 1u : 0u;
   refraction_count += is_refracted ? 1u : 0u;
   if (!is_mirrored && !is_refracted) {

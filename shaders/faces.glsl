@@ -3,8 +3,8 @@
 // What a ray meets at a face of glass, and at mirrors that hang on the angle (docs/model.md, "Glass").
 
 // The material's glass, without its texture.
-void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media) {
-  Glass glass = Glass(vec3(0.0), vec3(0.0), direction, media, 1.0, NO_ENVIRONMENT, 0.0);
+void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media, uint object) {
+  Glass glass = Glass(vec3(0.0), vec3(0.0), direction, media, 1.0, NO_ENVIRONMENT, 0.0, object);
   uint number = glass_number(point.material);
   if (number != 0u && model_of(point) == MATERIAL_METALLIC_ROUGHNESS) glass.share = load_glass(number).transmission.x;
   point.glass = glass;

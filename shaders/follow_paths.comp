@@ -148,7 +148,9 @@ uint ask_waiting(uint number, Path path, bool has_seen) {
   path.weight = weight.xyz;
   path.roughness = weight.w;
   path.media = rest.xy;
-  path.bounces = rest.z;
+  path.bounces = rest.z & ((1u << WAITING_OBJECT_SHIFT) - 1u);
+  path.skipped = rest.z >> WAITING_OBJECT_SHIFT;
+  path.skip = uintBitsToFloat(rest.w);
   path.kind = LOG_REFRACTION;
   path.passed_t = -1.0;
   path.passed_order = 0u;
@@ -157,11 +159,11 @@ uint ask_waiting(uint number, Path path, bool has_seen) {
 }
 
 // Asks for the rays that a point on glass sends the path on.
-uint ask_beyond(uint number, inout Path path, ShadingPoint point) {
+uint ask_beyond(uint number, inout Path path, ShadingPoint point, bool touches) {
   Path through;
   bool is_mirrored;
   bool is_refracted;
-  part_path(path, point, through, is_mirrored, is_refracted);
+  part_path(path, point, touches, through, is_mirrored, is_refracted);
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   mirror_ray_count += is_mirrored ? 1u : 0u;
   refraction_count += is_refracted ? 1u : 0u;
@@ -240,7 +242,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     end_path_log(path.radiance, coverage);
     if (has(FEATURE_GLASS)) store_vector(record_of_weight(number, turn), path.weight);
     if (has(FEATURE_BLENDING) && coverage < 1.0) return ask_through(number, path, ray, hit, coverage);
-    if (has(FEATURE_GLASS)) return ask_beyond(number, path, point);
+    if (has(FEATURE_GLASS)) return ask_beyond(number, path, point, hit.t <= skipped_until);
     return ask_mirror(number, path, point);
   }
   // The same ray once more.
@@ -267,6 +269,8 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   bool has_seen = turn > 0u;
   if (has(FEATURE_GLASS)) {
     path.media = path_glass.xy;
+    path.skip = 0.0;
+    path.skipped = 0u;
     path.rays = path_glass.z & ((1u << HAS_SEEN_SHIFT) - 1u);
     path.kind = path_glass.w >> KIND_SHIFT;
     has_seen = (path_glass.z >> HAS_SEEN_SHIFT) != 0u;
@@ -299,7 +303,13 @@ void prepare_sight(uint number) {
     sight_width = load_record(record_of_path(number) + RECORD_RADIANCE).w;
     sight_spread = load_record(record_of_path(number) + RECORD_SEEN).w;
   }
-  if (has(FEATURE_GLASS)) path_glass = floatBitsToUint(load_record(record_of_glass(number) + RECORD_MEDIA));
+  if (has(FEATURE_GLASS)) {
+    path_glass = floatBitsToUint(load_record(record_of_glass(number) + RECORD_MEDIA));
+    vec4 skip = load_record(record_of_glass(number) + RECORD_SHADOW_MEDIA);
+    precise float until = skip.z / length3(packet[0].direction);
+    skipped_until = skip.z > 0.0 ? until : -1.0;
+    skipped_object = floatBitsToUint(skip.w);
+  }
   if (KEEPS_PROGRESS == 0u) return;
   forget_passed(0u);
   float t = load_record(record_of_weight(number, 0u)).w;

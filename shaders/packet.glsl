@@ -26,6 +26,11 @@ const uint PASSES = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];
 
+// With FEATURE_GLASS: of the object with this hash (object_hash_of) nothing counts up to here, in the ray's units. A
+// refracted ray begins a little before the face that it comes through, so that it meets what touches that (tree.glsl).
+float skipped_until = -1.0;
+uint skipped_object = 0u;
+
 // The ray from its beginning on.
 void forget_passed(uint slot) {
   passed_t[slot] = -1.0;
@@ -61,13 +66,24 @@ bool any_takes_part() {
   return result;
 }
 
-// A ray as a solid of this order takes it: of the surfaces of one that it has passed the next is sought.
-Ray ray_past(uint slot, uint order) {
+// A ray as a solid takes it: of the surfaces of one that it has passed the next is sought.
+Ray ray_past(uint slot, Primitive p) {
   Ray ray = packet[slot];
-  if (PASSES != 0u && order <= passed_order[slot] && passed_t[slot] > 0.0) {
+  if (PASSES != 0u && order_of(p) <= passed_order[slot] && passed_t[slot] > 0.0) {
     ray.tmin = shifts[slot] > 0.0 ? shifted_tmin(passed_t[slot], shifts[slot]) : passed_t[slot];
   }
+  if (has(FEATURE_GLASS) && skipped_until > 0.0 && object_hash_of(p) == skipped_object) {
+    ray.tmin = max(ray.tmin, shifts[slot] > 0.0 ? shifted_tmin(skipped_until, shifts[slot]) : skipped_until);
+  }
   return ray;
+}
+
+// The crossing, unless it is skipped.
+Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
+  if (!has(FEATURE_GLASS)) return crossing;
+  precise float t = crossing.t + shifts[slot];
+  if (t <= skipped_until && object_hash_of(p) == skipped_object) return NO_CROSSING;
+  return crossing;
 }
 
 // Takes the crossing if it is nearer, or as near and of a lower number: the hit does not depend on the tree.

@@ -20,6 +20,8 @@ struct Path {
   // With FEATURE_GLASS:
   uvec2 media;  // that its next ray is in
   uint rays;    // of its sample so far, without the camera's
+  float skip;   // along its next ray, how far it skips an object, of this hash
+  uint skipped;
   uint kind;    // LOG_*, of its next ray
 };
 
@@ -88,6 +90,7 @@ bool bounce(inout Path path, ShadingPoint point) {
   path.passed_t = -1.0;
   path.passed_order = 0u;
   path.kind = LOG_REFLECTION;
+  path.skip = 0.0;
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
   return true;
 }

@@ -19,11 +19,22 @@ bool is_followed(inout Path parent, ShadingPoint point, Path child) {
   return false;
 }
 
-// Turns the path into the ray that goes through the point's surface.
-void go_beyond(inout Path path, ShadingPoint point) {
+// The least cosine beyond a face at which a ray begins before it.
+const float LEAST_COSINE_BEYOND = 0.125;
+
+// Turns the path into the ray that goes through the point's surface. It begins before that, skips the object, and so
+// meets what touches it: the liquid in a glass, the table under it. Where the hit is such a face itself, or the ray runs
+// along the surface, it begins behind. `touches`: the hit lies where the path's last ray skipped an object.
+void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   precise vec3 weight = path.weight * point.glass.through;
   path.weight = weight;
-  path.origin = lift_off(point.position, -point.geometric_normal, point.lift);
+  float cosine = -dot3(point.glass.direction, point.geometric_normal);
+  bool begins_before = !touches && cosine >= LEAST_COSINE_BEYOND;
+  path.origin = lift_off(point.position, begins_before ? point.geometric_normal : -point.geometric_normal, point.lift);
+  // The point is off its face by its lift at most, and so is the ray's origin.
+  precise float skip = 2.0 * point.lift / cosine;
+  path.skip = begins_before ? skip : 0.0;
+  path.skipped = point.glass.object;
   if (has(FEATURE_TEXTURES)) {
     // What is curved spreads or gathers the cone.
     precise float spread =
@@ -41,9 +52,10 @@ void go_beyond(inout Path path, ShadingPoint point) {
 
 // Parts a path at a surface: it becomes its mirror ray, or where there is none the ray beyond; where there are both
 // `through` is that one.
-void part_path(inout Path path, ShadingPoint point, out Path through, out bool is_mirrored, out bool is_refracted) {
+void part_path(inout Path path, ShadingPoint point, bool touches, out Path through, out bool is_mirrored,
+               out bool is_refracted) {
   through = path;
-  go_beyond(through, point);
+  go_beyond(through, point, touches);
   Path mirrored = path;
   // Where no bounce is left, own_light has had the environment in the mirror.
   is_mirrored = leads_on(point, path.bounces) && bounce(mirrored, point) && is_followed(path, point, mirrored);
@@ -63,6 +75,7 @@ void part_path(inout Path path, ShadingPoint point, out Path through, out bool i
 void store_glass(uint number, Path path, uint waiting, bool has_seen) {
   pixels[record_of_glass(number) + RECORD_MEDIA] =
       uvec4(path.media, path.rays | (has_seen ? 1u << HAS_SEEN_SHIFT : 0u), waiting | path.kind << KIND_SHIFT);
+  pixels[record_of_glass(number) + RECORD_SHADOW_MEDIA].zw = uvec2(floatBitsToUint(path.skip), path.skipped);
 }
 
 // Keeps the ray that a path follows when those before it have come to their ends.
@@ -71,5 +84,5 @@ void store_waiting(uint number, uint place, Path path) {
   pixels[record] = uvec4(floatBitsToUint(path.origin), floatBitsToUint(path.cone_width));
   pixels[record + 1u] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.cone_spread));
   pixels[record + 2u] = uvec4(floatBitsToUint(path.weight), floatBitsToUint(path.roughness));
-  pixels[record + 3u] = uvec4(path.media, path.bounces, 0u);
+  pixels[record + 3u] = uvec4(path.media, path.bounces | path.skipped << WAITING_OBJECT_SHIFT, floatBitsToUint(path.skip));
 }
