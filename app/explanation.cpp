@@ -52,14 +52,23 @@ Json json_of(const ExplainedSource& source, const Scene& scene) {
   return json;
 }
 
-/// What sort of ray the one of this number is.
-std::string_view kind_of(const ExplainedSample& sample, size_t number) {
-  if (number == 0) return "camera";
-  return sample.rays[number - 1].coverage < 1.0F ? "through" : "mirror";
+std::string_view name_of(RayKind kind) {
+  switch (kind) {
+    case RayKind::kCamera:
+      return "camera";
+    case RayKind::kReflection:
+      return "mirror";
+    case RayKind::kRefraction:
+      return "refracted";
+    case RayKind::kThrough:
+      return "through";
+  }
+  return "";
 }
 
-Json json_of(const ExplainedRay& ray, std::string_view kind, const Scene& scene) {
-  Json json = {{"kind", kind}};
+Json json_of(const ExplainedRay& ray, const Scene& scene) {
+  Json json = {{"kind", name_of(ray.kind)}, {"parent", nullptr}};
+  if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
   json.update(json_of(ray.ray));
   json["weight"] = json_of(ray.weight);
   json["hit"] = json_of(ray.hit);
@@ -103,10 +112,11 @@ std::string text_of(const ExplainedSource& source, const Scene& scene) {
   return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));
 }
 
-std::string text_of(const ExplainedRay& ray, size_t number, std::string_view kind, const Scene& scene) {
-  const std::string indent(2 * number + 2, ' ');
-  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, kind, text_of(ray.ray.origin),
-                                 text_of(ray.ray.direction), text_of(ray.weight));
+/// `depth` is the number of rays that lead to it.
+std::string text_of(const ExplainedRay& ray, size_t depth, const Scene& scene) {
+  const std::string indent(2 * depth + 2, ' ');
+  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, name_of(ray.kind),
+                                 text_of(ray.ray.origin), text_of(ray.ray.direction), text_of(ray.weight));
   const auto add = [&](const std::string& line) { text += indent + "  " + line + "\n"; };
   if (ray.hit.object < 0) {
     add("misses: background " + text_of(ray.own));
@@ -128,7 +138,7 @@ std::string explain_json(const Explanation& explanation, const Scene& scene) {
   Json samples = Json::array();
   for (const ExplainedSample& sample : explanation.samples) {
     Json rays = Json::array();
-    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, kind_of(sample, rays.size()), scene));
+    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, scene));
     samples.push_back({{"rays", rays}, {"radiance", json_of(sample.radiance())}});
   }
   const Json json = {{"pixel", {explanation.pixel.x, explanation.pixel.y}},
@@ -144,8 +154,10 @@ std::string explain_text(const Explanation& explanation, const Scene& scene) {
   for (size_t i = 0; i < explanation.samples.size(); ++i) {
     text += fmt::format("sample {}\n", i);
     const ExplainedSample& sample = explanation.samples[i];
-    for (size_t ray = 0; ray < sample.rays.size(); ++ray) {
-      text += text_of(sample.rays[ray], ray, kind_of(sample, ray), scene);
+    std::vector<size_t> depths;
+    for (const ExplainedRay& ray : sample.rays) {
+      depths.push_back(ray.kind == RayKind::kCamera ? 0 : depths[ray.parent] + 1);
+      text += text_of(ray, depths.back(), scene);
     }
   }
   return text;

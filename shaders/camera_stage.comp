@@ -256,6 +256,7 @@ void leave_glass(Path path, ShadingPoint point) {
   bool is_mirrored;
   bool is_refracted;
   part_path(path, point, false, through, is_mirrored, is_refracted);
+  log_sum(1u, path.radiance);
   ray_count.z += is_mirrored ? 1u : 0u;
   refraction_count += is_refracted ? 1u : 0u;
   if (!is_mirrored && !is_refracted) {

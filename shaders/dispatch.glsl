@@ -17,6 +17,9 @@ uvec2 window_corner() { return dispatch.window.xy; }
 uvec2 window_size() { return dispatch.window.zw; }
 uint window_pixel_count() { return dispatch.window.z * dispatch.window.w; }
 
+uint most_tree_rays() { return dispatch.outcome.y; }
+float least_tree_weight() { return uintBitsToFloat(dispatch.outcome.z); }
+
 uint samples_per_pixel() { return dispatch.sampling.x; }
 uint lattice_generator() { return dispatch.sampling.y; }
 uint blocks_per_row() { return dispatch.sampling.z; }

@@ -173,8 +173,8 @@ LAYOUT_CONSTANT GLASS_TEXELS = 4u;
 LAYOUT_CONSTANT GLASS_IS_CLEAR = 1u;    // light goes through
 LAYOUT_CONSTANT GLASS_IS_THIN = 2u;     // a wall without an inside, which bends nothing
 LAYOUT_CONSTANT GLASS_IS_FRESNEL = 4u;  // of Phong's: reflection hangs on the angle
-// A sample of a picture with glass has so many rays from surfaces at most, and a ray at least this weight; in place of
-// others the environment is seen.
+// A sample of a scene with glass has so many rays from surfaces at most, and a ray at least this weight; in place of
+// others the environment is seen (Dispatch::outcome).
 LAYOUT_CONSTANT MOST_TREE_RAYS = 64u;
 LAYOUT_FLOAT LEAST_TREE_WEIGHT = 0.001953125f;
 
@@ -242,6 +242,7 @@ struct Dispatch {
   uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
   uvec4 outcome;   // casting: x = 1 after the dispatch if were_loops_cut(); 0 else
+                   // pictures: y = the most rays of a sample's tree, z = bits of the least weight of one
 };
 
 // The stream of paths behind the pixels of a film (stream.glsl), for a piece of a picture.

@@ -26,10 +26,15 @@ const uint PASSES = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];
 
-// With FEATURE_GLASS: of the object with this hash (object_hash_of) nothing counts up to here, in the ray's units. A
-// refracted ray begins a little before the face that it comes through, so that it meets what touches that (tree.glsl).
+// With FEATURE_GLASS: a refracted ray begins a little before the face that it comes through, so that it meets what
+// touches that (tree.glsl). Up to here, in its units, it meets no face of that object which it crosses in the same
+// sense: the object's hash (object_hash_of), with SKIPS_EXIT where it leaves.
+const uint SKIPS_EXIT = 0x10000u;
 float skipped_until = -1.0;
 uint skipped_object = 0u;
+bool is_skipped(float t, Primitive p, bool leaves) {
+  return t <= skipped_until && (object_hash_of(p) | (leaves ? SKIPS_EXIT : 0u)) == skipped_object;
+}
 
 // The ray from its beginning on.
 void forget_passed(uint slot) {
@@ -72,17 +77,18 @@ Ray ray_past(uint slot, Primitive p) {
   if (PASSES != 0u && order_of(p) <= passed_order[slot] && passed_t[slot] > 0.0) {
     ray.tmin = shifts[slot] > 0.0 ? shifted_tmin(passed_t[slot], shifts[slot]) : passed_t[slot];
   }
+  // Where the way in is skipped too.
   if (has(FEATURE_GLASS) && skipped_until > 0.0 && object_hash_of(p) == skipped_object) {
     ray.tmin = max(ray.tmin, shifts[slot] > 0.0 ? shifted_tmin(skipped_until, shifts[slot]) : skipped_until);
   }
   return ray;
 }
 
-// The crossing, unless it is skipped.
+// A solid's crossing, unless it is skipped. What ray_past lets through nearer than that is a way out.
 Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
   if (!has(FEATURE_GLASS)) return crossing;
   precise float t = crossing.t + shifts[slot];
-  if (t <= skipped_until && object_hash_of(p) == skipped_object) return NO_CROSSING;
+  if (is_skipped(t, p, true)) return NO_CROSSING;
   return crossing;
 }
 

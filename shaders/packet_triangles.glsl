@@ -34,7 +34,7 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
       bool may_be_kept = crossing.t > tmin && t <= limit;
       // From the ray's own origin.
       Crossing whole = Crossing(t, crossing.u, crossing.v, crossing.part);
-      if (has(FEATURE_GLASS) && t <= skipped_until && object_hash_of(p) == skipped_object) crossing = NO_CROSSING;
+      if (has(FEATURE_GLASS) && is_skipped(t, p, dot3(triangle_normal(p), direction) > 0.0)) crossing = NO_CROSSING;
       if (may_be_kept && is_cut_out(direction, p, index, whole, is_on_open_edge(of_next))) crossing = NO_CROSSING;
     }
     may_another_be_met = false;

@@ -20,7 +20,7 @@ struct Path {
   // With FEATURE_GLASS:
   uvec2 media;  // that its next ray is in
   uint rays;    // of its sample so far, without the camera's
-  float skip;   // along its next ray, how far it skips an object, of this hash
+  float skip;   // along its next ray, how far it skips faces of an object (packet.glsl), of this hash
   uint skipped;
   uint kind;    // LOG_*, of its next ray
 };

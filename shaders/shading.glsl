@@ -26,7 +26,7 @@ struct Glass {
   float bend;        // ratio of the indices of refraction, on this side over beyond
   float roughness;   // at which it sees the environment, or NO_ENVIRONMENT
   float share;       // of light that is not reflected, how much goes through
-  uint object;       // its hash
+  uint object;       // its hash, with SKIPS_EXIT where the ray leaves it
 };
 
 // The data of a hit that the light loop and the mirror ray need.
@@ -318,7 +318,7 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec
   point.lobe_shares = vec2(1.0, 0.0);
   point.occlusion = 1.0;
   if (HAS_LAYERS) put_bare_layers(point);
-  if (HAS_FACES) put_bare_glass(point, direction, media, object_hash_of(p));
+  if (HAS_FACES) put_bare_glass(point, direction, media, object_hash_of(p) | (is_flipped ? SKIPS_EXIT : 0u));
   if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }

@@ -22,7 +22,7 @@ const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where n
 const uint RECORD_MEDIA = 0u;         // x, y = the media that its ray is in; z = rays so far, and above HAS_SEEN_SHIFT
                                       // whether there is something in RECORD_SEEN; w = rays that wait, and the ray's kind
 const uint RECORD_SHADOW_MEDIA = 1u;  // x, y = the media that its shadow rays begin in; z, w = skip and skipped of a Path
-const uint WAITING_OBJECT_SHIFT = 16u;
+const uint WAITING_OBJECT_SHIFT = 15u;
 const uint HAS_SEEN_SHIFT = 16u;
 const uint KIND_SHIFT = 16u;
 

@@ -8,7 +8,8 @@
 // materials nothing.
 bool is_followed(inout Path parent, ShadingPoint point, Path child) {
   bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
-  if (parent.rays < MOST_TREE_RAYS && child.bounces <= most_bounces() && max_abs(child.weight) >= LEAST_TREE_WEIGHT) {
+  if (parent.rays < most_tree_rays() && child.bounces <= most_bounces() &&
+      max_abs(child.weight) >= least_tree_weight()) {
     ++parent.rays;
     return true;
   }
@@ -22,9 +23,9 @@ bool is_followed(inout Path parent, ShadingPoint point, Path child) {
 // The least cosine beyond a face at which a ray begins before it.
 const float LEAST_COSINE_BEYOND = 0.125;
 
-// Turns the path into the ray that goes through the point's surface. It begins before that, skips the object, and so
+// Turns the path into the ray that goes through the point's surface. It begins before that, skips the face, and so
 // meets what touches it: the liquid in a glass, the table under it. Where the hit is such a face itself, or the ray runs
-// along the surface, it begins behind. `touches`: the hit lies where the path's last ray skipped an object.
+// along the surface, it begins behind. `touches`: the hit lies where the path's last ray skipped faces.
 void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   precise vec3 weight = path.weight * point.glass.through;
   path.weight = weight;

@@ -3,6 +3,7 @@
 #include "device_scene/device_scene.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/divide_up.h"
 #include "device/device.h"
@@ -132,6 +133,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   constants_.tree_bounds = packed.tree_bounds;
   constants_.first_unbounded = packed.first_unbounded();
   constants_.unbounded_count = packed.unbounded_count;
+  constants_.glass_solids = shading.glass_solids;
   take_colors(shading.environment);
   Tail tail{std::make_shared<const PackedMaterials>(pack_materials(shading.materials)),
             lobe_tables_for(shading.materials), std::make_shared<const PackedSky>(pack_sky(shading.environment)),
@@ -257,6 +259,13 @@ void DeviceScene::write_tail(Tail tail) {
       uvec4(placed.lobe_tables.first_index, placed.sky.first_index, tail.sky->side, placed.extensions.first_index);
   constants_.first_texture.z = placed.texture_slots.first_index;
   constants_.first_glass.x = placed.glasses.first_index;
+  constants_.has_glass = std::ranges::any_of(tail.materials->glasses, [](const layout::GlassRecord& glass) {
+    return (glass.bits.x & layout::GLASS_IS_CLEAR) != 0;
+  });
+  constants_.glass_numbers.clear();
+  for (const layout::MaterialRecord& record : tail.materials->records) {
+    constants_.glass_numbers.push_back(std::bit_cast<uint32_t>(record.emissive.w) >> layout::MATERIAL_GLASS_SHIFT);
+  }
   constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());
   tail_ = std::move(tail);

@@ -23,6 +23,8 @@ struct ShadingParts {
   std::span<const Texture> textures;
   std::span<const Light> lights;
   Environment environment;
+  /// For good; none where no view needs them.
+  std::shared_ptr<const GlassSolids> glass_solids = nullptr;
 };
 
 /// A scene in device memory, in parts that are replaced apart: tree, primitives and surfaces for good; materials,

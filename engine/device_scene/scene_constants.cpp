@@ -3,6 +3,7 @@
 #include "device_scene/scene_constants.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/divide_up.h"
@@ -12,6 +13,16 @@ namespace {
 
 uvec4 counts_of(const SceneConstants& scene) {
   return {scene.first_unbounded, scene.unbounded_count, scene.light_count, layout::LOOP_CHECK_TURNS};
+}
+
+/// As shaders/glass.glsl keeps the media that a ray is in.
+uvec2 media_around(const SceneConstants& scene, const vec3& eye) {
+  uint64_t media = 0;
+  if (scene.glass_solids == nullptr) return uvec2(0);
+  for (const uint32_t material : scene.glass_solids->materials_around(eye)) {
+    media = media << 16 | scene.glass_numbers[material];
+  }
+  return {static_cast<uint32_t>(media), static_cast<uint32_t>(media >> 32)};
 }
 
 }  // namespace
@@ -41,7 +52,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
       .first_index = scene.first_index,
       .first_lookup = scene.first_lookup,
       .first_texture = scene.first_texture,
-      .first_glass = scene.first_glass,
+      .first_glass = uvec4(scene.first_glass.x, media_around(scene, camera.eye), 0),
       .irradiance = {}};
   std::ranges::copy(scene.irradiance, constants.irradiance);
   return constants;
@@ -62,7 +73,9 @@ layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& vie
           .sampling = uvec4(view.samples_per_pixel, range.lattice_generator, divide_up(size.x, layout::BLOCK_SIZE),
                             is_orthographic),
           .counts = counts_of(scene),
-          .outcome = uvec4(0)};
+          // Kernels that know glass may trace scenes without it, which have no limits.
+          .outcome = uvec4(0, scene.has_glass ? layout::MOST_TREE_RAYS : ~0U,
+                           std::bit_cast<uint32_t>(scene.has_glass ? layout::LEAST_TREE_WEIGHT : 0.0F), 0)};
 }
 
 layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_ray, uint32_t end_ray) {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <array>
-
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "layout.h"
 #include "promin/scene.h"
 #include "promin/view.h"
+#include "scene/glass_solids.h"
 
 // The blocks of constants that shaders read. One function makes each block whole from the arguments. Vulkan-free.
 namespace promin {
@@ -21,7 +23,13 @@ struct SceneConstants {
   uvec4 first_index{0};
   uvec4 first_lookup{0};
   uvec4 first_texture{0};
+  /// x = the first GlassRecord.
   uvec4 first_glass{0};
+  /// In which the camera may be, and of each material the number of its glass.
+  std::shared_ptr<const GlassSolids> glass_solids;
+  std::vector<uint32_t> glass_numbers;
+  /// Whether anything lets light through.
+  bool has_glass = false;
   /// The unbounded primitives, which lie behind those of the tree.
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;

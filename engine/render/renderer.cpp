@@ -65,7 +65,9 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   light_features_ = promin::light_features(scene.lights);
   environment_features_ = promin::environment_features(scene.environment);
   const Stopwatch uploading;
-  device_scene_ = upload_scene(device, packed, {scene.materials, scene.textures, scene.lights, scene.environment});
+  device_scene_ = upload_scene(
+      device, packed,
+      {scene.materials, scene.textures, scene.lights, scene.environment, std::make_shared<const GlassSolids>(scene)});
   stats.upload_ms = uploading.ms();
   stats.device_bytes = device_scene_->size_bytes();
   numbers_ = std::move(packed.numbers);

@@ -41,18 +41,31 @@ ExplainedSource source_of(const RayLog& log, const PrimitiveNumbers& numbers, st
   return source;
 }
 
+static_assert(static_cast<uint32_t>(RayKind::kReflection) == layout::LOG_REFLECTION &&
+              static_cast<uint32_t>(RayKind::kRefraction) == layout::LOG_REFRACTION &&
+              static_cast<uint32_t>(RayKind::kThrough) == layout::LOG_THROUGH);
+
 }  // namespace
 
 ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbers& numbers,
                                std::span<const uint32_t> light_numbers) {
   ExplainedSample sample;
   std::vector<ExplainedSource> sources;
+  // The numbers of the last rays, by their bounces.
+  std::vector<uint32_t> last_of_bounces;
   for (const RayLog& entry : log) {
     if (entry.ids.x == layout::LOG_SOURCE) {
       sources.push_back(source_of(entry, numbers, light_numbers));
       continue;
     }
     ExplainedRay ray;
+    ray.kind = RayKind{entry.ids.w};
+    // Paths are followed depth first, so it leaves the last one with a bounce less, or as many where it only goes on.
+    const uint32_t bounces = entry.ids.y;
+    const uint32_t of_parent = ray.kind == RayKind::kThrough || bounces == 0 ? bounces : bounces - 1;
+    last_of_bounces.resize(bounces + size_t{1});
+    ray.parent = last_of_bounces[of_parent];
+    last_of_bounces[bounces] = static_cast<uint32_t>(sample.rays.size());
     ray.ray = ray_of(entry);
     ray.hit = hit_of(entry, numbers);
     ray.position = vec3(entry.position);

@@ -16,7 +16,8 @@ uint32_t most_steps(uint32_t depth, bool has_glass, uint32_t most_layers) {
   if (!has_glass) return depth + most_layers;
   // At each bounce twice as many as before.
   const uint32_t in_tree = depth < 6 ? (2U << depth) - 2 : layout::MOST_TREE_RAYS;
-  return std::min(in_tree, layout::MOST_TREE_RAYS) + most_layers;
+  // Kernels that know glass may trace scenes without it, whose paths are as deep as they are asked for.
+  return std::max(std::min(in_tree, layout::MOST_TREE_RAYS), depth) + most_layers;
 }
 
 TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,

@@ -25,8 +25,20 @@ struct ExplainedSource {
   bool is_visible() const { return contribution != vec3(0.0F); }
 };
 
+/// Where a ray of a path comes from.
+enum class RayKind : uint32_t {
+  kCamera = 0,
+  kReflection = 1,
+  kRefraction = 2,
+  /// The same ray as its parent, from behind a surface that blends on.
+  kThrough = 3,
+};
+
 /// A ray of the path: the camera's, that of the mirror at the hit before, or the same from behind that hit on.
 struct ExplainedRay {
+  RayKind kind = RayKind::kCamera;
+  /// The number in ExplainedSample::rays of the ray whose hit it leaves; of the camera's its own.
+  uint32_t parent = 0;
   /// As traced: the largest component of its direction is in [1, 2), and t is in its units.
   Ray ray;
   /// What it met. The members from `position` to `material` are of a hit alone.
@@ -39,7 +51,8 @@ struct ExplainedRay {
   vec3 shading_normal{0.0F};
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Weight of all that comes along this ray: the product of the mirrors so far, and of what surfaces that blend leave.
+  /// Weight of what is seen at its end: the product of the mirrors and the glass so far, and of what surfaces that blend
+  /// and media on the way leave.
   vec3 weight{1.0F};
   /// How much of what is behind it the hit covers, 0...1: the rest of the weight is the next ray's, which is this one
   /// from behind the hit on. 1 unless the material blends.
@@ -49,13 +62,14 @@ struct ExplainedRay {
   /// The lights at the point, in the scene's order.
   std::vector<ExplainedSource> sources;
   /// The path's sum up to here, to the bit in fp32: that of the ray before + coverage * weight * (own + contributions
-  /// in their order).
+  /// in their order). With glass the environment in place of rays that were not followed comes before that.
   vec3 radiance{0.0F};
 };
 
 /// The path of one sample.
 struct ExplainedSample {
-  /// The camera's ray, then mirrors' rays and those from behind surfaces that blend; at least one.
+  /// The camera's ray, then those that follow from it, in the order in which they are summed: of the two that leave glass
+  /// the mirror's with all that follows from it, then the refracted. At least one.
   std::vector<ExplainedRay> rays;
   /// Light that the path brings to the sample: the last ray's sum.
   const vec3& radiance() const { return rays.back().radiance; }

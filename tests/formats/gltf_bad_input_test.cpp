@@ -148,6 +148,26 @@ const BadGltf kBadGltf[] = {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
      },
      "-1 is out of range", "materials[0].extensions.KHR_materials_ior.ior"},
+    {"PhongIor",
+     [](auto& g) {
+       material_extension(g, "PROMIN_materials_phong") = {{"ior", 0}};
+     },
+     "0 is out of range", "materials[0].extensions.PROMIN_materials_phong.ior"},
+    {"Transmission",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_transmission") = {{"transmissionFactor", 2}};
+     },
+     "2 is out of range", "materials[0].extensions.KHR_materials_transmission.transmissionFactor"},
+    {"AttenuationDistance",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_volume") = {{"attenuationDistance", -1}};
+     },
+     "-1 is out of range", "materials[0].extensions.KHR_materials_volume.attenuationDistance"},
+    {"AttenuationColor",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_volume") = {{"attenuationColor", {1, -1, 1}}};
+     },
+     "-1 is out of range", "materials[0].extensions.KHR_materials_volume.attenuationColor"},
     {"Specular",
      [](auto& g) {
        material_extension(g, "KHR_materials_specular") = {{"specularFactor", 2}};

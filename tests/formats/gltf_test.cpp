@@ -9,6 +9,7 @@
 #include "environment/sky_radiance.h"
 #include "formats/gltf/buffers.h"
 #include "promin/image.h"
+#include "scene/glass.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 
@@ -482,12 +483,50 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
 }
 
 TEST_F(GltfTest, WhatMaterialsLoseIsSaid) {
-  GltfBuilder gltf =
-      material_gltf({{"name", "glass"}, {"extensions", {{"KHR_materials_transmission", json::object()}}}});
-  gltf.json["extensionsUsed"] = {"KHR_materials_transmission", "KHR_texture_transform"};
+  GltfBuilder gltf = material_gltf({{"name", "film"}, {"extensions", {{"KHR_materials_iridescence", json::object()}}}});
+  gltf.json["extensionsUsed"] = {"KHR_materials_iridescence", "KHR_texture_transform"};
   gltf.add_node({{"mesh", 0}});
-  EXPECT_THAT(load(gltf).warnings, ElementsAre("1 material uses KHR_materials_transmission, which is not known; it is "
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("1 material uses KHR_materials_iridescence, which is not known; it is "
                                                "drawn without it"));
+}
+
+TEST_F(GltfTest, GlassIsRead) {
+  const LoadedScene scene = load(material_gltf(
+      {{"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 0.75}}},
+         {"KHR_materials_ior", {{"ior", 1.25}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 2}, {"attenuationColor", {0.5, 0.25, 1}}, {"attenuationDistance", 4}}}}}}));
+  const auto model = model_of<MetallicRoughness>(scene);
+  EXPECT_EQ(model.transmission, 0.75F);
+  EXPECT_EQ(model.ior, 1.25F);
+  EXPECT_EQ(model.thickness, 2.0F);
+  EXPECT_EQ(model.attenuation_color, vec3(0.5F, 0.25F, 1.0F));
+  EXPECT_EQ(model.attenuation_distance, 4.0F);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_FALSE(is_clear(model)) << "the metal of the default lets nothing through";
+  const auto bare = model_of<MetallicRoughness>(load(material_gltf(
+      {{"extensions", {{"KHR_materials_transmission", json::object()}, {"KHR_materials_volume", json::object()}}}})));
+  EXPECT_EQ(bare.transmission, 0.0F);
+  EXPECT_EQ(bare.thickness, 0.0F);
+  EXPECT_EQ(bare.attenuation_color, vec3(1.0F));
+  EXPECT_EQ(bare.attenuation_distance, std::numeric_limits<float>::infinity());
+}
+
+TEST_F(GltfTest, ClassicGlassIsRead) {
+  const LoadedScene scene = load(material_gltf(
+      {{"extensions",
+        {{"PROMIN_materials_phong", {{"transmissionFactor", {0.5, 0.25, 1}}, {"ior", 1.5}, {"fresnel", true}}}}}}));
+  const auto model = model_of<Phong>(scene);
+  EXPECT_EQ(model.transmission, vec3(0.5F, 0.25F, 1.0F));
+  EXPECT_EQ(model.ior, 1.5F);
+  EXPECT_TRUE(model.fresnel);
+  EXPECT_TRUE(is_clear(model));
+  const auto bare =
+      model_of<Phong>(load(material_gltf({{"extensions", {{"PROMIN_materials_phong", json::object()}}}})));
+  EXPECT_EQ(bare.transmission, vec3(0.0F));
+  EXPECT_EQ(bare.ior, 1.0F);
+  EXPECT_FALSE(bare.fresnel);
 }
 
 TEST_F(GltfTest, MaterialsHaveAlphaAndSides) {

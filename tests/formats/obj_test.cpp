@@ -175,10 +175,38 @@ TEST_F(ObjTest, IlluminationModels) {
   EXPECT_EQ(material(factors + "3\n").phong().reflection, vec3(0.25F));
 }
 
+TEST_F(ObjTest, GlassIsRead) {
+  const std::string factors = "Kd 0 0 0\nKs 0.25 0.25 0.25\nTf 0.5 0.75 1\nNi 1.25\nillum ";
+  const Material bent = material(factors + "6\n");
+  EXPECT_EQ(bent.phong().transmission, vec3(0.5F, 0.75F, 1.0F));
+  EXPECT_EQ(bent.phong().ior, 1.25F);
+  EXPECT_FALSE(bent.phong().fresnel);
+  EXPECT_EQ(bent.phong().reflection, vec3(0.25F));
+  const Material glass = material(factors + "7\n");
+  EXPECT_EQ(glass.phong().transmission, vec3(0.5F, 0.75F, 1.0F));
+  EXPECT_TRUE(glass.phong().fresnel);
+  EXPECT_EQ(glass.alpha_mode, AlphaMode::kOpaque);
+  const Material mirror = material(factors + "5\n");
+  EXPECT_EQ(mirror.phong().transmission, vec3(0.0F));
+  EXPECT_TRUE(mirror.phong().fresnel);
+  EXPECT_EQ(mirror.phong().ior, 1.25F);
+  // What is transparent in part lets as much through its filter.
+  const Material half = material(factors + "4\nd 0.5\n");
+  EXPECT_EQ(half.phong().transmission, vec3(0.25F, 0.375F, 0.5F));
+  EXPECT_EQ(half.phong().ior, 1.0F);
+  EXPECT_EQ(half.alpha_mode, AlphaMode::kOpaque);
+  EXPECT_EQ(material("illum 4\nd 0.5\n").alpha_mode, AlphaMode::kBlend) << "without Tf d tells alone";
+  EXPECT_EQ(material("illum 7\n").phong().transmission, vec3(1.0F));
+  EXPECT_EQ(material("illum 7\n").phong().ior, 1.5F) << "glass where the file does not say";
+  EXPECT_EQ(material("illum 2\nTf 0.5 0.5 0.5\n").phong().transmission, vec3(0.0F));
+}
+
 TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   std::vector<std::string> warnings;
-  material("illum 7\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 7), it is drawn opaque"));
+  material("illum 4\n", &warnings);
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) with a d of 1, it is drawn opaque"));
+  material("illum 7\nNi -1\n", &warnings);
+  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is no index of refraction, 1.5 is taken"));
   material("map_Ns wood.png\ndisp wood.png\n", &warnings);
   EXPECT_THAT(warnings,
               ElementsAre("material \"m\": some of its texture maps are ignored, the first is map_Ns in m.mtl line 2"));

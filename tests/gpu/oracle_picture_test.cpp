@@ -109,7 +109,22 @@ TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
   View view = test::make_view(uvec2(96, 72));
   view.max_depth = kMaxDepthOfGlass;
   // Where total reflection is near, little is sure.
-  EXPECT_TRUE(compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1}).passes());
+  EXPECT_TRUE(
+      compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1})
+          .passes());
+}
+
+TEST_F(OraclePictureTest, ACameraInGlassAgreesWithTheOracle) {
+  const world::Scene scene = test::make_scene_of_glass();
+  View view = test::make_view(uvec2(64, 48));
+  view.max_depth = kMaxDepthOfGlass;
+  view.camera.yfov = 1.5F;
+  // In one that absorbs, in one within another, in a mesh, in two that overlap.
+  for (const vec3& eye :
+       {vec3(0.5F, 1.5F, 3.1F), vec3(-0.8F, 1.75F, 3.4F), vec3(0.1F, 0.6F, 3.95F), vec3(0.95F, 1.55F, 3.05F)}) {
+    view.camera.eye = eye;
+    EXPECT_TRUE(compare(scene, view, {.color_mean = 1e-5L, .plain_mean = 1e-4L, .unsure_share = 0.3}).passes());
+  }
 }
 
 TEST_F(OraclePictureTest, ClearCoatsAgreeWithTheOracle) {

@@ -48,6 +48,7 @@ std::span<const HardCase> secondary_cases();
 std::span<const HardCase> host_cases();
 std::span<const HardCase> tree_cases();
 std::span<const HardCase> implicit_cases();
+std::span<const HardCase> glass_cases();
 
 /// What the answers to many rays come to against the oracle. Errors are in units of u S (docs/glossary.md).
 struct Tally {

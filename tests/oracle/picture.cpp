@@ -601,6 +601,54 @@ class Tracer {
   bool has_glass_;
 };
 
+/// A mesh's that of its box.
+Real size_of(const world::Shape& shape) {
+  const Mesh* mesh = std::get_if<Mesh>(&shape);
+  if (mesh == nullptr)
+    return std::holds_alternative<world::Plane>(shape) ? kInfinity : bounding_sphere(shape, 0).radius;
+  Vector lo(kInfinity);
+  Vector hi(-kInfinity);
+  for (const vec3& position : mesh->positions) {
+    lo = glm::min(lo, Vector(position));
+    hi = glm::max(hi, Vector(position));
+  }
+  return glm::distance(lo, hi) / 2;
+}
+
+/// The solids of glass around the camera, the largest first: of each a ray along an odd direction leaves once more than
+/// it enters.
+Media media_around(const world::Scene& scene, const Vector& eye) {
+  struct Around {
+    Real size;
+    const Material* material;
+  };
+  std::vector<Around> around;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    world::Scene alone = scene;
+    alone.objects = {scene.objects[i]};
+    Ray ray{eye, Vector(0.8017L, 0.2673L, 0.5345L)};
+    Sight sight;
+    int inside = 0;
+    for (;;) {
+      sight.passed = find_nearest_hit(alone, ray, sight);
+      if (!sight.passed.exists()) break;
+      inside += glm::dot(sight.passed.normal, ray.direction) > 0 ? 1 : -1;
+      if (std::holds_alternative<world::Plane>(alone.objects[0].shape)) break;
+    }
+    const Material& material = scene.materials[scene.objects[i].material];
+    if (inside > 0 && glass_of(material).is_clear && !glass_of(material).is_thin)
+      around.push_back({size_of(scene.objects[i].shape), &material});
+  }
+  std::sort(around.begin(), around.end(), [](const Around& a, const Around& b) { return a.size > b.size; });
+  Media media;
+  for (const Around& each : around) {
+    Media beyond;
+    (void)media.meet(*each.material, false, beyond);
+    media = beyond;
+  }
+  return media;
+}
+
 /// How a pixel's cone begins.
 Cone camera_cone(const Camera& camera, const uvec2& size) {
   if (camera.projection == Projection::kOrthographic) return {2 * Real(camera.ymag) / size.y, 0};
@@ -636,6 +684,7 @@ Picture render(const world::Scene& scene, const View& view) {
   way.bounces = view.max_depth;
   way.cone = camera_cone(view.camera, view.size);
   way.error = {0, kCameraRayError};
+  if (view.camera.projection == Projection::kPerspective) way.media = media_around(lit, Vector(view.camera.eye));
   Picture picture;
   picture.size = view.size;
   picture.pixels.resize(static_cast<size_t>(view.size.x) * view.size.y);

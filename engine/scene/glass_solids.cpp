@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/glass_solids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "scene/glass.h"
+#include "shapes/shapes.h"
+
+namespace promin {
+namespace {
+
+struct BoundsOf {
+  Bounds operator()(const world::NotDrawn& /*shape*/) const { return {}; }
+  Bounds operator()(const Mesh& mesh) const {
+    Bounds bounds;
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) bounds.extend(world::bounds_of_triangle(mesh, i));
+    return bounds;
+  }
+  Bounds operator()(const world::Plane& /*plane*/) const {
+    constexpr float kAll = std::numeric_limits<float>::max();
+    return {vec3(-kAll), vec3(kAll)};
+  }
+  template <class Solid>
+  Bounds operator()(const Solid& solid) const {
+    return bounds_of(solid);
+  }
+};
+
+/// Where a point lies beside an axis: along it, from the centre on, and off it.
+struct BesideAxis {
+  template <class Shape>
+  BesideAxis(const Shape& shape, const dvec3& point) {
+    const dvec3 axis = glm::normalize(dvec3(shape.axis));
+    const dvec3 from_center = point - dvec3(shape.center);
+    along = glm::dot(from_center, axis);
+    off = glm::length(from_center - along * axis);
+  }
+  double along = 0.0;
+  double off = 0.0;
+};
+
+struct Contains {
+  dvec3 point;
+
+  bool operator()(const world::NotDrawn& /*shape*/) const { return false; }
+  bool operator()(const world::Sphere& s) const { return glm::distance(point, dvec3(s.center)) < double{s.radius}; }
+  bool operator()(const world::Plane& p) const { return glm::dot(point - dvec3(p.point), dvec3(p.normal)) < 0.0; }
+  bool operator()(const world::Cylinder& c) const {
+    const BesideAxis at(c, point);
+    return std::abs(at.along) < double{c.half_height} && at.off < double{c.radius};
+  }
+  bool operator()(const world::Cone& c) const {
+    const BesideAxis at(c, point);
+    const double share = 0.5 + 0.5 * at.along / double{c.half_height};
+    return share > 0.0 && share < 1.0 && at.off < std::lerp(double{c.radius_bottom}, double{c.radius_top}, share);
+  }
+  bool operator()(const world::Capsule& c) const {
+    // The balls between its ends: of these the one that is nearest, by a search over a convex function.
+    const BesideAxis at(c, point);
+    const auto distance = [&](double share) {
+      const double center = (2.0 * share - 1.0) * double{c.half_height};
+      return std::hypot(at.along - center, at.off) - std::lerp(double{c.radius_bottom}, double{c.radius_top}, share);
+    };
+    double lo = 0.0;
+    double hi = 1.0;
+    for (int i = 0; i < 100; ++i) {
+      const double a = lo + (hi - lo) / 3.0;
+      const double b = hi - (hi - lo) / 3.0;
+      (distance(a) < distance(b) ? hi : lo) = distance(a) < distance(b) ? b : a;
+    }
+    return distance(0.5 * (lo + hi)) < 0.0;
+  }
+  bool operator()(const world::Box& b) const {
+    const dvec3 turn(b.turn);
+    const glm::dquat rotation(std::sqrt(std::max(0.0, 1.0 - glm::dot(turn, turn))), turn.x, turn.y, turn.z);
+    const dvec3 local = glm::abs(glm::conjugate(rotation) * (point - dvec3(b.center)));
+    return glm::all(glm::lessThan(local, dvec3(b.half_size)));
+  }
+  /// The solid angle of each triangle (van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", IEEE TBE 30).
+  bool operator()(const Mesh& mesh) const {
+    double sum = 0.0;
+    for (const uvec3& corners : mesh.triangles) {
+      const dvec3 a = dvec3(mesh.positions[corners.x]) - point;
+      const dvec3 b = dvec3(mesh.positions[corners.y]) - point;
+      const dvec3 c = dvec3(mesh.positions[corners.z]) - point;
+      const double la = glm::length(a);
+      const double lb = glm::length(b);
+      const double lc = glm::length(c);
+      const double denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+      sum += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), denominator);
+    }
+    return sum / (4.0 * std::numbers::pi) > 0.5;
+  }
+};
+
+bool bounds_volume(const Material& material) {
+  if (const auto* model = std::get_if<MetallicRoughness>(&material.model)) {
+    return is_clear(*model) && model->thickness > 0.0F;
+  }
+  return is_clear(material);
+}
+
+/// That of the first triangle; a mesh is taken for one solid.
+uint32_t material_of(const world::Object& object) {
+  const auto* mesh = std::get_if<Mesh>(&object.shape);
+  return mesh == nullptr || mesh->triangle_materials.empty() ? object.material : mesh->triangle_materials.front();
+}
+
+/// Largest first; unbounded ones have infinite ones.
+double volume_of(const Bounds& bounds) {
+  const dvec3 size = dvec3(bounds.hi) - dvec3(bounds.lo);
+  return size.x * size.y * size.z;
+}
+
+bool is_within(const Bounds& bounds, const vec3& point) {
+  return glm::all(glm::greaterThanEqual(point, bounds.lo)) && glm::all(glm::lessThanEqual(point, bounds.hi));
+}
+
+}  // namespace
+
+GlassSolids::GlassSolids(const world::Scene& scene) {
+  for (const world::Object& object : scene.objects) {
+    if (world::primitive_count(object.shape) == 0) continue;
+    const uint32_t material = material_of(object);
+    if (!bounds_volume(scene.materials[material])) continue;
+    solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape)});
+    // Corners alone are needed.
+    if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) {
+      Mesh corners;
+      corners.positions = std::move(mesh->positions);
+      corners.triangles = std::move(mesh->triangles);
+      *mesh = std::move(corners);
+    }
+  }
+  std::ranges::stable_sort(solids_, std::greater(), [](const Solid& solid) { return volume_of(solid.bounds); });
+}
+
+std::vector<uint32_t> GlassSolids::materials_around(const vec3& point) const {
+  std::vector<uint32_t> materials;
+  for (const Solid& solid : solids_) {
+    if (!is_within(solid.bounds, point)) continue;
+    if (std::visit(Contains{dvec3(point)}, solid.shape)) materials.push_back(solid.material);
+  }
+  return materials;
+}
+
+}  // namespace promin

@@ -1,0 +1,400 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Refracted rays, one by one as the renderer explains them, against closed forms in long double.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/rounding.h"
+#include "hard/hard_case.h"
+#include "oracle/glass.h"
+#include "render/renderer_impl.h"
+
+namespace promin::hard {
+namespace {
+
+using oracle::Real;
+using oracle::Vector;
+
+constexpr Real kU = kUnitRoundoff;
+
+/// Glass that lets all through, without Fresnel's factor: a mirror ray leads on where it reflects totally alone.
+Material clear_glass(float ior) {
+  Phong phong;
+  phong.ambient = phong.diffuse = vec3(0.0F);
+  phong.transmission = vec3(1.0F);
+  phong.ior = ior;
+  Material material;
+  material.model = phong;
+  return material;
+}
+
+class GlassScene {
+ public:
+  GlassScene() { scene_.environment.background = vec3(1.0F); }
+
+  GlassScene& add(const world::Shape& shape, float ior) {
+    scene_.objects.push_back({"", shape, static_cast<uint32_t>(scene_.materials.size())});
+    scene_.materials.push_back(clear_glass(ior));
+    return *this;
+  }
+  const world::Scene& scene() const { return scene_; }
+
+ private:
+  world::Scene scene_;
+};
+
+/// The rays of a sample that begins at `origin` along `direction`, which is rounded: read it of the first.
+class GlassTracer {
+ public:
+  GlassTracer(const Lab& lab, const GlassScene& scene) : renderer_(make_renderer(lab.device(), scene.scene())) {}
+
+  std::vector<ExplainedRay> follow(const dvec3& origin, const dvec3& direction, uint32_t depth = 8) {
+    View view;
+    view.size = uvec2(1);
+    view.max_depth = depth;
+    view.camera.projection = Projection::kOrthographic;
+    view.camera.eye = vec3(origin);
+    view.camera.look = vec3(glm::normalize(direction));
+    const dvec3 aside = std::abs(view.camera.look.x) < 0.7F ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+    view.camera.up = vec3(glm::normalize(glm::cross(dvec3(view.camera.look), aside)));
+    view.camera.ymag = 1e-6F;
+    return renderer_.explain(view, uvec2(0)).samples.front().rays;
+  }
+
+ private:
+  Renderer renderer_;
+};
+
+Vector direction_of(const ExplainedRay& ray) {
+  return glm::normalize(Vector(ray.ray.direction));
+}
+
+/// By how much the sine of an angle beyond a face moves with that before it, where its cosines are these.
+Real spread_of(Real from, Real to, Real cosine, Real cosine_beyond) {
+  return from * cosine / (to * std::max(cosine_beyond, Real(1e-9L)));
+}
+
+/// A ray that goes through a sphere is turned by 2 (i - r), in the plane of its centre.
+void run_spheres(Lab& lab) {
+  Random random(45);
+  const vec3 center(0.3F, -0.2F, 0.1F);
+  for (const float ior : {1.1F, 1.5F, 2.4F}) {
+    GlassScene scene;
+    scene.add(world::Sphere{center, 1.0F}, ior);
+    GlassTracer tracer(lab, scene);
+    Real worst = 0;
+    uint64_t lost = 0;
+    for (const double impact : {0.0, 0.1, 0.5, 0.9, 0.99, 0.999, 0.9999}) {
+      for (int i = 0; i < 8; ++i) {
+        const dvec3 along = random.direction();
+        const dvec3 aside = random.perpendicular(along);
+        const auto rays = tracer.follow(dvec3(center) - 3.0 * along + impact * aside, along);
+        if (rays.size() != 3) {
+          ++lost;
+          continue;
+        }
+        const Vector origin(rays[0].ray.origin);
+        const Vector d = direction_of(rays[0]);
+        const Vector from_center = origin - Vector(center);
+        const Vector nearest = from_center - glm::dot(from_center, d) * d;
+        const Real b = glm::length(nearest);
+        const Real turn = 2 * (std::asin(b) - std::asin(b / Real(ior)));
+        const Vector inward = b > 0 ? -nearest / b : Vector(0);
+        const Vector expected = std::cos(turn) * d + std::sin(turn) * inward;
+        // The place of the hit is off by u S / cos i along the sphere, and so is its normal.
+        const Real scale = glm::length(origin) + 2 + glm::length(Vector(center));
+        const Real unit = kU * scale / std::sqrt(std::max(1 - b * b, Real(1e-6L)));
+        worst = std::max(worst, glm::distance(direction_of(rays[2]), expected) / unit);
+      }
+    }
+    lab.expect_at_most(label("rays lost in a sphere, ior", ior), 0.0, static_cast<double>(lost));
+    lab.expect_at_most(label("direction behind a sphere / (u S / (R cos i)), ior", ior), 8.0 * lab.rounding_factor(),
+                       static_cast<double>(worst));
+  }
+}
+
+/// A slab shifts a ray and leaves its direction: by d sin(i - r) / cos r. At each face the lift shifts it too.
+void run_slabs(Lab& lab) {
+  Random random(46);
+  for (const double thickness : {1e-3, 1.0}) {
+    const auto half = static_cast<float>(0.5 * thickness);
+    GlassScene scene;
+    scene.add(world::Box{vec3(0.0F), vec3(10.0F, half, 10.0F), vec3(0.0F)}, 1.5F);
+    GlassTracer tracer(lab, scene);
+    Real worst_turn = 0;
+    Real worst_shift = 0;
+    uint64_t lost = 0;
+    for (const double degrees : {0.0, 10.0, 45.0, 70.0, 80.0, 85.0}) {
+      for (int i = 0; i < 6; ++i) {
+        const double angle = degrees * std::numbers::pi / 180.0;
+        const dvec3 aside = random.perpendicular(dvec3(0, 1, 0));
+        const dvec3 along = std::sin(angle) * aside - std::cos(angle) * dvec3(0, 1, 0);
+        const double distance = (0.5 * thickness + 1.0) / std::cos(angle);
+        const auto rays = tracer.follow(-distance * along, along);
+        if (rays.size() != 3) {
+          ++lost;
+          continue;
+        }
+        const Vector d = direction_of(rays[0]);
+        const Real i_angle = std::acos(std::min(-d.y, Real(1)));
+        const Real r_angle = std::asin(std::sin(i_angle) / 1.5L);
+        worst_turn = std::max(worst_turn, glm::distance(direction_of(rays[2]), d) * std::cos(i_angle) / kU);
+        const Vector between = Vector(rays[2].ray.origin) - Vector(rays[0].ray.origin);
+        const Real shift = glm::length(between - glm::dot(between, d) * d);
+        const Real expected = 2 * Real(half) * std::sin(i_angle - r_angle) / std::cos(r_angle);
+        worst_shift =
+            std::max(worst_shift, std::abs(shift - expected) * std::cos(i_angle) / (kU * (10 + Real(distance))));
+      }
+    }
+    lab.expect_at_most(label("rays lost in a slab, thickness", thickness), 0.0, static_cast<double>(lost));
+    lab.expect_at_most(label("direction behind a slab / (u / cos i), thickness", thickness), 16.0,
+                       static_cast<double>(worst_turn));
+    lab.expect_at_most(label("shift behind a slab / (u S / cos i), thickness", thickness), 32.0,
+                       static_cast<double>(worst_shift));
+  }
+}
+
+/// From within glass, next to the angle from which on nothing leaves it, and into it at grazing angles, where that is
+/// the angle inside.
+void run_critical_angles(Lab& lab) {
+  constexpr float kIor = 1.5F;
+  GlassScene scene;
+  scene.add(world::Box{vec3(0.0F), vec3(10.0F, 1.0F, 10.0F), vec3(0.0F)}, kIor);
+  GlassTracer tracer(lab, scene);
+  uint64_t wrong = 0;
+  Real worst = 0;
+  for (const double off : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    for (const double sign : {-1.0, 1.0}) {
+      const double sine = (1.0 + sign * off) / 1.5;
+      const auto rays = tracer.follow(dvec3(-0.5, 0.2, 0.1), dvec3(sine, std::sqrt(1.0 - sine * sine), 0.0), 1);
+      const Vector d = direction_of(rays[0]);
+      const Real beyond2 = 1 - Real(kIor) * Real(kIor) * (1 - d.y * d.y);
+      // Nearer to it than that rounding decides.
+      if (rays.size() != 2 || std::abs(beyond2) < 16 * kU) {
+        wrong += rays.size() != 2 ? 1 : 0;
+        continue;
+      }
+      const bool goes_on = rays[1].ray.direction.y > 0.0F;
+      if (goes_on != (beyond2 > 0)) ++wrong;
+      if (!goes_on) continue;
+      const Vector expected(d.x * Real(kIor), std::sqrt(beyond2), d.z * Real(kIor));
+      const Real spread = spread_of(kIor, 1, d.y, std::sqrt(beyond2));
+      worst = std::max(worst, glm::distance(direction_of(rays[1]), expected) / (kU * (1 + spread)));
+    }
+  }
+  lab.expect_at_most("rays on the wrong side of total reflection", 0.0, static_cast<double>(wrong));
+  lab.expect_at_most("direction next to total reflection / (u (1 + n cos i / cos r))", 16.0,
+                     static_cast<double>(worst));
+  worst = 0;
+  for (const double cosine : {1e-1, 1e-2, 1e-3, 1e-4}) {
+    const auto rays =
+        tracer.follow(dvec3(-1e-3 / cosine, 1.0 + 1e-3, 0.1), dvec3(std::sqrt(1.0 - cosine * cosine), -cosine, 0.0), 1);
+    const Vector d = direction_of(rays[0]);
+    const Vector expected(d.x / Real(kIor), -std::sqrt(1 - (1 - d.y * d.y) / (Real(kIor) * Real(kIor))),
+                          d.z / Real(kIor));
+    worst = std::max(worst, rays.size() == 2 ? glm::distance(direction_of(rays[1]), expected) / kU : Real(1e9L));
+  }
+  lab.expect_at_most("direction into glass at cosines of 1e-1 to 1e-4 / u", 8.0, static_cast<double>(worst));
+}
+
+/// A prism turns a ray that goes through it symmetrically by 2 asin(n sin(A / 2)) - A.
+void run_wedges(Lab& lab) {
+  for (const double degrees : {1.0, 20.0, 60.0}) {
+    const double half = 0.5 * degrees * std::numbers::pi / 180.0;
+    const auto x = static_cast<float>(std::tan(half));
+    Mesh mesh;
+    for (const float z : {-1.0F, 1.0F}) {
+      mesh.positions.insert(mesh.positions.end(), {vec3(0, 1, z), vec3(-x, 0, z), vec3(x, 0, z)});
+    }
+    mesh.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4}, {0, 2, 5}, {0, 5, 3}, {1, 4, 5}, {1, 5, 2}};
+    for (auto& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
+    GlassScene scene;
+    scene.add(mesh, 1.5F);
+    GlassTracer tracer(lab, scene);
+    // The faces as the mesh has them.
+    const Real a = std::atan(Real(x));
+    const Real incidence = std::asin(1.5L * std::sin(a));
+    const auto climb = static_cast<double>(incidence - a);
+    const dvec3 along(std::cos(climb), std::sin(climb), 0.0);
+    const auto rays = tracer.follow(dvec3(-0.25 * static_cast<double>(x), 0.5, 0.1) - along, along);
+    const Vector d = direction_of(rays[0]);
+    // Near the symmetric way the turn is at its least, so that of the rounded ray is the same.
+    const Real turn = 2 * incidence - 2 * a;
+    const Vector expected(d.x * std::cos(turn) + d.y * std::sin(turn), d.y * std::cos(turn) - d.x * std::sin(turn),
+                          d.z);
+    const Real error = rays.size() == 3 ? glm::distance(direction_of(rays[2]), expected) : Real(1);
+    lab.expect_at_most(label("direction behind a wedge of degrees / u", degrees), 64.0,
+                       static_cast<double>(error / kU));
+  }
+}
+
+/// Fifty times reflected totally between the sides of a bar: the way is that of a straight line, folded.
+void run_light_guide(Lab& lab) {
+  GlassScene scene;
+  scene.add(world::Box{vec3(0.0F), vec3(200.0F, 1.0F, 1.0F), vec3(0.0F)}, 1.5F);
+  GlassTracer tracer(lab, scene);
+  const auto rays = tracer.follow(dvec3(-100.0, 0.1, 0.2), dvec3(1.0, 0.37, 0.31), 60);
+  const Vector d = direction_of(rays[0]);
+  size_t reflections = 0;
+  Real turned = 0;
+  Real moved = 0;
+  for (size_t i = 1; i < rays.size() && reflections < 50; ++i, ++reflections) {
+    const Vector now = direction_of(rays[i]);
+    turned = std::max(turned, glm::distance(glm::abs(now), glm::abs(d)));
+    // Unfolded: y and z of the straight line, by the way in x.
+    const Vector at(rays[i].ray.origin);
+    const Real way = (at.x - Real(rays[0].ray.origin.x)) / d.x;
+    for (const int axis : {1, 2}) {
+      const Real straight = Real(rays[0].ray.origin[axis]) + way * d[axis];
+      const Real folded = std::abs(std::remainder(straight - 1, Real(4)));
+      moved = std::max(moved, std::abs(at[axis] - (1 - folded)));
+    }
+  }
+  lab.expect_at_most("50 less total reflections in a bar", 0.0, 50.0 - static_cast<double>(reflections));
+  lab.expect_at_most("direction after 50 total reflections / u", 128.0, static_cast<double>(turned / kU));
+  // Each begins off its face by the lift.
+  lab.expect_at_most("place after 50 total reflections / (u S), of each", 16.0,
+                     static_cast<double>(moved / (50 * kU * 200)));
+}
+
+/// The same rays by the oracle: its hits, its faces, on and on.
+Vector direction_behind(const world::Scene& scene, oracle::Ray ray) {
+  oracle::Media media;
+  for (int step = 0; step < 64; ++step) {
+    const oracle::Hit hit = oracle::find_nearest_hit(scene, ray);
+    if (!hit.exists()) break;
+    const bool leaves = glm::dot(hit.normal, ray.direction) > 0;
+    oracle::Media beyond;
+    const oracle::Face face = media.meet(oracle::material_of(scene, hit), leaves, beyond);
+    const Vector normal = leaves ? -hit.normal : hit.normal;
+    const Vector at = ray.origin + hit.t * ray.direction;
+    const oracle::Refraction refraction = oracle::refract(glm::normalize(ray.direction), normal, normal, face);
+    if (refraction.is_total) {
+      ray = {at + 1e-15L * (1 + glm::length(at)) * normal, glm::reflect(ray.direction, normal)};
+      continue;
+    }
+    media = beyond;
+    ray = {at - 1e-15L * (1 + glm::length(at)) * normal, refraction.direction};
+  }
+  return glm::normalize(ray.direction);
+}
+
+/// Solids that touch, overlap, lie within one another or far from the origin.
+void run_solids(Lab& lab, const std::string& name, const GlassScene& scene, const vec3& center, Random& random) {
+  GlassTracer tracer(lab, scene);
+  std::vector<double> errors;
+  for (int i = 0; i < 60; ++i) {
+    const dvec3 along = random.direction();
+    const dvec3 aside = random.perpendicular(along);
+    const auto rays = tracer.follow(dvec3(center) - 4.0 * along + 0.6 * random.uniform() * aside, along, 32);
+    const oracle::Ray first{Vector(rays[0].ray.origin), Vector(rays[0].ray.direction)};
+    const Real scale = 4 + glm::length(Vector(center));
+    const Real error = glm::distance(direction_of(rays.back()), direction_behind(scene.scene(), first));
+    errors.push_back(static_cast<double>(error / (kU * scale)));
+  }
+  // Each face adds its own, and where total reflection is near much more: of few rays.
+  std::sort(errors.begin(), errors.end());
+  lab.expect_at_most("direction behind " + name + " / (u S), of 3 in 4 rays", 64.0, errors[errors.size() * 3 / 4]);
+  lab.note("the same, of 9 in 10", errors[errors.size() * 9 / 10]);
+}
+
+void run_nested(Lab& lab) {
+  Random random(50);
+  const auto sphere = [](const vec3& center, float radius) { return world::Sphere{center, radius}; };
+  GlassScene touching;
+  touching.add(sphere(vec3(-0.5F, 0, 0), 0.5F), 1.5F).add(sphere(vec3(0.5F, 0, 0), 0.5F), 1.33F);
+  run_solids(lab, "touching spheres", touching, vec3(0.0F), random);
+  GlassScene overlapping;
+  overlapping.add(sphere(vec3(-0.4F, 0, 0), 0.6F), 1.5F).add(sphere(vec3(0.4F, 0, 0), 0.6F), 1.33F);
+  run_solids(lab, "overlapping spheres", overlapping, vec3(0.0F), random);
+  GlassScene bubble;
+  bubble.add(sphere(vec3(0.0F), 1.0F), 1.5F).add(sphere(vec3(0.2F, 0.1F, 0), 0.5F), 1.0F);
+  run_solids(lab, "a bubble", bubble, vec3(0.0F), random);
+  const vec3 far(6e4F, -6e4F, 5e4F);
+  GlassScene lens;
+  lens.add(sphere(far + vec3(-0.5F, 0, 0), 0.75F), 1.5F).add(sphere(far + vec3(0.5F, 0, 0), 0.75F), 1.5F);
+  run_solids(lab, "a lens of spheres at 1e5 from the origin", lens, far, random);
+}
+
+/// Two blocks that share a face, in either order: a ray goes from one into the other as if air were between, which
+/// leaves its direction inside as Snell's law of the two, and behind both as before.
+void run_coincident_faces(Lab& lab) {
+  for (const bool is_second_first : {false, true}) {
+    const world::Box lower{vec3(0, -0.5F, 0), vec3(2.0F, 0.5F, 2.0F), vec3(0.0F)};
+    const world::Box upper{vec3(0, 0.5F, 0), vec3(2.0F, 0.5F, 2.0F), vec3(0.0F)};
+    GlassScene scene;
+    if (is_second_first) {
+      scene.add(lower, 1.33F).add(upper, 1.5F);
+    } else {
+      scene.add(upper, 1.5F).add(lower, 1.33F);
+    }
+    GlassTracer tracer(lab, scene);
+    uint64_t wrong = 0;
+    Real worst = 0;
+    for (int i = 0; i < 20; ++i) {
+      const double angle = 0.03 * i;
+      const auto rays = tracer.follow(dvec3(-0.3, 1.5, 0.1), dvec3(std::sin(angle), -std::cos(angle), 0.0));
+      const Vector d = direction_of(rays[0]);
+      worst = std::max(worst, glm::distance(direction_of(rays.back()), d));
+      // Of the way in the lower block.
+      const Vector inside = direction_of(rays[rays.size() - 2]);
+      if (rays.size() != 5 && rays.size() != 4) ++wrong;
+      if (std::abs(inside.x - d.x / 1.33L) > 16 * kU) ++wrong;
+    }
+    const std::string order = is_second_first ? ", lower one first" : ", upper one first";
+    lab.expect_at_most("rays that miss a face where two coincide" + order, 0.0, static_cast<double>(wrong));
+    lab.expect_at_most("direction behind blocks that share a face / u" + order, 32.0, static_cast<double>(worst / kU));
+  }
+}
+
+/// A ball of glass without colour in the same light from everywhere sends as much, whatever goes on within.
+void run_furnace(Lab& lab) {
+  for (const float ior : {1.1F, 1.5F, 2.4F}) {
+    world::Scene scene;
+    scene.environment.ambient = scene.environment.background = vec3(1.0F);
+    MetallicRoughness glass;
+    glass.metallic = 0.0F;
+    glass.roughness = 0.0F;
+    glass.transmission = 1.0F;
+    glass.thickness = 1.0F;
+    glass.ior = ior;
+    Material material;
+    material.model = glass;
+    scene.materials = {material};
+    scene.objects = {{"ball", world::Sphere{vec3(0.0F), 1.0F}, 0}};
+    View view;
+    view.size = uvec2(64);
+    view.max_depth = 30;
+    view.camera.projection = Projection::kOrthographic;
+    view.camera.eye = vec3(0, 0, 4);
+    view.camera.look = vec3(0, 0, -1);
+    view.camera.up = vec3(0, 1, 0);
+    view.camera.ymag = 1.01F;
+    const RenderResult result = make_renderer(lab.device(), scene).render(view);
+    double worst = 0.0;
+    for (const vec3& pixel : result.image.pixels) {
+      for (int i = 0; i < 3; ++i) worst = std::max(worst, std::abs(static_cast<double>(pixel[i]) - 1.0));
+    }
+    lab.expect_at_most(label("white furnace of a glass ball, |L - 1|, ior", ior), 0.01, worst);
+  }
+}
+
+constexpr HardCase kRows[] = {HardCase{45, "GlassSphere", run_spheres},
+                              HardCase{46, "GlassSlab", run_slabs},
+                              HardCase{47, "TotalReflection", run_critical_angles},
+                              HardCase{48, "GlassWedge", run_wedges},
+                              HardCase{49, "LightGuide", run_light_guide},
+                              HardCase{50, "GlassSolids", run_nested},
+                              HardCase{51, "CoincidentFacesOfGlass", run_coincident_faces},
+                              HardCase{52, "GlassFurnace", run_furnace}};
+
+}  // namespace
+
+std::span<const HardCase> glass_cases() {
+  return kRows;
+}
+
+}  // namespace promin::hard
