@@ -35,6 +35,8 @@ class Material:
     specular: float
     shininess: float
     reflection: list
+    transmission: float  # grey
+    ior: float
 
 
 @dataclass
@@ -169,6 +171,9 @@ class SceneReader:
         specular = phong.get("specularFactor", (0, 0, 0))
         if len(set(specular)) > 1:
             raise Unsupported(f"material {index}: specularFactor is not grey")
+        transmission = phong.get("transmissionFactor", (0, 0, 0))
+        if len(set(transmission)) > 1 or phong.get("fresnel", False):
+            raise Unsupported(f"material {index}: glass that is not grey or hangs on the angle")
         return Material(
             index,
             diffuse,
@@ -177,6 +182,8 @@ class SceneReader:
             specular[0],
             phong.get("shininess", 0),
             phong.get("reflectionFactor", (0, 0, 0)),
+            transmission[0],
+            phong.get("ior", 1),
         )
 
     def _triangles(self, primitive):

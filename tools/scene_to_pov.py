@@ -28,13 +28,19 @@ def matrix(m):
 
 def texture(material):
     pigment = [max(c, _MIN_PIGMENT) for c in material.diffuse]
-    ambient = [a / p for a, p in zip(material.ambient, pigment)]
-    emission = [e / p for e, p in zip(material.emission, pigment)]
+    # POV-Ray's surface scatters what it does not let through.
+    opaque = 1 - material.transmission
+    if opaque < _MIN_PIGMENT:
+        raise Unsupported(f"material {material.index}: glass that lets all light through")
+    ambient = [a / p / opaque for a, p in zip(material.ambient, pigment)]
+    emission = [e / p / opaque for e, p in zip(material.emission, pigment)]
     phong = f"phong {material.specular:.9g} phong_size {material.shininess:.9g}"
     highlight = phong if material.shininess > 0 else "phong 0"
     reflection = f"reflection {{ rgb {vector(material.reflection)} }}"
-    finish = f"ambient rgb {vector(ambient)} emission rgb {vector(emission)} diffuse 1 {highlight} {reflection}"
-    return f"texture {{ pigment {{ rgb {vector(pigment)} }} finish {{ {finish} }} }}"
+    finish = f"ambient rgb {vector(ambient)} emission rgb {vector(emission)} diffuse {1 / opaque:.9g} {highlight} {reflection}"
+    color = "rgb " + vector(pigment) if opaque == 1 else "rgbt " + vector([*pigment, material.transmission])
+    glass = "" if opaque == 1 else f" interior {{ ior {material.ior:.9g} }}"
+    return f"texture {{ pigment {{ {color} }} finish {{ {finish} }} }}{glass}"
 
 
 def _capsule_parts(size):
@@ -51,6 +57,8 @@ def _capsule_parts(size):
 
 
 class PovWriter(SceneReader):
+    has_glass = False
+
     def add_triangles(self, triangles, material, world):
         parts = [("vertex_vectors", triangles.positions)]
         if triangles.normals:
@@ -85,6 +93,7 @@ class PovWriter(SceneReader):
         self.lines.append(f"light_source {{ {_FAR:g} * {vector(back)} rgb {vector(color)} parallel point_at 0 }}")
 
     def _add(self, body, material, world):
+        self.has_glass = self.has_glass or material.transmission > 0
         self.lines.append(f"{body} {texture(material)} {matrix(world)} }}")
 
 
@@ -101,7 +110,9 @@ def write_pov(file, camera, max_depth):
     scene = PovWriter(file)
     scene.read()
     background, ambient = scene.sky()
-    settings = f"assumed_gamma 1 max_trace_level {max_depth + 1} adc_bailout 0 ambient_light rgb {vector(ambient)}"
+    # Promin's least weight of a ray where there is glass.
+    least = 1 / 512 if scene.has_glass else 0
+    settings = f"assumed_gamma 1 max_trace_level {max_depth + 1} adc_bailout {least} ambient_light rgb {vector(ambient)}"
     head = ["#version 3.7;", f"global_settings {{ {settings} }}", f"background {{ rgb {vector(background)} }}"]
     return "\n".join([*head, camera_block(scene.camera(camera)), *scene.lines, ""])
 

@@ -61,6 +61,8 @@ class TachyonWriter(SceneReader):
         self.lines.append(f"DIRECTIONAL_LIGHT DIRECTION {place(-x for x in back)} COLOR {numbers(color)}")
 
     def _texture(self, material):
+        if material.transmission > 0:
+            raise Unsupported(f"material {material.index}: glass")
         if any(material.emission) or len(set(material.reflection)) > 1:
             raise Unsupported(f"material {material.index}: emission or coloured reflection")
         if any(self._ambient) and list(material.ambient) != list(material.diffuse):
