@@ -115,6 +115,7 @@ struct Primitive {
   uvec4 c;
 };
 LAYOUT_CONSTANT PRIMITIVE_TEXELS = 3u;
+LAYOUT_CONSTANT SHAPE_IS_OPEN = 0x80000000u;  // in c.x of cylinders and cones
 
 // The data that shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with
 // normals, colours, texture coordinates or tangents), w = material index and SURFACE_* bits.

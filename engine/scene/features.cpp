@@ -74,10 +74,18 @@ struct ShapeFeatures {
     return features;
   }
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  FeatureMask operator()(const world::TYPE&) const {                 \
-    return FEATURE_##FEATURE;                                        \
+  FeatureMask operator()(const world::TYPE& shape) const {           \
+    return FeatureMask(FEATURE_##FEATURE) | open_features(shape);    \
   }
 #include "promin/kinds/primitives.def"
+
+  template <class Shape>
+  static FeatureMask open_features(const Shape& shape) {
+    if constexpr (requires { shape.is_open; }) {
+      if (shape.is_open) return FEATURE_OPEN_SHAPES;
+    }
+    return {};
+  }
 };
 
 /// What a model of material brings, and what its numbers need beside.
@@ -168,7 +176,7 @@ FeatureMask primitive_features() {
   FeatureMask features;
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #include "promin/kinds/primitives.def"
-  return features;
+  return features | FEATURE_OPEN_SHAPES;
 }
 
 std::vector<bool> find_shown_materials(std::span<const world::Object> objects, size_t material_count) {

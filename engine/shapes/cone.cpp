@@ -11,9 +11,9 @@ std::optional<world::Cone> place(const Cone& cone, const Placement& placement) {
   if (!placement.keeps_cylinders(cone.axis)) return std::nullopt;
   const std::vector<NamedSize> sizes = sizes_of(cone, placement);
   const dvec3 axis = placement.direction(cone.axis);
-  return world::Cone{vec3(center_of(cone, placement)), vec3(axis / glm::length(axis)),
+  return world::Cone{vec3(center_of(cone, placement)),  vec3(axis / glm::length(axis)),
                      static_cast<float>(sizes[0].size), static_cast<float>(sizes[1].size),
-                     static_cast<float>(sizes[2].size)};
+                     static_cast<float>(sizes[2].size), cone.is_open};
 }
 
 std::vector<NamedSize> sizes_of(const Cone& cone, const Placement& placement) {
@@ -32,15 +32,21 @@ Bounds bounds_of(const world::Cone& c) {
   return bounds_of_disks(c.center, c.axis, c.half_height, c.radius_bottom, c.radius_top);
 }
 
-// a = center, bottom radius; b = axis, half height; c.x = bits of the top radius.
+// a = center, bottom radius; b = axis, half height; c.x = bits of the top radius, and SHAPE_IS_OPEN in place of its
+// sign.
 layout::Primitive pack(const world::Cone& c) {
   return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height),
-          uvec4(std::bit_cast<uint32_t>(c.radius_top), 0, 0, 0)};
+          uvec4(std::bit_cast<uint32_t>(c.radius_top) | (c.is_open ? layout::SHAPE_IS_OPEN : 0), 0, 0, 0)};
 }
 
 template <>
 world::Cone unpack(const layout::Primitive& p) {
-  return {vec3(p.a), vec3(p.b), p.b.w, p.a.w, std::bit_cast<float>(p.c.x)};
+  return {vec3(p.a),
+          vec3(p.b),
+          p.b.w,
+          p.a.w,
+          std::bit_cast<float>(p.c.x & ~layout::SHAPE_IS_OPEN),
+          (p.c.x & layout::SHAPE_IS_OPEN) != 0};
 }
 
 }  // namespace promin

@@ -10,7 +10,7 @@ std::optional<world::Cylinder> place(const Cylinder& cylinder, const Placement& 
   const std::vector<NamedSize> sizes = sizes_of(cylinder, placement);
   const dvec3 axis = placement.direction(cylinder.axis);
   return world::Cylinder{vec3(center_of(cylinder, placement)), vec3(axis / glm::length(axis)),
-                         static_cast<float>(sizes[0].size), static_cast<float>(sizes[1].size)};
+                         static_cast<float>(sizes[0].size), static_cast<float>(sizes[1].size), cylinder.is_open};
 }
 
 std::vector<NamedSize> sizes_of(const Cylinder& cylinder, const Placement& placement) {
@@ -26,14 +26,14 @@ Bounds bounds_of(const world::Cylinder& c) {
   return bounds_of_disks(c.center, c.axis, c.half_height, c.radius, c.radius);
 }
 
-// a = center, radius; b = axis, half height.
+// a = center, radius; b = axis, half height; c.x = SHAPE_IS_OPEN or 0.
 layout::Primitive pack(const world::Cylinder& c) {
-  return {vec4(c.center, c.radius), vec4(c.axis, c.half_height), uvec4(0)};
+  return {vec4(c.center, c.radius), vec4(c.axis, c.half_height), uvec4(c.is_open ? layout::SHAPE_IS_OPEN : 0, 0, 0, 0)};
 }
 
 template <>
 world::Cylinder unpack(const layout::Primitive& p) {
-  return {vec3(p.a), vec3(p.b), p.b.w, p.a.w};
+  return {vec3(p.a), vec3(p.b), p.b.w, p.a.w, p.c.x != 0};
 }
 
 }  // namespace promin

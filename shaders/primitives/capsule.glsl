@@ -37,7 +37,7 @@ Frustum side_of(Capsule c, vec3 center) {
   precise float half_height = c.half_height * cosine2;
   precise float radius = 0.5 * (c.radius_bottom + c.radius_top) * cosine;
   precise float slope = -sine / cosine;
-  return Frustum(center, c.axis, half_height, radius, slope);
+  return Frustum(center, c.axis, half_height, radius, slope, false);
 }
 
 Inside hull_of(Inside a, Inside b) {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A cone or frustum closed by its disks.
+// A cone or frustum, closed by its disks or open.
 #include "primitives/frustum.glsl"
 
 Frustum cone_of(Primitive p) {
   float radius_bottom = p.a.w;
-  float radius_top = uintBitsToFloat(p.c.x);
+  float radius_top = uintBitsToFloat(has(FEATURE_OPEN_SHAPES) ? p.c.x & ~SHAPE_IS_OPEN : p.c.x);
   precise float radius = 0.5 * (radius_bottom + radius_top);
   precise float slope = (radius_top - radius_bottom) / (2.0 * p.b.w);
-  return Frustum(p.a.xyz, p.b.xyz, p.b.w, radius, slope);
+  return Frustum(p.a.xyz, p.b.xyz, p.b.w, radius, slope, is_frustum_open(p));
 }
 
 // See intersect_frustum. o + t d lies within 4.1 u (|o - c| + size) of the surface, measured for half angles of 0.1 to

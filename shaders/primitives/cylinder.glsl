@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A cylinder closed by two disks: a frustum of slope 0.
+// A cylinder, closed by two disks or open: a frustum of slope 0.
 #include "primitives/frustum.glsl"
 
-Frustum cylinder_of(Primitive p) { return Frustum(p.a.xyz, p.b.xyz, p.b.w, p.a.w, 0.0); }
+Frustum cylinder_of(Primitive p) { return Frustum(p.a.xyz, p.b.xyz, p.b.w, p.a.w, 0.0, is_frustum_open(p)); }
 
 // See intersect_frustum. o + t d lies within 3.4 u (|o - c| + size) of the surface, measured at distances of 3 to 1e5
 // and sin 1e-4 to the axis.

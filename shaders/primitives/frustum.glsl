@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cylinder and cone share the solid |radial| <= radius + slope * z, |z| <= half height, around an axis through its
 // centre. It is convex, so a ray is inside it in one interval: that of the two cap planes cut with that of the lateral
-// surface. An end that both bound belongs to one of them, never to neither, so rims do not leak.
+// surface. An end that both bound belongs to one of them, never to neither, so rims do not leak. Of an open one the ray
+// meets those ends of the interval that the side bounds: the same ends, but a rim belongs to the side.
 #ifndef FRUSTUM_GLSL
 #define FRUSTUM_GLSL
 
@@ -12,7 +13,10 @@ struct Frustum {
   float half_height;
   float radius;  // at the centre
   float slope;   // change of radius per height; 0 for a cylinder
+  bool is_open;  // whether the side alone is there
 };
+
+bool is_frustum_open(Primitive p) { return has(FEATURE_OPEN_SHAPES) && (p.c.x & SHAPE_IS_OPEN) != 0u; }
 
 // The method is that of Haines et al., Ray Tracing Gems ch. 7, re-centred twice: around the closest approach to the
 // centre, then on the ray near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays;
@@ -94,8 +98,8 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   // stays in its place however flat the angle at it.
   precise float cap_entry = (entry_z - base_z) * inverse_dz;
   precise float cap_exit = (-entry_z - base_z) * inverse_dz;
-  bool enters_side = side_entry > cap_entry;
-  bool exits_side = side_exit < cap_exit;
+  bool enters_side = side_entry > cap_entry || (f.is_open && side_entry == cap_entry);
+  bool exits_side = side_exit < cap_exit || (f.is_open && side_exit == cap_exit);
   float entry = enters_side ? side_entry : cap_entry;
   float exit = exits_side ? side_exit : cap_exit;
   if (!(entry <= exit)) return NOWHERE;
@@ -106,7 +110,12 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
 }
 
 Crossing intersect_frustum(Ray ray, Frustum f) {
-  return nearest_crossing(ray, inside_frustum(ray, approach(ray, f.center), f));
+  Inside inside = inside_frustum(ray, approach(ray, f.center), f);
+  // Through a missing disk the ray is inside as if it had always been.
+  if (f.is_open && inside.entry_part != PART_SIDE) inside.entry = -INFINITY;
+  Crossing nearest = nearest_crossing(ray, inside);
+  if (f.is_open && nearest.part != PART_SIDE) return NO_CROSSING;
+  return nearest;
 }
 
 // A point of the surface, seen from the centre, with its normal.

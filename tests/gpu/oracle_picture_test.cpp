@@ -101,6 +101,24 @@ TEST_F(OraclePictureTest, EverythingAgreesWithTheOracle) {
   EXPECT_TRUE(compare(test::make_scene_of_everything(), test::make_view(uvec2(96, 72))).passes());
 }
 
+TEST_F(OraclePictureTest, OpenShapesAgreeWithTheOracle) {
+  world::Scene scene = test::make_scene_of_everything(60);
+  for (world::Object& object : scene.objects) {
+    std::visit(
+        [](auto& shape) {
+          if constexpr (requires { shape.is_open; }) shape.is_open = true;
+        },
+        object.shape);
+  }
+  // Into the frustum, which is wide open.
+  View view = test::make_view(uvec2(96, 72));
+  view.camera.eye = vec3(-1.6F, 3.2F, 2.6F);
+  view.camera.look = glm::normalize(vec3(0.25F, -1.0F, -0.2F));
+  view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 0, -1)), view.camera.look));
+  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+  EXPECT_TRUE(compare(scene, view).passes());
+}
+
 TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
   EXPECT_TRUE(compare(test::make_scene_of_alpha(), test::make_view(uvec2(96, 72))).passes());
 }

@@ -128,8 +128,8 @@ double worst_surface_error(const Solid& solid, std::span<const Ray> rays, std::s
     if (hits[i].object < 0) continue;
     const oracle::Ray ray{oracle::Vector(rays[i].origin), oracle::Vector(rays[i].direction)};
     const oracle::Vector p = ray.origin + oracle::Real(hits[i].t) * ray.direction;
-    const oracle::Real error = std::abs(oracle::signed_distance(solid.shape, 0, p)) /
-                               (oracle::kRoundoff * oracle::scale_of(solid.shape, 0, ray));
+    const oracle::Real error =
+        oracle::surface_distance(solid.shape, 0, p) / (oracle::kRoundoff * oracle::scale_of(solid.shape, 0, ray));
     worst = error <= worst ? worst : static_cast<double>(error);
   }
   return worst;

@@ -88,6 +88,47 @@ struct CreaseDistance {
   }
 };
 
+/// A cylinder or cone in the half plane through its axis and a point: x counts from the axis, y along it.
+struct Profile {
+  Vector point;
+  Vector bottom_rim;
+  Vector top_rim;
+  Real half_height;
+
+  Real beyond_side() const {
+    const Vector along = top_rim - bottom_rim;
+    return glm::dot(point - bottom_rim, glm::normalize(Vector(along.y, -along.x, 0)));
+  }
+  Real beyond_ends() const { return std::abs(point.y) - half_height; }
+  Real distance_to_side() const { return distance_to_segment(point, bottom_rim, top_rim); }
+};
+
+Profile profile_of(const Vector& center, const Vector& axis, Real h, Real bottom, Real top, const Vector& point) {
+  const Vector v = glm::normalize(axis);
+  const Real z = glm::dot(point - center, v);
+  return {Vector(glm::length(point - center - z * v), z, 0), Vector(bottom, -h, 0), Vector(top, h, 0), h};
+}
+
+Profile profile_of(const world::Cylinder& c, const Vector& point) {
+  return profile_of(Vector(c.center), Vector(c.axis), c.half_height, c.radius, c.radius, point);
+}
+
+Profile profile_of(const world::Cone& c, const Vector& point) {
+  return profile_of(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top, point);
+}
+
+/// That of a shape that is open.
+std::optional<Profile> open_profile(const world::Shape& shape, const Vector& point) {
+  return std::visit(
+      [&](const auto& solid) -> std::optional<Profile> {
+        if constexpr (requires { solid.is_open; }) {
+          if (solid.is_open) return profile_of(solid, point);
+        }
+        return std::nullopt;
+      },
+      shape);
+}
+
 struct SignedDistance {
   int32_t primitive;
   const Vector& point;
@@ -97,25 +138,15 @@ struct SignedDistance {
   Real operator()(const world::Plane& p) const {
     return std::abs(glm::dot(point - Vector(p.point), glm::normalize(Vector(p.normal))));
   }
-  Real operator()(const world::Cylinder& c) const {
-    return frustum(Vector(c.center), Vector(c.axis), c.half_height, c.radius, c.radius);
-  }
-  Real operator()(const world::Cone& c) const {
-    return frustum(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
-  }
+  Real operator()(const world::Cylinder& c) const { return frustum(profile_of(c, point)); }
+  Real operator()(const world::Cone& c) const { return frustum(profile_of(c, point)); }
 
-  /// In the half plane through the axis and the point: to the segments of the profile, or from inside to the lines.
-  Real frustum(const Vector& center, const Vector& axis, Real h, Real bottom, Real top) const {
-    const Vector v = glm::normalize(axis);
-    const Real z = glm::dot(point - center, v);
-    const Vector q(glm::length(point - center - z * v), z, 0);
-    const Vector bottom_rim(bottom, -h, 0);
-    const Vector top_rim(top, h, 0);
-    const Vector outward = glm::normalize(Vector(2 * h, bottom - top, 0));
-    const Real inside = std::max(glm::dot(q - bottom_rim, outward), std::abs(z) - h);
+  /// To the segments of the profile, or from inside to the lines.
+  Real frustum(const Profile& p) const {
+    const Real inside = std::max(p.beyond_side(), p.beyond_ends());
     if (inside <= 0) return inside;
-    return std::min({distance_to_segment(q, bottom_rim, top_rim), distance_to_segment(q, Vector(0, -h, 0), bottom_rim),
-                     distance_to_segment(q, Vector(0, h, 0), top_rim)});
+    return std::min({p.distance_to_side(), distance_to_segment(p.point, Vector(0, -p.half_height, 0), p.bottom_rim),
+                     distance_to_segment(p.point, Vector(0, p.half_height, 0), p.top_rim)});
   }
 
   /// In the half plane through the axis and the point: to the sphere, or to the line that touches both, by where along
@@ -178,6 +209,17 @@ Real scale_of(const world::Shape& shape, int32_t primitive, const Ray& ray) {
 
 Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector& point) {
   return std::visit(SignedDistance{primitive, point}, shape);
+}
+
+Real surface_distance(const world::Shape& shape, int32_t primitive, const Vector& point) {
+  if (const std::optional<Profile> profile = open_profile(shape, point)) return profile->distance_to_side();
+  return std::abs(signed_distance(shape, primitive, point));
+}
+
+std::optional<PlaceInFrustum> place_in_open(const world::Shape& shape, const Vector& point) {
+  const std::optional<Profile> profile = open_profile(shape, point);
+  if (!profile) return std::nullopt;
+  return PlaceInFrustum{profile->beyond_side(), profile->beyond_ends()};
 }
 
 Real distance_to_crease(const world::Shape& shape, const Vector& point) {

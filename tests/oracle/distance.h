@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "oracle/oracle.h"
 
 /// Distances to single primitives: triangle `primitive` of a mesh, or an analytic shape, whose only one is 0.
@@ -27,8 +29,20 @@ BoundingSphere bounding_sphere(const world::Shape& shape, int32_t primitive);
 Real scale_of(const world::Shape& shape, int32_t primitive, const Ray& ray);
 
 /// From a point to the surface. Inside a solid it is negative, so that it is a convex function of
-/// the point; disks are part of the surface.
+/// the point; disks are part of the surface, and an open shape counts as closed.
 Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
+
+/// From a point to the surface, >= 0: of an open shape to its side.
+Real surface_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
+
+/// Where a point lies as an open shape sees it: how far it is outside of the side, were that endless, and how far
+/// beyond the ends; negative inside. Both are convex functions of the point.
+struct PlaceInFrustum {
+  Real beyond_side = 0;
+  Real beyond_ends = 0;
+};
+/// None where the shape is not an open one.
+std::optional<PlaceInFrustum> place_in_open(const world::Shape& shape, const Vector& point);
 
 /// From a point to where the surface has a crease: the rims of cylinder and cone, the apex, a box's edges;
 /// infinite for others.

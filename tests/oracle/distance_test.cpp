@@ -30,6 +30,20 @@ TEST(Distance, FromTheInsideItIsNegative) {
   EXPECT_NEAR(signed_distance(can, 0, {4, 6, 0}), 5, kTolerance) << "to the rim, 3 and 4 away";
 }
 
+TEST(Distance, OpenOnesHaveTheirSideAlone) {
+  world::Cylinder tube{{0, 0, 0}, {0, 1, 0}, 2, 1};
+  EXPECT_NEAR(surface_distance(tube, 0, {0, 1.5L, 0}), 0.5L, kTolerance);
+  EXPECT_FALSE(place_in_open(tube, {0, 0, 0}).has_value());
+  tube.is_open = true;
+  EXPECT_NEAR(surface_distance(tube, 0, {0, 1.5L, 0}), 1, kTolerance);
+  EXPECT_NEAR(surface_distance(tube, 0, {4, 6, 0}), 5, kTolerance) << "to the rim, 3 and 4 away";
+  EXPECT_NEAR(surface_distance(tube, 0, {0, 2, 0}), 1, kTolerance) << "where a disk would be";
+  const auto place = place_in_open(tube, {0.25L, 3, 0});
+  ASSERT_TRUE(place.has_value());
+  EXPECT_NEAR(place->beyond_side, -0.75L, kTolerance);
+  EXPECT_NEAR(place->beyond_ends, 1, kTolerance);
+}
+
 TEST(Distance, ConesHaveASlope) {
   // Apex at (0, 1, 0); the side falls one in height on two across.
   const world::Cone cone{{0, 0, 0}, {0, 1, 0}, 1, 4, 0};

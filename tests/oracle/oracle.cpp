@@ -84,16 +84,18 @@ class Search {
   }
 
   void intersect(const world::Cylinder& cylinder) {
-    intersect_frustum(cylinder.center, cylinder.axis, cylinder.half_height, cylinder.radius, cylinder.radius);
+    intersect_frustum(cylinder.center, cylinder.axis, cylinder.half_height, cylinder.radius, cylinder.radius,
+                      cylinder.is_open);
   }
 
   void intersect(const world::Cone& cone) {
-    intersect_frustum(cone.center, cone.axis, cone.half_height, cone.radius_bottom, cone.radius_top);
+    intersect_frustum(cone.center, cone.axis, cone.half_height, cone.radius_bottom, cone.radius_top, cone.is_open);
   }
 
   /// |P - C - m V| = r + s m, m = (P - C) . V in [0, h], between two disks: s = tan of the half angle. With s = 0 this
-  /// is the thesis' cylinder, with r = 0 its cone (C the apex), k = 1 + s^2.
-  void intersect_frustum(const Vector& center, const Vector& axis, Real half_height, Real bottom, Real top) {
+  /// is the thesis' cylinder, with r = 0 its cone (C the apex), k = 1 + s^2. An open one has no disks.
+  void intersect_frustum(const Vector& center, const Vector& axis, Real half_height, Real bottom, Real top,
+                         bool is_open) {
     const Vector w = glm::normalize(axis);
     // From the narrow end, so that a cone is solved from its apex.
     const Vector v = bottom <= top ? w : -w;
@@ -114,6 +116,7 @@ class Search {
       const Real m = ov + t * dv;
       if (m >= 0 && m <= h) offer(near + t, oc + t * d - (k * m + s * r) * v);
     }
+    if (is_open) return;
     intersect_disk(near, oc, -v, r);
     intersect_disk(near, oc - h * v, v, r + s * h);
   }

@@ -85,6 +85,20 @@ TEST(Oracle, Capsule) {
   expect_hit(cast(drop, {0, -8, 0}, {0, 1, 0}), 2.5L, {0, -1, 0});
 }
 
+TEST(Oracle, OpenOnesHaveNoDisks) {
+  world::Cylinder tube = kCylinder;
+  tube.is_open = true;
+  expect_hit(cast(tube, {4, 1, 0}, {-1, 0, 0}), 3.5L, {1, 0, 0});
+  EXPECT_FALSE(cast(tube, {0.25L, 9, 0}, {0, -1, 0}).exists()) << "along the axis";
+  expect_hit(cast(tube, {0, 2.5L, 0}, {1, -2, 0}), 0.5L, {1, 0, 0});
+  expect_hit(cast(tube, {0, 1, 0}, {-1, 0, 0}), 0.5L, {-1, 0, 0});
+  expect_hit(cast(tube, {4, 2, 0}, {-1, 0, 0}), 3.5L, {1, 0, 0});
+  world::Cone cone = kCone;
+  cone.is_open = true;
+  EXPECT_NEAR(cast(cone, {0.25L, -3, 0}, {0, 1, 0}).t, 4.5L, 1e-15L) << "the wall from inside";
+  EXPECT_FALSE(cast(cone, {0.5L, 0.5L, 0}, {0, -1, 0}).exists());
+}
+
 TEST(Oracle, PlaneKeepsItsOwnNormal) {
   const world::Plane plane{{0, 1, 0}, {0, 1, 0}};
   expect_hit(cast(plane, {0, 3, 0}, {1, -1, 0}), 2, {0, 1, 0});

@@ -21,12 +21,18 @@ struct Interval {
   Real hi = kInfinity;
 };
 
+/// What there is where a line crosses the hull of a shape.
+enum class Wall { kSurface, kNothing, kEither };
+
 /// Where a ray's line may cross a primitive whose surface is off by no more than an allowance.
 struct Reach {
   /// Into a solid, or through a flat primitive.
   Interval entry;
   /// Out of a solid.
   Interval exit;
+  /// Of an open shape, where its missing disks are.
+  Wall entry_wall = Wall::kSurface;
+  Wall exit_wall = Wall::kSurface;
   /// Whether it does however the surface lies.
   bool is_certain = false;
 };
@@ -72,10 +78,22 @@ class Body {
     const Interval shrunk = result.is_certain ? interval_within(-offset) : Interval{t_of(deepest_), t_of(deepest_)};
     result.entry = {grown.lo, shrunk.lo};
     result.exit = {shrunk.hi, grown.hi};
+    result.entry_wall = wall_at(result.entry, offset);
+    result.exit_wall = wall_at(result.exit, offset);
     return result;
   }
 
  private:
+  /// Both functions of PlaceInFrustum are convex along the line, so that they are largest at the interval's ends.
+  Wall wall_at(const Interval& interval, Real offset) const {
+    const auto place_at = [&](Real t) { return place_in_open(shape_, ray_.origin + t * ray_.direction); };
+    const std::optional<PlaceInFrustum> lo = place_at(interval.lo);
+    const std::optional<PlaceInFrustum> hi = place_at(interval.hi);
+    if (!lo || !hi) return Wall::kSurface;
+    if (std::max(lo->beyond_ends, hi->beyond_ends) < -offset) return Wall::kSurface;
+    return std::max(lo->beyond_side, hi->beyond_side) < -offset ? Wall::kNothing : Wall::kEither;
+  }
+
   bool is_flat() const { return plane_ != nullptr || std::holds_alternative<Mesh>(shape_); }
 
   // Along the line we count `s`, the length from the point that is closest to the centre: everything happens near 0.
@@ -168,14 +186,17 @@ class Body {
 /// The last t at which the ray may report the primitive; infinite if it need not report it at all.
 Real latest_report(const Reach& reach, const Ray& ray) {
   if (!reach.is_certain) return kInfinity;
-  const Real t = reach.entry.lo > ray.tmin ? reach.entry.hi : reach.exit.lo > ray.tmin ? reach.exit.hi : kInfinity;
+  const bool must_enter = reach.entry_wall == Wall::kSurface && reach.entry.lo > ray.tmin;
+  const bool must_leave = reach.exit_wall == Wall::kSurface && reach.exit.lo > ray.tmin;
+  const Real t = must_enter ? reach.entry.hi : must_leave ? reach.exit.hi : kInfinity;
   return t < ray.tmax ? t : kInfinity;
 }
 
 /// The first t at which the ray may report this end of the primitive; infinite if it cannot.
 Real earliest_report(const Reach& reach, bool is_entry, const Ray& ray) {
-  const bool may_skip_entry = !reach.is_certain || reach.entry.lo <= ray.tmin;
+  const bool may_skip_entry = !reach.is_certain || reach.entry.lo <= ray.tmin || reach.entry_wall != Wall::kSurface;
   if (!is_entry && !may_skip_entry) return kInfinity;
+  if ((is_entry ? reach.entry_wall : reach.exit_wall) == Wall::kNothing) return kInfinity;
   const Interval& end = is_entry ? reach.entry : reach.exit;
   const Real t = std::max(end.lo, ray.tmin);
   return end.hi > ray.tmin && t < ray.tmax ? t : kInfinity;
@@ -270,7 +291,7 @@ Verdict judge(const world::Scene& scene, const Ray& given_ray, const Hit& exact,
   const bool is_plane = std::holds_alternative<world::Plane>(shape);
   const Mesh* mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr) {
-    const Real off = std::abs(signed_distance(shape, answer.primitive, ray.origin + answer.t * ray.direction));
+    const Real off = surface_distance(shape, answer.primitive, ray.origin + answer.t * ray.direction);
     verdict.surface_error = in_units(off, scale + (is_plane ? std::abs(answer.t) * speed : 0));
   }
   if (exact.object == answer.object && exact.primitive == answer.primitive) {

@@ -46,6 +46,24 @@ TEST(Verdict, TheExactAnswerIsTheSame) {
   EXPECT_TRUE(judge(kSphere, {{0, 0, 5}, {0, 0, 0}}, kMiss).is_same);
 }
 
+TEST(Verdict, DisksThatAreMissingHideNothing) {
+  // From y = -2 to 2.
+  const world::Scene tube = scene_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1, true}});
+  const Ray through{{0.5L, 9, 0}, {0, -1, 0}};
+  EXPECT_TRUE(judge(tube, through, kMiss).is_same);
+  EXPECT_GT(judge(tube, through, {7, 0, 0}).margin, 1e6L) << "a hit of the disk";
+  const Ray onto_wall{{0, 3, 0}, {1, -2, 0}};
+  EXPECT_TRUE(judge(tube, onto_wall, {1, 0, 0}).is_same);
+  EXPECT_GT(judge(tube, onto_wall, kMiss).margin, 1e6L);
+  // Over the rim by 3 u S.
+  const Real scale = std::sqrt(Real(29)) + std::sqrt(Real(5));
+  const Ray over_rim{{5, 2 + 3 * kU * scale, 0}, {-1, 0, 0}};
+  EXPECT_TRUE(judge(tube, over_rim, kMiss).is_same);
+  const Verdict onto_rim = judge(tube, over_rim, {4, 0, 0});
+  EXPECT_FALSE(onto_rim.is_same);
+  EXPECT_NEAR(onto_rim.margin, 3, 0.1L);
+}
+
 TEST(Verdict, ErrorsOfTCountByTheAngleAndTheScale) {
   // Met at (0.6, 0, 0.8) under a cosine of 0.8, t = 4.2; the direction of length 2 halves t.
   const Ray ray{{0.6L, 0, 5}, {0, 0, -2}};

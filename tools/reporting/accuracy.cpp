@@ -38,7 +38,7 @@ void judge_one(const world::Scene& scene, const Ray& ray, const layout::HitRecor
   oracle::Real scale = oracle::scale_of(shape, exact.primitive, exact_ray);
   if (std::holds_alternative<world::Plane>(shape)) scale += exact.t * glm::length(exact_ray.direction);
   const oracle::Real error =
-      has_rims ? std::abs(oracle::signed_distance(shape, 0, exact_ray.origin + oracle::Real(t) * exact_ray.direction))
+      has_rims ? oracle::surface_distance(shape, 0, exact_ray.origin + oracle::Real(t) * exact_ray.direction)
                : std::abs((oracle::Real(t) - exact.t) * glm::dot(exact_ray.direction, exact.normal));
   const auto k = static_cast<double>(error / (oracle::kRoundoff * scale));
   ++accuracy.hits;

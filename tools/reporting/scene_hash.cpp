@@ -50,6 +50,8 @@ class ContentHash {
     add(cylinder.axis);
     add(cylinder.half_height);
     add(cylinder.radius);
+    // What is closed keeps the hash that it had before there were open ones.
+    if (cylinder.is_open) add(uint64_t{1});
   }
   void add(const world::Cone& cone) {
     add(cone.center);
@@ -57,6 +59,7 @@ class ContentHash {
     add(cone.half_height);
     add(cone.radius_bottom);
     add(cone.radius_top);
+    if (cone.is_open) add(uint64_t{1});
   }
   void add(const world::Capsule& capsule) {
     add(capsule.center);

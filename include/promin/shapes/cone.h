@@ -6,9 +6,9 @@
 
 namespace promin {
 
-/// A solid cone or frustum closed by its disks. The radius goes linearly from one end of the axis to the other; where
-/// it is 0 there is an apex. A transform must keep circles around the axis circles. Sizes lie between 1e-22 and 1e15 in
-/// the world.
+/// A cone or frustum, closed by its disks unless it is open. The radius goes linearly from one end of the axis to the
+/// other; where it is 0 there is an apex. A transform must keep circles around the axis circles. Sizes lie between
+/// 1e-22 and 1e15 in the world.
 struct Cone {
   /// Middle of the axis.
   dvec3 center{0.0};
@@ -20,6 +20,8 @@ struct Cone {
   double radius_bottom = 0.25;
   /// Radius at the other end.
   double radius_top = 0.0;
+  /// Whether it is the side alone, without disks.
+  bool is_open = false;
 };
 
 namespace world {
@@ -36,6 +38,11 @@ struct Cone {
   float radius_bottom = 0.25F;
   /// Radius at the other end.
   float radius_top = 0.0F;
+  /// Whether it is the side alone, without disks.
+  bool is_open = false;
+
+  /// Whether both have the same numbers.
+  bool operator==(const Cone&) const = default;
 };
 }  // namespace world
 

@@ -6,8 +6,8 @@
 
 namespace promin {
 
-/// A solid cylinder closed by two disks. A transform must keep circles around the axis circles. Sizes lie between 1e-22
-/// and 1e15 in the world.
+/// A cylinder, closed by two disks unless it is open. A transform must keep circles around the axis circles. Sizes lie
+/// between 1e-22 and 1e15 in the world.
 struct Cylinder {
   /// Middle of the axis.
   dvec3 center{0.0};
@@ -17,6 +17,8 @@ struct Cylinder {
   double half_height = 0.25;
   /// Radius of the disks.
   double radius = 0.25;
+  /// Whether it is the side alone, a tube without disks.
+  bool is_open = false;
 };
 
 namespace world {
@@ -31,6 +33,11 @@ struct Cylinder {
   float half_height = 0.25F;
   /// Radius of both.
   float radius = 0.25F;
+  /// Whether it is the side alone, a tube without disks.
+  bool is_open = false;
+
+  /// Whether both have the same numbers.
+  bool operator==(const Cylinder&) const = default;
 };
 }  // namespace world
 

@@ -89,7 +89,8 @@ void keep_nearer(Ray ray, real t, uint part, bool is_there, inout Crossing neare
 }
 
 // |P - C - m V| = r + s m between two disks; the thesis' cylinder with s = 0, its cone with one radius 0.
-Crossing intersect_frustum(Ray ray, vec3 center, vec3 given_axis, real half_height, real bottom, real top) {
+Crossing intersect_frustum(Ray ray, vec3 center, vec3 given_axis, real half_height, real bottom, real top,
+                           bool is_open) {
   real3 direction = real3(ray.direction);
   real3 axis = real3(given_axis);
   real s = (top - bottom) / (2.0 * half_height);
@@ -107,7 +108,7 @@ Crossing intersect_frustum(Ray ray, vec3 center, vec3 given_axis, real half_heig
   for (int i = 0; i < 2; ++i) {
     keep_nearer(ray, start + t[i], PART_SIDE, abs(ov + t[i] * dv) <= half_height, nearest);
   }
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 2 && !is_open; ++i) {
     real height = i == 0 ? -half_height : half_height;
     real radius = i == 0 ? bottom : top;
     real t_cap = (height - ov) / dv;
@@ -118,11 +119,15 @@ Crossing intersect_frustum(Ray ray, vec3 center, vec3 given_axis, real half_heig
 }
 
 Crossing intersect_cylinder(Ray ray, Primitive p) {
-  return intersect_frustum(ray, p.a.xyz, p.b.xyz, real(p.b.w), real(p.a.w), real(p.a.w));
+  return intersect_frustum(ray, p.a.xyz, p.b.xyz, real(p.b.w), real(p.a.w), real(p.a.w),
+                           p.c.x != 0u);
 }
 
+float cone_top(Primitive p) { return uintBitsToFloat(p.c.x & ~SHAPE_IS_OPEN); }
+
 Crossing intersect_cone(Ray ray, Primitive p) {
-  return intersect_frustum(ray, p.a.xyz, p.b.xyz, real(p.b.w), real(p.a.w), real(uintBitsToFloat(p.c.x)));
+  return intersect_frustum(ray, p.a.xyz, p.b.xyz, real(p.b.w), real(p.a.w), real(cone_top(p)),
+                           (p.c.x & SHAPE_IS_OPEN) != 0u);
 }
 
 // Slabs, in the frame that the rotation matrix of the box's quaternion leads to.
@@ -203,7 +208,7 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
   if (p.c.z == KIND_TRIANGLE) normal = cross(corner1(p) - corner0(p), corner2(p) - corner0(p));
   if (p.c.z == KIND_SPHERE) normal = from_center;
   if (p.c.z == KIND_CYLINDER || p.c.z == KIND_CONE) {
-    float slope = p.c.z == KIND_CONE ? (uintBitsToFloat(p.c.x) - p.a.w) / (2.0 * p.b.w) : 0.0;
+    float slope = p.c.z == KIND_CONE ? (cone_top(p) - p.a.w) / (2.0 * p.b.w) : 0.0;
     vec3 radial = from_center - dot(from_center, p.b.xyz) * p.b.xyz;
     if (hit.part == PART_SIDE) normal = normalize(radial) - slope * p.b.xyz;
     if (hit.part == PART_BOTTOM) normal = -p.b.xyz;
