@@ -69,9 +69,17 @@ std::vector<Ray> read_chunk(RayReader& reader, uint64_t done) {
   return rays;
 }
 
+/// Gives hits the numbers that the file has for its objects.
+void number_as_in_file(const Scene& scene, std::vector<Hit>& hits) {
+  if (scene.object_numbers.empty()) return;
+  for (Hit& hit : hits) {
+    if (hit.object >= 0) hit.object = static_cast<int32_t>(object_number(scene, static_cast<uint32_t>(hit.object)));
+  }
+}
+
 /// `rays` is the first chunk. False if a signal asked for the end.
-bool cast_all(std::vector<Ray> rays, RayReader& reader, HitWriter& writer, Caster& caster, const CastOptions& options,
-              RunStats& stats, const Console& console, const DeferredSignals& signals) {
+bool cast_all(std::vector<Ray> rays, RayReader& reader, HitWriter& writer, const Scene& scene, Caster& caster,
+              const CastOptions& options, RunStats& stats, const Console& console, const DeferredSignals& signals) {
   const uint32_t repeats = options.tracing.repeat_count;
   stats.trace_ms.assign(repeats, 0.0);
   std::vector<Hit> hits;
@@ -84,6 +92,7 @@ bool cast_all(std::vector<Ray> rays, RayReader& reader, HitWriter& writer, Caste
       const double chunk_share = static_cast<double>(rays.size()) * (i + 1) / repeats;
       progress.update((static_cast<double>(done) + chunk_share) / static_cast<double>(reader.count()));
     }
+    number_as_in_file(scene, hits);
     const Stopwatch write;
     writer.write(hits);
     stats.write_ms += write.ms();
@@ -113,7 +122,7 @@ void cast(const CastOptions& options) {
   // The hits are written as they come, to a temporary file that a signal must not leave behind.
   const DeferredSignals while_writing;
   HitWriter writer(options.hits, reader.count());
-  if (!cast_all(std::move(rays), reader, writer, caster, options, stats, console, while_writing)) return;
+  if (!cast_all(std::move(rays), reader, writer, scene, caster, options, stats, console, while_writing)) return;
   check_validation(*device, stats);
   const Stopwatch commit;
   writer.commit();

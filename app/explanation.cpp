@@ -30,9 +30,9 @@ Json json_of(const Ray& ray) {
 }
 
 /// Writes the members that any hit has, a blocker too; json_of(ExplainedRay) adds those of the hits on the path.
-Json json_of(const Hit& hit) {
+Json json_of(const Hit& hit, const Scene& scene) {
   if (hit.object < 0) return nullptr;
-  return {{"object", hit.object},
+  return {{"object", object_number(scene, static_cast<uint32_t>(hit.object))},
           {"primitive", hit.primitive},
           {"t", json_of(hit.t)},
           {"u", json_of(hit.u)},
@@ -47,7 +47,7 @@ Json json_of(const ExplainedSource& source, const Scene& scene) {
                {"shadow_ray", nullptr}};
   if (source.shadow_ray) {
     json["shadow_ray"] = json_of(*source.shadow_ray);
-    json["shadow_ray"]["blocker"] = json_of(source.blocker);
+    json["shadow_ray"]["blocker"] = json_of(source.blocker, scene);
   }
   return json;
 }
@@ -71,7 +71,7 @@ Json json_of(const ExplainedRay& ray, const Scene& scene) {
   if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
   json.update(json_of(ray.ray));
   json["weight"] = json_of(ray.weight);
-  json["hit"] = json_of(ray.hit);
+  json["hit"] = json_of(ray.hit, scene);
   if (ray.hit.object >= 0) {
     json["hit"].update({{"object_name", scene.objects[static_cast<size_t>(ray.hit.object)].name},
                         {"position", json_of(ray.position)},
@@ -99,10 +99,10 @@ std::string text_of(const vec3& v) {
 }
 
 std::string text_of(const Hit& hit, const Scene& scene) {
-  return fmt::format(
-      "{} primitive {} at t {:.6g}",
-      with_name(fmt::format("object {}", hit.object), scene.objects[static_cast<size_t>(hit.object)].name),
-      hit.primitive, hit.t);
+  const auto object = static_cast<uint32_t>(hit.object);
+  return fmt::format("{} primitive {} at t {:.6g}",
+                     with_name(fmt::format("object {}", object_number(scene, object)), scene.objects[object].name),
+                     hit.primitive, hit.t);
 }
 
 std::string text_of(const ExplainedSource& source, const Scene& scene) {

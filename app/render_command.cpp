@@ -129,11 +129,21 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
                      stats.mrays_per_s(), stats.device.name, fmt::join(files, ", "));
 }
 
+/// Gives pixels the numbers that the file has for its objects.
+void number_as_in_file(const Scene& scene, Aovs& aovs) {
+  if (scene.object_numbers.empty()) return;
+  for (uint32_t& object : aovs.object) {
+    if (object != Aovs::kNoId) object = object_number(scene, object);
+  }
+}
+
 /// Traces a frame and writes its pictures.
 void render_frame(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
-                  Renderer& renderer, RunStats& stats, const std::function<void(double)>& on_progress) {
-  const TracedFrame traced = trace(renderer, *stats.view, options.tracing.repeat_count, on_progress);
+                  const Scene& scene, Renderer& renderer, RunStats& stats,
+                  const std::function<void(double)>& on_progress) {
+  TracedFrame traced = trace(renderer, *stats.view, options.tracing.repeat_count, on_progress);
   check_validation(device, stats);
+  number_as_in_file(scene, traced.result.aovs);
   stats.rays += traced.result.rays;
   if (planned.number) {
     stats.frames.push_back(*planned.number);
@@ -150,14 +160,14 @@ void render_frame(const PlannedFrame& planned, const RenderOptions& options, con
 /// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
 /// are whole.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const gpu::Device& device,
-                   Renderer& renderer, RunStats& stats, const Console& console) {
+                   const Scene& scene, Renderer& renderer, RunStats& stats, const Console& console) {
   Progress progress(console.is_quiet());
   for (size_t i = 0; i < frames.size(); ++i) {
     const PlannedFrame& frame = frames[i];
     const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
     if (frame.camera) stats.view->camera = *frame.camera;
     try {
-      render_frame(frame, options, device, renderer, stats, [&](double fraction) {
+      render_frame(frame, options, device, scene, renderer, stats, [&](double fraction) {
         progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
       });
     } catch (const RunError& error) {
@@ -237,7 +247,7 @@ void render(const RenderOptions& options) {
   }
   // A plugin that does not load is told of before the tracing, which may take long.
   pictures.get();
-  render_frames(frames, options, *device, renderer, stats, console);
+  render_frames(frames, options, *device, scene, renderer, stats, console);
 
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();

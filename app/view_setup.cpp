@@ -88,6 +88,7 @@ void apply_pose(Camera& camera, const PoseOptions& pose, const Console& console)
 
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
   if (options.size) return *options.size;
+  if (camera.resolution != uvec2(0)) return camera.resolution;
   const float aspect_ratio = camera.aspect_ratio > 0.0F ? camera.aspect_ratio : kDefaultAspectRatio;
   const double width = std::round(static_cast<double>(kDefaultHeight) * static_cast<double>(aspect_ratio));
   if (!(width >= 1.0 && width <= kMaxSide)) {

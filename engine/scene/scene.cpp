@@ -140,6 +140,10 @@ uint32_t primitive_count(const Scene& scene, const Object& object) {
   return object.geometry == Object::kNoGeometry ? 0 : primitive_count(geometry_of(scene, object));
 }
 
+uint32_t object_number(const Scene& scene, uint32_t object) {
+  return object < scene.object_numbers.size() ? scene.object_numbers[object] : object;
+}
+
 std::span<const std::string_view> framing_names() {
   using std::string_view_literals::operator""sv;
   static constexpr std::array kNames = {"three-quarter"sv, "front"sv};

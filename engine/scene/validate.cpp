@@ -233,6 +233,10 @@ class Validation {
       const std::string place = place_of("cameras", i);
       check(is_in_range(dvec3(cameras[i].eye)), "the eye is not finite or beyond 1e15", place + ".eye",
             "use a smaller coordinate");
+      const uvec2& resolution = cameras[i].resolution;
+      const bool is_size = std::min(resolution.x, resolution.y) > 0 && std::max(resolution.x, resolution.y) <= kMaxSide;
+      check(resolution == uvec2(0) || is_size, "the resolution has a side of 0 or over 32768", place + ".resolution",
+            "use a size of pictures, or 0 0 for none");
       check_camera(cameras[i], place);
     }
   }
@@ -409,6 +413,10 @@ std::vector<Problem> validate(const Scene& scene) {
   validation.check_lights(scene.lights);
   validation.check_cameras(scene.cameras);
   validation.check_environment(scene.environment);
+  validation.check(scene.object_numbers.empty() || scene.object_numbers.size() == scene.objects.size(),
+                   "there are " + std::to_string(scene.object_numbers.size()) + " numbers for " +
+                       std::to_string(scene.objects.size()) + " objects",
+                   "object_numbers", "give none, or one each");
   for (size_t i = 0; i < scene.geometries.size(); ++i) validation.check_geometry(scene, i);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].geometry == Object::kNoGeometry) continue;

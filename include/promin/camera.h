@@ -36,6 +36,8 @@ struct Camera {
   float ymag = 1.0F;
   /// Width over height that the scene file asks for; 0 where it does not say. Pictures have the ratio of View::size.
   float aspect_ratio = 0.0F;
+  /// The size of the picture that the scene file asks for, pixels; 0 where it does not say. Pictures have View::size.
+  uvec2 resolution{0};
   /// Distance of the viewport plane in world units, >= 0: nothing nearer is drawn.
   float near = 0.0F;
 };

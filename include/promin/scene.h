@@ -60,6 +60,9 @@ struct Scene {
   std::vector<Geometry> geometries;
   /// What is in the scene, in the order that hits and AOVs number.
   std::vector<Object> objects;
+  /// The number that the file has for each object, where one object of the file is several here, as in NFF; promin's
+  /// commands show these. Empty where the file numbers objects as they lie here.
+  std::vector<uint32_t> object_numbers;
   /// Not empty where there are objects with a geometry.
   std::vector<Material> materials;
   /// What textures show; shared, because images are large. Not null.
@@ -72,8 +75,8 @@ struct Scene {
   std::vector<Camera> cameras;
   /// Ambient light and background.
   Environment environment;
-  /// Whether it was written for classic light: a glTF file all of whose materials are Phong's as written
-  /// (PROMIN_materials_phong). Without lights such a scene gets a headlight, any other a studio.
+  /// Whether it was written for classic light: an NFF file, or a glTF file all of whose materials are Phong's as
+  /// written (PROMIN_materials_phong). Without lights such a scene gets a headlight, any other a studio.
   bool is_classic = false;
   /// The names of the variants of materials that the file has (LoadOptions::material_variant).
   std::vector<std::string> variants;
@@ -95,6 +98,9 @@ PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 /// Number of an object's primitives: that of its geometry, or 0 where it has none. Throws InputError where the object
 /// names a geometry that is not there.
 PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
+
+/// The number that the scene's file has for the object at this index (Scene::object_numbers).
+PROMIN_EXPORT uint32_t object_number(const Scene& scene, uint32_t object);
 
 /// From where frame_scene looks.
 enum class Framing : uint32_t {

@@ -69,6 +69,17 @@ TEST(ViewSetupTest, WidthFollowsTheCamerasAspectRatio) {
   EXPECT_EQ(view.camera.yfov, make_scene().cameras[1].yfov) << "the vertical field of view holds";
 }
 
+TEST(ViewSetupTest, AResolutionOfTheFileIsTheDefault) {
+  Scene scene = make_scene();
+  scene.cameras[1].resolution = uvec2(321, 123);
+  ViewOptions options;
+  EXPECT_EQ(make_view(scene, options, kSilent).size, uvec2(1280, 720)) << "of another camera";
+  options.camera = "side";
+  EXPECT_EQ(make_view(scene, options, kSilent).size, uvec2(321, 123));
+  options.size = uvec2(100, 50);
+  EXPECT_EQ(make_view(scene, options, kSilent).size, uvec2(100, 50));
+}
+
 TEST(ViewSetupTest, AnAspectRatioWithoutAWidthIsRefused) {
   for (const float aspect_ratio : {1e-6F, 1e6F}) {
     Scene scene = make_scene();
