@@ -44,7 +44,7 @@ struct BvhOptions {
 };
 
 void add_scene_row(OptionTable& table, BvhOptions& options) {
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
                      [&](const OptionValues& w) { options.scene = w.text(); });
 }
 

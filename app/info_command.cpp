@@ -28,14 +28,18 @@
 namespace promin::app {
 namespace {
 
-std::string describe_objects(const SceneCounts& counts, size_t object_count) {
+std::string describe_objects(const SceneCounts& counts, const Scene& scene) {
   std::vector<std::string> kinds;
   for (size_t i = 0; i < counts.objects.size(); ++i) {
     std::string name(kObjectNames[i]);
     std::replace(name.begin(), name.end(), '_', ' ');
     if (counts.objects[i] > 0) kinds.push_back(fmt::format("{}: {}", name, counts.objects[i]));
   }
-  return kinds.empty() ? "0" : fmt::format("{} ({})", object_count, fmt::join(kinds, ", "));
+  if (kinds.empty()) return "0";
+  std::string text = fmt::format("{} ({})", scene.objects.size(), fmt::join(kinds, ", "));
+  // Numbers ascend.
+  if (!scene.object_numbers.empty()) text += fmt::format("; of the file: {}", scene.object_numbers.back() + 1);
+  return text;
 }
 
 std::string count_lights(const std::vector<Light>& lights) {
@@ -68,6 +72,7 @@ std::string describe_camera(size_t index, const Camera& camera) {
   } else {
     text += fmt::format(", orthographic, {:.4g} units high", 2.0F * camera.ymag);
   }
+  if (camera.resolution != uvec2(0)) text += fmt::format(", {}x{}", camera.resolution.x, camera.resolution.y);
   if (camera.aspect_ratio > 0.0F) text += fmt::format(", aspect ratio {:.4g}", camera.aspect_ratio);
   text += fmt::format(", near {:.4g}, eye {:.4g} {:.4g} {:.4g}", camera.near, camera.eye.x, camera.eye.y, camera.eye.z);
   return text;
@@ -151,7 +156,7 @@ void print_info(const InfoOptions& options) {
   const EnvironmentChoice surroundings(options.environment);
   const SceneCounts counts = count_scene(scene);
   print_row("scene", options.file.string());
-  print_row("objects", describe_objects(counts, scene.objects.size()));
+  print_row("objects", describe_objects(counts, scene));
   print_row("primitives", std::to_string(counts.primitives));
   std::string lights = count_lights(scene.lights);
   // The features and the tree are of the scene as it would be rendered, with the light that stands in.
@@ -189,7 +194,7 @@ Command add_info_command(CLI::App& program) {
   CLI::App& command = add_command(program, "info", "Print what a scene holds and what is modelled of it");
   const auto options = std::make_shared<InfoOptions>();
   OptionTable table(command);
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
                      [options](const OptionValues& w) { options->file = w.text(); });
   add_strict_option(table, options->load);
   add_variant_option(table, options->load);

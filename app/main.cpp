@@ -8,8 +8,8 @@
 
 int main(int argc, char** argv) {
   using namespace promin::app;
-  return run_program(
-      "promin",
-      "Ray tracer in Vulkan compute shaders: glTF, OBJ, PLY and STL scenes to EXR and PNG pictures, or rays to hits.",
-      {add_render_command, add_cast_command, add_info_command, add_devices_command}, argc, argv);
+  return run_program("promin",
+                     "Ray tracer in Vulkan compute shaders: glTF, OBJ, PLY, STL and NFF scenes to EXR and PNG "
+                     "pictures, or rays to hits.",
+                     {add_render_command, add_cast_command, add_info_command, add_devices_command}, argc, argv);
 }

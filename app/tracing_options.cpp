@@ -16,7 +16,7 @@ constexpr uint32_t kMaxRepeats = 10000;
 }  // namespace
 
 void add_scene_argument(OptionTable& table, TracingOptions& options) {
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
                      [&](const OptionValues& w) { options.scene = w.text(); });
 }
 

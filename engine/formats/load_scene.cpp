@@ -9,6 +9,7 @@
 #include "core/rounding.h"
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
+#include "formats/nff/load_nff.h"
 #include "formats/obj/load_obj.h"
 #include "formats/ply/load_ply.h"
 #include "formats/source_file.h"
@@ -46,8 +47,8 @@ void warn_of_tiny_meshes(Scene& scene) {
   }
 }
 
-constexpr SceneFormat kFormats[] = {
-    {".gltf", load_gltf, true}, {".glb", load_gltf, true}, {".obj", load_obj}, {".ply", load_ply}, {".stl", load_stl}};
+constexpr SceneFormat kFormats[] = {{".gltf", load_gltf, true}, {".glb", load_gltf, true}, {".obj", load_obj},
+                                    {".ply", load_ply},         {".stl", load_stl},        {".nff", load_nff}};
 
 const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);

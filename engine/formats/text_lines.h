@@ -20,6 +20,8 @@ class TextLines {
 
   /// The current line without its end.
   std::string_view line() const { return line_; }
+  /// Its number, from 1 on.
+  uint64_t number() const { return number_; }
   /// The place of the line for messages: "line 12".
   std::string place() const { return "line " + std::to_string(number_); }
 

@@ -25,10 +25,10 @@ struct LoadOptions {
   bool decodes_images = true;
 };
 
-/// Reads a scene by its ending: .gltf, .glb, .obj, .ply or .stl. The scene comes back valid (promin/validate.h). A scene
-/// without lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem found, each
-/// with place and cure, and UsageError where it has no such variant of materials; warnings lie in Scene::warnings. Any
-/// thread may call it.
+/// Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. The scene comes back valid (promin/validate.h).
+/// A scene without lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem
+/// found, each with place and cure, and UsageError where it has no such variant of materials; warnings lie in
+/// Scene::warnings. Any thread may call it.
 PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace promin

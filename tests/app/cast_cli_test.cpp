@@ -63,6 +63,19 @@ TEST_F(CastTest, AnswersRays) {
   EXPECT_THAT(files(), ElementsAre("hits.npy", "rays.npy"));
 }
 
+TEST_F(CastTest, ObjectsHaveTheFilesNumbers) {
+  // Each f with shapes is an object of the file: three spheres are objects 0, 0 and 1.
+  write("three.nff", "f 1 1 1 1 0 0 0 0 s 0 0 0 1 s 5 0 0 1 f 1 0 0 1 0 0 0 0 f 1 0 0 1 0 0 0 0 s 10 0 0 1");
+  std::vector<Ray> rays;
+  for (const float x : {0.0F, 5.0F, 10.0F, 15.0F}) rays.push_back({vec3(x, 0, 4), 0, vec3(0, 0, -1), kInfinity});
+  write_rays("rays.npy", rays);
+  const ProcessResult result = run({"cast", "three.nff", "rays.npy", "-o", "hits.npy", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::vector<int32_t> objects;
+  for (const Hit& hit : read_hits("hits.npy")) objects.push_back(hit.object);
+  EXPECT_THAT(objects, ElementsAre(0, 0, 1, -1));
+}
+
 TEST_F(CastTest, AnyTellsOnlyWhether) {
   write_rays("rays.npy", kRays);
   ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--any", "--quiet"}).exit_code, 0);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <random>
+#include <sstream>
 
 #include "promin/validate.h"
 #include "support/gltf_builder.h"
@@ -108,6 +109,11 @@ const std::string kSmallStl =
     "endsolid\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
     "endfacet\nendsolid b\n";
 
+const std::string kSmallNff =
+    "b 0.1 0.2 0.3 # sky\nv\nfrom 0 1 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 0.1\nresolution 64 48\nl 1 2 3\n"
+    "l 4 5 6 1 0.5 0\nf 1 0.5 0.2 0.7 0.3 20 0.1 1.5\ns 0 0 0 1\nc 0 0 0 1 0 2 0 1\nc 0 0 0 -1 0 2 0 0\n"
+    "p 5\n0 0 0\n2 0 0\n2 2 0\n1 1 0\n0 2 0\nf 0 0 1 1 0 0 0 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0.1 1\n0 1 0 0.1 0 1\n";
+
 /// Bytes that mean something to one of the parsers, or nothing to any.
 std::string mutate(std::string bytes, std::mt19937& random) {
   static const std::string kTelling = "{}[]\",:-+.eE0123456789/\\# \n\r\tnullvfog\0\xff";
@@ -197,6 +203,41 @@ TEST_F(LoadFuzzTest, StlLoadsOrIsRefused) {
   stl.add({vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)});
   stl.add({vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)}, 7);
   run("a.stl", stl.bytes(), "a.stl", 3000);
+}
+
+TEST_F(LoadFuzzTest, NffLoadsOrIsRefused) {
+  run("a.nff", kSmallNff, "a.nff", 3000);
+}
+
+/// A file that ends anywhere, and one that lacks any of its words or has it twice.
+TEST_F(LoadFuzzTest, NffWithOtherWordsLoadsOrIsRefused) {
+  std::vector<std::string> words;
+  std::istringstream text(kSmallNff);
+  for (std::string word; text >> word;) words.push_back(word);
+  const std::string kOthers[] = {"",   "0", "-1", "nan", "1e999",      "1e15",
+                                 "-0", "p", "f",  "#",   "resolution", "4294967299"};
+  int refused = 0;
+  int total = 0;
+  for (size_t i = 0; i < words.size(); ++i) {
+    for (const std::string& other : kOthers) {
+      std::string mutant;
+      for (size_t k = 0; k < words.size(); ++k) mutant += (k == i ? other : words[k]) + "\n";
+      for (const std::string& file : {mutant, mutant.substr(0, mutant.size() * (i + 1) / words.size())}) {
+        ++total;
+        write("a.nff", file);
+        try {
+          const Scene loaded = load_scene(folder_ / "a.nff");
+          world::flatten(loaded);
+          ASSERT_EQ(validate(loaded).size(), 0U) << file;
+        } catch (const InputError& error) {
+          ++refused;
+          ASSERT_NE(std::string(error.what()).find("a.nff: line "), std::string::npos) << error.what();
+        }
+      }
+    }
+  }
+  EXPECT_GT(refused, total / 3);
+  EXPECT_LT(refused, total);
 }
 
 /// A step further than bytes: any value of the document becomes any other kind of value.

@@ -116,7 +116,7 @@ struct CheckOptions {
 app::Command add_check_command(CLI::App& program) {
   const auto options = std::make_shared<CheckOptions>();
   app::OptionTable table(program);
-  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply or .stl",
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
                      [=](const app::OptionValues& words) { options->scene = words.text(); });
   table.add("--rays", "N", "Number of rays [10000]",
             [=](const app::OptionValues& words) { options->ray_count = words.whole(0, 1, 100000000); });

@@ -114,7 +114,7 @@ app::Command add_report_command(CLI::App& program) {
   const auto options = std::make_shared<ReportOptions>();
   app::OptionTable table(program);
   table.add_repeated(
-      "SCENE", "SCENE", "Scenes: .gltf, .glb, .obj, .ply, .stl, wavy:N or needles:N [the project's own]",
+      "SCENE", "SCENE", "Scenes: .gltf, .glb, .obj, .ply, .stl, .nff, wavy:N or needles:N [the project's own]",
       [=](const app::OptionValues& words) { options->scenes.assign(words.all().begin(), words.all().end()); });
   program.get_option("SCENE")->expected(-1);  // one or more
   table.add_required("-o,--output", "FOLDER", "Where runs.json goes",

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/nff/load_nff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <variant>
+
+#include "core/file.h"
+#include "formats/nff/text.h"
+#include "formats/triangulate.h"
+
+namespace promin {
+namespace {
+
+/// The material in promin's model. NFF knows no ambient light; what a user adds of it falls on the diffuse colour.
+Phong to_phong(const NffMaterial& nff) {
+  Phong phong;
+  phong.diffuse = nff.diffuse * nff.color;
+  phong.ambient = phong.diffuse;
+  phong.specular = vec3(nff.specular);
+  phong.shininess = nff.shininess;
+  phong.reflection = vec3(nff.specular);
+  return phong;
+}
+
+/// Appends polygons to a mesh. Corners are not shared: a file lists those of each polygon.
+class PolygonMesh {
+ public:
+  PolygonMesh(const NffText& text, LoadReport& report) : text_(text), report_(report) {}
+
+  void add(const NffPolygon& polygon) {
+    const std::span corners = std::span(text_.corners).subspan(polygon.first_corner, polygon.corner_count);
+    const bool is_smooth = polygon.has_normals && has_directions(normals_of(polygon));
+    if (is_smooth) {
+      make_smooth();
+      add_smooth(corners, normals_of(polygon));
+    } else {
+      for (const uvec3& triangle : triangulate_polygon(corners)) add_sharp(corners, triangle);
+    }
+  }
+
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  std::span<const vec3> normals_of(const NffPolygon& polygon) const {
+    return std::span(text_.normals).subspan(polygon.first_normal, polygon.corner_count);
+  }
+
+  bool has_directions(std::span<const vec3> normals) {
+    const bool result = std::ranges::find(normals, vec3(0.0F)) == normals.end();
+    if (!result) report_.warn("there are normals of no length, polygons that have them are drawn sharp");
+    return result;
+  }
+
+  /// Sharp polygons so far get the normals that they are drawn with.
+  void make_smooth() {
+    for (size_t i = mesh_.normals.size(); i < mesh_.positions.size(); i += 3) add_normals(i);
+  }
+
+  /// Those of a sharp triangle whose first vertex has this index.
+  void add_normals(size_t first) {
+    const dvec3 a(mesh_.positions[first]);
+    const dvec3 normal = glm::cross(dvec3(mesh_.positions[first + 1]) - a, dvec3(mesh_.positions[first + 2]) - a);
+    const double length = glm::length(normal);
+    // A triangle without area is never hit, so any normal will do for it.
+    mesh_.normals.insert(mesh_.normals.end(), 3, length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));
+  }
+
+  void add_smooth(std::span<const vec3> corners, std::span<const vec3> normals) {
+    const auto first = static_cast<uint32_t>(mesh_.positions.size());
+    mesh_.positions.insert(mesh_.positions.end(), corners.begin(), corners.end());
+    mesh_.normals.insert(mesh_.normals.end(), normals.begin(), normals.end());
+    for (const uvec3& triangle : triangulate_polygon(corners)) mesh_.triangles.push_back(first + triangle);
+  }
+
+  void add_sharp(std::span<const vec3> corners, const uvec3& triangle) {
+    const auto first = static_cast<uint32_t>(mesh_.positions.size());
+    for (int i = 0; i < 3; ++i) mesh_.positions.push_back(corners[triangle[i]]);
+    if (!mesh_.normals.empty()) add_normals(first);
+    mesh_.triangles.emplace_back(first, first + 1, first + 2);
+  }
+
+  const NffText& text_;
+  LoadReport& report_;
+  Mesh mesh_;
+};
+
+/// Without colours n sources have sqrt(n) / (2 n) each, as the Standard Procedural Databases have it: together they
+/// grow brighter, but slowly.
+void add_lights(const NffText& text, Scene& scene) {
+  const auto count = static_cast<double>(text.lights.size());
+  for (const NffLight& source : text.lights) {
+    Light light;
+    light.position = source.position;
+    light.diffuse = source.color.value_or(vec3(static_cast<float>(std::sqrt(count) / (2.0 * count))));
+    light.specular = light.diffuse;
+    scene.lights.push_back(light);
+  }
+}
+
+/// Adds the shapes of a group; its polygons are one mesh, in the place of the first.
+void add_group(const NffText& text, const NffGroup& group, uint32_t number, Scene& scene, LoadReport& report) {
+  const auto material = static_cast<uint32_t>(scene.materials.size());
+  if (group.material) {
+    scene.materials.emplace_back().model = to_phong(*group.material);
+  } else {
+    scene.materials.emplace_back().name = "default";
+    report.warn("shapes before the first f are drawn grey");
+  }
+  PolygonMesh polygons(text, report);
+  std::optional<size_t> mesh_geometry;
+  const auto add = [&](Geometry geometry) {
+    scene.add("", std::move(geometry), material);
+    scene.object_numbers.push_back(number);
+  };
+  for (const NffShape& shape : group.shapes) {
+    if (const auto* polygon = std::get_if<NffPolygon>(&shape)) {
+      if (!mesh_geometry) {
+        mesh_geometry = scene.geometries.size();
+        add(Mesh());
+      }
+      polygons.add(*polygon);
+    } else {
+      std::visit(
+          [&](const auto& solid) {
+            if constexpr (std::is_constructible_v<Geometry, decltype(solid)>) add(solid);
+          },
+          shape);
+    }
+  }
+  if (mesh_geometry) scene.geometries[*mesh_geometry] = polygons.take();
+}
+
+}  // namespace
+
+Scene load_nff(const LoadOptions& /*options*/, LoadReport& report) {
+  const std::vector<std::byte> bytes = read_file(report.file());
+  const NffText text = parse_nff_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
+  report.throw_if_refused();
+
+  Scene scene;
+  scene.file = report.file();
+  scene.is_classic = true;
+  scene.cameras = text.cameras;
+  scene.environment.background = text.background.value_or(vec3(0.0F));
+  add_lights(text, scene);
+  for (size_t i = 0; i < text.groups.size(); ++i) {
+    add_group(text, text.groups[i], static_cast<uint32_t>(i), scene, report);
+  }
+  scene.warnings = report.warnings();
+  return scene;
+}
+
+}  // namespace promin

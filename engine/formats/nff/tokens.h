@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "formats/text_lines.h"
+
+namespace promin {
+
+/// Takes the words off an NFF file, in which lines mean nothing and # begins a comment up to a line's end.
+class NffTokens {
+ public:
+  explicit NffTokens(std::string_view text) : lines_(text) { advance(); }
+
+  /// The word that comes next; empty at the end of the file.
+  std::string_view next() const { return next_; }
+
+  std::string_view take() {
+    const std::string_view word = next_;
+    line_ = next_line_;
+    advance();
+    return word;
+  }
+
+  /// The place of the word that was taken last: "line 12".
+  std::string place() const { return "line " + std::to_string(line_); }
+
+ private:
+  void advance() {
+    do {
+      next_ = take_word(rest_);
+      if (next_.empty()) {
+        if (!lines_.advance()) break;
+        rest_ = lines_.line();
+      }
+    } while (next_.empty());
+    next_line_ = lines_.number();
+  }
+
+  TextLines lines_;
+  std::string_view rest_;
+  std::string_view next_;
+  uint64_t next_line_ = 0;
+  uint64_t line_ = 0;
+};
+
+}  // namespace promin

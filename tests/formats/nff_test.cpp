@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "promin/lighting.h"
+#include "promin/validate.h"
+#include "support/scene_folder.h"
+
+namespace promin {
+namespace {
+
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::string kView = "v\nfrom 1 2 8\nat 1 2 3\nup 0 2 1\nangle 45\nhither 0.5\nresolution 640 480\n";
+const std::string kMaterial = "f 0.5 0.25 1 0.5 0.25 20 0 0\n";
+const std::string kSquare = "p 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+class NffTest : public SceneFolder {
+ protected:
+  Scene load(const std::string& file) {
+    write("scene.nff", file);
+    return load_scene(folder_ / "scene.nff");
+  }
+  std::string refusal(const std::string& file) const { return SceneFolder::refusal("scene.nff", file); }
+};
+
+template <class Shape>
+const Shape& shape_of(const Scene& scene, size_t object) {
+  return std::get<Shape>(scene.geometries.at(scene.objects.at(object).geometry));
+}
+
+TEST_F(NffTest, ViewsAreCameras) {
+  const Scene scene = load("b 0.25 0.5 0.75\n" + kView + kMaterial + "s 0 0 0 1\n");
+  ASSERT_THAT(scene.cameras, SizeIs(1));
+  const Camera& camera = scene.cameras[0];
+  EXPECT_EQ(camera.projection, Projection::kPerspective);
+  EXPECT_EQ(camera.eye, vec3(1, 2, 8));
+  EXPECT_EQ(camera.look, vec3(0, 0, -1));
+  EXPECT_EQ(camera.up, vec3(0, 1, 0));
+  EXPECT_FLOAT_EQ(camera.yfov, glm::radians(45.0F)) << "the whole angle";
+  EXPECT_EQ(camera.near, 0.5F);
+  EXPECT_EQ(camera.resolution, uvec2(640, 480));
+  EXPECT_FLOAT_EQ(camera.aspect_ratio, 4.0F / 3.0F);
+  EXPECT_EQ(scene.environment.background, vec3(0.25F, 0.5F, 0.75F));
+  EXPECT_EQ(scene.environment.ambient, vec3(0.0F));
+  EXPECT_TRUE(scene.is_classic);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(NffTest, TheBackgroundMayFollowTheView) {
+  EXPECT_EQ(load(kView + "b 1 0 0\n" + kMaterial + "s 0 0 0 1\n").environment.background, vec3(1, 0, 0));
+}
+
+TEST_F(NffTest, LinesMeanNothing) {
+  std::string text = "b 0.25 0.5 0.75 # sky\n" + kView + kMaterial + kSquare + "l 1 2 3\ns 0 0 0 1\n#the end";
+  const Scene scene = load(text);
+  std::replace(text.begin(), text.end(), '\n', '\t');
+  text.replace(text.find("# sky"), 5, "#f 1 2\n");
+  const Scene same = load(text);
+  EXPECT_THAT(same.objects, SizeIs(2));
+  EXPECT_EQ(same.cameras[0].resolution, scene.cameras[0].resolution);
+  EXPECT_EQ(same.lights[0].position, scene.lights[0].position);
+  EXPECT_THAT(load(with_carriage_returns("s 0 0 0\n\n1\n")).objects, SizeIs(1));
+}
+
+TEST_F(NffTest, LightsShareWhatTheyHave) {
+  const Scene scene = load("l 1 2 3\nl 4 5 6 0.5 0.25 0\nl 7 8 9\nl 0 0 0\ns 0 0 0 1\n");
+  ASSERT_THAT(scene.lights, SizeIs(4));
+  EXPECT_EQ(scene.lights[0].position, vec3(1, 2, 3));
+  EXPECT_EQ(scene.lights[0].diffuse, vec3(0.25F)) << "sqrt(4) / (2 * 4)";
+  EXPECT_EQ(scene.lights[0].specular, vec3(0.25F));
+  EXPECT_EQ(scene.lights[1].diffuse, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(scene.lights[1].specular, vec3(0.5F, 0.25F, 0));
+  for (const Light& light : scene.lights) {
+    EXPECT_EQ(light.kind, LightKind::kPoint);
+    EXPECT_EQ(light.attenuation, Attenuation::kNone);
+  }
+}
+
+TEST_F(NffTest, WithoutLightsThereIsAHeadlight) {
+  Scene dark = load(kMaterial + "s 0 0 0 1\n");
+  EXPECT_THAT(dark.lights, IsEmpty());
+  const AssumedLight assumed = light_scene(dark);
+  EXPECT_TRUE(assumed.has_headlight && assumed.has_ambient);
+  EXPECT_FALSE(assumed.has_studio || assumed.has_background);
+  Scene lit = load("l 1 2 3\n" + kMaterial + "s 0 0 0 1\n");
+  light_scene(lit);
+  EXPECT_THAT(lit.lights, SizeIs(1));
+  EXPECT_EQ(lit.environment.ambient, vec3(0.0F));
+  EXPECT_FALSE(lit.environment.has_sky());
+  EXPECT_EQ(display_of(lit), DisplayTransform());
+}
+
+TEST_F(NffTest, MaterialsAreOfPhong) {
+  const Scene scene = load(kMaterial + "s 0 0 0 1\n");
+  ASSERT_THAT(scene.materials, SizeIs(1));
+  const Phong& phong = scene.materials[0].phong();
+  EXPECT_EQ(phong.diffuse, vec3(0.25F, 0.125F, 0.5F)) << "Kd times the colour";
+  EXPECT_EQ(phong.specular, vec3(0.25F)) << "highlights are white";
+  EXPECT_EQ(phong.reflection, vec3(0.25F));
+  EXPECT_EQ(phong.shininess, 20.0F);
+}
+
+TEST_F(NffTest, EachMaterialWithShapesIsAnObjectOfTheFile) {
+  const Scene scene = load(kMaterial + kMaterial + "s 0 0 0 1\n" + kSquare + "s 1 0 0 1\n" + kSquare +
+                           "l 1 2 3\nc 0 0 0 1 0 1 0 1\n" + kMaterial + kSquare + kMaterial);
+  ASSERT_THAT(scene.objects, SizeIs(5));
+  EXPECT_THAT(scene.object_numbers, ElementsAre(0, 0, 0, 0, 1));
+  EXPECT_EQ(shape_of<Sphere>(scene, 0).center, dvec3(0.0));
+  EXPECT_THAT(shape_of<Mesh>(scene, 1).triangles, SizeIs(4)) << "both polygons, in file order";
+  EXPECT_EQ(shape_of<Sphere>(scene, 2).center, dvec3(1, 0, 0));
+  EXPECT_TRUE(shape_of<Cylinder>(scene, 3).is_open);
+  EXPECT_THAT(shape_of<Mesh>(scene, 4).triangles, SizeIs(2));
+  EXPECT_THAT(scene.materials, SizeIs(2)) << "those of shapes";
+  EXPECT_EQ(object_number(scene, 4), 1U);
+}
+
+TEST_F(NffTest, CylindersAndConesAreOpen) {
+  const Scene scene = load("f 1 1 1 1 0 0 0 0 c 1 2 3 0.5 1 2 7 0.5 c 0 0 0 2 0 0 4 0 c 0 0 0 0 0 4 0 3");
+  ASSERT_THAT(scene.objects, SizeIs(3));
+  const auto& cylinder = shape_of<Cylinder>(scene, 0);
+  EXPECT_EQ(cylinder.center, dvec3(1, 2, 5));
+  EXPECT_EQ(cylinder.axis, dvec3(0, 0, 4));
+  EXPECT_EQ(cylinder.half_height, 2.0);
+  EXPECT_EQ(cylinder.radius, 0.5);
+  EXPECT_TRUE(cylinder.is_open);
+  const auto& cone = shape_of<Cone>(scene, 1);
+  EXPECT_EQ(cone.center, dvec3(0, 0, 2));
+  EXPECT_EQ(cone.half_height, 2.0);
+  EXPECT_EQ(cone.radius_bottom, 2.0);
+  EXPECT_EQ(cone.radius_top, 0.0);
+  EXPECT_TRUE(cone.is_open);
+  EXPECT_EQ(shape_of<Cone>(scene, 2).radius_top, 3.0);
+}
+
+TEST_F(NffTest, NegativeRadiiAreThoseOfShapesSeenFromInside) {
+  const Scene scene = load("s 0 0 0 -2 c 0 0 0 -1 0 4 0 -1 c 0 0 0 -1 0 4 0 0");
+  EXPECT_EQ(shape_of<Sphere>(scene, 0).radius, 2.0);
+  EXPECT_EQ(shape_of<Cylinder>(scene, 1).radius, 1.0);
+  EXPECT_EQ(shape_of<Cone>(scene, 2).radius_bottom, 1.0);
+}
+
+double area_of(const Mesh& mesh) {
+  double area = 0.0;
+  for (const uvec3& t : mesh.triangles) {
+    const dvec3 a(mesh.positions[t.x]);
+    area += 0.5 * glm::length(glm::cross(dvec3(mesh.positions[t.y]) - a, dvec3(mesh.positions[t.z]) - a));
+  }
+  return area;
+}
+
+TEST_F(NffTest, PolygonsMayBeConcave) {
+  // An arrow's head, whose fan around its first corner would lie outside.
+  const Scene scene = load("p 4 2 0 1 0 1 1 1 0 1 0 -1 1");
+  const auto& mesh = shape_of<Mesh>(scene, 0);
+  EXPECT_THAT(mesh.triangles, SizeIs(2));
+  EXPECT_NEAR(area_of(mesh), 1.0, 1e-12);
+  EXPECT_THAT(mesh.normals, IsEmpty());
+  // A comb of 40 teeth: many notches.
+  std::string comb = "p 81\n";
+  for (int i = 0; i < 81; ++i) {
+    comb += std::to_string(i) + (i == 0 || i == 80 ? " 0 0\n" : i % 2 == 1 ? " 2 0\n" : " 1 0\n");
+  }
+  // The outline is 0,0 - ... - 80,0 with its base as the last side.
+  const Scene teeth = load(comb);
+  EXPECT_THAT(shape_of<Mesh>(teeth, 0).triangles, SizeIs(79));
+  EXPECT_NEAR(area_of(shape_of<Mesh>(teeth, 0)), 119.0, 1e-9);
+}
+
+TEST_F(NffTest, DegeneratePolygonsKeepTheirTriangles) {
+  for (const char* text : {"p 5 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0", "p 5 0 0 0 1 0 0 2 0 0 3 0 0 1 0 0",
+                           "p 4 0 0 0 1 1 0 1 0 0 0 1 0", "p 5 0 0 0 1 0 0 1 0 0 1 1 0 0 1 0"}) {
+    const Scene scene = load(text);
+    const auto& mesh = shape_of<Mesh>(scene, 0);
+    EXPECT_THAT(mesh.triangles, SizeIs(text[2] == '5' ? 3 : 2)) << text;
+    EXPECT_THAT(validate(scene), IsEmpty()) << text;
+  }
+}
+
+TEST_F(NffTest, PatchesHaveNormals) {
+  const std::string patch = "pp 3 0 0 0 0 0 2 1 0 0 0 1 1 0 1 0 1 0 1\n";
+  const Scene scene = load(kMaterial + patch);
+  const auto& mesh = shape_of<Mesh>(scene, 0);
+  EXPECT_THAT(mesh.positions, ElementsAre(vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)));
+  EXPECT_THAT(mesh.normals, ElementsAre(vec3(0, 0, 2), vec3(0, 1, 1), vec3(1, 0, 1)));
+
+  // Beside flat ones, before and after.
+  const Scene mixed = load(kMaterial + kSquare + patch + kSquare);
+  const auto& both = shape_of<Mesh>(mixed, 0);
+  ASSERT_THAT(both.normals, SizeIs(both.positions.size()));
+  EXPECT_EQ(both.normals[0], vec3(0, 0, 1));
+  EXPECT_EQ(both.normals[6], vec3(0, 0, 2));
+  EXPECT_EQ(both.normals.back(), vec3(0, 0, 1));
+  EXPECT_THAT(validate(mixed), IsEmpty());
+
+  const Scene flat = load(kMaterial + "pp 3 0 0 0 0 0 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
+  EXPECT_THAT(shape_of<Mesh>(flat, 0).normals, IsEmpty());
+  EXPECT_THAT(flat.warnings, Contains(HasSubstr("normals of no length")));
+}
+
+TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
+  const Scene scene = load("s 0 0 0 1\n" + kMaterial + "s 0 0 0 2\n");
+  EXPECT_THAT(scene.object_numbers, ElementsAre(0, 1));
+  EXPECT_EQ(scene.materials[0].phong().diffuse, vec3(0.8F));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("before the first f")));
+}
+
+TEST_F(NffTest, AnEmptyFileShowsNothing) {
+  for (const char* text : {"", "# nothing", "b 1 1 1\nf 1 1 1 1 1 1 1 1\n"}) {
+    EXPECT_THAT(load(text).warnings, Contains("the scene holds nothing to draw"));
+  }
+}
+
+// Refusals
+
+struct BadNff {
+  const char* name;
+  const char* text;
+  const char* what;
+  const char* where;
+};
+
+std::ostream& operator<<(std::ostream& stream, const BadNff& bad) {
+  return stream << bad.name;
+}
+
+class BadNffTest : public SceneFolder, public testing::WithParamInterface<BadNff> {};
+
+TEST_P(BadNffTest, IsRefusedWithPlaceAndCure) {
+  const std::string message = refusal("bad.nff", GetParam().text);
+  EXPECT_THAT(message, HasSubstr(GetParam().what));
+  EXPECT_THAT(message, HasSubstr("bad.nff" + std::string(GetParam().where)));
+  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+}
+
+const BadNff kBadNff[] = {
+    {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is no statement of NFF", ": line 2"},
+    {"UpperCase", "S 0 0 0 1", "\"S\" is no statement", ": line 1"},
+    {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is no statement", ": line 2"},
+    {"NoNumber", "s 0 0\nx 1\n", "\"x\" is no number up to 1e15", ": line 2"},
+    {"Nan", "s nan 0 0 1", "\"nan\" is no number", ": line 1"},
+    {"Infinite", "s inf 0 0 1", "\"inf\" is no number", ": line 1"},
+    {"BeyondDouble", "s 1e999 0 0 1", "\"1e999\" is no number", ": line 1"},
+    {"TooFar", "s 1e16 0 0 1", "\"1e16\" is no number up to 1e15", ": line 1"},
+    {"RadiusNan", "s 0 0 0 nan", "\"nan\" is no number", ": line 1"},
+    {"RadiusZero", "s 0 0 0 0", "the radius is 0 or too small", ": line 1"},
+    {"RadiusTooSmall", "s 0 0 0 1e-30", "the radius is 0 or too small", ": line 1"},
+    {"Radii", "c 0 0 0 0 1 0 0 0", "both radii are 0", ": line 1"},
+    {"Signs", "c 0 0 0 1 1 0 0 -1", "one radius is negative", ": line 1"},
+    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "base and apex are one point", ": line 2"},
+    {"NegativeColor", "f 1 -1 1 1 1 1 0 0", "\"-1\" is no number from 0", ": line 1"},
+    {"NegativeKd", "f 1 1 1 -0.5 1 1 0 0", "\"-0.5\" is no number from 0", ": line 1"},
+    {"NegativeBackground", "b 0 0 -1", "\"-1\" is no number from 0", ": line 1"},
+    {"NegativeLight", "l 0 0 0 1 1 -1", "\"-1\" is no number from 0", ": line 1"},
+    {"LightOfTwo", "l 0 0 0 1 1\ns 0 0 0 1", "\"s\" is no number from 0", ": line 2"},
+    {"TwoCorners", "p 2 0 0 0 1 1 1", "\"2\" is no number of corners; give 3 to 10000", ""},
+    {"HugeCount", "p 99999999999999999999 0 0 0", "is no number of corners", ": line 1"},
+    {"LargeCount", "p 4000000000 0 0 0", "is no number of corners", ": line 1"},
+    {"NegativeCount", "pp -3 0 0 0", "\"-3\" is no number of corners", ": line 1"},
+    {"BrokenCount", "p 3.5 0 0 0", "\"3.5\" is no number of corners", ": line 1"},
+    {"CutInPolygon", "p 3 0 0 0\n1 1 1\n0 1\n", "the file ends within \"p\"", ": line 3"},
+    {"CutInPatch", "pp 3 0 0 0 0 0 1 1 1 1", "the file ends within \"pp\"", ": line 1"},
+    {"CutBeforeCount", "b 0 0 0\np", "the file ends within \"p\"", ": line 2"},
+    {"CutInMaterial", "f 1 1 1 0.5", "the file ends within \"f\"", ": line 1"},
+    {"CutInCone", "c 1 1 1 0.5 2 2 2", "the file ends within \"c\"", ": line 1"},
+    {"CutInView", "v\nfrom 0 0 1\nat 0", "the file ends within \"v\"", ": line 3"},
+    {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "a view is without from, at, up or angle", ": line 1"},
+    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in one place", ": line 1"},
+    {"UpAlongView", "v from 0 0 1 at 0 0 0 up 0 0 2 angle 45", "an up that is 0 or along it", ": line 1"},
+    {"NoUp", "v from 0 0 1 at 0 0 0 up 0 0 0 angle 45", "an up that is 0 or along it", ": line 1"},
+    {"AngleZero", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 0", "\"0\" is no number of degrees", ": line 1"},
+    {"AngleFlat", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 180", "\"180\" is no number of degrees", ": line 1"},
+    {"NegativeHither", "v hither -1", "\"-1\" is no number from 0", ": line 1"},
+    {"NoPixels", "v resolution 0 512", "\"0\" is no number of pixels", ": line 1"},
+    {"TooManyPixels", "v resolution 99999 512", "\"99999\" is no number of pixels", ": line 1"},
+    {"HalfAPixel", "v resolution 5.5 512", "a resolution is no whole number", ": line 1"},
+    {"Binary", "\x01\x02\xff\n", "is no statement of NFF", ": line 1"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff),
+                         [](const auto& param_info) { return param_info.param.name; });
+
+/// A problem ends the parsing, so one is told, whatever comes after.
+TEST_F(NffTest, OneProblemIsTold) {
+  EXPECT_THAT(refusal("s 0 0 0 0\nq\nq\n"), testing::Not(HasSubstr("\"q\"")));
+}
+
+}  // namespace
+}  // namespace promin
