@@ -153,7 +153,8 @@ void add_look_options(OptionTable& table, LookOptions& look) {
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
   PoseOptions& pose = view.pose;
-  table.add("--size", "W H", "Picture size in pixels [height 720, width by the camera's aspect ratio]",
+  table.add("--size", "W H",
+            "Picture size in pixels [what the file asks for, or height 720, width by the camera's aspect ratio]",
             [&](const OptionValues& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--max-depth", "N",
             fmt::format("Bounces, 0 to {}; 0 traces neither mirror nor refracted rays [{}, with glass {}]", kMaxDepth,

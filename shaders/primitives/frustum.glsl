@@ -13,7 +13,7 @@ struct Frustum {
   float half_height;
   float radius;  // at the centre
   float slope;   // change of radius per height; 0 for a cylinder
-  bool is_open;  // whether the side alone is there
+  bool is_open;  // whether the side alone is there; false where no shape of the scene is open
 };
 
 bool is_frustum_open(Primitive p) { return has(FEATURE_OPEN_SHAPES) && (p.c.x & SHAPE_IS_OPEN) != 0u; }
@@ -40,6 +40,11 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   precise float slab_exit = (-entry_z - z) * inverse_dz;
   uint entry_cap = dz < 0.0 ? PART_TOP : PART_BOTTOM;
   uint exit_cap = dz < 0.0 ? PART_BOTTOM : PART_TOP;
+  if (has(FEATURE_OPEN_SHAPES) && f.is_open) {
+    // A ray across the axis, just beyond a rim, is in the slab far from here alone, where the side drowns in rounding.
+    precise float reach = half_height + radius + abs(f.slope) * half_height;
+    if (slab_entry > reach || slab_exit < -reach) return NOWHERE;
+  }
 
   // Solve from the point inside the slab that is nearest to axis and apex, where distance^2 + radius^2 is least. There
   // the rounding of these two is small beside that at the hit, which divides them. Elsewhere the hit of a ray along a
@@ -98,8 +103,12 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   // stays in its place however flat the angle at it.
   precise float cap_entry = (entry_z - base_z) * inverse_dz;
   precise float cap_exit = (-entry_z - base_z) * inverse_dz;
-  bool enters_side = side_entry > cap_entry || (f.is_open && side_entry == cap_entry);
-  bool exits_side = side_exit < cap_exit || (f.is_open && side_exit == cap_exit);
+  bool enters_side = side_entry > cap_entry;
+  bool exits_side = side_exit < cap_exit;
+  if (has(FEATURE_OPEN_SHAPES) && f.is_open) {
+    enters_side = side_entry >= cap_entry;
+    exits_side = side_exit <= cap_exit;
+  }
   float entry = enters_side ? side_entry : cap_entry;
   float exit = exits_side ? side_exit : cap_exit;
   if (!(entry <= exit)) return NOWHERE;
@@ -111,11 +120,14 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
 
 Crossing intersect_frustum(Ray ray, Frustum f) {
   Inside inside = inside_frustum(ray, approach(ray, f.center), f);
-  // Through a missing disk the ray is inside as if it had always been.
-  if (f.is_open && inside.entry_part != PART_SIDE) inside.entry = -INFINITY;
-  Crossing nearest = nearest_crossing(ray, inside);
-  if (f.is_open && nearest.part != PART_SIDE) return NO_CROSSING;
-  return nearest;
+  if (has(FEATURE_OPEN_SHAPES) && f.is_open) {
+    // Through a missing disk the ray is inside as if it had always been.
+    if (inside.entry_part != PART_SIDE) inside.entry = -INFINITY;
+    Crossing nearest = nearest_crossing(ray, inside);
+    if (nearest.part == PART_SIDE) return nearest;
+    return NO_CROSSING;
+  }
+  return nearest_crossing(ray, inside);
 }
 
 // A point of the surface, seen from the centre, with its normal.

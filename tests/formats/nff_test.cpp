@@ -106,6 +106,12 @@ TEST_F(NffTest, MaterialsAreOfPhong) {
   EXPECT_EQ(phong.specular, vec3(0.25F)) << "highlights are white";
   EXPECT_EQ(phong.reflection, vec3(0.25F));
   EXPECT_EQ(phong.shininess, 20.0F);
+  EXPECT_EQ(phong.transmission, vec3(0.0F));
+  EXPECT_EQ(phong.ior, 1.0F) << "0 stands for none";
+  const Scene glass = load("f 1 1 1 0 0.25 20 0.75 1.5 s 0 0 0 1");
+  EXPECT_EQ(glass.materials[0].phong().transmission, vec3(0.75F));
+  EXPECT_EQ(glass.materials[0].phong().ior, 1.5F);
+  EXPECT_FALSE(glass.materials[0].phong().fresnel) << "the weights are as they stand";
 }
 
 TEST_F(NffTest, EachMaterialWithShapesIsAnObjectOfTheFile) {
@@ -212,8 +218,8 @@ TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("before the first f")));
 }
 
-TEST_F(NffTest, AnEmptyFileShowsNothing) {
-  for (const char* text : {"", "# nothing", "b 1 1 1\nf 1 1 1 1 1 1 1 1\n"}) {
+TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
+  for (const char* text : {"\n", "# nothing", "b 1 1 1\nf 1 1 1 1 1 1 1 1\n"}) {
     EXPECT_THAT(load(text).warnings, Contains("the scene holds nothing to draw"));
   }
 }
@@ -260,7 +266,7 @@ const BadNff kBadNff[] = {
     {"NegativeBackground", "b 0 0 -1", "\"-1\" is no number from 0", ": line 1"},
     {"NegativeLight", "l 0 0 0 1 1 -1", "\"-1\" is no number from 0", ": line 1"},
     {"LightOfTwo", "l 0 0 0 1 1\ns 0 0 0 1", "\"s\" is no number from 0", ": line 2"},
-    {"TwoCorners", "p 2 0 0 0 1 1 1", "\"2\" is no number of corners; give 3 to 10000", ""},
+    {"TwoCorners", "p 2 0 0 0 1 1 1", "\"2\" is no number of corners", ": line 1; give 3 to 10000"},
     {"HugeCount", "p 99999999999999999999 0 0 0", "is no number of corners", ": line 1"},
     {"LargeCount", "p 4000000000 0 0 0", "is no number of corners", ": line 1"},
     {"NegativeCount", "pp -3 0 0 0", "\"-3\" is no number of corners", ": line 1"},

@@ -23,6 +23,9 @@ Phong to_phong(const NffMaterial& nff) {
   phong.specular = vec3(nff.specular);
   phong.shininess = nff.shininess;
   phong.reflection = vec3(nff.specular);
+  phong.transmission = vec3(nff.transmittance);
+  // Files have 0 where nothing is refracted.
+  phong.ior = nff.ior > 0.0F ? nff.ior : 1.0F;
   return phong;
 }
 
