@@ -37,7 +37,8 @@ def texture(material):
     phong = f"phong {material.specular:.9g} phong_size {material.shininess:.9g}"
     highlight = phong if material.shininess > 0 else "phong 0"
     reflection = f"reflection {{ rgb {vector(material.reflection)} }}"
-    finish = f"ambient rgb {vector(ambient)} emission rgb {vector(emission)} diffuse {1 / opaque:.9g} {highlight} {reflection}"
+    own = f"ambient rgb {vector(ambient)} emission rgb {vector(emission)}"
+    finish = f"{own} diffuse {1 / opaque:.9g} {highlight} {reflection}"
     color = "rgb " + vector(pigment) if opaque == 1 else "rgbt " + vector([*pigment, material.transmission])
     glass = "" if opaque == 1 else f" interior {{ ior {material.ior:.9g} }}"
     return f"texture {{ pigment {{ {color} }} finish {{ {finish} }} }}{glass}"
@@ -112,7 +113,8 @@ def write_pov(file, camera, max_depth):
     background, ambient = scene.sky()
     # Promin's least weight of a ray where there is glass.
     least = 1 / 512 if scene.has_glass else 0
-    settings = f"assumed_gamma 1 max_trace_level {max_depth + 1} adc_bailout {least} ambient_light rgb {vector(ambient)}"
+    limits = f"max_trace_level {max_depth + 1} adc_bailout {least}"
+    settings = f"assumed_gamma 1 {limits} ambient_light rgb {vector(ambient)}"
     head = ["#version 3.7;", f"global_settings {{ {settings} }}", f"background {{ rgb {vector(background)} }}"]
     return "\n".join([*head, camera_block(scene.camera(camera)), *scene.lines, ""])
 

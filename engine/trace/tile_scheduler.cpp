@@ -68,7 +68,7 @@ uint32_t TileScheduler::pick_block_count(double units) const {
   const uint32_t remaining = block_total_ - first_block_;
   if (options_.blocks_per_piece > 0) return std::min({options_.blocks_per_piece, remaining, options_.most_blocks});
   const auto most = static_cast<double>(options_.most_blocks);
-  const auto blocks = static_cast<uint32_t>(std::clamp(units, std::min<double>(kMinBlocks, most), most));
+  const auto blocks = static_cast<uint32_t>(std::clamp(units, std::min<double>(options_.least_blocks, most), most));
   return std::min(blocks, remaining);
 }
 

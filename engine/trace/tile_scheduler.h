@@ -27,12 +27,17 @@ struct TileSample {
 
 struct TileOptions {
   static constexpr uint32_t kMaxBlocks = 8192;
+  /// They keep a device's cores busy.
+  static constexpr uint32_t kLeastBlocks = 64;
+  /// With glass a piece takes many turns of the stream, most of few rays.
+  static constexpr uint32_t kLeastBlocksOfTrees = 1024;
 
   /// The number of pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
   /// See trace/group_rows.h.
   uint32_t most_group_rows = 1;
-  /// The largest piece, kMaxBlocks at most.
+  /// The least and the largest piece, kMaxBlocks at most.
+  uint32_t least_blocks = kLeastBlocks;
   uint32_t most_blocks = kMaxBlocks;
   /// How many surfaces a ray goes through at most.
   uint32_t most_layers = 0;
@@ -59,11 +64,10 @@ class TileScheduler {
   bool is_done() const { return first_block_ == block_total_; }
   double fraction_done() const;
 
-  /// The next piece, of about `units`, but of at least kMinBlocks blocks, which keep a device's cores busy. Must not be
-  /// called when done.
+  /// The next piece, of about `units`, but not less than the least. Must not be called when done.
   TileSample next(double units);
 
-  static constexpr uint32_t kMinBlocks = 64;
+  static constexpr uint32_t kMinBlocks = TileOptions::kLeastBlocks;
 
  private:
   uint32_t pick_block_count(double units) const;

@@ -10,6 +10,7 @@
 #include "core/rounding.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "layout.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
@@ -110,16 +111,16 @@ class ExplainTest : public test::DeviceTest {
     RayCounts explained;
     for (const ExplainedSample& sample : explanation.samples) {
       explained.primary += 1;
-      for (size_t i = 0; i + 1 < sample.rays.size(); ++i) {
-        if (sample.rays[i].coverage == 1.0F) ++explained.reflection;
-      }
       for (const ExplainedRay& ray : sample.rays) {
+        explained.reflection += ray.kind == RayKind::kReflection ? 1 : 0;
+        explained.refraction += ray.kind == RayKind::kRefraction ? 1 : 0;
         for (const ExplainedSource& source : ray.sources) explained.shadow += source.shadow_ray ? 1 : 0;
       }
     }
     EXPECT_EQ(explained.primary, counts.primary);
     EXPECT_EQ(explained.shadow, counts.shadow);
     EXPECT_EQ(explained.reflection, counts.reflection);
+    EXPECT_EQ(explained.refraction, counts.refraction);
   }
 
   static void expect_hits(const ExplainedSample& sample, Caster& caster) {
@@ -161,6 +162,48 @@ TEST_F(ExplainTest, WhatBlendsAddsUpToThePicture) {
     }
   }
   EXPECT_GT(through, 20U);
+}
+
+TEST_F(ExplainTest, GlassIsATreeWithParents) {
+  const world::Scene scene = test::make_scene_of_glass();
+  View view = test::make_view(uvec2(64, 48));
+  view.max_depth = kMaxDepthOfGlass;
+  view.samples_per_pixel = 2;
+  Renderer renderer = make_renderer(device(), scene);
+  const Image picture = renderer.render(view).image;
+  size_t branches = 0;
+  for (uint32_t i = 0; i < 60; ++i) {
+    const uvec2 pixel(12 + i * 37 % 40, 12 + i * 11 % 30);
+    SCOPED_TRACE(testing::Message() << "pixel " << pixel.x << " " << pixel.y);
+    const Explanation explanation = renderer.explain(view, pixel);
+    EXPECT_EQ(bits_of(explanation.color), bits_of(picture.at(pixel.x, pixel.y)));
+    expect_counts(renderer, view, explanation);
+    vec3 sum(0.0F);
+    for (const ExplainedSample& sample : explanation.samples) {
+      sum += sample.radiance();
+      std::vector<int> reflected(sample.rays.size());
+      std::vector<int> refracted(sample.rays.size());
+      EXPECT_EQ(sample.rays.front().kind, RayKind::kCamera);
+      EXPECT_LE(sample.rays.size(), 1U + layout::MOST_TREE_RAYS);
+      for (size_t k = 1; k < sample.rays.size(); ++k) {
+        const ExplainedRay& ray = sample.rays[k];
+        ASSERT_LT(ray.parent, k);
+        const ExplainedRay& parent = sample.rays[ray.parent];
+        EXPECT_GE(parent.hit.object, 0);
+        EXPECT_TRUE(glm::all(glm::lessThanEqual(ray.weight, parent.weight + 1e-6F)));
+        // It leaves the parent's hit.
+        EXPECT_LT(glm::distance(ray.ray.origin, parent.position), 1e-3F);
+        ++(ray.kind == RayKind::kReflection ? reflected : refracted)[ray.parent];
+      }
+      for (size_t k = 0; k < sample.rays.size(); ++k) {
+        EXPECT_LE(reflected[k], 1);
+        EXPECT_LE(refracted[k], 1);
+        branches += reflected[k] > 0 && refracted[k] > 0 ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(bits_of(explanation.sum), bits_of(sum));
+  }
+  EXPECT_GT(branches, 20U);
 }
 
 TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {

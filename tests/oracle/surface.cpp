@@ -177,7 +177,7 @@ class UnlitSurface {
 
   Radiance own() const { return {color_}; }
   Radiance contribution(const ArrivingLight&) const { return {}; }
-  Response finish(const Radiance& sent) const { return {sent, Vector(0), Vector(0), 0, {}}; }
+  Response finish(const Radiance& sent) const { return {sent, Vector(0), Vector(0), 0, {}, Vector(0), {}, false, 0}; }
 
  private:
   Vector color_;

@@ -373,6 +373,35 @@ def metallic_roughness():
     return g
 
 
+def glass():
+    """Glass: a ball, a bubble in one, a stone that absorbs, a rod, a frosted pane, and one of classic weights."""
+    g = Gltf()
+    g.sky(SKY, (0.6,) * 3)
+    g.node("floor", mesh=g.plane("floor", g.metallic_roughness("floor", CREAM, 0.0, 0.9)))
+    g.directional_light("sun", (0.55, -1.0, -0.5), intensity=2.0, classic=False)
+    for column, (name, color) in enumerate(PALETTE.items()):
+        # Things to see through it.
+        bar = g.box(name, (0.5, 1.6, 0.3), g.metallic_roughness(name, color, 0.0, 0.6))
+        g.node(name, mesh=bar, translation=(-2.6 + 1.04 * column, 0.8, -2.4))
+    clear = g.glass("clear", absorbed=((0.98, 0.99, 0.98), 2.0))
+    g.node("ball", mesh=g.sphere("ball", 0.75, clear), translation=(-1.9, 0.8, 0.2))
+    g.node("shell", mesh=g.sphere("shell", 0.6, clear), translation=(-0.35, 0.62, 0.6))
+    air = g.glass("air", ior=1.0, absorbed=((1.0, 1.0, 1.0), 1.0))
+    g.node("bubble", mesh=g.sphere("bubble", 0.35, air), translation=(-0.35, 0.62, 0.6))
+    emerald = g.glass("emerald", ior=1.58, absorbed=((0.12, 0.75, 0.35), 1.2))
+    stone = g.mesh("stone", meshes.icosahedron(0.6), emerald)
+    g.node("stone", mesh=stone, translation=(0.95, 0.6, 0.4), rotation=axis_rotation((0.2, 1.0, 0.1)))
+    rod = g.cylinder("rod", 1.9, 0.22, g.classic_glass("rod", 0.9, 0.1, 1.5))
+    g.node("rod", mesh=rod, translation=(2.0, 1.0, -0.3), rotation=axis_rotation((0.25, 1.0, 0.05)))
+    frosted = g.glass("frosted", base_color=(0.75, 0.9, 0.95), roughness=0.3)
+    pane = g.box("pane", (0.9, 1.1, 0.02), frosted)
+    g.node("pane", mesh=pane, translation=(2.35, 0.56, 0.9), rotation=quaternion_about((0.0, 1.0, 0.0), -20.0))
+    marble = g.classic_glass("marble", 1.0, 1.0, 1.8, fresnel=True)
+    g.node("marble", mesh=g.sphere("marble", 0.28, marble), translation=(0.3, 0.28, 1.5))
+    g.camera("camera", (0.2, 2.0, 6.4), (0.15, 0.66, 0.0), yfov_deg=31.0)
+    return g
+
+
 def all_primitives():
     """Every primitive and every term of the shading formula at once, as far as POV-Ray has the same."""
     g = Gltf()
@@ -432,5 +461,6 @@ SCENES = (
     orthographic,
     cameras,
     metallic_roughness,
+    glass,
     all_primitives,
 )

@@ -107,6 +107,30 @@ class Gltf:
         pbr = {"baseColorFactor": _numbers((*base_color, 1.0)), **factors}
         return self._append("materials", {"name": name, "pbrMetallicRoughness": pbr})
 
+    def glass(self, name, base_color=(1.0, 1.0, 1.0), ior=1.5, roughness=0.0, absorbed=None):
+        """A thin wall, or with `absorbed`, a colour and the length of way after which it is left, a volume."""
+        index = self.metallic_roughness(name, base_color, 0.0, roughness)
+        extensions = {
+            "KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_ior": {"ior": shortest(ior)},
+        }
+        if absorbed:
+            color, distance = absorbed
+            volume = {"attenuationColor": _numbers(color), "attenuationDistance": shortest(distance)}
+            extensions["KHR_materials_volume"] = {"thicknessFactor": 1, **volume}
+        self._extensions.update(extensions)
+        self._root["materials"][index]["extensions"] = extensions
+        return index
+
+    def classic_glass(self, name, transmission, reflection, ior, fresnel=False):
+        """Classic Phong, without diffuse light."""
+        index = self.material(name, (0.0, 0.0, 0.0), specular=0.5, shininess=200.0, reflection=reflection)
+        phong = {"transmissionFactor": _numbers((transmission,) * 3), "ior": shortest(ior)}
+        if fresnel:
+            phong["fresnel"] = True
+        self._root["materials"][index]["extensions"]["PROMIN_materials_phong"].update(phong)
+        return index
+
     def mesh(self, name, mesh, material, mode=TRIANGLES):
         return self._append("meshes", {"name": name, "primitives": [self._primitive(mesh, material, mode)]})
 
@@ -189,8 +213,8 @@ class Gltf:
     def point_light(self, name, position, color=(1.0, 1.0, 1.0), intensity=1.0, classic=True):
         return self._light(name, "point", color, intensity, classic, {"translation": position})
 
-    def directional_light(self, name, direction, color=(1.0, 1.0, 1.0), intensity=1.0):
-        return self._light(name, "directional", color, intensity, True, {"rotation": look_rotation(direction)})
+    def directional_light(self, name, direction, color=(1.0, 1.0, 1.0), intensity=1.0, classic=True):
+        return self._light(name, "directional", color, intensity, classic, {"rotation": look_rotation(direction)})
 
     def spot_light(self, name, position, target, inner_deg, outer_deg, color=(1.0, 1.0, 1.0), intensity=1.0):
         angles = {"innerConeAngle": inner_deg, "outerConeAngle": outer_deg}
