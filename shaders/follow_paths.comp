@@ -180,6 +180,7 @@ uint ask_beyond(uint number, inout Path path, ShadingPoint point, bool touches) 
 // With FEATURE_GLASS, what a path asks for whose ray has met nothing while others wait: they begin with a bounce, so until
 // then it asks for the same ray.
 uint ask_after_miss(uint number, Path path, Ray ray) {
+  store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   for (uint source = 0u; source < sources_of_turn; ++source) words[ask_of_source(number, source)] = ASK_NOTHING;
   if (begins_bounce(turn + 1u)) return ask_waiting(number, path, false);
   store_vector(record_of_weight(number, turn + 1u), path.weight);
@@ -212,10 +213,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     add_radiance(path, beyond, 1.0);
     log_own_light(beyond);
     end_path_log(path.radiance, 1.0);
-    if (has_waiting) {
-      store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
-      return ask_after_miss(number, path, ray);
-    }
+    if (has_waiting) return ask_after_miss(number, path, ray);
     finish_path(path);
     return ASK_NOTHING;
   }
@@ -273,7 +271,7 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
     path.skipped = 0u;
     path.rays = path_glass.z & ((1u << HAS_SEEN_SHIFT) - 1u);
     path.kind = path_glass.w >> KIND_SHIFT;
-    has_seen = (path_glass.z >> HAS_SEEN_SHIFT) != 0u;
+    has_seen = !begins_bounce(turn) || (path_glass.z >> HAS_SEEN_SHIFT) != 0u;
   }
   path.roughness = SEES_ENVIRONMENT ? load_record(record + RECORD_DIRECTION).w : NO_ENVIRONMENT;
   vec3 seen = vec3(0.0);

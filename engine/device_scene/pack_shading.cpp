@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "promin/error.h"
 #include "scene/alpha.h"
 #include "scene/glass.h"
 #include "scene/layers.h"
@@ -114,9 +115,18 @@ class MaterialPacker {
     return std::bit_cast<float>(static_cast<uint>(packed_.extensions.size()));
   }
 
+  /// Materials of the same glass share its number, and their solids count as one.
   uint number_of_glass(const GlassRecord& record) {
+    const auto is_same = [&](const GlassRecord& other) { return std::memcmp(&other, &record, sizeof(record)) == 0; };
+    const auto found = std::ranges::find_if(packed_.glasses, is_same);
+    const auto number = static_cast<uint>(found - packed_.glasses.begin()) + 1;
+    if (found != packed_.glasses.end()) return number;
+    if (number > MOST_GLASSES) {
+      throw RunError({"the materials have more than " + std::to_string(MOST_GLASSES) + " kinds of glass",
+                      "in all of the scene", "use fewer"});
+    }
     packed_.glasses.push_back(record);
-    return static_cast<uint>(packed_.glasses.size());
+    return number;
   }
   /// The glass's number, 0 where it is none.
   uint add_glass(const Phong& m) {

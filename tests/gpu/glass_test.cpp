@@ -139,7 +139,7 @@ TEST_F(GlassTest, FresnelsShareIsThatOfTheFormula) {
   scene.materials[1].model = Unlit{vec3(0.0F)};
   // Nothing comes from below.
   scene.objects.push_back({"floor", world::Plane{vec3(0, -2, 0), vec3(0, 1, 0)}, 1});
-  for (const double cosine : {1.0, 0.7, 0.3, 0.1}) {
+  for (const double cosine : {1.0, 0.7, 0.3, 0.2}) {
     View view =
         look_down(vec3(static_cast<float>(std::sqrt(1.0 - cosine * cosine)), static_cast<float>(-cosine), 0.0F));
     view.max_depth = 1;
