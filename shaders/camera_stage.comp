@@ -114,7 +114,7 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   put_record(path, ray, hit);
   bool is_hit = hit.primitive != NO_PRIMITIVE;
   hit_count += is_hit ? 1u : 0u;
-  if (is_hit) absorb(path, ray, hit);
+  if (is_hit && DEBUG_VIEW == DEBUG_VIEW_NONE) absorb(path, ray, hit);
   begin_path_log(ray, hit, 0u, path.weight, path.kind);
   if (SHADES_POINTS != 0u && is_hit) {
     widen_cone(path, ray, hit);

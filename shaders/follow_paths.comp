@@ -265,6 +265,7 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
     path.bounces = path_progress & ((1u << LAYERS_SHIFT) - 1u);
   }
   bool has_seen = turn > 0u;
+  path.media = uvec2(NO_MEDIUM);
   if (has(FEATURE_GLASS)) {
     path.media = path_glass.xy;
     path.skip = 0.0;

@@ -20,28 +20,22 @@ void absorb_until(inout LightWay way, Ray ray, float t) {
   way.t = t;
 }
 
-vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord material) {
-  precise vec3 tint = material.a.xyz;
+// By the finest level; 1 where there is no texture.
+vec4 texel_at_hit(uint slot, Hit hit, Primitive p, SurfaceRecord surface) {
   uvec4 corners = surface.corners_material;
+  if (!has(FEATURE_TEXTURES) || slot == 0u || (corners.w & SURFACE_HAS_UVS) == 0u) return vec4(1.0);
   precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
-  if (has(FEATURE_VERTEX_COLORS) && (corners.w & SURFACE_IS_COLORED) != 0u) {
-    tint *= load_vertex_color(corners.xyz, weights).xyz;
-  }
-  uint slot = slot_number(material.cover.z);
-  if (has(FEATURE_TEXTURES) && slot != 0u && (corners.w & SURFACE_HAS_UVS) != 0u) {
-    tint *= look_up(slot, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0)).xyz;
-  }
-  return min(tint, vec3(1.0));
+  return look_up(slot, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0));
 }
 
-float transmission_at_hit(Hit hit, Primitive p, SurfaceRecord surface, GlassRecord record) {
-  precise float share = record.transmission.x;
+vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord material) {
+  precise vec3 tint = material.a.xyz * texel_at_hit(slot_number(material.cover.z), hit, p, surface).xyz;
   uvec4 corners = surface.corners_material;
-  if (has(FEATURE_TEXTURES) && record.bits.y != 0u && (corners.w & SURFACE_HAS_UVS) != 0u) {
+  if (has(FEATURE_VERTEX_COLORS) && (corners.w & SURFACE_IS_COLORED) != 0u) {
     precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
-    share *= look_up(record.bits.y, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0)).x;
+    tint *= load_vertex_color(corners.xyz, weights).xyz;
   }
-  return share;
+  return min(tint, vec3(1.0));
 }
 
 // What a face lets through, and the media behind it. Rays that go straight on meet each face as if from its thinner
@@ -63,12 +57,14 @@ vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord mater
     precise vec3 left = record.transmission.xyz * (1.0 - fresnel_reflectance(outside, max(cosine, SMALLEST_NORMAL), beyond));
     return left;
   }
-  if (face.from == face.to) return vec3(transmission_at_hit(hit, p, surface, record));
   precise vec3 f0 = min(record.reflectance.xyz * normal_reflectance(face), vec3(1.0));
   precise vec3 reflected = f0 + (material.b.w - f0) * schlick_weight(cosine);
+  if (face.from == face.to) reflected = vec3(0.0);
   vec3 tint = tint_at_hit(hit, p, surface, material);
-  precise float share = (1.0 - material.a.w) * transmission_at_hit(hit, p, surface, record) *
-                        (1.0 - max(reflected.x, max(reflected.y, reflected.z)));
+  precise float metallic = material.a.w * texel_at_hit(slot_number(material.d.y), hit, p, surface).z;
+  precise float transmission = record.transmission.x * texel_at_hit(record.bits.y, hit, p, surface).x;
+  precise float share =
+      (1.0 - metallic) * transmission * (1.0 - max(reflected.x, max(reflected.y, reflected.z)));
   precise vec3 left = share * (is_thin ? tint : sqrt(tint));
   return left;
 }

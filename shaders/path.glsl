@@ -25,10 +25,10 @@ struct Path {
   uint kind;    // LOG_*, of its next ray
 };
 
-// Takes what the medium absorbs on the way to a hit.
+// Takes what the medium absorbs on the way to a hit, from where the ray has passed a surface before.
 void absorb(inout Path path, Ray ray, Hit hit) {
   if (!has(FEATURE_GLASS)) return;
-  precise float way = hit.t * length3(ray.direction);
+  precise float way = (hit.t - max(path.passed_t, 0.0)) * length3(ray.direction);
   precise vec3 weight = path.weight * left_after(last_entered(path.media), way);
   path.weight = weight;
 }

@@ -262,9 +262,12 @@ void DeviceScene::write_tail(Tail tail) {
   constants_.has_glass = std::ranges::any_of(tail.materials->glasses, [](const layout::GlassRecord& glass) {
     return (glass.bits.x & layout::GLASS_IS_CLEAR) != 0;
   });
-  constants_.glass_numbers.clear();
+  constants_.media.clear();
   for (const layout::MaterialRecord& record : tail.materials->records) {
-    constants_.glass_numbers.push_back(std::bit_cast<uint32_t>(record.emissive.w) >> layout::MATERIAL_GLASS_SHIFT);
+    const uint32_t number = std::bit_cast<uint32_t>(record.emissive.w) >> layout::MATERIAL_GLASS_SHIFT;
+    const uint32_t bits = number == 0 ? 0 : tail.materials->glasses[number - 1].bits.x;
+    const bool is_medium = (bits & (layout::GLASS_IS_CLEAR | layout::GLASS_IS_THIN)) == layout::GLASS_IS_CLEAR;
+    constants_.media.push_back(is_medium ? number : 0);
   }
   constants_.irradiance = tail.sky->irradiance;
   constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());

@@ -62,10 +62,11 @@ class MaterialPacker {
   };
 
   uint pack_flags(const Material& material) {
-    const uint glass = std::visit([&](const auto& model) { return add_glass(model); }, material.model);
+    const uint glass =
+        std::visit([&](const auto& model) { return add_glass(model, is_clear(material)); }, material.model);
     return glass << MATERIAL_GLASS_SHIFT | std::visit(ModelNumber(), material.model) |
            flag(has_holes(material), MATERIAL_HAS_HOLES) | flag(blends(material), MATERIAL_BLENDS) |
-           flag(!material.is_double_sided, MATERIAL_IS_ONE_SIDED);
+           flag(!shows_backs(material), MATERIAL_IS_ONE_SIDED);
   }
 
   vec4 pack_cover(const Material& material) {
@@ -129,14 +130,14 @@ class MaterialPacker {
     return number;
   }
   /// The glass's number, 0 where it is none.
-  uint add_glass(const Phong& m) {
-    if (!is_clear(m) && !hangs_on_angle(m)) return 0;
+  uint add_glass(const Phong& m, bool is_clear) {
+    if (!is_clear && !hangs_on_angle(m)) return 0;
     return number_of_glass(
         {vec4(m.transmission, m.ior), vec4(0.0F), vec4(0.0F),
-         uvec4(flag(is_clear(m), GLASS_IS_CLEAR) | flag(hangs_on_angle(m), GLASS_IS_FRESNEL), 0, 0, 0)});
+         uvec4(flag(is_clear, GLASS_IS_CLEAR) | flag(hangs_on_angle(m), GLASS_IS_FRESNEL), 0, 0, 0)});
   }
-  uint add_glass(const MetallicRoughness& m) {
-    if (!is_clear(m)) return 0;
+  uint add_glass(const MetallicRoughness& m, bool is_clear) {
+    if (!is_clear) return 0;
     dvec3 absorption(0.0);
     for (int i = 0; i < 3; ++i) {
       // Of what absorbs all, a little is left over a 2^-24th of the distance.

@@ -20,7 +20,7 @@ uvec2 media_around(const SceneConstants& scene, const vec3& eye) {
   uint64_t media = 0;
   if (scene.glass_solids == nullptr) return uvec2(0);
   for (const uint32_t material : scene.glass_solids->materials_around(eye)) {
-    media = media << 16 | scene.glass_numbers[material];
+    if (scene.media[material] != 0) media = media << 16 | scene.media[material];
   }
   return {static_cast<uint32_t>(media), static_cast<uint32_t>(media >> 32)};
 }

@@ -25,9 +25,9 @@ struct SceneConstants {
   uvec4 first_texture{0};
   /// x = the first GlassRecord.
   uvec4 first_glass{0};
-  /// In which the camera may be, and of each material the number of its glass.
+  /// In which the camera may be, and of each material the number of its glass, 0 where it bounds no volume.
   std::shared_ptr<const GlassSolids> glass_solids;
-  std::vector<uint32_t> glass_numbers;
+  std::vector<uint32_t> media;
   /// Whether anything lets light through.
   bool has_glass = false;
   /// The unbounded primitives, which lie behind those of the tree.

@@ -95,8 +95,6 @@ struct MaterialFeatures {
     if (phong.shininess > 0.0F && max_component(phong.specular) > 0.0F) features |= FEATURE_SPECULAR;
     if (max_component(phong.reflection) > 0.0F) features |= FEATURE_MIRRORS;
     if (hangs_on_angle(phong)) features |= FEATURE_FRESNEL;
-    // Glass mirrors where it reflects totally.
-    if (is_clear(phong)) features |= FEATURE_GLASS | FEATURE_MIRRORS;
     return features;
   }
   FeatureMask operator()(const MetallicRoughness& material) const {
@@ -105,7 +103,6 @@ struct MaterialFeatures {
     if (material.roughness < ROUGHEST_MIRROR || material.metallic_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;
     }
-    if (is_clear(material)) features |= FEATURE_GLASS | FEATURE_MIRRORS;
     if (has_sheen(material)) features |= FEATURE_SHEENS;
     if (has_specular_textures(material)) features |= FEATURE_SPECULAR_TEXTURES;
     if (!has_coat(material)) return features;
@@ -150,7 +147,9 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
     });
     if (has_holes(materials[i])) features |= FEATURE_HOLES;
     if (blends(materials[i])) features |= FEATURE_BLENDING;
-    if (!materials[i].is_double_sided) features |= FEATURE_ONE_SIDED;
+    // Glass mirrors where it reflects totally.
+    if (is_clear(materials[i])) features |= FEATURE_GLASS | FEATURE_MIRRORS;
+    if (!shows_backs(materials[i])) features |= FEATURE_ONE_SIDED;
   }
   return features;
 }

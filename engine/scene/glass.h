@@ -6,28 +6,43 @@
 
 #include "core/rounding.h"
 #include "promin/materials.h"
+#include "scene/alpha.h"
+#include "scene/texture_slots.h"
 
 // What materials let through (docs/model.md, "Glass").
 namespace promin {
 
-/// Whether light goes through it.
-inline bool is_clear(const Phong& material) {
-  return max_component(material.transmission) > 0.0F;
+// Whether the model lets light through.
+inline bool is_clear(const Phong& model) {
+  return max_component(model.transmission) > 0.0F;
 }
-/// An index of refraction of 0 stands for a dielectric that reflects all.
-inline bool is_clear(const MetallicRoughness& material) {
-  return material.transmission > 0.0F && material.metallic < 1.0F && material.ior > 0.0F;
+/// A texture may take all metal away. An index of refraction of 0 stands for a dielectric that reflects all.
+inline bool is_clear(const MetallicRoughness& model) {
+  const bool may_be_dielectric = model.metallic < 1.0F || model.metallic_roughness_texture.exists();
+  return model.transmission > 0.0F && may_be_dielectric && model.ior > 0.0F;
 }
-inline bool is_clear(const Unlit& /*material*/) {
+inline bool is_clear(const Unlit& /*model*/) {
   return false;
 }
+
+/// Whether light goes through the material. What alpha makes transparent already lets none through besides.
 inline bool is_clear(const Material& material) {
-  return std::visit([](const auto& model) { return is_clear(model); }, material.model);
+  const bool may_blend = blends(material) && (material.alpha < 1.0F || base_slot(material).exists());
+  return !may_blend && std::visit([](const auto& model) { return is_clear(model); }, material.model);
+}
+
+/// Whether its surfaces bound volumes of glass, which are seen from both sides.
+inline bool bounds_volume(const Material& material) {
+  const auto* model = std::get_if<MetallicRoughness>(&material.model);
+  return is_clear(material) && (model == nullptr || model->thickness > 0.0F);
+}
+inline bool shows_backs(const Material& material) {
+  return material.is_double_sided || bounds_volume(material);
 }
 
 /// Whether its mirror hangs on the angle.
-inline bool hangs_on_angle(const Phong& material) {
-  return material.fresnel && (is_clear(material) || max_component(material.reflection) > 0.0F);
+inline bool hangs_on_angle(const Phong& model) {
+  return model.fresnel && (is_clear(model) || max_component(model.reflection) > 0.0F);
 }
 
 }  // namespace promin

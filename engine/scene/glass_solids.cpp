@@ -99,18 +99,20 @@ struct Contains {
   }
 };
 
-bool bounds_volume(const Material& material) {
-  if (const auto* model = std::get_if<MetallicRoughness>(&material.model)) {
-    return is_clear(*model) && model->thickness > 0.0F;
-  }
-  return is_clear(material);
-}
-
 /// That of the first triangle; a mesh is taken for one solid.
 uint32_t material_of(const world::Object& object) {
   const auto* mesh = std::get_if<Mesh>(&object.shape);
   return mesh == nullptr || mesh->triangle_materials.empty() ? object.material : mesh->triangle_materials.front();
 }
+
+/// Nothing is in what is open.
+struct IsOpen {
+  template <class Shape>
+  bool operator()(const Shape& shape) const {
+    if constexpr (requires { shape.is_open; }) return shape.is_open;
+    return false;
+  }
+};
 
 /// Largest first; unbounded ones have infinite ones.
 double volume_of(const Bounds& bounds) {
@@ -126,7 +128,7 @@ bool is_within(const Bounds& bounds, const vec3& point) {
 
 GlassSolids::GlassSolids(const world::Scene& scene) {
   for (const world::Object& object : scene.objects) {
-    if (world::primitive_count(object.shape) == 0) continue;
+    if (world::primitive_count(object.shape) == 0 || std::visit(IsOpen(), object.shape)) continue;
     const uint32_t material = material_of(object);
     if (!bounds_volume(scene.materials[material])) continue;
     solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape)});

@@ -202,8 +202,16 @@ bool shows_same(const Camera& a, const Camera& b) {
 }
 
 uint32_t default_max_depth(const Scene& scene) {
-  const bool has_glass = std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); });
-  return has_glass ? kMaxDepthOfGlass : View{}.max_depth;
+  const auto is_glass = [&](uint32_t material) {
+    return material < scene.materials.size() && is_clear(scene.materials[material]);
+  };
+  const auto shows_glass = [&](const Object& object) {
+    if (object.geometry >= scene.geometries.size()) return false;
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
+    if (mesh == nullptr || mesh->triangle_materials.empty()) return is_glass(object.material);
+    return std::ranges::any_of(mesh->triangle_materials, is_glass);
+  };
+  return std::ranges::any_of(scene.objects, shows_glass) ? kMaxDepthOfGlass : View{}.max_depth;
 }
 
 bool shows_same(const View& a, const View& b) {

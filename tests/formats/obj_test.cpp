@@ -199,6 +199,8 @@ TEST_F(ObjTest, GlassIsRead) {
   EXPECT_EQ(material("illum 7\n").phong().transmission, vec3(1.0F));
   EXPECT_EQ(material("illum 7\n").phong().ior, 1.5F) << "glass where the file does not say";
   EXPECT_EQ(material("illum 2\nTf 0.5 0.5 0.5\n").phong().transmission, vec3(0.0F));
+  const Material rough = material("illum 7\nd 0.25\nPr 0.5\n");
+  EXPECT_EQ(rough.alpha, 0.25F) << "without Phong's glass d holds";
 }
 
 TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {

@@ -139,6 +139,16 @@ TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
           .passes());
 }
 
+TEST_F(OraclePictureTest, MirrorsThatHangOnTheAngleAgreeWithTheOracle) {
+  world::Scene scene = test::make_scene_of_everything(60);
+  for (const size_t i : {0, 1, 3}) {
+    scene.materials[i].phong().reflection = vec3(0.9F);
+    scene.materials[i].phong().fresnel = true;
+    scene.materials[i].phong().ior = 1.4F;
+  }
+  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+}
+
 TEST_F(OraclePictureTest, ACameraInGlassAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_of_glass();
   View view = test::make_view(uvec2(64, 48));

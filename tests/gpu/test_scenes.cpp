@@ -174,7 +174,18 @@ world::Scene make_scene_of_glass() {
   add(world::Sphere{vec3(1.2F, 1.6F, 3.1F), 0.45F}, make_clear(1.33F, 1.0F, 1.0F, 0.05F, 2.0F));
   add(world::Cylinder{vec3(1.9F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.3F}, make_phong(1.8F, vec3(0.8F), 1.0F, true));
   add(world::Cone{vec3(-2.0F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.5F, 0.1F}, make_clear(2.4F, 0.7F, 0.1F, 0.2F, 0.3F));
-  add(make_smooth_mesh(vec3(0.1F, 0.6F, 3.9F), 0.4F), make_clear(1.5F, 1.0F, 1.0F, 0.0F, 1.0F));
+  // Of one side, which volumes do not heed.
+  Material gem = make_clear(1.5F, 1.0F, 1.0F, 0.0F, 1.0F);
+  gem.is_double_sided = false;
+  add(make_smooth_mesh(vec3(0.1F, 0.6F, 3.9F), 0.4F), gem);
+  // What blends within glass that absorbs.
+  Mesh leaf;
+  leaf.positions = {vec3(0.5F, 1.4F, 3.1F), vec3(0.75F, 1.35F, 3.2F), vec3(0.65F, 1.75F, 3.0F)};
+  leaf.triangles = {{0, 1, 2}};
+  Material blending = scene.materials[0];
+  blending.alpha_mode = AlphaMode::kBlend;
+  blending.alpha = 0.5F;
+  add(leaf, blending);
   // Thin.
   Mesh pane;
   pane.positions = {vec3(-0.4F, 2.0F, 3.4F), vec3(1.6F, 2.1F, 3.5F), vec3(1.6F, 2.9F, 3.1F), vec3(-0.4F, 2.8F, 3.0F)};

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oracle/glass.h"
 
+#include "oracle/surface.h"
+
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -16,7 +18,7 @@ struct ReadGlass {
     return {is_clear || is_fresnel_mirror, is_clear, false, Real(m.ior)};
   }
   GlassOf operator()(const MetallicRoughness& m) const {
-    const bool is_clear = m.transmission > 0 && m.metallic < 1 && m.ior != 0;
+    const bool is_clear = m.transmission > 0 && (m.metallic < 1 || m.metallic_roughness_texture.exists()) && m.ior != 0;
     return {is_clear, is_clear, m.thickness == 0, Real(m.ior)};
   }
   GlassOf operator()(const Unlit&) const { return {}; }
@@ -33,7 +35,12 @@ Real fresnel_of_angles(Real a, Real b) {
 }  // namespace
 
 GlassOf glass_of(const Material& material) {
-  return std::visit(ReadGlass(), material.model);
+  GlassOf glass = std::visit(ReadGlass(), material.model);
+  // What alpha makes transparent lets nothing through besides.
+  const bool has_alpha = material.alpha < 1 || slots_of(material)[kBaseSlot].exists();
+  if (material.alpha_mode == AlphaMode::kBlend && has_alpha) glass.is_clear = false;
+  glass.exists = glass.exists && (glass.is_clear || std::holds_alternative<Phong>(material.model));
+  return glass;
 }
 
 Real Media::index() const {
@@ -111,7 +118,8 @@ Real fresnel(const Face& face, const Refraction& at) {
   return fresnel_of_angles(a, std::asin(std::min(std::sin(a) * face.from / face.to, Real(1))));
 }
 
-Vector straight_share(const Material& material, const Face& face, Real cosine, const Vector& tint, Real transmission) {
+Vector straight_share(const Material& material, const Face& face, Real cosine, const Vector& tint, Real transmission,
+                      Real metal) {
   const Face from_thinner{std::min(face.from, face.to), std::max(face.from, face.to), face.is_thin};
   if (const auto* phong = std::get_if<Phong>(&material.model)) {
     if (!phong->fresnel) return Vector(phong->transmission);
@@ -121,11 +129,11 @@ Vector straight_share(const Material& material, const Face& face, Real cosine, c
   }
   const auto& m = std::get<MetallicRoughness>(material.model);
   const Real through = Real(m.transmission) * transmission;
-  if (face.from == face.to) return Vector(through);
   const Real slope = (face.to - face.from) / (face.to + face.from);
   const Vector f0 = glm::min(slope * slope * Vector(m.specular_color) * Real(m.specular), Vector(1));
-  const Vector reflected = f0 + (Real(m.specular) - f0) * std::pow(1 - cosine, Real(5));
-  const Real share = (1 - Real(m.metallic)) * through * (1 - largest(reflected));
+  Vector reflected = f0 + (Real(m.specular) - f0) * std::pow(1 - cosine, Real(5));
+  if (face.from == face.to) reflected = Vector(0);
+  const Real share = (1 - Real(m.metallic) * metal) * through * (1 - largest(reflected));
   return share * (face.is_thin ? tint : glm::sqrt(tint));
 }
 

@@ -56,7 +56,8 @@ Refraction refract(const Vector& direction, const Vector& normal, const Vector& 
 Real fresnel(const Face& face, const Refraction& at);
 
 /// The share of a source's light that goes straight on through a face. `tint` is the base colour there, `transmission`
-/// the factor of a texture, both of metallic-roughness materials.
-Vector straight_share(const Material& material, const Face& face, Real cosine, const Vector& tint, Real transmission);
+/// and `metal` the factors of textures, all of metallic-roughness materials.
+Vector straight_share(const Material& material, const Face& face, Real cosine, const Vector& tint, Real transmission,
+                      Real metal);
 
 }  // namespace promin::oracle

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/rounding.h"
+#include "oracle/glass.h"
 
 namespace promin::oracle {
 namespace {
@@ -53,7 +54,10 @@ class Search {
     const Material& material = material_of(scene_, hit);
     const bool is_back = glm::dot(hit.normal, ray_.direction) > 0;
     const bool is_absent = material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff;
-    return is_absent || (is_back && !material.is_double_sided);
+    // What bounds a volume of glass is seen from within.
+    const GlassOf glass = glass_of(material);
+    const bool is_one_sided = !material.is_double_sided && (!glass.is_clear || glass.is_thin);
+    return is_absent || (is_back && is_one_sided);
   }
   bool is_triangle() const { return std::holds_alternative<Mesh>(scene_.objects[static_cast<size_t>(object_)].shape); }
   void offer(Real t, const Vector& normal) { offer(t, 0, 0, 0, normal); }

@@ -308,6 +308,7 @@ class Tracer {
     media = beyond;
     Vector tint(1);
     Real transmission = 1;
+    Real metal = 1;
     if (const auto* model = std::get_if<MetallicRoughness>(&material.model)) {
       const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
       tint = Vector(model->base_color);
@@ -321,8 +322,9 @@ class Tracer {
       };
       tint = glm::min(tint * Vector(look_up(kBaseSlot)), Vector(1));
       transmission = look_up(kTransmissionSlot).r;
+      metal = look_up(kMetallicRoughnessSlot).b;
     }
-    return straight_share(material, face, std::min(std::abs(along), Real(1)), tint, transmission);
+    return straight_share(material, face, std::min(std::abs(along), Real(1)), tint, transmission, metal);
   }
 
   /// The share of the source's light that reaches a point through glass, one surface after the other.
@@ -477,7 +479,7 @@ class Tracer {
                               : trace_surface(ray, hit, point, error, way, goes_on ? 0 : way.bounces);
     if (!goes_on) return seen;
     Radiance blended;
-    blended.add(Vector(coverage.value), seen);
+    blended.add(coverage.value * way.media.left_after(hit.t * glm::length(ray.direction)), seen);
     Way on = way;
     ++on.layers;
     on.weight = behind;
@@ -636,6 +638,9 @@ Media media_around(const world::Scene& scene, const Vector& eye) {
       if (std::holds_alternative<world::Plane>(alone.objects[0].shape)) break;
     }
     const Material& material = scene.materials[scene.objects[i].material];
+    const auto* tube = std::get_if<world::Cylinder>(&scene.objects[i].shape);
+    const auto* cone = std::get_if<world::Cone>(&scene.objects[i].shape);
+    if ((tube != nullptr && tube->is_open) || (cone != nullptr && cone->is_open)) continue;
     if (inside > 0 && glass_of(material).is_clear && !glass_of(material).is_thin)
       around.push_back({size_of(scene.objects[i].shape), &material});
   }

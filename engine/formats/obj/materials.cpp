@@ -78,16 +78,16 @@ TextureSlot read_base_color(const MtlMaterial& source, ObjTextures& textures) {
   return textures.read_base_color(source.find_map("map_Kd"), source.find_map("map_d"));
 }
 
-void take_alpha(const MtlMaterial& source, Material& material) {
-  if (is_filtering(source)) return;
-  material.alpha = opacity_of(source);
-  const bool has_map = source.find_map("map_d") != nullptr;
-  if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
-}
-
 bool is_metallic_roughness(const MtlMaterial& source) {
   return source.numbers.contains("Pr") || source.numbers.contains("Pm") || source.maps.contains("map_Pr") ||
          source.maps.contains("map_Pm");
+}
+
+void take_alpha(const MtlMaterial& source, Material& material) {
+  if (is_filtering(source) && !is_metallic_roughness(source)) return;
+  material.alpha = opacity_of(source);
+  const bool has_map = source.find_map("map_d") != nullptr;
+  if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
 }
 
 MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& textures) {
@@ -109,7 +109,7 @@ MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& 
   return model;
 }
 
-Phong phong_of(const MtlMaterial& source, ObjTextures& textures) {
+Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& report) {
   const double illum = illum_of(source);
   Phong phong;
   phong.diffuse = color_of(source, "Kd", 0.8);
@@ -123,6 +123,7 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures) {
   }
   if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
   if (is_filtering(source)) {
+    warn_of_unused_maps(source, {"map_d"}, report);
     // A material that is opaque by d and yet refracts is all glass.
     const double through = opacity_of(source) < 1.0F ? 1.0 - static_cast<double>(opacity_of(source)) : 1.0;
     phong.transmission = vec3(through * glm::clamp(source.find("Tf", 1.0), dvec3(0.0), dvec3(kMaxCoordinate)));
@@ -203,7 +204,7 @@ void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& s
     make_colored(source, textures, material, report);
     return;
   } else {
-    material.model = phong_of(source, textures);
+    material.model = phong_of(source, textures, report);
   }
   material.emissive = color_of(source, "Ke", 0.0);
   material.emissive_texture = textures.read_slot(source.find_map("map_Ke"), ImageUse::kColor);
