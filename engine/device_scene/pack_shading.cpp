@@ -149,7 +149,7 @@ class MaterialPacker {
         {vec4(vec3(m.transmission), m.ior), vec4(vec3(absorption), 0.0F), vec4(reflectance, 0.0F),
          uvec4(GLASS_IS_CLEAR | flag(m.thickness == 0.0F, GLASS_IS_THIN), number_of(m.transmission_texture), 0, 0)});
   }
-  static uint add_glass(const Unlit& /*m*/) {
+  static uint add_glass(const Unlit& /*m*/, bool /*is_clear*/) {
     return 0;
   }
 

@@ -184,13 +184,17 @@ TEST_F(ExplainTest, GlassIsATreeWithParents) {
       std::vector<int> reflected(sample.rays.size());
       std::vector<int> refracted(sample.rays.size());
       EXPECT_EQ(sample.rays.front().kind, RayKind::kCamera);
-      EXPECT_LE(sample.rays.size(), 1U + layout::MOST_TREE_RAYS);
+      EXPECT_LE(sample.rays.size(), 1U + layout::MOST_TREE_RAYS + layout::MOST_LAYERS);
       for (size_t k = 1; k < sample.rays.size(); ++k) {
         const ExplainedRay& ray = sample.rays[k];
         ASSERT_LT(ray.parent, k);
         const ExplainedRay& parent = sample.rays[ray.parent];
         EXPECT_GE(parent.hit.object, 0);
         EXPECT_TRUE(glm::all(glm::lessThanEqual(ray.weight, parent.weight + 1e-6F)));
+        if (ray.kind == RayKind::kThrough) {
+          EXPECT_EQ(ray.ray.origin, parent.ray.origin);
+          continue;
+        }
         // It leaves the parent's hit.
         EXPECT_LT(glm::distance(ray.ray.origin, parent.position), 1e-3F);
         ++(ray.kind == RayKind::kReflection ? reflected : refracted)[ray.parent];

@@ -685,15 +685,15 @@ Picture render(const world::Scene& scene, const View& view) {
     light.direction = view.camera.look;
   }
   const Tracer tracer(lit);
-  Way way;
-  way.bounces = view.max_depth;
-  way.cone = camera_cone(view.camera, view.size);
-  way.error = {0, kCameraRayError};
-  if (view.camera.projection == Projection::kPerspective) way.media = media_around(lit, Vector(view.camera.eye));
+  Way of_camera;
+  of_camera.bounces = view.max_depth;
+  of_camera.cone = camera_cone(view.camera, view.size);
+  of_camera.error = {0, kCameraRayError};
+  if (view.camera.projection == Projection::kPerspective) of_camera.media = media_around(lit, Vector(view.camera.eye));
   Picture picture;
   picture.size = view.size;
   picture.pixels.resize(static_cast<size_t>(view.size.x) * view.size.y);
-  for_each_index(view.size.y, 0, [&, of_camera = way](size_t row) {
+  for_each_index(view.size.y, 0, [&](size_t row) {
     const auto y = static_cast<uint32_t>(row);
     Way way = of_camera;
     for (uint32_t x = 0; x < view.size.x; ++x) {
