@@ -99,13 +99,18 @@ TEST(ExplanationTest, TextNamesWhatIsHitAndWhatIsInTheWay) {
   ExplainedSource visible{0, Ray{}, Hit{}, vec3(0.25F)};
   ExplainedSource blocked{1, Ray{}, ray.hit, vec3(0.0F)};
   ray.sources = {visible, blocked, {2, std::nullopt, Hit{}, vec3(0.0F)}};
-  explanation.samples = {{{ray, ExplainedRay{}}}};
+  ExplainedRay mirrored;
+  mirrored.kind = RayKind::kReflection;
+  ExplainedRay refracted;
+  refracted.kind = RayKind::kRefraction;
+  explanation.samples = {{{ray, mirrored, refracted}}};
   const std::string text = app::explain_text(explanation, scene);
   for (const char* part :
        {"pixel 3 4: (0.25 0.25 0.25)\nsample 0\n  camera ray", "\n    hits object 0 \"ball\" primitive 0 at t 2,",
         "material 0 \"matt\"\n", "\n    light 0 \"key\": visible, adds (0.25 0.25 0.25)\n",
         "\n    light 1: blocked by object 0 \"ball\" primitive 0 at t 2\n",
-        "\n    light 2 \"headlight\": adds nothing from where it is\n", "\n    mirror ray from", "\n      misses: "}) {
+        "\n    light 2 \"headlight\": adds nothing from where it is\n", "\n    mirror ray from",
+        "\n      misses: ", "\n    refracted ray from"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
 }
