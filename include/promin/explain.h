@@ -36,6 +36,7 @@ enum class RayKind : uint32_t {
 
 /// A ray of the path: the camera's, that of the mirror at the hit before, or the same from behind that hit on.
 struct ExplainedRay {
+  /// What the ray comes from.
   RayKind kind = RayKind::kCamera;
   /// The number in ExplainedSample::rays of the ray whose hit it leaves; of the camera's its own.
   uint32_t parent = 0;
