@@ -79,6 +79,15 @@ FAULTS = {
         "shading.glsl": [(r"point\.coat = seen_coat\(point\.coat, direction\);",
                           "{ Coat bent = point.coat; bent.normal = point.normal; point.coat = seen_coat(bent, direction); }")]
     },
+    # Of glass (tests/gpu/oracle_picture_test.cpp).
+    "absorption_per_face": {"glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
+    "glass_seen_from_outside": {"faces.glsl": [(r"face\.from <= face\.to \? cosine : beyond", "cosine")]},
+    "media_kept": {"glass.glsl": [(r"= leave\(media, medium\);", "= media;")]},
+    "nested_faces_bend": {"glass.glsl": [(r"if \(is_last \|\|[^)]*\)\) \{", "{")]},
+    "refraction_inverted": {"faces.glsl": [(r"float ratio = face\.from / face\.to;", "float ratio = face.to / face.from;")]},
+    "shadows_untinted": {"light_way.glsl": [(r"coverage \* share_through\([^)]*\)", "coverage")]},
+    "total_reflection_dark": {"faces.glsl": [(r"\) mirror \+= record\.transmission\.xyz;", ") ;")]},
+    "through_unweighted": {"tree.glsl": [(r"= path\.weight \* point\.glass\.through;", "= path.weight;")]},
 }
 
 

@@ -13,11 +13,11 @@
 #include <numbers>
 
 #include "gpu/device_fixture.h"
+#include "gpu/faulty_shaders.h"
 #include "gpu/test_scenes.h"
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
-#include "support/read_spirv.h"
 
 namespace promin::test {
 namespace {
@@ -308,25 +308,6 @@ const BoardCase kBoards[] = {
 void PrintTo(const BoardCase& board, std::ostream* out) {
   *out << board.name;
 }
-
-/// The kernels with a fault.
-class FaultyShaders {
- public:
-  explicit FaultyShaders(const std::string& fault)
-      : camera_stage_(read(fault, "camera_stage")),
-        trace_shadow_rays_(read(fault, "trace_shadow_rays")),
-        follow_paths_(read(fault, "follow_paths")) {}
-  PictureShaders shaders() const { return {camera_stage_, trace_shadow_rays_, follow_paths_}; }
-
- private:
-  static std::vector<uint32_t> read(const std::string& fault, const std::string& kernel) {
-    return read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / fault / (kernel + ".spv"));
-  }
-
-  std::vector<uint32_t> camera_stage_;
-  std::vector<uint32_t> trace_shadow_rays_;
-  std::vector<uint32_t> follow_paths_;
-};
 
 class BoardsTest : public DeviceTest, public testing::WithParamInterface<BoardCase> {
  protected:

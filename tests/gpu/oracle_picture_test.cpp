@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "gpu/device_fixture.h"
+#include "gpu/faulty_shaders.h"
 #include "gpu/gallery.h"
 #include "gpu/test_scenes.h"
 #include "oracle/compare_picture.h"
@@ -65,11 +66,18 @@ class OraclePictureTest : public test::DeviceTest, public testing::WithParamInte
  protected:
   static oracle::PictureReport compare(const world::Scene& scene, const View& view,
                                        const oracle::PictureBounds& bounds = {}) {
+    return compare_with(oracle::render(scene, view), scene, view, bounds);
+  }
+
+  static oracle::PictureReport compare_with(const oracle::Picture& truth, const world::Scene& scene, const View& view,
+                                            const oracle::PictureBounds& bounds,
+                                            const PictureShaders& shaders = picture_shaders()) {
     TunedRendererOptions options;
     options.with_aovs = true;
+    options.shaders = shaders;
     const RenderResult result = make_renderer(device(), scene, options).render(view);
     const oracle::DeviceAovs aovs{result.aovs.depth, result.aovs.normal, result.aovs.object, result.aovs.primitive};
-    oracle::PictureReport report = compare_picture(scene, oracle::render(scene, view), result.image, aovs, bounds);
+    oracle::PictureReport report = compare_picture(scene, truth, result.image, aovs, bounds);
     std::printf("%s\n", report.summary(scene).c_str());
     return report;
   }
@@ -137,6 +145,21 @@ TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
   EXPECT_TRUE(
       compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1})
           .passes());
+}
+
+// Each of these formulas, when wrong, is a picture that fails: GlassAgreesWithTheOracle can.
+TEST_F(OraclePictureTest, EachFaultOfGlassDisagreesWithTheOracle) {
+  const world::Scene scene = test::make_scene_of_glass();
+  View view = test::make_view(uvec2(48, 36));
+  view.max_depth = kMaxDepthOfGlass;
+  const oracle::PictureBounds bounds{.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1};
+  const oracle::Picture truth = oracle::render(scene, view);
+  ASSERT_TRUE(compare_with(truth, scene, view, bounds).passes());
+  for (const char* fault : {"absorption_per_face", "glass_seen_from_outside", "media_kept", "nested_faces_bend",
+                            "refraction_inverted", "shadows_untinted", "total_reflection_dark", "through_unweighted"}) {
+    const test::FaultyShaders faulty(fault);
+    EXPECT_FALSE(compare_with(truth, scene, view, bounds, faulty.shaders()).passes()) << fault;
+  }
 }
 
 TEST_F(OraclePictureTest, MirrorsThatHangOnTheAngleAgreeWithTheOracle) {
