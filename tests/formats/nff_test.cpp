@@ -6,6 +6,7 @@
 
 #include "promin/lighting.h"
 #include "promin/validate.h"
+#include "support/bad_file.h"
 #include "support/scene_folder.h"
 
 namespace promin {
@@ -226,27 +227,13 @@ TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
 
 // Refusals
 
-struct BadNff {
-  const char* name;
-  const char* text;
-  const char* what;
-  const char* where;
-};
-
-std::ostream& operator<<(std::ostream& stream, const BadNff& bad) {
-  return stream << bad.name;
-}
-
-class BadNffTest : public SceneFolder, public testing::WithParamInterface<BadNff> {};
+class BadNffTest : public BadFileTest {};
 
 TEST_P(BadNffTest, IsRefusedWithPlaceAndCure) {
-  const std::string message = refusal("bad.nff", GetParam().text);
-  EXPECT_THAT(message, HasSubstr(GetParam().what));
-  EXPECT_THAT(message, HasSubstr("bad.nff" + std::string(GetParam().where)));
-  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+  expect_refusal("bad.nff", GetParam().text);
 }
 
-const BadNff kBadNff[] = {
+const BadFile kBadNff[] = {
     {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is no statement of NFF", ": line 2"},
     {"UpperCase", "S 0 0 0 1", "\"S\" is no statement", ": line 1"},
     {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is no statement", ": line 2"},
@@ -290,8 +277,7 @@ const BadNff kBadNff[] = {
     {"Binary", "\x01\x02\xff\n", "is no statement of NFF", ": line 1"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff),
-                         [](const auto& param_info) { return param_info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff), name_of_bad_file);
 
 /// A problem ends the parsing, so one is told, whatever comes after.
 TEST_F(NffTest, OneProblemIsTold) {

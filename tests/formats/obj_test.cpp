@@ -6,6 +6,7 @@
 
 #include "formats/source_file.h"
 #include "formats/triangulate.h"
+#include "support/bad_file.h"
 #include "support/make_png.h"
 #include "support/scene_folder.h"
 
@@ -502,56 +503,42 @@ TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
 
 // Refusals
 
-struct BadObj {
-  const char* name;
-  const char* lines;  // after the square
-  const char* what;
-  const char* where;
-};
-
-std::ostream& operator<<(std::ostream& stream, const BadObj& bad) {
-  return stream << bad.name;
-}
-
-class BadObjTest : public SceneFolder, public testing::WithParamInterface<BadObj> {};
+/// The texts follow the square.
+class BadObjTest : public BadFileTest {};
 
 TEST_P(BadObjTest, IsRefusedWithPlaceAndCure) {
   write("bad.mtl", "newmtl a\nKd nan 0 0\n");
-  const std::string message = refusal("bad.obj", kSquare + GetParam().lines + "\nf 1 2 3\n");
-  EXPECT_THAT(message, HasSubstr(GetParam().what));
-  EXPECT_THAT(message, HasSubstr("bad.obj: " + std::string(GetParam().where)));
-  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+  expect_refusal("bad.obj", kSquare + GetParam().text + "\nf 1 2 3\n");
 }
 
-const BadObj kBadObj[] = {
-    {"IndexZero", "f 0 1 2", "\"0\" is no corner", "line 5"},
-    {"IndexPastTheEnd", "f 1 2 5", "index 5 is out of range, there are 4 vertices", "line 5"},
-    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is no corner", "line 5"},
-    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is no corner", "line 5"},
-    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is no corner", "line 5"},
-    {"NormalPastTheEnd", "f 1//1 2//1 3//1", "index 1 is out of range, there are 0 normals", "line 5"},
-    {"IndexIsText", "f a b c", "\"a\" is no corner", "line 5"},
-    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is no corner", "line 5"},
-    {"NoPosition", "f /1 2 3", "is no corner", "line 5"},
-    {"TwoCorners", "f 1 2", "a face has 2 corners", "line 5"},
-    {"Continuation", "f 1 2 \\\n 3", "is no corner", "line 5"},
-    {"Nan", "v 0 nan 0", "\"nan\" is no number", "line 5"},
-    {"Infinity", "v 0 0 -inf", "\"-inf\" is no number", "line 5"},
-    {"CommaAsPoint", "v 0,5 1 2", "\"0,5\" is no number", "line 5"},
-    {"TooLarge", "v 1e16 0 0", "\"1e16\" is no number up to 1e15", "line 5"},
-    {"TooLargeForDouble", "v 1e999 0 0", "\"1e999\" is no number", "line 5"},
-    {"TwoCoordinates", "v 1 2", "a vertex has 2 numbers", "line 5"},
-    {"FiveCoordinates", "v 1 2 3 4 5", "a vertex has 5 numbers", "line 5"},
-    {"NegativeColor", "v 1 2 3 0 -1 0", "colour is negative", "line 5"},
-    {"NanNormal", "vn 0 NaN 1", "\"NaN\" is no number", "line 5"},
-    {"ShortNormal", "vn 0 1", "a normal has 2 numbers", "line 5"},
-    {"MtlLeavesTheFolder", "mtllib ../a.mtl", "leaves the scene's folder", "mtllib ../a.mtl"},
-    {"MtlAbsolute", "mtllib /etc/passwd", "absolute path", "mtllib /etc/passwd"},
-    {"MtlNumber", "mtllib bad.mtl", "\"nan\" is no factor of light", "mtllib bad.mtl line 2"},
+const BadFile kBadObj[] = {
+    {"IndexZero", "f 0 1 2", "\"0\" is no corner", ": line 5"},
+    {"IndexPastTheEnd", "f 1 2 5", "index 5 is out of range, there are 4 vertices", ": line 5"},
+    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is no corner", ": line 5"},
+    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is no corner", ": line 5"},
+    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is no corner", ": line 5"},
+    {"NormalPastTheEnd", "f 1//1 2//1 3//1", "index 1 is out of range, there are 0 normals", ": line 5"},
+    {"IndexIsText", "f a b c", "\"a\" is no corner", ": line 5"},
+    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is no corner", ": line 5"},
+    {"NoPosition", "f /1 2 3", "is no corner", ": line 5"},
+    {"TwoCorners", "f 1 2", "a face has 2 corners", ": line 5"},
+    {"Continuation", "f 1 2 \\\n 3", "is no corner", ": line 5"},
+    {"Nan", "v 0 nan 0", "\"nan\" is no number", ": line 5"},
+    {"Infinity", "v 0 0 -inf", "\"-inf\" is no number", ": line 5"},
+    {"CommaAsPoint", "v 0,5 1 2", "\"0,5\" is no number", ": line 5"},
+    {"TooLarge", "v 1e16 0 0", "\"1e16\" is no number up to 1e15", ": line 5"},
+    {"TooLargeForDouble", "v 1e999 0 0", "\"1e999\" is no number", ": line 5"},
+    {"TwoCoordinates", "v 1 2", "a vertex has 2 numbers", ": line 5"},
+    {"FiveCoordinates", "v 1 2 3 4 5", "a vertex has 5 numbers", ": line 5"},
+    {"NegativeColor", "v 1 2 3 0 -1 0", "colour is negative", ": line 5"},
+    {"NanNormal", "vn 0 NaN 1", "\"NaN\" is no number", ": line 5"},
+    {"ShortNormal", "vn 0 1", "a normal has 2 numbers", ": line 5"},
+    {"MtlLeavesTheFolder", "mtllib ../a.mtl", "leaves the scene's folder", ": mtllib ../a.mtl"},
+    {"MtlAbsolute", "mtllib /etc/passwd", "absolute path", ": mtllib /etc/passwd"},
+    {"MtlNumber", "mtllib bad.mtl", "\"nan\" is no factor of light", ": mtllib bad.mtl line 2"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj),
-                         [](const auto& bad) { return std::string(bad.param.name); });
+INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj), name_of_bad_file);
 
 TEST_F(ObjTest, BrokenFilesSayWhy) {
   EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasSubstr("not found"));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "promin/validate.h"
+#include "support/bad_file.h"
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
 
@@ -233,24 +234,10 @@ TEST_F(PlyTest, WithoutVerticesThereIsNothingToShow) {
 
 // Refusals
 
-struct BadPly {
-  const char* name;
-  std::string file;
-  const char* what;
-  const char* where;
-};
-
-std::ostream& operator<<(std::ostream& stream, const BadPly& bad) {
-  return stream << bad.name;
-}
-
-class BadPlyTest : public SceneFolder, public testing::WithParamInterface<BadPly> {};
+class BadPlyTest : public BadFileTest {};
 
 TEST_P(BadPlyTest, IsRefusedWithPlaceAndCure) {
-  const std::string message = refusal("bad.ply", GetParam().file);
-  EXPECT_THAT(message, HasSubstr(GetParam().what));
-  EXPECT_THAT(message, HasSubstr("bad.ply" + std::string(GetParam().where)));
-  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+  expect_refusal("bad.ply", GetParam().text);
 }
 
 const std::string kVertexElement = "element vertex 4\n" + kPlace;
@@ -265,7 +252,7 @@ std::string cut_binary(const std::string& count_of_faces) {
   return ply.bytes();
 }
 
-const BadPly kBadPly[] = {
+const BadFile kBadPly[] = {
     {"NoPly", "solid x\n", "first line is not \"ply\"", ""},
     {"NoEnd", "ply\nformat ascii 1.0\nelement vertex 3\n", "the header has no end", ": line 3"},
     {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "tells no format", ": line 6"},
@@ -305,8 +292,7 @@ const BadPly kBadPly[] = {
      "not finite or beyond 1e15", ": vertex 2"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly),
-                         [](const auto& bad) { return std::string(bad.param.name); });
+INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly), name_of_bad_file);
 
 TEST_F(PlyTest, TooManyCornersAreRefused) {
   std::string face = "10001";

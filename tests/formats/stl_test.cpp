@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "support/bad_file.h"
 #include "support/scene_folder.h"
 #include "support/stl_builder.h"
 
@@ -100,27 +101,13 @@ TEST_F(StlTest, WithoutFacetsThereIsNothingToShow) {
 
 // Refusals
 
-struct BadStl {
-  const char* name;
-  const char* text;
-  const char* what;
-  const char* where;
-};
-
-std::ostream& operator<<(std::ostream& stream, const BadStl& bad) {
-  return stream << bad.name;
-}
-
-class BadStlTest : public SceneFolder, public testing::WithParamInterface<BadStl> {};
+class BadStlTest : public BadFileTest {};
 
 TEST_P(BadStlTest, IsRefusedWithPlaceAndCure) {
-  const std::string message = refusal("bad.stl", GetParam().text);
-  EXPECT_THAT(message, HasSubstr(GetParam().what));
-  EXPECT_THAT(message, HasSubstr("bad.stl" + std::string(GetParam().where)));
-  EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
+  expect_refusal("bad.stl", GetParam().text);
 }
 
-const BadStl kBadStl[] = {
+const BadFile kBadStl[] = {
     {"Short", "stl", "the file is no STL", ""},
     {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is no number up to 1e15", ": line 3"},
     {"TwoNumbers", "solid\nfacet\nvertex 0 0\n", "\"\" is no number up to 1e15", ": line 3"},
@@ -135,8 +122,7 @@ const BadStl kBadStl[] = {
     {"Cut", "solid\nfacet\nvertex 0 0 0\n", "ends within a facet", ": line 3"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl),
-                         [](const auto& bad) { return std::string(bad.param.name); });
+INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl), name_of_bad_file);
 
 TEST_F(StlTest, BrokenBinaryFilesSayWhy) {
   StlBuilder stl;

@@ -13,6 +13,7 @@
 
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "gpu/ways_of_tracing.h"
 #include "promin/setup_stats.h"
 #include "promin/validate.h"
 #include "render/caster_access.h"
@@ -261,26 +262,12 @@ TEST_F(AlphaTest, EveryWayOfTracingGivesTheSameBits) {
   const world::Scene scene = make_scene_of_alpha();
   View view = make_view({96, 72});
   view.samples_per_pixel = 3;
-  TunedRendererOptions options;
-  const RenderResult expected = make_renderer(device(), scene, options).render(view);
+  const RenderResult expected = make_renderer(device(), scene).render(view);
   EXPECT_GT(expected.rays.passed, 1000U);
-  const auto expect_same = [&] {
+  for (const TunedRendererOptions& options : ways_of_tracing()) {
     const RenderResult result = make_renderer(device(), scene, options).render(view);
     EXPECT_TRUE(has_same_bits(result.image, expected.image));
     EXPECT_EQ(result.rays.passed, expected.rays.passed);
-  };
-  options.avoids_texels = true;
-  expect_same();
-  options = {};
-  for (const uint32_t packet : {1U, 2U, 4U}) {
-    options.packet_size = packet;
-    options.blocks_per_dispatch = 5 * packet;
-    expect_same();
-  }
-  options = {};
-  for (const std::string_view builder : builder_names()) {
-    options.builder = builder;
-    expect_same();
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/rounding.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "gpu/ways_of_tracing.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
 
@@ -370,14 +371,8 @@ TEST_F(TexturesTest, EveryWayOfTracingGivesTheSameBits) {
   view.camera.projection = Projection::kPerspective;
   view.camera.eye = vec3(0.5F, 0.25F, 3.0F);
   const Image image = render(scene, view);
-  TunedRendererOptions options;
-  options.avoids_texels = true;
-  EXPECT_TRUE(has_same_bits(image, render(scene, view, options)));
-  options = {};
-  for (const uint32_t packet : {1U, 2U, 4U}) {
-    options.packet_size = packet;
-    options.blocks_per_dispatch = 5 * packet;
-    EXPECT_TRUE(has_same_bits(image, render(scene, view, options))) << packet;
+  for (const TunedRendererOptions& options : ways_of_tracing()) {
+    EXPECT_TRUE(has_same_bits(image, render(scene, view, options)));
   }
 }
 

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "render/renderer_impl.h"
+
+namespace promin::test {
+
+/// Options that change how a picture is traced and none of its bits: without texel buffers, with packets and pieces of
+/// other sizes, with the trees of all builders.
+inline std::vector<TunedRendererOptions> ways_of_tracing() {
+  std::vector<TunedRendererOptions> ways(1);
+  ways.back().avoids_texels = true;
+  for (const uint32_t packet : {1U, 2U, 4U}) {
+    ways.emplace_back().packet_size = packet;
+    ways.back().blocks_per_dispatch = 5 * packet;
+  }
+  for (const std::string_view builder : builder_names()) ways.emplace_back().builder = builder;
+  return ways;
+}
+
+}  // namespace promin::test

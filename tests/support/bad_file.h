@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <ostream>
+#include <string>
+
+#include "support/scene_folder.h"
+
+namespace promin {
+
+/// A file, or a part of one, that is refused, and what the refusal must name.
+struct BadFile {
+  const char* name;
+  std::string text;
+  const char* what;
+  /// What follows the file's name.
+  const char* where;
+};
+
+inline std::ostream& operator<<(std::ostream& stream, const BadFile& bad) {
+  return stream << bad.name;
+}
+
+/// A test for each bad file of a table.
+class BadFileTest : public SceneFolder, public testing::WithParamInterface<BadFile> {
+ protected:
+  /// Loads a file of the test's folder.
+  void expect_refusal(const std::string& file, const std::string& text) const {
+    const std::string message = refusal(file, text);
+    EXPECT_THAT(message, testing::HasSubstr(GetParam().what));
+    EXPECT_THAT(message, testing::HasSubstr(file + GetParam().where));
+    EXPECT_THAT(message, testing::HasSubstr("; ")) << "no cure";
+  }
+};
+
+inline std::string name_of_bad_file(const testing::TestParamInfo<BadFile>& bad) {
+  return bad.param.name;
+}
+
+}  // namespace promin
