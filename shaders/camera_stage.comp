@@ -118,7 +118,7 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   begin_path_log(ray, hit, 0u, path.weight, path.kind);
   if (SHADES_POINTS != 0u && is_hit) {
     widen_cone(path, ray, hit);
-    make_shading_point(ray, path.direction, hit, path.cone_width, path.media, point);
+    make_shading_point(ray, path.direction, hit, path.cone_width, path.media, color_of(path.weight), point);
   }
   if (has(FEATURE_AOVS)) put_albedo(path.pixel, hit, point);
   if (DEBUG_VIEW != DEBUG_VIEW_NONE) return debug_color(ray, hit, uintBitsToFloat(normal_and_depth(ray, hit)));
@@ -252,46 +252,75 @@ uint put_path(Path path) {
 
 // Puts the path that leads on from a surface of glass, and lets another of its rays wait.
 void leave_glass(Path path, ShadingPoint point) {
-  Path through;
-  bool is_mirrored;
-  bool is_refracted;
-  part_path(path, point, false, through, is_mirrored, is_refracted);
+  Children children;
+  part_path(path, point, false, children);
   log_sum(1u, path.radiance);
-  ray_count.z += is_mirrored ? 1u : 0u;
-  refraction_count += is_refracted ? 1u : 0u;
-  if (!is_mirrored && !is_refracted) {
+  ray_count.z += children.is_mirrored ? 1u : 0u;
+  uint refracted = count_refracted(children);
+  refraction_count += refracted;
+  if (!children.is_mirrored && refracted == 0u) {
     finish_path(path);
     return;
   }
-  bool is_one_waiting = is_mirrored && is_refracted;
   uint number = put_path(path);
-  store_glass(number, path, is_one_waiting ? 1u : 0u, false);
-  if (is_one_waiting) store_waiting(number, 0u, through);
+  store_glass(number, path, store_children(number, 0u, children, point, false), false);
+}
+
+// Adds what is seen of a pixel to its path, and sends that on.
+void leave_pixel(Path path, ShadingPoint point, vec3 light, bool is_on_surface) {
+  float coverage = is_on_surface ? coverage_of(path, point) : 1.0;
+  add_radiance(path, light, coverage);
+  if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
+  if (has(FEATURE_BLENDING) && coverage < 1.0) {
+    uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
+    path.cone_width = CAMERA.look.w;
+    go_through(path, camera_ray(pixel, sample_at_hand()), path.passed_t, path.passed_order, coverage);
+    uint number = put_path(path);
+    if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
+    ++pass_count;
+  } else if (has(FEATURE_GLASS) && is_on_surface) {
+    leave_glass(path, point);
+  } else if (is_on_surface && leads_on(point, 0u) && bounce(path, point)) {
+    uint number = put_path(path);
+    if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
+    ++ray_count.z;
+  } else {
+    finish_path(path);
+  }
+}
+
+// One pixel after the other where glass may part their paths, which is long, as in arrive.
+void leave_one_by_one() {
+  uint at = 0u;
+  do {
+    Path path = paths[0];
+    ShadingPoint point = points[0];
+    vec3 light = seen[0];
+    bool is_on_surface = is_lit[0];
+    bool takes_part = is_inside[0];
+    [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
+      if (i != at) continue;
+      path = paths[i];
+      point = points[i];
+      light = seen[i];
+      is_on_surface = is_lit[i];
+      takes_part = is_inside[i];
+    }
+    if (takes_part) leave_pixel(path, point, light, is_on_surface);
+    ++at;
+  } while (at < PACKET_SIZE);
 }
 
 void leave() {
+  if (has(FEATURE_GLASS)) {
+    leave_one_by_one();
+    return;
+  }
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     if (!is_inside[i]) continue;
     Path path = paths[i];
-    float coverage = is_lit[i] ? coverage_of(path, points[i]) : 1.0;
-    add_radiance(path, seen[i], coverage);
-    if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
-    if (has(FEATURE_BLENDING) && coverage < 1.0) {
-      uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
-      path.cone_width = CAMERA.look.w;
-      go_through(path, camera_ray(pixel, sample_at_hand()), path.passed_t, path.passed_order, coverage);
-      uint number = put_path(path);
-      if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
-      ++pass_count;
-    } else if (has(FEATURE_GLASS) && is_lit[i]) {
-      leave_glass(path, points[i]);
-    } else if (is_lit[i] && leads_on(points[i], 0u) && bounce(path, points[i])) {
-      uint number = put_path(path);
-      if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
-      ++ray_count.z;
-    } else {
-      finish_path(path);
-    }
+    ShadingPoint point = points[i];
+    leave_pixel(path, point, seen[i], is_lit[i]);
   }
 }
 

@@ -20,6 +20,18 @@ bool refract_about(vec3 normal, vec3 direction, Face face, out vec3 refracted) {
   return k > 0.0;
 }
 
+// Sends the ray on about the point's normal, or what an interpolated one would keep on this side about the surface's own.
+// Whether it can go on.
+bool refract_at(ShadingPoint point, vec3 direction, Face face, out vec3 refracted) {
+  // An interpolated normal may be turned away from the eye.
+  vec3 normal = dot3(point.normal, direction) < 0.0 ? point.normal : point.geometric_normal;
+  bool goes_on = refract_about(normal, direction, face, refracted);
+  if (goes_on && dot3(refracted, point.geometric_normal) >= 0.0) {
+    goes_on = refract_about(point.geometric_normal, direction, face, refracted);
+  }
+  return goes_on;
+}
+
 // Where the ray goes on, and what Phong's material reflects and lets through. `hangs_on_angle`: by Fresnel; `reflected` is
 // the share then.
 void meet_phong(inout ShadingPoint point, GlassRecord record, bool lets_through, bool is_total, float reflected) {
@@ -55,7 +67,7 @@ void meet_metallic_roughness(inout ShadingPoint point, GlassRecord record, bool 
 }
 
 // Returns the cosine at which a lobe is seen: that on the face's thinner side.
-float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, bool leaves) {
+float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint color, bool leaves) {
   float seen = -dot3(point.normal, direction);
   Glass glass = point.glass;
   // By now with what a texture shows.
@@ -67,8 +79,7 @@ float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, bool leav
   bool lets_through = has(FEATURE_GLASS) && (record.bits.x & GLASS_IS_CLEAR) != 0u;
   bool is_thin = (record.bits.x & GLASS_IS_THIN) != 0u;
   Face face;
-  make_face(number, is_thin || !lets_through, lets_through && leaves, media, face);
-  // An interpolated normal may be turned away from the eye.
+  make_face(number, is_thin || !lets_through, lets_through && leaves, media, color, face);
   vec3 normal = seen > 0.0 ? point.normal : point.geometric_normal;
   float cosine = clamp(-dot3(normal, direction), SMALLEST_NORMAL, 1.0);
   float k = cosine2_beyond(face, cosine);
@@ -77,12 +88,7 @@ float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, bool leav
   bool is_bent = lets_through && !is_thin && face.from != face.to;
   if (is_bent) {
     vec3 refracted;
-    bool goes_on = refract_about(normal, direction, face, refracted);
-    // What an interpolated normal would keep on this side is bent by the surface itself.
-    if (goes_on && dot3(refracted, point.geometric_normal) >= 0.0) {
-      goes_on = refract_about(point.geometric_normal, direction, face, refracted);
-    }
-    is_total = !goes_on;
+    is_total = !refract_at(point, direction, face, refracted);
     precise float bend = face.from / face.to;
     glass.bend = bend;
     glass.direction = refracted;

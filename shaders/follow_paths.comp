@@ -160,20 +160,15 @@ uint ask_waiting(uint number, Path path, bool has_seen) {
 
 // Asks for the rays that a point on glass sends the path on.
 uint ask_beyond(uint number, inout Path path, ShadingPoint point, bool touches) {
-  Path through;
-  bool is_mirrored;
-  bool is_refracted;
-  part_path(path, point, touches, through, is_mirrored, is_refracted);
+  Children children;
+  part_path(path, point, touches, children);
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
-  mirror_ray_count += is_mirrored ? 1u : 0u;
-  refraction_count += is_refracted ? 1u : 0u;
-  if (!is_mirrored && !is_refracted) return ask_waiting(number, path, true);
+  mirror_ray_count += children.is_mirrored ? 1u : 0u;
+  uint refracted = count_refracted(children);
+  refraction_count += refracted;
+  if (!children.is_mirrored && refracted == 0u) return ask_waiting(number, path, true);
   uint waiting = path_glass.w & ((1u << KIND_SHIFT) - 1u);
-  if (is_mirrored && is_refracted) {
-    store_waiting(number, waiting, through);
-    ++waiting;
-  }
-  store_glass(number, path, waiting, true);
+  store_glass(number, path, store_children(number, waiting, children, point, touches), true);
   return ask_ray(number, path);
 }
 
@@ -223,7 +218,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   path.direction = normalize3(ray.direction);
   widen_cone(path, ray, hit);
   ShadingPoint point;
-  make_shading_point(ray, path.direction, hit, path.cone_width, path.media, point);
+  make_shading_point(ray, path.direction, hit, path.cone_width, path.media, color_of(path.weight), point);
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
   log_own_light(own);

@@ -32,7 +32,26 @@ uvec2 leave(uvec2 media, uint medium) {
   return media;
 }
 
-float index_of(uint medium) { return medium == NO_MEDIUM ? 1.0 : load_glass(medium).transmission.w; }
+// The colours of light that dispersion parts. What is not parted is bent as green is.
+const uint RED = 0u;
+const uint GREEN = 1u;
+const uint BLUE = 2u;
+
+uint count_colors(vec3 weight) { return uint(weight.x > 0.0) + uint(weight.y > 0.0) + uint(weight.z > 0.0); }
+
+// As which color light of this weight is bent: its own, where it has but one.
+uint color_of(vec3 weight) {
+  if (!has(FEATURE_DISPERSION) || count_colors(weight) != 1u) return GREEN;
+  return weight.x > 0.0 ? RED : (weight.y > 0.0 ? GREEN : BLUE);
+}
+
+float index_of(uint medium, uint color) {
+  if (medium == NO_MEDIUM) return 1.0;
+  GlassRecord record = load_glass(medium);
+  if (!has(FEATURE_DISPERSION) || color == GREEN) return record.transmission.w;
+  precise float index = record.transmission.w + (color == RED ? -record.reflectance.w : record.reflectance.w);
+  return index;
+}
 
 // The share of light that is left after this way through a medium (Beer and Lambert).
 vec3 left_after(uint medium, float way) {
@@ -54,9 +73,9 @@ struct Face {
 // Solids that overlap count as the one that was entered last; the faces of the others within bend nothing (Schmidt and
 // Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2)). What is left without having been entered has held
 // the camera, or belongs to a mesh that is not closed.
-void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, out Face face) {
-  float outside = index_of(last_entered(media));
-  float inside = index_of(medium);
+void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, uint color, out Face face) {
+  float outside = index_of(last_entered(media), color);
+  float inside = index_of(medium, color);
   face.from = outside;
   face.to = outside;
   face.beyond = media;
@@ -70,7 +89,7 @@ void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, out Face fac
     bool is_last = last_entered(media) == medium;
     if (is_last || !is_within(media, medium)) {
       face.from = inside;
-      face.to = is_last ? index_of(last_entered(face.beyond)) : outside;
+      face.to = is_last ? index_of(last_entered(face.beyond), color) : outside;
     }
   }
 }

@@ -167,7 +167,8 @@ LAYOUT_CONSTANT EXTENSION_TEXELS = 5u;
 struct GlassRecord {
   vec4 transmission;  // xyz = share of light that goes through; w = index of refraction
   vec4 absorption;    // xyz = of light that is left after a length x the share is 2^(-absorption x)
-  vec4 reflectance;   // xyz = of metallic-roughness materials: factor of the reflectance at normal incidence
+  vec4 reflectance;   // xyz = of metallic-roughness materials: factor of the reflectance at normal incidence; w = index
+                      // of refraction of blue less that of green, and of green less that of red
   uvec4 bits;         // x = GLASS_*; y = number of the texture slot of what goes through
 };
 LAYOUT_CONSTANT GLASS_TEXELS = 4u;
@@ -178,6 +179,7 @@ LAYOUT_CONSTANT GLASS_IS_FRESNEL = 4u;  // of Phong's: reflection hangs on the a
 // others the environment is seen (Dispatch::outcome).
 LAYOUT_CONSTANT MOST_TREE_RAYS = 64u;
 LAYOUT_FLOAT LEAST_TREE_WEIGHT = 0.001953125f;
+LAYOUT_CONSTANT COLORS = 3u;  // that dispersion parts
 
 // A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
 struct TextureSlotRecord {

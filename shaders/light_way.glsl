@@ -48,7 +48,7 @@ vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord mater
   float along = dot3(normal, normalize3(ray.direction));
   float cosine = min(abs(along), 1.0);
   Face face;
-  make_face(glass_number(material), is_thin, along > 0.0, media, face);
+  make_face(glass_number(material), is_thin, along > 0.0, media, GREEN, face);
   media = face.beyond;
   Face outside = Face(min(face.from, face.to), max(face.from, face.to), face.beyond);
   if (has(FEATURE_PHONG) && (flags_of(material) & MATERIAL_MODEL_MASK) == MATERIAL_PHONG) {

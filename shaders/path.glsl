@@ -73,11 +73,8 @@ bool leads_on(ShadingPoint point, uint bounce) {
   return has(FEATURE_MIRRORS) && bounce < most_bounces() && max_abs(mirror_weight(point)) > 0.0;
 }
 
-// Turns the path into its mirror ray. False where the mirror ray would add nothing.
-bool bounce(inout Path path, ShadingPoint point) {
-  precise vec3 weight = path.weight * mirror_weight(point);
-  path.weight = weight;
-  if (!(max_abs(weight) > 0.0)) return false;
+// Turns the path into its mirror ray, but for its weight.
+void turn_back(inout Path path, ShadingPoint point) {
   path.origin = lift_off(point.position, point.geometric_normal, point.lift);
   if (has(FEATURE_TEXTURES)) {
     // What is curved spreads the cone, beyond a focus too.
@@ -92,6 +89,14 @@ bool bounce(inout Path path, ShadingPoint point) {
   path.kind = LOG_REFLECTION;
   path.skip = 0.0;
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
+}
+
+// Turns the path into its mirror ray. False where the mirror ray would add nothing.
+bool bounce(inout Path path, ShadingPoint point) {
+  precise vec3 weight = path.weight * mirror_weight(point);
+  path.weight = weight;
+  if (!(max_abs(weight) > 0.0)) return false;
+  turn_back(path, point);
   return true;
 }
 

@@ -285,10 +285,10 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
 #include "faces.glsl"
 
 // `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit; `media` are those that the
-// ray is in. The point is not returned
-// but written to: of a call that is assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the
+// ray is in, and it is bent as this color of light. The point is not returned but written to: of a call that is assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the
 // eighth of every argument, and crash where one of these is built from fewer (propagateNoContraction.cpp).
-void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, out ShadingPoint point) {
+void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, uint color,
+                        out ShadingPoint point) {
   Primitive p = load_primitive(hit.primitive);
   SurfaceRecord record = load_surface(hit.primitive);
   SurfacePoint surface = surface_point(ray, p, hit);
@@ -323,7 +323,7 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }
   float cosine = -dot3(point.normal, direction);
-  if (HAS_FACES) cosine = meet_face(point, direction, media, is_flipped);
+  if (HAS_FACES) cosine = meet_face(point, direction, media, color, is_flipped);
   if (has(FEATURE_METALLIC_ROUGHNESS)) point.lobe_shares = load_lobe_shares(cosine, point.material.c.x);
   if (has(FEATURE_COATS)) point.coat = seen_coat(point.coat, direction);
   if (has(FEATURE_SHEENS)) point.sheen = seen_sheen(point.sheen, -dot3(point.normal, direction));

@@ -51,25 +51,93 @@ void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   path.passed_order = 0u;
 }
 
-// Parts a path at a surface: it becomes its mirror ray, or where there is none the ray beyond; where there are both
-// `through` is that one.
-void part_path(inout Path path, ShadingPoint point, bool touches, out Path through, out bool is_mirrored,
-               out bool is_refracted) {
-  through = path;
-  go_beyond(through, point, touches);
-  Path mirrored = path;
-  // Where no bounce is left, own_light has had the environment in the mirror.
-  is_mirrored = leads_on(point, path.bounces) && bounce(mirrored, point) && is_followed(path, point, mirrored);
-  is_refracted = max_abs(through.weight) > 0.0 && is_followed(path, point, through);
-  through.rays = path.rays;
-  mirrored.rays = path.rays;
-  mirrored.radiance = path.radiance;
-  through.radiance = path.radiance;
-  if (is_mirrored) {
-    path = mirrored;
-  } else if (is_refracted) {
-    path = through;
+// The face at hand, as it bends light of this color.
+void make_colored_face(Path path, ShadingPoint point, uint color, out Face face) {
+  make_face(glass_number(point.material), false, (point.glass.object & SKIPS_EXIT) != 0u, path.media, color, face);
+}
+
+// The colours of what goes through the face, as bits, where it bends them apart; else 0.
+uint parted_colors(Path path, ShadingPoint point) {
+  if (!has(FEATURE_DISPERSION)) return 0u;
+  if (count_colors(path.weight) < 2u || point.glass.bend == 1.0) return 0u;
+  Face red;
+  Face blue;
+  make_colored_face(path, point, RED, red);
+  make_colored_face(path, point, BLUE, blue);
+  precise vec3 weight = path.weight * point.glass.through;
+  bool is_parted = red.from != blue.from || red.to != blue.to;
+  return is_parted ? uint(weight.x > 0.0) | uint(weight.y > 0.0) << 1 | uint(weight.z > 0.0) << 2 : 0u;
+}
+
+// Turns the path into the ray of one color that goes through the point's surface, or that is reflected totally where
+// others are not.
+void send_color(inout Path path, ShadingPoint point, bool touches, uint color) {
+  precise vec3 kept = point.glass.through * vec3(color == RED, color == GREEN, color == BLUE);
+  Face face;
+  make_colored_face(path, point, color, face);
+  vec3 refracted;
+  if (refract_at(point, path.direction, face, refracted)) {
+    Glass glass = point.glass;
+    precise float bend = face.from / face.to;
+    glass.through = kept;
+    glass.bend = bend;
+    glass.direction = refracted;
+    point.glass = glass;
+    go_beyond(path, point, touches);
+  } else {
+    precise vec3 weight = path.weight * kept;
+    path.weight = weight;
+    turn_back(path, point);
+    path.kind = LOG_REFRACTION;
   }
+}
+
+// The children of a path: its mirror ray, the ray beyond the surface, or in place of that one of each color; of all those
+// that are followed.
+struct Children {
+  bool is_mirrored;
+  bool is_refracted;
+  uint colors;   // bits by their numbers
+  Path through;  // the refracted ray, or the path that its colors come from
+};
+
+uint count_refracted(Children children) { return children.is_refracted ? 1u : uint(bitCount(children.colors)); }
+
+// Parts a path at a surface: it becomes the first of its children, or itself where it has none.
+void part_path(inout Path path, ShadingPoint point, bool touches, out Children children) {
+  Path parent = path;
+  Path next = path;
+  bool is_mirrored = leads_on(point, path.bounces) && bounce(next, point) && is_followed(path, point, next);
+  bool has_next = is_mirrored;
+  bool is_refracted = false;
+  uint colors = 0u;
+  Path through = parent;
+  uint parted = parted_colors(parent, point);
+  if (parted != 0u) {
+    for (uint left = parted; left != 0u; left &= left - 1u) {
+      uint color = uint(findLSB(left));
+      Path child = parent;
+      send_color(child, point, touches, color);
+      if (!is_followed(path, point, child)) continue;
+      colors |= 1u << color;
+      if (!has_next) next = child;
+      has_next = true;
+    }
+  } else {
+    go_beyond(through, point, touches);
+    is_refracted = max_abs(through.weight) > 0.0 && is_followed(path, point, through);
+    if (is_refracted && !has_next) next = through;
+    has_next = has_next || is_refracted;
+  }
+  through.rays = path.rays;
+  through.radiance = path.radiance;
+  next.rays = path.rays;
+  next.radiance = path.radiance;
+  if (has_next) path = next;
+  children.is_mirrored = is_mirrored;
+  children.is_refracted = is_refracted;
+  children.colors = colors;
+  children.through = through;
 }
 
 // Keeps what tells the path from others. `has_seen`: the point that it has reached is still to be added.
@@ -86,4 +154,25 @@ void store_waiting(uint number, uint place, Path path) {
   pixels[record + 1u] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.cone_spread));
   pixels[record + 2u] = uvec4(floatBitsToUint(path.weight), floatBitsToUint(path.roughness));
   pixels[record + 3u] = uvec4(path.media, path.bounces | path.skipped << WAITING_OBJECT_SHIFT, floatBitsToUint(path.skip));
+}
+
+// Keeps the children that wait for the first, the last to be followed first; `waiting` are there already. Returns how many
+// wait then.
+uint store_children(uint number, uint waiting, Children children, ShadingPoint point, bool touches) {
+  if (children.is_mirrored && children.is_refracted) {
+    store_waiting(number, waiting, children.through);
+    ++waiting;
+  }
+  if (!has(FEATURE_DISPERSION)) return waiting;
+  // The first color is the path itself where there is no mirror ray.
+  uint colors = children.is_mirrored ? children.colors : children.colors & (children.colors - 1u);
+  for (uint left = colors; left != 0u;) {
+    uint color = uint(findMSB(left));
+    left &= ~(1u << color);
+    Path child = children.through;
+    send_color(child, point, touches, color);
+    store_waiting(number, waiting, child);
+    ++waiting;
+  }
+  return waiting;
 }

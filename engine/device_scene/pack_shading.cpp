@@ -146,7 +146,7 @@ class MaterialPacker {
     }
     const vec3 reflectance = vec3(dvec3(m.specular_color) * static_cast<double>(m.specular));
     return number_of_glass(
-        {vec4(vec3(m.transmission), m.ior), vec4(vec3(absorption), 0.0F), vec4(reflectance, 0.0F),
+        {vec4(vec3(m.transmission), m.ior), vec4(vec3(absorption), 0.0F), vec4(reflectance, index_spread(m)),
          uvec4(GLASS_IS_CLEAR | flag(m.thickness == 0.0F, GLASS_IS_THIN), number_of(m.transmission_texture), 0, 0)});
   }
   static uint add_glass(const Unlit& /*m*/, bool /*is_clear*/) {

@@ -142,7 +142,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
                   const ProgressCallback& on_progress) {
     TileOptions cut = film->piece_options(view.max_depth);
     cut.blocks_per_piece = options.blocks_per_dispatch;
-    if (cut.has_glass) cut.least_blocks = TileOptions::kLeastBlocksOfTrees;
+    if (cut.refracted_rays > 0) cut.least_blocks = TileOptions::kLeastBlocksOfTrees;
     const auto collect = [&] {
       const FilmCounts taken = film->take_counts();
       refuse_cut_loops(taken.has_cut_loops);

@@ -149,6 +149,7 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
     if (blends(materials[i])) features |= FEATURE_BLENDING;
     // Glass mirrors where it reflects totally.
     if (is_clear(materials[i])) features |= FEATURE_GLASS | FEATURE_MIRRORS;
+    if (parts_colors(materials[i])) features |= FEATURE_DISPERSION;
     if (!shows_backs(materials[i])) features |= FEATURE_ONE_SIDED;
   }
   return features;

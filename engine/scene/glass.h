@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <variant>
 
 #include "core/rounding.h"
@@ -38,6 +39,18 @@ inline bool bounds_volume(const Material& material) {
 }
 inline bool shows_backs(const Material& material) {
   return material.is_double_sided || bounds_volume(material);
+}
+
+/// By how much the index of refraction of blue is above that of green, and that of red below, in a metallic-roughness
+/// material (KHR_materials_dispersion); 0 where it has no inside.
+inline float index_spread(const MetallicRoughness& model) {
+  if (model.thickness == 0.0F) return 0.0F;
+  const double above_one = static_cast<double>(model.ior) - 1.0;
+  return static_cast<float>(above_one * std::min(1.0, 0.025 * static_cast<double>(model.dispersion)));
+}
+inline bool parts_colors(const Material& material) {
+  const auto* model = std::get_if<MetallicRoughness>(&material.model);
+  return model != nullptr && is_clear(material) && index_spread(*model) > 0.0F;
 }
 
 /// Whether its mirror hangs on the angle.

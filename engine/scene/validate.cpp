@@ -93,6 +93,8 @@ class Validation {
     for (int i = 0; i < 3; ++i) check_share(material.attenuation_color[i], place + ".attenuation_color");
     check(material.attenuation_distance > 0.0F, "the distance is not positive", place + ".attenuation_distance",
           "use a positive number, or an infinite one where nothing is absorbed");
+    check(material.dispersion >= 0.0F && std::isfinite(material.dispersion), "the dispersion is negative or not finite",
+          place + ".dispersion", "use 0 or a positive number");
     check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
           "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
   }

@@ -22,7 +22,7 @@ constexpr uint64_t kMostLogBytes = 64U << 20;
 /// Entries of the log of one sample of the view at most, whatever the sample meets.
 uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View& view) {
   const uint32_t layers = features.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
-  const uint64_t steps = most_steps(view.max_depth, features.has_any(layout::FEATURE_GLASS), layers);
+  const uint64_t steps = most_steps(view.max_depth, refracted_rays(features), layers);
   const uint64_t entries = (1 + steps) * (uint64_t{1} + scene.constants().light_count);
   if (entries > kMostLogBytes / sizeof(layout::RayLog)) {
     throw RunError({"a pixel may take " + std::to_string(entries) + " rays and sources, too many to explain",

@@ -133,7 +133,7 @@ TileOptions Film::piece_options(uint32_t depth) const {
           .most_group_rows = profile.most_group_rows,
           .most_blocks = has_stream() ? most_paths / kLanes : TileOptions::kMaxBlocks,
           .most_layers = most_layers(),
-          .has_glass = features_.has_any(layout::FEATURE_GLASS)};
+          .refracted_rays = refracted_rays(features_)};
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {

@@ -12,6 +12,7 @@
 #include "device/device.h"
 #include "list_rays.spv.h"
 #include "place_rays.spv.h"
+#include "trace/tile_scheduler.h"
 #include "trace/tracing_kernel.h"
 
 namespace promin {
@@ -52,7 +53,8 @@ void wait_for_last(const vk::raii::CommandBuffer& commands) {
 StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth) {
   StreamShape shape;
   shape.has_glass = features.has_any(layout::FEATURE_GLASS);
-  if (shape.has_glass) shape.waiting_rays = std::min(depth, layout::MOST_TREE_RAYS);
+  // At each bounce the mirror ray is followed first.
+  shape.waiting_rays = std::min(refracted_rays(features) * depth, layout::MOST_TREE_RAYS);
   shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
   shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(light_count, shape.sources);
   const auto fitting = static_cast<uint32_t>(kMostBytes / shape.path_bytes());

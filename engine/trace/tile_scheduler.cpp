@@ -12,10 +12,20 @@
 
 namespace promin {
 
-uint32_t most_steps(uint32_t depth, bool has_glass, uint32_t most_layers) {
-  if (!has_glass) return depth + most_layers;
-  // At each bounce twice as many as before.
-  const uint32_t in_tree = depth < 6 ? (2U << depth) - 2 : layout::MOST_TREE_RAYS;
+uint32_t refracted_rays(FeatureMask features) {
+  if (features.has_any(layout::FEATURE_DISPERSION)) return layout::COLORS;
+  return features.has_any(layout::FEATURE_GLASS) ? 1 : 0;
+}
+
+uint32_t most_steps(uint32_t depth, uint32_t refracted_rays, uint32_t most_layers) {
+  if (refracted_rays == 0) return depth + most_layers;
+  // Below a surface that all light reaches, and below one that a single color does: that is parted no more.
+  uint32_t in_tree = 0;
+  uint32_t of_color = 0;
+  for (uint32_t bounce = 0; bounce < depth && in_tree < layout::MOST_TREE_RAYS; ++bounce) {
+    in_tree = 1 + refracted_rays + in_tree + refracted_rays * of_color;
+    of_color = 2 + 2 * of_color;
+  }
   // Kernels that know glass may trace scenes without it, whose paths are as deep as they are asked for.
   return std::max(std::min(in_tree, layout::MOST_TREE_RAYS), depth) + most_layers;
 }
@@ -49,7 +59,7 @@ TileSample TileScheduler::next(double units) {
                                        .sample = sample_,
                                        .lattice_generator = lattice_generator_});
   piece.group_count = arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows);
-  piece.steps = most_steps(view_.max_depth, options_.has_glass, options_.most_layers);
+  piece.steps = most_steps(view_.max_depth, options_.refracted_rays, options_.most_layers);
   piece.depth = view_.max_depth;
   piece.units = block_count_;
   const double most_hits = 1.0 + piece.steps;

@@ -7,6 +7,7 @@
 #include "device_scene/scene_constants.h"
 #include "layout.h"
 #include "promin/view.h"
+#include "scene/features.h"
 
 namespace promin {
 
@@ -41,14 +42,18 @@ struct TileOptions {
   uint32_t most_blocks = kMaxBlocks;
   /// How many surfaces a ray goes through at most.
   uint32_t most_layers = 0;
-  /// Whether glass parts paths (shaders/tree.glsl).
-  bool has_glass = false;
+  /// How many rays a surface may send through itself (refracted_rays).
+  uint32_t refracted_rays = 0;
   /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
 
+/// How many rays a surface may send through itself, beside its mirror ray: of glass one, or one of each color
+/// (shaders/tree.glsl).
+uint32_t refracted_rays(FeatureMask features);
+
 /// The most rays of a sample that follow the camera's: mirrors', refracted ones, and those from behind surfaces.
-uint32_t most_steps(uint32_t depth, bool has_glass, uint32_t most_layers);
+uint32_t most_steps(uint32_t depth, uint32_t refracted_rays, uint32_t most_layers);
 
 /// Cuts a picture into pieces: it takes a range of blocks at a time, and of that range a sample at a time. Every cut
 /// gives the same bits. Vulkan-free.

@@ -73,6 +73,9 @@ struct MetallicRoughness {
   vec3 attenuation_color{1.0F};
   /// In units of the world, positive; infinite: nothing is absorbed.
   float attenuation_distance = std::numeric_limits<float>::infinity();
+  /// 20 over the Abbe number of a volume's glass, not negative: the indices of refraction of red and blue are off by
+  /// 0.025 (ior - 1) dispersion (KHR_materials_dispersion), but none is below 1.
+  float dispersion = 0.0F;
   /// Factors of the base colour.
   TextureSlot base_color_texture = {};
   /// Factors of roughness (green) and metallic (blue).

@@ -81,6 +81,7 @@ FAULTS = {
     },
     # Of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
+    "colors_swapped": {"glass.glsl": [(r"color == RED \? -", "color == BLUE ? -")]},
     "glass_seen_from_outside": {"faces.glsl": [(r"face\.from <= face\.to \? cosine : beyond", "cosine")]},
     "media_kept": {"glass.glsl": [(r"= leave\(media, medium\);", "= media;")]},
     "nested_faces_bend": {"glass.glsl": [(r"if \(is_last \|\|[^)]*\)\) \{", "{")]},

@@ -163,6 +163,11 @@ const BadGltf kBadGltf[] = {
        material_extension(g, "KHR_materials_volume") = {{"attenuationDistance", -1}};
      },
      "-1 is out of range", "materials[0].extensions.KHR_materials_volume.attenuationDistance"},
+    {"Dispersion",
+     [](auto& g) {
+       material_extension(g, "KHR_materials_dispersion") = {{"dispersion", -1}};
+     },
+     "-1 is out of range", "materials[0].extensions.KHR_materials_dispersion.dispersion"},
     {"AttenuationColor",
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationColor", {1, -1, 1}}};

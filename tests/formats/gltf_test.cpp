@@ -491,18 +491,20 @@ TEST_F(GltfTest, WhatMaterialsLoseIsSaid) {
 }
 
 TEST_F(GltfTest, GlassIsRead) {
-  const LoadedScene scene = load(material_gltf(
-      {{"extensions",
-        {{"KHR_materials_transmission", {{"transmissionFactor", 0.75}}},
-         {"KHR_materials_ior", {{"ior", 1.25}}},
-         {"KHR_materials_volume",
-          {{"thicknessFactor", 2}, {"attenuationColor", {0.5, 0.25, 1}}, {"attenuationDistance", 4}}}}}}));
+  const LoadedScene scene = load(
+      material_gltf({{"extensions",
+                      {{"KHR_materials_transmission", {{"transmissionFactor", 0.75}}},
+                       {"KHR_materials_ior", {{"ior", 1.25}}},
+                       {"KHR_materials_volume",
+                        {{"thicknessFactor", 2}, {"attenuationColor", {0.5, 0.25, 1}}, {"attenuationDistance", 4}}},
+                       {"KHR_materials_dispersion", {{"dispersion", 0.5}}}}}}));
   const auto model = model_of<MetallicRoughness>(scene);
   EXPECT_EQ(model.transmission, 0.75F);
   EXPECT_EQ(model.ior, 1.25F);
   EXPECT_EQ(model.thickness, 2.0F);
   EXPECT_EQ(model.attenuation_color, vec3(0.5F, 0.25F, 1.0F));
   EXPECT_EQ(model.attenuation_distance, 4.0F);
+  EXPECT_EQ(model.dispersion, 0.5F);
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_FALSE(is_clear(model)) << "the metal of the default lets nothing through";
   const auto bare = model_of<MetallicRoughness>(load(material_gltf(
@@ -510,6 +512,7 @@ TEST_F(GltfTest, GlassIsRead) {
   EXPECT_EQ(bare.transmission, 0.0F);
   EXPECT_EQ(bare.thickness, 0.0F);
   EXPECT_EQ(bare.attenuation_color, vec3(1.0F));
+  EXPECT_EQ(bare.dispersion, 0.0F);
   EXPECT_EQ(bare.attenuation_distance, std::numeric_limits<float>::infinity());
 }
 

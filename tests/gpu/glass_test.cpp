@@ -9,6 +9,7 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "gpu/ways_of_tracing.h"
+#include "promin/explain.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
 
@@ -149,6 +150,54 @@ TEST_F(GlassTest, FresnelsShareIsThatOfTheFormula) {
     const double p = (beyond - 1.5 * cosine) / (beyond + 1.5 * cosine);
     EXPECT_NEAR(see(scene, view).r, 0.5 * (s * s + p * p), 1e-6) << cosine;
   }
+}
+
+// KHR_materials_dispersion: n of blue and red are off by 0.025 (n - 1) dispersion.
+TEST_F(GlassTest, EachColorIsBentByItsOwnIndex) {
+  MetallicRoughness model = clear_model();
+  model.thickness = 1.0F;
+  model.specular = 0.0F;
+  model.ior = 1.5F;
+  model.dispersion = 8.0F;
+  const View view = look_down(glm::normalize(vec3(0.6F, -0.8F, 0.0F)));
+  Renderer renderer = make_renderer(device(), make_scene(kSlab, make_clear(model)));
+  const ExplainedSample sample = renderer.explain(view, uvec2(0)).samples.front();
+  ASSERT_EQ(sample.rays.size(), 7U) << "the camera's, and of each color one within and one beyond";
+  for (int color = 0; color < 3; ++color) {
+    const double index = 1.5 + 0.1 * (color - 1);
+    const ExplainedRay& within = sample.rays[1 + 2 * static_cast<size_t>(color)];
+    const ExplainedRay& beyond = sample.rays[2 + 2 * static_cast<size_t>(color)];
+    for (const ExplainedRay* ray : {&within, &beyond}) {
+      EXPECT_EQ(ray->kind, RayKind::kRefraction);
+      for (int other = 0; other < 3; ++other) EXPECT_EQ(ray->weight[other] > 0.0F, other == color);
+    }
+    EXPECT_EQ(within.parent, 0U);
+    const double sine = glm::normalize(dvec3(within.ray.direction)).x;
+    EXPECT_NEAR(sine, 0.6 / index, 8 * kU) << color;
+    EXPECT_NEAR(glm::normalize(dvec3(beyond.ray.direction)).x, 0.6, 16 * kU) << "a slab shifts, and turns nothing";
+  }
+}
+
+// From within, beyond its own angle of total reflection each color stays.
+TEST_F(GlassTest, EachColorIsReflectedTotallyAtItsOwnAngle) {
+  MetallicRoughness model = clear_model();
+  model.thickness = 1.0F;
+  model.ior = 1.5F;
+  model.dispersion = 8.0F;
+  // Between 1 / 1.6 and 1 / 1.5: blue is reflected totally.
+  const float sine = 0.65F;
+  View view = look_down(vec3(sine, -std::sqrt(1.0F - sine * sine), 0.0F));
+  view.camera.projection = Projection::kPerspective;
+  view.camera.yfov = 1e-5F;
+  view.camera.eye = vec3(0.0F);
+  view.max_depth = 1;
+  Renderer renderer = make_renderer(device(), make_scene(kSlab, make_clear(model)));
+  const ExplainedSample sample = renderer.explain(view, uvec2(0)).samples.front();
+  ASSERT_EQ(sample.rays.size(), 5U) << "the camera's, its mirror ray, and one of each color";
+  EXPECT_LT(sample.rays[2].ray.direction.y, 0.0F);
+  EXPECT_LT(sample.rays[3].ray.direction.y, 0.0F);
+  EXPECT_GT(sample.rays[4].ray.direction.y, 0.0F);
+  EXPECT_NEAR(glm::normalize(dvec3(sample.rays[4].ray.direction)).x, 0.65, 16 * kU);
 }
 
 TEST_F(GlassTest, ShadowsAreTinted) {

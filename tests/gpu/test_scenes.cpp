@@ -170,13 +170,16 @@ world::Scene make_scene_of_glass() {
   add(world::Sphere{vec3(-0.8F, 1.6F, 3.2F), 0.4F}, make_phong(1.2F, vec3(0.9F), 0.05F, true));
   add(world::Sphere{vec3(-0.7F, 1.6F, 3.3F), 0.15F}, make_phong(1.0F, vec3(1.0F), 0.0F, false));
   // Overlapping.
-  add(world::Sphere{vec3(0.7F, 1.5F, 3.0F), 0.5F}, make_clear(1.5F, 0.9F, 1.0F, 0.0F, 0.5F));
+  Material flint = make_clear(1.5F, 0.9F, 1.0F, 0.0F, 0.5F);
+  std::get<MetallicRoughness>(flint.model).dispersion = 0.6F;
+  add(world::Sphere{vec3(0.7F, 1.5F, 3.0F), 0.5F}, flint);
   add(world::Sphere{vec3(1.2F, 1.6F, 3.1F), 0.45F}, make_clear(1.33F, 1.0F, 1.0F, 0.05F, 2.0F));
   add(world::Cylinder{vec3(1.9F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.3F}, make_phong(1.8F, vec3(0.8F), 1.0F, true));
   add(world::Cone{vec3(-2.0F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.5F, 0.1F}, make_clear(2.4F, 0.7F, 0.1F, 0.2F, 0.3F));
   // Of one side, which volumes do not heed.
   Material gem = make_clear(1.5F, 1.0F, 1.0F, 0.0F, 1.0F);
   gem.is_double_sided = false;
+  std::get<MetallicRoughness>(gem.model).dispersion = 2.0F;
   add(make_smooth_mesh(vec3(0.1F, 0.6F, 3.9F), 0.4F), gem);
   // What blends within glass that absorbs.
   Mesh leaf;

@@ -268,7 +268,7 @@ Vector direction_behind(const world::Scene& scene, oracle::Ray ray) {
     if (!hit.exists()) break;
     const bool leaves = glm::dot(hit.normal, ray.direction) > 0;
     oracle::Media beyond;
-    const oracle::Face face = media.meet(oracle::material_of(scene, hit), leaves, beyond);
+    const oracle::Face face = media.meet(oracle::material_of(scene, hit), leaves, oracle::kGreen, beyond);
     const Vector normal = leaves ? -hit.normal : hit.normal;
     const Vector at = ray.origin + hit.t * ray.direction;
     const oracle::Refraction refraction = oracle::refract(glm::normalize(ray.direction), normal, normal, face);

@@ -19,7 +19,8 @@ struct ReadGlass {
   }
   GlassOf operator()(const MetallicRoughness& m) const {
     const bool is_clear = m.transmission > 0 && (m.metallic < 1 || m.metallic_roughness_texture.exists()) && m.ior != 0;
-    return {is_clear, is_clear, m.thickness == 0, Real(m.ior)};
+    const Real spread = Real(0.025L) * (Real(m.ior) - 1) * Real(m.dispersion);
+    return {is_clear, is_clear, m.thickness == 0, Real(m.ior), std::min(spread, Real(m.ior) - 1)};
   }
   GlassOf operator()(const Unlit&) const { return {}; }
 };
@@ -43,26 +44,37 @@ GlassOf glass_of(const Material& material) {
   return glass;
 }
 
-Real Media::index() const {
-  return entered_.empty() ? Real(1) : glass_of(*entered_.back()).index;
+int color_of(const Vector& weight) {
+  int color = kGreen;
+  int count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (!(weight[i] > 0)) continue;
+    color = i;
+    ++count;
+  }
+  return count == 1 ? color : kGreen;
 }
 
-Face Media::meet(const Material& material, bool leaves, Media& beyond) const {
+Real Media::index(int color) const {
+  return entered_.empty() ? Real(1) : glass_of(*entered_.back()).index_of(color);
+}
+
+Face Media::meet(const Material& material, bool leaves, int color, Media& beyond) const {
   const GlassOf glass = glass_of(material);
   beyond = *this;
-  if (!glass.is_clear || glass.is_thin) return {index(), glass.index, true};
+  if (!glass.is_clear || glass.is_thin) return {index(color), glass.index_of(color), true};
   if (!leaves) {
     beyond.entered_.push_back(&material);
     // The device keeps four.
     if (beyond.entered_.size() > 4) beyond.entered_.erase(beyond.entered_.begin());
-    return {index(), glass.index, false};
+    return {index(color), glass.index_of(color), false};
   }
   const auto last = std::find(entered_.rbegin(), entered_.rend(), &material);
-  if (last == entered_.rend()) return {glass.index, index(), false};
+  if (last == entered_.rend()) return {glass.index_of(color), index(color), false};
   beyond.entered_.erase(std::prev(beyond.entered_.end(), 1 + std::distance(entered_.rbegin(), last)));
   // Within what was entered later it is no face.
-  if (last != entered_.rbegin()) return {index(), index(), false};
-  return {glass.index, beyond.index(), false};
+  if (last != entered_.rbegin()) return {index(color), index(color), false};
+  return {glass.index_of(color), beyond.index(color), false};
 }
 
 Vector Media::left_after(Real way) const {

@@ -9,6 +9,9 @@
 /// Glass (docs/model.md, "Glass"): faces between media, and what they do with light.
 namespace promin::oracle {
 
+/// The place of the color in a colour.
+constexpr int kGreen = 1;
+
 /// A face as a ray meets it.
 struct Face {
   /// Indices of refraction on the ray's side and beyond.
@@ -23,16 +26,22 @@ struct GlassOf {
   bool is_clear = false;
   bool is_thin = false;
   Real index = 1;
+  /// Of blue less that of green, and of green less that of red.
+  Real spread = 0;
+  Real index_of(int color) const { return index + (color - kGreen) * spread; }
 };
 GlassOf glass_of(const Material& material);
+
+/// As what light of this weight is bent: where it has one color, as that, else as green.
+int color_of(const Vector& weight);
 
 /// The solids of glass that a ray is in, the last entered last.
 class Media {
  public:
   /// Of the last entered; 1 outside of all.
-  Real index() const;
-  /// The face of a material as a ray from within these media meets it, and the media beyond.
-  Face meet(const Material& material, bool leaves, Media& beyond) const;
+  Real index(int color) const;
+  /// The face of a material as a ray of this color from within these media meets it, and the media beyond.
+  Face meet(const Material& material, bool leaves, int color, Media& beyond) const;
   /// The share of light that is left after this way.
   Vector left_after(Real way) const;
 

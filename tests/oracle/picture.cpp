@@ -264,7 +264,9 @@ class Tracer {
       if (!mesh->colors.empty()) point.vertex_color = corners.interpolate<Texel>(mesh->colors);
     }
     beyond = way.media;
-    if (glass_of(*point.material).exists) point.face = way.media.meet(*point.material, point.side < 0, beyond);
+    if (glass_of(*point.material).exists) {
+      point.face = way.media.meet(*point.material, point.side < 0, color_of(way.weight), beyond);
+    }
     point.slots = slots_of(*point.material);
     for (TextureSlot& slot : point.slots) {
       if (!textures_.shows(slot, point.on_triangle)) slot = {};
@@ -304,7 +306,7 @@ class Tracer {
     const Material& material = material_of(scene_, hit);
     const Real along = glm::dot(hit.normal, glm::normalize(ray.direction));
     Media beyond;
-    const Face face = media.meet(material, along > 0, beyond);
+    const Face face = media.meet(material, along > 0, kGreen, beyond);
     media = beyond;
     Vector tint(1);
     Real transmission = 1;
@@ -556,6 +558,63 @@ class Tracer {
     return std::max(Real(1), bend * at.cosine / std::max(at.cosine_beyond, 1e-6L));
   }
 
+  /// One of the rays that lead on from a point in a scene with glass, and the weight of what it brings.
+  struct Child {
+    Sent sent;
+    Vector weight;
+    Real weight_error = 0;
+    bool is_followed = false;
+  };
+
+  /// The refracted ray, or one of each color where the face parts them.
+  void add_refracted(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error, const Way& way,
+                     const BoundedResponse& response, const Media& beyond, std::vector<Child>& children) const {
+    const auto face_of = [&](int color) {
+      Media unused;
+      return way.media.meet(*point.material, point.side < 0, color, unused);
+    };
+    const auto count = std::count_if(&way.weight[0], &way.weight[0] + 3, [](Real weight) { return weight > 0; });
+    const Face red = face_of(0);
+    const Face blue = face_of(2);
+    const bool is_bent = !point.face->is_thin && point.face->from != point.face->to;
+    if (count < 2 || !is_bent || (red.from == blue.from && red.to == blue.to)) {
+      children.push_back(
+          {send_beyond(ray, hit, point, error, way, response, beyond), response.through, response.through_error});
+      return;
+    }
+    const Vector direction = glm::normalize(ray.direction);
+    const Real off = error.normal + error.to_eye + 8 * kRoundoff;
+    for (int color = 0; color < 3; ++color) {
+      BoundedResponse colored = response;
+      colored.through = Vector(0);
+      colored.through[color] = response.through[color];
+      if (colored.through == Vector(0)) continue;
+      SurfacePoint with_face = point;
+      with_face.face = face_of(color);
+      colored.beyond = refract(direction, response.refracting_normal, point.geometric_normal, *with_face.face);
+      const Vector across = direction - glm::dot(direction, point.normal) * point.normal;
+      const Vector aside = glm::length(across) > 1e-9L ? glm::normalize(across) : Vector(0);
+      Real through_error = response.through_error;
+      for (const Real sign : {-1, 1}) {
+        const Vector turned = glm::normalize(response.refracting_normal + sign * off * aside);
+        const Refraction other = refract(direction, turned, point.geometric_normal, *with_face.face);
+        // Next to the angle of total reflection a device may do the other.
+        if (other.is_total != colored.beyond.is_total) through_error += kUnknown;
+        colored.direction_error =
+            std::max(colored.direction_error, glm::distance(other.direction, colored.beyond.direction));
+      }
+      if (colored.beyond.is_total) {
+        // Of the others some are not.
+        colored.mirror_weight = colored.through;
+        colored.weight_error = through_error;
+        children.push_back({send_mirrored(ray, hit, point, error, way, colored), colored.through, through_error});
+      } else {
+        children.push_back(
+            {send_beyond(ray, hit, with_face, error, way, colored, beyond), colored.through, through_error});
+      }
+    }
+  }
+
   /// In a scene with glass: what both rays bring, within the limits of the tree.
   Radiance trace_glass(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
                        const Way& way, const Media& beyond) const {
@@ -568,29 +627,30 @@ class Tracer {
     const Real weight = largest(response.mirror_weight);
     const bool is_mirrored = way.bounces > 0 && weight > (is_of_metal ? kLeastMirrorWeight : 0);
     if (!is_mirrored) sum.add(response.instead);
-    // Both are counted before either is followed.
-    std::array<std::optional<Sent>, 2> sent;
-    if (is_mirrored) sent[0] = send_mirrored(ray, hit, point, error, here, response);
-    if (response.through != Vector(0)) sent[1] = send_beyond(ray, hit, point, error, here, response, beyond);
-    std::array<bool, 2> is_followed{};
-    for (size_t i = 0; i < 2; ++i) {
-      if (!sent[i]) continue;
-      const bool has_bounces = i == 0 || way.bounces > 0;
-      is_followed[i] = has_bounces && *way.rays < kMostTreeRays && largest(sent[i]->way.weight) >= kLeastTreeWeight;
-      if (is_followed[i]) ++*way.rays;
-      // Next to the least weight a device may do the other.
-      if (std::abs(largest(sent[i]->way.weight) - kLeastTreeWeight) < 1e-4L * kLeastTreeWeight) sum.error += kUnknown;
+    std::vector<Child> children;
+    if (is_mirrored) {
+      children.push_back(
+          {send_mirrored(ray, hit, point, error, here, response), response.mirror_weight, response.weight_error});
     }
-    for (size_t i = 0; i < 2; ++i) {
-      if (!sent[i]) continue;
+    if (response.through != Vector(0)) add_refracted(ray, hit, point, error, here, response, beyond, children);
+    // All are counted before any is followed.
+    for (Child& child : children) {
+      const Real least = largest(child.sent.way.weight);
+      child.is_followed = way.bounces > 0 && *way.rays < kMostTreeRays && least >= kLeastTreeWeight;
+      if (child.is_followed) ++*way.rays;
+      // Next to the least weight a device may do the other.
+      if (std::abs(least - kLeastTreeWeight) < 1e-4L * kLeastTreeWeight) sum.error += kUnknown;
+    }
+    for (const Child& child : children) {
+      const Sent& sent = child.sent;
       Radiance brought;
-      if (is_followed[i]) {
-        brought = trace(sent[i]->ray, find(sent[i]->ray, sent[i]->way, {.passes_backs = true}), sent[i]->way);
+      if (child.is_followed) {
+        brought = trace(sent.ray, find(sent.ray, sent.way, {.passes_backs = true}), sent.way);
       } else if (is_of_metal) {
-        brought = this->beyond(sent[i]->ray, sent[i]->way);
+        brought = this->beyond(sent.ray, sent.way);
       }
-      sum.add(i == 0 ? response.mirror_weight : response.through, brought);
-      sum.error += (i == 0 ? response.weight_error : response.through_error) * (largest(brought.color) + 1);
+      sum.add(child.weight, brought);
+      sum.error += child.weight_error * (largest(brought.color) + 1);
     }
     Radiance dimmed;
     dimmed.add(left, sum);
@@ -648,7 +708,7 @@ Media media_around(const world::Scene& scene, const Vector& eye) {
   Media media;
   for (const Around& each : around) {
     Media beyond;
-    (void)media.meet(*each.material, false, beyond);
+    (void)media.meet(*each.material, false, kGreen, beyond);
     media = beyond;
   }
   return media;

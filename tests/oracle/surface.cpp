@@ -153,7 +153,7 @@ class PhongSurface {
   }
 
   Response finish(const Radiance& sent) const {
-    return {sent, reflection_, normal_, 0, {}, through_, refraction_, is_bent_, 0};
+    return {sent, reflection_, normal_, 0, {}, through_, refraction_, normal_, is_bent_, 0};
   }
 
  private:
@@ -177,7 +177,9 @@ class UnlitSurface {
 
   Radiance own() const { return {color_}; }
   Radiance contribution(const ArrivingLight&) const { return {}; }
-  Response finish(const Radiance& sent) const { return {sent, Vector(0), Vector(0), 0, {}, Vector(0), {}, false, 0}; }
+  Response finish(const Radiance& sent) const {
+    return {sent, Vector(0), Vector(0), 0, {}, Vector(0), {}, Vector(0), false, 0};
+  }
 
  private:
   Vector color_;
@@ -285,6 +287,7 @@ class MetallicRoughnessSurface {
     response.instead.add(of_material, below_);
     response.instead.add(of_coat, above_);
     response.beyond = refraction_;
+    response.refracting_normal = normal_;
     if (share_ > 0) {
       const Face& face = *at_.point.face;
       const Vector base =

@@ -106,6 +106,7 @@ struct Response {
   /// it is neither bent nor blurred it sees what is behind.
   Vector through{0};
   Refraction beyond;
+  Vector refracting_normal{0};
   bool is_deflected = false;
   Real blur = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace promin {
@@ -35,6 +36,22 @@ TEST(TileScheduler, CoverEverySampleOnceAndInOrder) {
     for (const uint32_t count : samples_taken) ASSERT_EQ(count, 50U) << units << " units";
     EXPECT_EQ(pieces.fraction_done(), 1.0);
   }
+}
+
+// Each ray of a sample takes a step of the stream, in whatever order glass parts them.
+TEST(TileScheduler, StepsSufficeForTheLargestTree) {
+  // All light leaves a surface as a mirror ray and as rays of each color, and these as a mirror ray and one ray.
+  const auto rays = [](auto& self, uint32_t depth, uint32_t colors) -> uint32_t {
+    if (depth == 0) return 0;
+    return 1 + self(self, depth - 1, colors) + colors * (1 + self(self, depth - 1, 1));
+  };
+  for (const uint32_t colors : {1U, 3U}) {
+    for (uint32_t depth = 0; depth < 9; ++depth) {
+      EXPECT_EQ(most_steps(depth, colors, 0), std::min(rays(rays, depth, colors), layout::MOST_TREE_RAYS));
+    }
+    EXPECT_EQ(most_steps(100, colors, 7), 107U) << "scenes without glass have no limit";
+  }
+  EXPECT_EQ(most_steps(5, 0, 7), 12U);
 }
 
 TEST(TileScheduler, GroupsSufficeForAllPixels) {

@@ -93,7 +93,10 @@ class ContentHash {
     }
     add(material.sheen_color);
     add(material.sheen_roughness);
-    for (const float value : {material.transmission, material.thickness, material.attenuation_distance}) add(value);
+    for (const float value :
+         {material.transmission, material.thickness, material.attenuation_distance, material.dispersion}) {
+      add(value);
+    }
     add(material.attenuation_color);
   }
   void add(const Unlit& unlit) { add(unlit.color); }

@@ -71,6 +71,9 @@ void read_transmission(const json& source, GltfTextures& textures, MetallicRough
     material.attenuation_color = to_shares(vec3_of(*extension, "attenuationColor", dvec3(1.0)));
     material.attenuation_distance = extension->value("attenuationDistance", std::numeric_limits<float>::infinity());
   }
+  if (const json* extension = find_extension(source, "KHR_materials_dispersion")) {
+    material.dispersion = extension->value("dispersion", 0.0F);
+  }
 }
 
 void read_shared_textures(const json& source, GltfTextures& textures, MetallicRoughness& material) {

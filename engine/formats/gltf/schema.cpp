@@ -176,6 +176,7 @@ constexpr JsonRule kRules[] = {
     factor(PROMIN_VOLUME ".thicknessFactor"),
     number(PROMIN_VOLUME ".attenuationDistance", 1e-30, kMaxScalar),
     color(PROMIN_VOLUME ".attenuationColor"),
+    factor("materials[].extensions.KHR_materials_dispersion.dispersion"),
     number(PROMIN_SPECULAR ".specularFactor", 0.0, 1.0),
     color(PROMIN_SPECULAR ".specularColorFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularTexture"),
