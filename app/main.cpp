@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include "cast_command.h"
+#include "compare_command.h"
 #include "devices_command.h"
 #include "info_command.h"
 #include "render_command.h"
@@ -11,5 +12,6 @@ int main(int argc, char** argv) {
   return run_program("promin",
                      "Ray tracer in Vulkan compute shaders: glTF, OBJ, PLY, STL and NFF scenes to EXR and PNG "
                      "pictures, or rays to hits.",
-                     {add_render_command, add_cast_command, add_info_command, add_devices_command}, argc, argv);
+                     {add_render_command, add_cast_command, add_compare_command, add_info_command, add_devices_command},
+                     argc, argv);
 }

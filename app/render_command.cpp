@@ -45,7 +45,8 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
   result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
   result.force_all_features = options.has_all_features;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
-  result.with_aovs = options.aovs.any();
+  // The average takes pixels that hit something.
+  result.with_aovs = options.aovs.any() || options.view.look.averages_exposure;
   return result;
 }
 
@@ -137,6 +138,13 @@ void number_as_in_file(const Scene& scene, Aovs& aovs) {
   }
 }
 
+/// Where the picture tells its exposure itself, that of a path's first frame for all.
+void expose_by_first(const RenderOptions& options, const TracedFrame& traced, RunStats& stats) {
+  const bool is_first = stats.frames.size() <= 1;
+  if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
+  stats.display.exposure_ev = average_exposure_ev(traced.result.image.pixels, traced.result.aovs.object);
+}
+
 /// Traces a frame and writes its pictures.
 void render_frame(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
                   const Scene& scene, Renderer& renderer, RunStats& stats,
@@ -151,6 +159,7 @@ void render_frame(const PlannedFrame& planned, const RenderOptions& options, con
   } else {
     stats.trace_ms = traced.trace_ms;
   }
+  expose_by_first(options, traced, stats);
   const DeferredSignals while_writing;
   const Stopwatch write;
   write_pictures(options, planned, traced, stats);
@@ -205,16 +214,33 @@ std::future<void> open_pictures_aside() {
   return std::async(std::launch::async, [] { open_pictures(); });
 }
 
-void render(const RenderOptions& options) {
+/// Whether all pictures of a frame are there.
+bool is_there(const PlannedFrame& frame) {
+  return std::ranges::all_of(frame.pictures, [](const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+  });
+}
+
+void render(const RenderOptions& given) {
   const Stopwatch total;
-  const TracingOptions& tracing = options.tracing;
-  check_render_options(options);
+  const TracingOptions& tracing = given.tracing;
+  check_render_options(given);
+  RenderOptions options = given;
+  options.pictures = name_pictures(given);
   check_pictures(options.pictures);
-  const std::vector<PlannedFrame> frames = plan_frames(options);
+  std::vector<PlannedFrame> frames = plan_frames(options);
+  const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const bool has_pictures = !options.explained_pixel;
   if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
+  if (skipped > 0)
+    console.note(fmt::format("skipped {} of {} frames, whose pictures are there", skipped, skipped + frames.size()));
+  if (frames.empty()) return;
+  if (given.pictures.empty() && has_pictures) {
+    console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
+  }
 
   RunStats stats;
   Scene scene = load_for(tracing, stats, console);

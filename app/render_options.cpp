@@ -32,6 +32,7 @@ constexpr double kMaxExposureEv = 64.0;
 constexpr uint32_t kMaxTextureMib = 8192;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
+constexpr std::string_view kAverage = "average";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
 /// Reads names between commas.
@@ -132,17 +133,20 @@ void add_look_options(OptionTable& table, LookOptions& look) {
             "What lies behind all: a linear colour, or what lights the scene [the scene's, or a grey of 0.25; classic "
             "scenes: the scene's]",
             [&](const OptionValues& w) { look.background = read_background(w); });
-  table.add("--exposure", fmt::format("EV|{}", kAuto),
-            "Stops by which PNG files and the window are brighter than the scene's light [auto: from the scene's "
-            "lights; classic scenes: 0]",
+  table.add("--exposure", fmt::format("EV|{}|{}", kAuto, kAverage),
+            "Stops by which PNG files and the window are brighter than the scene's light; average: as the picture "
+            "itself needs, a path's first [auto: from the scene's lights; classic scenes: 0]",
             [&](const OptionValues& w) {
               look.exposure_ev.reset();
-              if (w.text() == kAuto) return;
+              look.averages_exposure = w.text() == kAverage;
+              if (w.text() == kAuto || w.text() == kAverage) return;
               look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv));
             });
   table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
             "How PNG files and the window show what is brighter than they can [neutral; classic scenes: none]",
             [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
+  table.add_flag("--dither", "Add noise below a step to the 8 bits of PNG files and the window, against bands",
+                 look.dithers);
   table.add("--texture-memory", "MIB",
             fmt::format("Device memory for textures in MiB, 1 to {}; beyond it the largest are halved [{}]",
                         kMaxTextureMib, look.texture_memory_mib),
@@ -197,7 +201,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   OptionTable table(command);
 
   add_scene_argument(table, options.tracing);
-  table.add_repeated("-o,--output", "FILE", "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable",
+  table.add_repeated("-o,--output", "FILE",
+                     "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable [the scene's name with "
+                     "both endings, here]",
                      [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
             [&](const OptionValues& w) {
@@ -215,6 +221,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add("--frames", "A-B", "Of the path, the frames A to B, both included; the first is 0 [all]",
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
+  table.add_flag("--skip-existing", "Leave out frames whose pictures are there", options.skips_existing);
 
   table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(aov_names(), ",")),
             [&](const OptionValues& w) { options.aovs = read_aovs(w); });
@@ -222,6 +229,18 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);
+}
+
+std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
+  if (!options.pictures.empty() || options.explained_pixel) return options.pictures;
+  const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
+  const std::vector<std::filesystem::path> pictures = {stem + ".exr", stem + ".png"};
+  for (const std::filesystem::path& picture : pictures) {
+    std::error_code error;
+    if (options.path || !std::filesystem::exists(picture, error)) continue;
+    throw UsageError({"the picture is there already", picture.string(), "say by -o where to write"});
+  }
+  return pictures;
 }
 
 void check_no_camera(const ViewOptions& options, std::string_view name) {
@@ -234,10 +253,13 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
 void check_render_options(const RenderOptions& options) {
   check_tracing_options(options.tracing);
   if (options.path) check_no_camera(options.view, "--path");
-  if (options.explained_pixel) {
-    check_explain_options(options);
-  } else if (options.pictures.empty()) {
-    throw UsageError({"--output is required", "on the command line", "see promin render --help"});
+  if (options.explained_pixel) check_explain_options(options);
+  if (options.skips_existing && options.pictures.empty()) {
+    throw UsageError({"--skip-existing has no pictures to look for", "on the command line", "give -o as well"});
+  }
+  if (options.skips_existing && options.view.look.averages_exposure) {
+    throw UsageError({"--skip-existing and --exposure average contradict each other, which takes the first frame's",
+                      "on the command line", "give --exposure in stops"});
   }
   if (options.frames && !options.path) {
     throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});
@@ -246,7 +268,7 @@ void check_render_options(const RenderOptions& options) {
     throw UsageError({"--fps has no path to play", "on the command line", "give --path as well"});
   }
   const auto& pictures = options.pictures;
-  if (options.aovs.any() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {
+  if (options.aovs.any() && !pictures.empty() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {
     throw UsageError({"--aov has no picture to go to", "on the command line", "give -o with the ending .exr as well"});
   }
 }

@@ -51,7 +51,10 @@ struct LookOptions {
   std::optional<BackgroundChoice> background = std::nullopt;
   /// Stops.
   std::optional<float> exposure_ev = std::nullopt;
+  /// Whether the picture tells its stops itself (average_exposure_ev); `exposure_ev` is not given then.
+  bool averages_exposure = false;
   std::optional<ToneMapping> tone_mapping = std::nullopt;
+  bool dithers = false;
   /// RendererOptions::texture_bytes in MiB.
   uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
 };
@@ -97,7 +100,10 @@ struct FrameRange {
 
 struct RenderOptions {
   TracingOptions tracing;
+  /// Where the user names none, those of name_pictures.
   std::vector<std::filesystem::path> pictures;
+  /// Whether frames are left out whose pictures are there.
+  bool skips_existing = false;
   ViewOptions view;
   /// Channels that an EXR carries beside R, G and B.
   AovChoice aovs;
@@ -120,6 +126,11 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps);
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// The pictures that a command writes: those named or, where none is and no pixel is explained, the scene's name with
+/// .exr and .png in the current folder, of a path's frames with their numbers. Throws UsageError where one of these is
+/// there.
+std::vector<std::filesystem::path> name_pictures(const RenderOptions& options);
 
 /// Throws UsageError where there is a camera beside the option of this name, which brings cameras of its own.
 void check_no_camera(const ViewOptions& options, std::string_view name);

@@ -16,7 +16,7 @@
 namespace promin::app {
 namespace {
 
-enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4 };
+enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4, kDiffers = 5 };
 
 /// How a command line says what the library, which knows no options, says of a setting.
 struct Wording {
@@ -114,6 +114,8 @@ int run_program(const std::string& name, const std::string& help,
     return report(kBadInput, message_of(error));
   } catch (const DeviceError& error) {
     return report(kNoDevice, message_of(error));
+  } catch (const DifferenceError& error) {
+    return report(kDiffers, message_of(error));
   } catch (const Error& error) {
     return report(kRunFailed, message_of(error));
   } catch (const std::bad_alloc&) {

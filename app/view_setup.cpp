@@ -134,6 +134,7 @@ DisplayTransform choose_display(const Scene& scene, const LookOptions& look, Deb
   DisplayTransform display = display_of(scene, look.light);
   if (look.exposure_ev) display.exposure_ev = *look.exposure_ev;
   if (look.tone_mapping) display.tone_mapping = *look.tone_mapping;
+  display.dithers = look.dithers;
   return display;
 }
 
@@ -156,7 +157,7 @@ std::string describe_assumptions(const Scene& scene, const ViewOptions& options,
   if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, look)));
   if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
   if (light.has_background) parts.emplace_back("a grey background");
-  if (display && !look.exposure_ev && display->exposure_ev != 0.0F) {
+  if (display && !look.exposure_ev && !look.averages_exposure && display->exposure_ev != 0.0F) {
     parts.push_back(fmt::format("an exposure of {:+g} EV", display->exposure_ev));
   }
   if (display && !look.tone_mapping && display->tone_mapping != ToneMapping::kNone) {

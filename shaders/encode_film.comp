@@ -11,6 +11,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 // The transform to the display: TONE_MAPPING_*, and the bits of the factor of exposure.
 layout(constant_id = 0) const uint TONE_MAPPING = 0u;
 layout(constant_id = 1) const uint EXPOSURE = 0x3F800000u;
+layout(constant_id = 2) const uint DITHERS = 0u;
 
 // The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
@@ -20,6 +21,7 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
 
 #include "dispatch.glsl"
 #include "tone_mapping.glsl"
+#include "dither.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
 
 vec3 encode_srgb(vec3 linear) {
@@ -34,6 +36,11 @@ void main() {
   for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
     vec3 radiance = uintBitsToFloat(pixels[i].xyz) / samples;
     vec3 shown = map_tones(TONE_MAPPING, uintBitsToFloat(EXPOSURE) * radiance);
-    encoded[i] = packUnorm4x8(vec4(encode_srgb(shown), 1.0));
+    vec3 codes = 255.0 * encode_srgb(shown);
+    if (DITHERS != 0u) {
+      uvec2 pixel = uvec2(i % window_size().x, i / window_size().x);
+      codes = vec3(dithered(codes.x, pixel, 0u), dithered(codes.y, pixel, 1u), dithered(codes.z, pixel, 2u));
+    }
+    encoded[i] = packUnorm4x8(vec4(codes / 255.0, 1.0));
   }
 }

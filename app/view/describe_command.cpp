@@ -32,6 +32,7 @@ std::string options_of(const LookOptions& look) {
   if (look.tone_mapping) {
     options += fmt::format(" --tone-mapping {}", tone_mapping_names()[static_cast<size_t>(*look.tone_mapping)]);
   }
+  if (look.dithers) options += " --dither";
   if (look.texture_memory_mib != LookOptions().texture_memory_mib) {
     options += fmt::format(" --texture-memory {}", look.texture_memory_mib);
   }

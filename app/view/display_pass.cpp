@@ -23,6 +23,7 @@ struct DisplayConstants {
 constexpr uint32_t kDecodes = 0;
 /// Constants of shaders/encode_film.comp.
 constexpr uint32_t kToneMapping = 0;
+constexpr uint32_t kDithers = 2;
 constexpr uint32_t kExposure = 1;
 constexpr uint32_t kEncodedBinding = 0;
 
@@ -66,7 +67,8 @@ gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& 
                                   const DisplayTransform& display) {
   const std::array constants{
       gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
-      gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))}};
+      gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))},
+      gpu::SpecializationConstant{kDithers, display.dithers ? 1U : 0U}};
   constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
   const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, &film},
                            gpu::BoundBuffer{kEncodedBinding, kStorage, &encoded}};

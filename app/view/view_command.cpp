@@ -72,6 +72,9 @@ void check_window_options(const WindowOptions& options) {
   if (options.fps && !options.replay) {
     throw UsageError({"--fps has no path to play", "on the command line", "give --replay as well"});
   }
+  if (options.view.look.averages_exposure) {
+    throw UsageError({"--exposure average needs a whole picture", "on the command line", "give stops or auto"});
+  }
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);
   if (options.replay) inputs.push_back(*options.replay);
   if (options.view.environment.panorama) inputs.push_back(*options.view.environment.panorama);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+
+#include "promin/aovs.h"
 
 namespace promin {
 namespace {
@@ -27,6 +30,36 @@ dvec3 map_aces(const dvec3& c) {
   return c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14);
 }
 
+const dvec3 kLuminance(0.2126, 0.7152, 0.0722);
+
+/// Reinhard et al. 2002, equation 4, with a luminance of 4 shown as white.
+dvec3 map_reinhard(const dvec3& c) {
+  const double luminance = glm::dot(kLuminance, c);
+  return c * ((1.0 + luminance / 16.0) / (1.0 + luminance));
+}
+
+/// Sobotka's AgX in Wrensch's approximation ("Minimal AgX Implementation", 2023): in a space of its own, stops between
+/// -12.47 and 4.03 by a sigmoid, back, and from its display's curve to linear light.
+dvec3 map_agx(const dvec3& c) {
+  const glm::dmat3 inset(0.842479062253094, 0.0423282422610123, 0.0423756549057051,  //
+                         0.0784335999999992, 0.878468636469772, 0.0784336,           //
+                         0.0792237451477643, 0.0791661274605434, 0.879142973793104);
+  const glm::dmat3 outset(1.19687900512017, -0.0528968517574562, -0.0529716355144438,  //
+                          -0.0980208811401368, 1.15190312990417, -0.0980434501171241,  //
+                          -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
+  constexpr double kFirstStop = -12.47393;
+  constexpr double kLastStop = 4.026069;
+  dvec3 shown = inset * c;
+  for (int i = 0; i < 3; ++i) {
+    const double stop = std::clamp(std::log2(std::max(shown[i], 1e-30)), kFirstStop, kLastStop);
+    const double x = (stop - kFirstStop) / (kLastStop - kFirstStop);
+    shown[i] = ((((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x) + 0.1191) * x - 0.00232;
+  }
+  shown = outset * shown;
+  for (int i = 0; i < 3; ++i) shown[i] = std::pow(std::max(shown[i], 0.0), 2.2);
+  return shown;
+}
+
 dvec3 map_tones(ToneMapping mapping, const dvec3& c) {
   switch (mapping) {
     case ToneMapping::kNone:
@@ -35,6 +68,10 @@ dvec3 map_tones(ToneMapping mapping, const dvec3& c) {
       return map_neutral(c);
     case ToneMapping::kAces:
       return map_aces(c);
+    case ToneMapping::kReinhard:
+      return map_reinhard(c);
+    case ToneMapping::kAgx:
+      return map_agx(c);
   }
   return c;
 }
@@ -49,8 +86,22 @@ std::span<const std::string_view> tone_mapping_names() {
   return kNames;
 }
 
+float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects) {
+  double sum = 0.0;
+  uint64_t count = 0;
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    if (!objects.empty() && objects[i] == Aovs::kNoId) continue;
+    const double luminance = glm::dot(kLuminance, dvec3(pixels[i]));
+    if (!std::isfinite(luminance)) continue;
+    sum += std::log(1e-4 + std::max(luminance, 0.0));
+    ++count;
+  }
+  if (count == 0) return 0.0F;
+  return static_cast<float>(std::log2(0.18) - sum / static_cast<double>(count) * std::numbers::log2e);
+}
+
 vec3 apply(const DisplayTransform& display, const vec3& radiance) {
-  if (display == DisplayTransform()) return radiance;
+  if (display.exposure_ev == 0.0F && display.tone_mapping == ToneMapping::kNone) return radiance;
   const dvec3 exposed = std::exp2(static_cast<double>(display.exposure_ev)) * dvec3(radiance);
   if (display.tone_mapping == ToneMapping::kNone) return vec3(exposed);
   dvec3 shown(0.0);

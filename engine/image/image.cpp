@@ -11,7 +11,9 @@
 #include <new>
 
 #include "core/file.h"
+#include "core/parallel.h"
 #include "core/srgb.h"
+#include "image/dither.h"
 #include "image/open_pictures.h"
 #include "image/picture_formats.h"
 #include "image/read_image.h"
@@ -41,15 +43,22 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
   return words;
 }
 
-std::vector<uint8_t> encode_pixels(const Image& image, const DisplayTransform& display) {
-  std::vector<uint8_t> bytes;
-  bytes.reserve(image.pixels.size() * 3);
-  for (const vec3& pixel : image.pixels) {
-    const vec3 shown = apply(display, pixel);
-    for (int channel = 0; channel < 3; ++channel) {
-      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * encode_srgb(shown[channel]))));
+/// `lo` is the place of the upper left pixel in the whole picture.
+std::vector<uint8_t> encode_pixels(const Image& image, const DisplayTransform& display, const uvec2& lo) {
+  std::vector<uint8_t> bytes(image.pixels.size() * 3);
+  for_each_index(image.size.y, 0, [&](size_t y) {
+    uint8_t* next = &bytes[3 * y * image.size.x];
+    for (uint32_t x = 0; x < image.size.x; ++x) {
+      const vec3 shown = apply(display, image.at(x, static_cast<uint32_t>(y)));
+      for (int channel = 0; channel < 3; ++channel) {
+        float code = 255.0F * encode_srgb(shown[channel]);
+        if (display.dithers) {
+          code = dithered(code, lo.x + x, lo.y + static_cast<uint32_t>(y), static_cast<uint32_t>(channel));
+        }
+        *next++ = static_cast<uint8_t>(std::lround(code));
+      }
     }
-  }
+  });
   return bytes;
 }
 
@@ -142,6 +151,8 @@ class OpenedPicture {
         {std::string("cannot read the picture (") + message_.text + ")", name_, "name a picture such as .exr or .png"});
   }
 
+  std::string channel_names() const { return info_.channel_names; }
+
   Image read(const uvec2& most) {
     check(most);
     Image image;
@@ -178,6 +189,17 @@ class OpenedPicture {
   ProminPicturesMessage message_{};
   std::unique_ptr<ProminPicturesReader, decltype(PicturesPlugin::close)> reader_{nullptr, nullptr};
 };
+
+constexpr uvec2 kAnySize(std::numeric_limits<uint32_t>::max());
+
+OpenedPicture open_picture(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) throw InputError({"no such picture", file.string(), "check the path"});
+  const auto open = [&](const PicturesPlugin& plugin, auto... results) {
+    return plugin.open(file.c_str(), results...);
+  };
+  return OpenedPicture(file.string(), open);
+}
 
 }  // namespace
 
@@ -221,21 +243,21 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
   } else {
     const ProminPicturesChannel bytes[] = {
         {"R", PROMIN_PICTURES_UINT8}, {"G", PROMIN_PICTURES_UINT8}, {"B", PROMIN_PICTURES_UINT8}};
-    encode_and_write(plugin, source, file, encode_pixels(image, display).data(), bytes, {});
+    encode_and_write(plugin, source, file, encode_pixels(image, display, crop ? crop->lo : uvec2(0)).data(), bytes, {});
   }
 }
 
 Image read_image(const fs::path& file) {
-  return read_image_within(file, uvec2(std::numeric_limits<uint32_t>::max()));
+  return read_image_within(file, kAnySize);
+}
+
+NamedPicture read_named_picture(const fs::path& file) {
+  OpenedPicture picture = open_picture(file);
+  return {picture.read(kAnySize), picture.channel_names()};
 }
 
 Image read_image_within(const fs::path& file, const uvec2& most) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) throw InputError({"no such picture", file.string(), "check the path"});
-  const auto open = [&](const PicturesPlugin& plugin, auto... results) {
-    return plugin.open(file.c_str(), results...);
-  };
-  return OpenedPicture(file.string(), open).read(most);
+  return open_picture(file).read(most);
 }
 
 Image read_image_bytes(std::span<const std::byte> file, const std::string& name, const uvec2& most) {

@@ -71,6 +71,11 @@ struct PROMIN_EXPORT DeviceError : Error {
   using Error::Error;
 };
 
+/// Two pictures differ by more than was allowed; the programs exit with code 5.
+struct PROMIN_EXPORT DifferenceError : Error {
+  using Error::Error;
+};
+
 /// A ProgressCallback wanted an end (promin/progress.h). What was asked to do the work stays usable.
 struct PROMIN_EXPORT Cancelled : Error {
   /// Its one problem says no more than that.

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "cli_fixture.h"
+#include "promin/aovs.h"
 #include "promin/device.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
@@ -55,8 +56,8 @@ void expect_displayed(const Image& picture, const Image& png, const DisplayTrans
 }
 
 TEST_F(CliTest, HelpAndVersionEverywhere) {
-  for (const OptionValues& command :
-       {OptionValues{}, OptionValues{"render"}, OptionValues{"cast"}, OptionValues{"info"}, OptionValues{"devices"}}) {
+  for (const OptionValues& command : {OptionValues{}, OptionValues{"render"}, OptionValues{"cast"},
+                                      OptionValues{"compare"}, OptionValues{"info"}, OptionValues{"devices"}}) {
     OptionValues with_help = command;
     with_help.emplace_back("--help");
     const ProcessResult help = run(with_help);
@@ -81,7 +82,9 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render"}, "SCENE is required, on the command line; see promin render --help"},
       {{"info"}, "SCENE is required, on the command line; see promin info --help"},
       {{"devices", "all"}, "unexpected argument all"},
-      {{"render", "square.gltf"}, "--output is required"},
+      {{"render", "square.gltf", "--skip-existing"}, "--skip-existing has no pictures to look for"},
+      {{"render", "square.gltf", "-o", "a.png", "--skip-existing", "--exposure", "average"},
+       "--skip-existing and --exposure average contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--spq", "3"}, "unknown option --spq, on the command line; see promin"},
       {{"render", "square.gltf", "--spq=3"}, "unknown option --spq,"},
       {{"render", "square.gltf", "triangle.obj", "-o", "a.exr"}, "unexpected argument triangle.obj"},
@@ -118,8 +121,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--light takes studio or headlight or none, not \"lamp\", on the command line; see promin render --help"},
       {{"render", "square.gltf", "-o", "a.exr", "--light", "auto"}, "--light takes studio or headlight or none"},
       {{"render", "square.gltf", "-o", "a.exr", "--framing", "back"}, "--framing takes three-quarter or front, not"},
-      {{"render", "square.gltf", "-o", "a.exr", "--tone-mapping", "agx"},
-       "--tone-mapping takes none or neutral or aces"},
+      {{"render", "square.gltf", "-o", "a.exr", "--tone-mapping", "filmic"},
+       "--tone-mapping takes none or neutral or aces or reinhard or agx"},
       {{"render", "square.gltf", "-o", "a.exr", "--texture-memory", "0"},
        "--texture-memory takes a whole number from 1 to 8192"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "bright"}, "--exposure takes a number from -64 to 64"},
@@ -397,6 +400,8 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
       {{"--tone-mapping", "none"}, {2.0F, ToneMapping::kNone}},
       {{"--exposure", "0.5"}, {0.5F, ToneMapping::kNeutral}},
       {{"--exposure", "3", "--exposure", "auto", "--tone-mapping", "aces"}, {2.0F, ToneMapping::kAces}},
+      {{"--tone-mapping", "reinhard"}, {2.0F, ToneMapping::kReinhard}},
+      {{"--tone-mapping", "agx", "--exposure", "0"}, {0.0F, ToneMapping::kAgx}},
       {{"--exposure", "-1", "--shading", "normals"}, {}}};
   for (const auto& [options, display] : cases) {
     SCOPED_TRACE(testing::PrintToString(options));
@@ -424,6 +429,51 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
   const Image whole = render(plain, "a.png");
   const Image part = render(crop, "b.png");
   for (uint32_t x = 0; x < 16; ++x) EXPECT_EQ(part.at(x, 3), whole.at(x + 8, 7));
+}
+
+TEST_F(CliTest, ThePictureMayTellItsExposure) {
+  const OptionValues options = {"square.gltf", "--size", "32", "18", "--background", "9", "9", "9"};
+  OptionValues with_ids = options;
+  with_ids.insert(with_ids.end(),
+                  {"--exposure", "average", "--tone-mapping", "none", "-o", "a.png", "--aov", "object"});
+  const Image exr = render(with_ids, "a.exr");
+  std::vector<uint32_t> objects;
+  for (const vec3& pixel : exr.pixels) objects.push_back(pixel == vec3(9.0F) ? Aovs::kNoId : 0);
+  const float stops = average_exposure_ev(exr.pixels, objects);
+  EXPECT_NE(stops, 0.0F);
+  expect_displayed(exr, read_image(folder() / "a.png"), {.exposure_ev = stops});
+  EXPECT_EQ(exr.pixels, render(options, "b.exr").pixels);
+}
+
+TEST_F(CliTest, DitheringHangsOnThePlaceInTheWholePicture) {
+  const OptionValues options = {"square.gltf", "--size", "32", "18", "--tone-mapping", "none", "--exposure", "0"};
+  OptionValues dithered = options;
+  dithered.emplace_back("--dither");
+  const Image plain = render(options, "a.png");
+  const Image noisy = render(dithered, "b.png");
+  size_t differing = 0;
+  for (size_t i = 0; i < plain.pixels.size(); ++i) {
+    differing += plain.pixels[i] != noisy.pixels[i] ? 1 : 0;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(plain.pixels[i][c], noisy.pixels[i][c], 2.01F / 255.0F);
+  }
+  EXPECT_GT(differing, plain.pixels.size() / 4);
+  dithered.insert(dithered.end(), {"--crop", "8", "4", "24", "14"});
+  const Image crop = render(dithered, "c.png");
+  for (uint32_t x = 0; x < 16; ++x) EXPECT_EQ(crop.at(x, 3), noisy.at(x + 8, 7));
+}
+
+// Without -o the scene's name, here; what is there is kept.
+TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
+  const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("promin: note: writing square.exr and square.png\n"));
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("square.exr", "square.png"));
+  const std::string before = read("square.png");
+  fs::remove(folder() / "square.exr");
+  expect_failure(run({"render", "square.gltf", "--size", "9", "9"}), 2,
+                 "the picture is there already, square.png; say by -o where to write");
+  EXPECT_EQ(read("square.png"), before);
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("square.png"));
 }
 
 TEST_F(CliTest, TheBackgroundIsTheUsers) {

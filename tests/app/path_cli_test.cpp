@@ -71,6 +71,23 @@ TEST_F(PathCliTest, RangesPickFramesAndNamesTakeTheirNumbers) {
   EXPECT_EQ(app::number_file("a#/f.exr", 1), "a#/f.exr");
 }
 
+TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
+  const OptionValues options = {"--frames", "0-2", "-o", "a#.png", "-o", "a#.exr", "--skip-existing"};
+  ASSERT_EQ(render_path(options).exit_code, 0);
+  const std::string first = read("a0.exr");
+  write("a0.png", "kept");
+  std::filesystem::remove(folder() / "a1.exr");
+  const ProcessResult again = render_path(options);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("skipped 2 of 3 frames, whose pictures are there"));
+  EXPECT_THAT(again.out, HasSubstr("1 frames"));
+  EXPECT_EQ(read("a0.png"), "kept");
+  EXPECT_THAT(files(), testing::Contains("a1.exr"));
+  const ProcessResult nothing = render_path(options);
+  EXPECT_EQ(nothing.exit_code, 0);
+  EXPECT_THAT(nothing.err, HasSubstr("skipped 3 of 3 frames"));
+}
+
 TEST_F(PathCliTest, FpsTakesThePathByTime) {
   EXPECT_EQ(render_path({"--fps", "10", "-o", "t#.exr", "--quiet"}).exit_code, 0);
   EXPECT_THAT(files(), UnorderedElementsAre("path.json", "t0.exr", "t1.exr", "t2.exr", "t3.exr"));

@@ -12,6 +12,8 @@
 #include <limits>
 #include <vector>
 
+#include "image/dither.h"
+#include "promin/aovs.h"
 #include "promin/image.h"
 
 namespace promin {
@@ -38,6 +40,42 @@ Color neutral_of(Color c) {
 Color aces_of(Color c) {
   for (long double& x : c) x = (x * (2.51L * x + 0.03L)) / (x * (2.43L * x + 0.59L) + 0.14L);
   return c;
+}
+
+/// With a white of 4.
+Color reinhard_of(Color c) {
+  const long double luminance = 0.2126L * c[0] + 0.7152L * c[1] + 0.0722L * c[2];
+  const long double mapped = luminance * (1 + luminance / (4.0L * 4.0L)) / (1 + luminance);
+  for (long double& x : c) x = luminance > 0 ? x / luminance * mapped : 0;
+  return c;
+}
+
+/// As Wrensch writes it.
+Color agx_of(Color c) {
+  const long double in[3][3] = {{0.842479062253094L, 0.0784335999999992L, 0.0792237451477643L},
+                                {0.0423282422610123L, 0.878468636469772L, 0.0791661274605434L},
+                                {0.0423756549057051L, 0.0784336L, 0.879142973793104L}};
+  const long double out[3][3] = {{1.19687900512017L, -0.0980208811401368L, -0.0990297440797205L},
+                                 {-0.0528968517574562L, 1.15190312990417L, -0.0989611768448433L},
+                                 {-0.0529716355144438L, -0.0980434501171241L, 1.15107367264116L}};
+  const auto times = [](const long double(&m)[3][3], const Color& v) {
+    Color r{};
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t j = 0; j < 3; ++j) r[i] += m[i][j] * v[j];
+    }
+    return r;
+  };
+  Color v = times(in, c);
+  for (long double& x : v) {
+    x = x > 0 ? std::clamp(std::log2(x), -12.47393L, 4.026069L) : -12.47393L;
+    x = (x + 12.47393L) / (4.026069L + 12.47393L);
+    const long double x2 = x * x;
+    const long double x4 = x2 * x2;
+    x = 15.5L * x4 * x2 - 40.14L * x4 * x + 31.96L * x4 - 6.868L * x2 * x + 0.4298L * x2 + 0.1191L * x - 0.00232L;
+  }
+  v = times(out, v);
+  for (long double& x : v) x = std::pow(std::max(x, 0.0L), 2.2L);
+  return v;
 }
 
 /// From black to far beyond white, in steps of 2 %.
@@ -68,7 +106,9 @@ TEST(DisplayTest, ExposureCountsInStops) {
 
 TEST(DisplayTest, TheCurvesAreThoseOfTheirAuthors) {
   const std::pair<ToneMapping, Color (*)(Color)> curves[] = {{ToneMapping::kNeutral, neutral_of},
-                                                             {ToneMapping::kAces, aces_of}};
+                                                             {ToneMapping::kAces, aces_of},
+                                                             {ToneMapping::kReinhard, reinhard_of},
+                                                             {ToneMapping::kAgx, agx_of}};
   for (const auto& [mapping, curve] : curves) {
     for (const vec3& tint : {vec3(1), vec3(1, 0.5F, 0.02F), vec3(0, 0.3F, 1), vec3(0.9F, 1, 0.95F)}) {
       for (const float x : make_ramp()) {
@@ -76,7 +116,9 @@ TEST(DisplayTest, TheCurvesAreThoseOfTheirAuthors) {
         const vec3 shown = apply(mapping, radiance);
         const Color expected = curve({radiance.x, radiance.y, radiance.z});
         for (int i = 0; i < 3; ++i) {
-          ASSERT_NEAR(shown[i], static_cast<double>(expected[static_cast<size_t>(i)]), 1.2e-7) << x << " " << i;
+          ASSERT_NEAR(shown[i], static_cast<double>(expected[static_cast<size_t>(i)]),
+                      1.2e-7 * std::max(1.0, static_cast<double>(shown[i])))
+              << x << " " << i;
         }
       }
     }
@@ -106,17 +148,53 @@ TEST(DisplayTest, NeutralKeepsBaseColorsBelowItsShoulder) {
 }
 
 TEST(DisplayTest, WhatIsNoColorIsShownAsOne) {
-  for (const ToneMapping mapping : {ToneMapping::kNeutral, ToneMapping::kAces}) {
+  for (const ToneMapping mapping :
+       {ToneMapping::kNeutral, ToneMapping::kAces, ToneMapping::kReinhard, ToneMapping::kAgx}) {
     for (const float x : {kInfinity, 3e38F, -kInfinity, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
       const vec3 shown = promin::apply({.exposure_ev = 60.0F, .tone_mapping = mapping}, vec3(x, 0.5F, x));
-      for (int i = 0; i < 3; ++i) EXPECT_TRUE(shown[i] >= 0.0F && shown[i] < 1.04F) << x << " " << shown[i];
+      // Reinhard's curve goes on beyond its white.
+      const float most = mapping == ToneMapping::kReinhard ? 1e9F : 1.04F;
+      for (int i = 0; i < 3; ++i) EXPECT_TRUE(shown[i] >= 0.0F && shown[i] < most) << x << " " << shown[i];
     }
     EXPECT_EQ(apply(mapping, vec3(-1.0F)), vec3(0.0F));
   }
 }
 
+TEST(DisplayTest, TheAverageExposureBringsTheLogMeanToMiddleGrey) {
+  const std::vector<vec3> pixels = {vec3(0.09F), vec3(0.36F), vec3(5.0F), vec3(kInfinity)};
+  const std::vector<uint32_t> objects = {0, 7, Aovs::kNoId, 1};
+  EXPECT_NEAR(average_exposure_ev(pixels, objects), 0.0, 2e-3) << "sky and what is not finite do not count";
+  const double mean = (std::log(0.09) + std::log(0.36) + std::log(5.0)) / 3;
+  EXPECT_NEAR(average_exposure_ev(pixels, {}), std::log2(0.18 / std::exp(mean)), 1e-3);
+  EXPECT_EQ(average_exposure_ev(std::vector<vec3>{vec3(kInfinity)}, {}), 0.0F);
+  EXPECT_NEAR(average_exposure_ev(std::vector<vec3>{vec3(0.0F)}, {}), std::log2(1800.0), 1e-5) << "black is not lost";
+}
+
+// Of a flat grey between two codes the mean of the codes is the grey, and no pixel is off by more than one and a half.
+TEST(DisplayTest, DitheringKeepsTheMeanAndBlackAndWhite) {
+  for (const double code : {0.0, 0.25, 17.5, 100.75, 254.6, 255.0}) {
+    double sum = 0.0;
+    double squares = 0.0;
+    constexpr uint32_t kSide = 200;
+    for (uint32_t y = 0; y < kSide; ++y) {
+      for (uint32_t x = 0; x < kSide; ++x) {
+        const double shown = std::lround(dithered(static_cast<float>(code), x, y, 1));
+        EXPECT_LE(std::abs(shown - code), 1.5);
+        sum += shown;
+        squares += (shown - code) * (shown - code);
+      }
+    }
+    const double count = kSide * kSide;
+    EXPECT_NEAR(sum / count, code, 0.02) << code;
+    if (code == 17.5 || code == 100.75) EXPECT_NEAR(squares / count, 0.25, 0.01) << "of the noise and of rounding";
+    if (code == 0.0 || code == 255.0) EXPECT_EQ(squares, 0.0);
+  }
+  EXPECT_NE(dithered(10.5F, 3, 4, 0), dithered(10.5F, 4, 3, 0));
+  EXPECT_NE(dithered(10.5F, 3, 4, 0), dithered(10.5F, 3, 4, 2)) << "channels apart";
+}
+
 TEST(DisplayTest, NamesGoByTheirNumbers) {
-  EXPECT_THAT(tone_mapping_names(), testing::ElementsAre("none", "neutral", "aces"));
+  EXPECT_THAT(tone_mapping_names(), testing::ElementsAre("none", "neutral", "aces", "reinhard", "agx"));
 }
 
 }  // namespace

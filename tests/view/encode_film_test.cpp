@@ -12,6 +12,7 @@
 #include "device/device.h"
 #include "device/pipeline.h"
 #include "gpu/device_fixture.h"
+#include "image/dither.h"
 #include "promin/display.h"
 #include "promin/image.h"
 #include "view/display_pass.h"
@@ -70,13 +71,18 @@ TEST_F(EncodeFilmTest, AWindowShowsWhatPngFilesHave) {
   const std::vector<vec3> sums = make_sums();
   for (const DisplayTransform& display :
        {DisplayTransform{}, DisplayTransform{-2.5F, ToneMapping::kNone}, DisplayTransform{0.0F, ToneMapping::kNeutral},
-        DisplayTransform{3.0F, ToneMapping::kNeutral}, DisplayTransform{-1.0F, ToneMapping::kAces}}) {
+        DisplayTransform{3.0F, ToneMapping::kNeutral}, DisplayTransform{-1.0F, ToneMapping::kAces},
+        DisplayTransform{2.0F, ToneMapping::kReinhard}, DisplayTransform{0.0F, ToneMapping::kAgx},
+        DisplayTransform{0.0F, ToneMapping::kNone, true}}) {
     const std::vector<std::array<int, 3>> shown = encode(sums, display);
     int differing = 0;
     for (size_t i = 0; i < sums.size(); ++i) {
       const vec3 expected = apply(display, sums[i] / static_cast<float>(kSamples));
       for (int c = 0; c < 3; ++c) {
-        const auto in_file = static_cast<int>(std::lround(255.0F * encode_srgb(expected[c])));
+        float code = 255.0F * encode_srgb(expected[c]);
+        const auto at = static_cast<uint32_t>(i);
+        if (display.dithers) code = dithered(code, at % kSize.x, at / kSize.x, static_cast<uint32_t>(c));
+        const auto in_file = static_cast<int>(std::lround(code));
         const int in_window = shown[i][static_cast<size_t>(c)];
         // The device's pow may round the other way.
         ASSERT_LE(std::abs(in_window - in_file), 1) << "pixel " << i << ", radiance " << sums[i][c];

@@ -23,6 +23,7 @@ struct ProminPicturesReader {
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
   int first_channel = -1;
+  std::string channel_names;
 };
 
 namespace {
@@ -108,8 +109,11 @@ ProminPicturesInfo describe(ProminPicturesReader& reader) {
   const OIIO::ImageSpec& spec = reader.input->spec();
   const bool is_flat = spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep;
   reader.first_channel = find_rgb(spec);
+  for (const std::string& name : spec.channelnames) {
+    reader.channel_names += reader.channel_names.empty() ? name : " " + name;
+  }
   return {is_flat ? static_cast<uint64_t>(spec.width) : 0, is_flat ? static_cast<uint64_t>(spec.height) : 0,
-          is_flat ? 1U : 0U, reader.first_channel};
+          is_flat ? 1U : 0U, reader.first_channel, reader.channel_names.c_str()};
 }
 
 /// The number of channels that are read for RGBA: grey, grey and alpha, colours, colours and alpha.
@@ -173,7 +177,7 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
     if (std::string_view(format) == "webp") {
       opened->webp = {static_cast<const unsigned char*>(bytes), byte_count};
       const auto [width, height] = read_webp_size(opened->webp);
-      *info = {width, height, 1, -1};
+      *info = {width, height, 1, -1, opened->channel_names.c_str()};
       *reader = opened.release();
       return;
     }

@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 2
+#define PROMIN_PICTURES_INTERFACE 3
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -76,6 +76,8 @@ struct ProminPicturesInfo {
   uint32_t is_flat;
   /// The first of three channels named R, G, B; -1 where there are none.
   int32_t first_rgb_channel;
+  /// Names of all channels with spaces between, the reader's; empty for WebP.
+  const char* channel_names;
 };
 
 /// The PROMIN_PICTURES_INTERFACE that the plugin was built with.

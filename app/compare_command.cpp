@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "compare_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/srgb.h"
+#include "image/read_image.h"
+#include "outputs.h"
+#include "promin/compare.h"
+#include "promin/error.h"
+#include "rows.h"
+
+namespace promin::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kMostDifference = 1e9;
+
+struct CompareOptions {
+  fs::path first;
+  fs::path second;
+  std::optional<fs::path> difference;
+  /// Without a limit pictures may differ as they like.
+  std::optional<double> fail;
+  double fail_percent = 0.0;
+  double pixels_per_degree = kPixelsPerDegree;
+  bool prints_json = false;
+};
+
+/// Throws InputError where one picture has channels that the other lacks.
+void check_channels(const NamedPicture& first, const NamedPicture& second) {
+  if (first.channels == second.channels) return;
+  throw InputError({"the pictures differ in channels", fmt::format("{} against {}", first.channels, second.channels),
+                    "write both with the same --aov"});
+}
+
+PictureEncoding common_encoding(const CompareOptions& options) {
+  const PictureEncoding encoding = encoding_of(options.first);
+  if (encoding == encoding_of(options.second)) return encoding;
+  throw InputError({"one picture holds linear light and the other codes of sRGB",
+                    fmt::format("{} and {}", options.first.string(), options.second.string()),
+                    "give two .exr or two .png files"});
+}
+
+/// The colour that shows an error of 0...1, from black over red to white as the map "magma" of matplotlib has it at
+/// five places, in linear light.
+vec3 heat_color(float error) {
+  constexpr std::array<dvec3, 5> kCodes = {{{0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}}};
+  const double place = static_cast<double>(std::clamp(error, 0.0F, 1.0F)) * (kCodes.size() - 1);
+  const auto below = std::min(static_cast<size_t>(place), kCodes.size() - 2);
+  const dvec3 code = glm::mix(kCodes[below], kCodes[below + 1], place - static_cast<double>(below)) / 255.0;
+  return {srgb_to_linear(code.x), srgb_to_linear(code.y), srgb_to_linear(code.z)};
+}
+
+/// FLIP in colours, or where the file takes light as it is the absolute differences with FLIP as a channel.
+void write_difference(const fs::path& file, const Image& first, const Image& second,
+                      const PictureDifference& difference) {
+  Image shown = first;
+  if (!has_named_channels(file)) {
+    std::ranges::transform(difference.flip_map, shown.pixels.begin(), heat_color);
+    write_image(file, shown);
+    return;
+  }
+  Channel flip{"flip", false, {}};
+  for (size_t i = 0; i < shown.pixels.size(); ++i) {
+    shown.pixels[i] = glm::abs(first.pixels[i] - second.pixels[i]);
+    flip.values.push_back(std::bit_cast<uint32_t>(difference.flip_map[i]));
+  }
+  write_image(file, shown, {}, std::nullopt, {&flip, 1});
+}
+
+/// JSON has no infinity.
+nlohmann::json number_or_null(double number) {
+  return std::isfinite(number) ? nlohmann::json(number) : nlohmann::json(nullptr);
+}
+
+void print_json(const PictureDifference& difference) {
+  const nlohmann::ordered_json json = {{"pixels", difference.pixel_count},
+                                       {"mean", difference.mean},
+                                       {"rmse", difference.rmse},
+                                       {"psnr_db", number_or_null(difference.psnr_db)},
+                                       {"flip", difference.flip},
+                                       {"largest", number_or_null(difference.largest)},
+                                       {"largest_at", {difference.largest_at.x, difference.largest_at.y}},
+                                       {"different", difference.different_count},
+                                       {"non_finite", difference.non_finite_count}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+double percent_different(const PictureDifference& difference) {
+  return 100.0 * static_cast<double>(difference.different_count) / static_cast<double>(difference.pixel_count);
+}
+
+void print_rows(const PictureDifference& difference, double fail) {
+  print_row("mean", fmt::format("{:.6g}", difference.mean));
+  print_row("RMSE", fmt::format("{:.6g}", difference.rmse));
+  print_row("PSNR", fmt::format("{:.6g} dB", difference.psnr_db));
+  print_row("FLIP", fmt::format("{:.6g}", difference.flip));
+  std::string largest = fmt::format("{:.6g}", difference.largest);
+  if (difference.largest > 0.0) {
+    largest += fmt::format(", at pixel {} {}", difference.largest_at.x, difference.largest_at.y);
+  }
+  print_row("largest", largest);
+  print_row("over", fmt::format("{} pixels ({:.4g} %) differ by more than {:g}", difference.different_count,
+                                percent_different(difference), fail));
+  if (difference.non_finite_count > 0) {
+    print_row("not finite", fmt::format("{} pixels have a NaN or an infinity", difference.non_finite_count));
+  }
+}
+
+void compare(const CompareOptions& options) {
+  if (options.difference) {
+    check_pictures({*options.difference});
+    check_outputs({options.first, options.second}, {*options.difference}, std::nullopt);
+  }
+  const PictureEncoding encoding = common_encoding(options);
+  const NamedPicture first = read_named_picture(options.first);
+  const NamedPicture second = read_named_picture(options.second);
+  check_channels(first, second);
+  const double fail = options.fail.value_or(0.0);
+  const PictureDifference difference = compare_pictures(
+      first.image, second.image, {.encoding = encoding, .fail = fail, .pixels_per_degree = options.pixels_per_degree});
+  if (options.difference) write_difference(*options.difference, first.image, second.image, difference);
+  if (options.prints_json) {
+    print_json(difference);
+  } else {
+    print_rows(difference, fail);
+  }
+  if (!options.fail || percent_different(difference) <= options.fail_percent) return;
+  throw DifferenceError(
+      {fmt::format("{} pixels differ by more than {:g}, the most at pixel {} {} by {:.6g}", difference.different_count,
+                   fail, difference.largest_at.x, difference.largest_at.y, difference.largest),
+       fmt::format("{} against {}", options.second.string(), options.first.string()), ""});
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& program) {
+  CLI::App& command = add_command(program, "compare", "Tell how far two pictures are apart");
+  const auto options = std::make_shared<CompareOptions>();
+  OptionTable table(command);
+  table.add_required("FIRST", "", "A picture: .exr of linear light, .png and others of sRGB",
+                     [=](const OptionValues& words) { options->first = words.text(); });
+  table.add_required("SECOND", "", "Another of the same size and channels; R, G and B are compared",
+                     [=](const OptionValues& words) { options->second = words.text(); });
+  table.add("-o,--output", "FILE",
+            "Write where they differ: .png what a viewer sees (FLIP) in colours from black to white, .exr the absolute "
+            "differences with FLIP as a channel",
+            [=](const OptionValues& words) { options->difference = words.text(); });
+  table.add("--fail", "X", "Exit with 5 where a pixel differs by more, in the files' numbers, PNG's as 0 to 1",
+            [=](const OptionValues& words) { options->fail = words.real(0, 0.0, kMostDifference); });
+  table.add("--fail-percent", "P", "With --fail: so many pixels in a hundred may differ by more [0]",
+            [=](const OptionValues& words) { options->fail_percent = words.real(0, 0.0, 100.0); });
+  table.add("--pixels-per-degree", "N",
+            fmt::format("Of the viewer's sight, for FLIP [{:.4g}: a screen of 3840 pixels, as wide as it is away]",
+                        options->pixels_per_degree),
+            [=](const OptionValues& words) { options->pixels_per_degree = words.real(0, 1.0, 1000.0); });
+  table.add_flag("--json", "Print JSON", options->prints_json);
+  return {&command, [options] { compare(*options); }};
+}
+
+}  // namespace promin::app

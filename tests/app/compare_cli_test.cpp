@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// `promin compare`.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/cli_fixture.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class CompareCliTest : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    Image image{uvec2(16, 12), std::vector<vec3>(16 * 12, vec3(0.5F))};
+    write_image(folder() / "a.exr", image);
+    write_image(folder() / "a.png", image);
+    image.at(3, 2) = vec3(0.5F, 0.25F, 0.5F);
+    image.at(9, 7) = vec3(0.5F, 0.5F, 0.875F);
+    write_image(folder() / "b.exr", image);
+    write_image(folder() / "b.png", image);
+  }
+
+  ProcessResult compare(const OptionValues& more) const {
+    OptionValues arguments = {"compare"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+};
+
+TEST_F(CompareCliTest, TellsTheFigures) {
+  const ProcessResult same = compare({"a.exr", "a.exr", "--fail", "0"});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, HasSubstr("PSNR        inf dB"));
+  const ProcessResult other = compare({"a.exr", "b.exr"});
+  EXPECT_EQ(other.exit_code, 0) << "without a limit";
+  EXPECT_THAT(other.out, HasSubstr("largest     0.375, at pixel 9 7\n"));
+  EXPECT_THAT(other.out, HasSubstr("over        2 pixels (1.042 %) differ by more than 0\n"));
+  const json figures = json::parse(compare({"a.exr", "b.exr", "--json", "--fail", "0.3", "--fail-percent", "1"}).out);
+  EXPECT_DOUBLE_EQ(figures.at("mean"), 0.625 / 576);
+  EXPECT_EQ(figures.at("different"), 1);
+  EXPECT_EQ(figures.at("largest_at"), json({9, 7}));
+  EXPECT_GT(figures.at("flip"), 0.0);
+  EXPECT_EQ(json::parse(compare({"a.exr", "a.exr", "--json"}).out).at("psnr_db"), nullptr);
+  // FLIP is of what is seen, so of light and of its codes the same but for rounding.
+  const json coded = json::parse(compare({"a.png", "b.png", "--json"}).out);
+  EXPECT_NEAR(coded.at("flip"), figures.at("flip"), 2e-4);
+}
+
+TEST_F(CompareCliTest, MoreThanTheLimitIsFive) {
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.375"}).exit_code, 0);
+  const ProcessResult over = compare({"a.exr", "b.exr", "--fail", "0.25"});
+  EXPECT_EQ(over.exit_code, 5);
+  EXPECT_THAT(over.err, HasSubstr("promin: error: 1 pixels differ by more than 0.25, the most at pixel 9 7 by 0.375, "
+                                  "b.exr against a.exr"));
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.53"}).exit_code, 0) << "1 of 192";
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.52"}).exit_code, 5);
+}
+
+TEST_F(CompareCliTest, WritesWhereTheyDiffer) {
+  ASSERT_EQ(compare({"a.exr", "b.exr", "-o", "d.exr"}).exit_code, 0);
+  const Image difference = read_image(folder() / "d.exr");
+  EXPECT_EQ(difference.at(3, 2), vec3(0, 0.25F, 0));
+  EXPECT_EQ(difference.at(9, 7), vec3(0, 0, 0.375F));
+  EXPECT_EQ(difference.at(0, 0), vec3(0));
+  EXPECT_THAT(read("d.exr"), HasSubstr("flip"));
+  ASSERT_EQ(compare({"a.png", "b.png", "-o", "d.png"}).exit_code, 0);
+  const Image shown = read_image(folder() / "d.png");
+  EXPECT_GT(shown.at(9, 7).x, 0.5F);
+  EXPECT_LT(shown.at(0, 11).x, 0.02F) << "far from both";
+  expect_failure(compare({"a.exr", "b.exr", "-o", "a.exr"}), 2, "the output would overwrite an input");
+  expect_failure(compare({"a.exr", "b.exr", "-o", "d.txt"}), 2, "unknown output ending");
+}
+
+TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
+  expect_failure(compare({"a.exr", "c.exr"}), 3, "no such picture, c.exr");
+  expect_failure(compare({"a.exr", "a.png"}), 3, "one picture holds linear light and the other codes of sRGB");
+  write_image(folder() / "small.exr", {uvec2(16, 11), std::vector<vec3>(16 * 11)});
+  expect_failure(compare({"a.exr", "small.exr"}), 3, "the pictures differ in size, 16x12 against 16x11");
+  const Channel depth{"Z", false, std::vector<uint32_t>(16 * 12)};
+  write_image(folder() / "deep.exr", read_image(folder() / "a.exr"), {}, std::nullopt, {&depth, 1});
+  expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures differ in channels, R G B against R G B Z");
+  write("text.exr", "no picture");
+  expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
+  expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
+}
+
+}  // namespace
+}  // namespace promin
