@@ -101,9 +101,9 @@ std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
   return channels;
 }
 
-Metadata make_metadata(const RunStats& stats, const PlannedFrame& planned, const TracedFrame& traced) {
+/// No times: equal pictures are equal files.
+Metadata make_metadata(const RunStats& stats, const PlannedFrame& planned) {
   Metadata metadata = describe_picture(stats);
-  metadata.emplace_back("promin:trace_ms", fmt::format("{:.3f}", median(traced.trace_ms)));
   if (planned.number) metadata.emplace_back("promin:frame", std::to_string(*planned.number));
   return metadata;
 }
@@ -112,7 +112,7 @@ void write_pictures(const RenderOptions& options, const PlannedFrame& planned, c
                     const RunStats& stats) {
   std::optional<CropPlacement> placement;
   if (stats.view->crop) placement = CropPlacement{stats.view->crop->lo, stats.view->size};
-  const Metadata metadata = make_metadata(stats, planned, traced);
+  const Metadata metadata = make_metadata(stats, planned);
   const std::vector<Channel> channels = make_channels(traced.result.aovs, options.aovs);
   for (const std::filesystem::path& file : planned.pictures) {
     write_image(file, traced.result.image, metadata, placement, channels, stats.display);

@@ -160,6 +160,16 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--size", "W H",
             "Picture size in pixels [what the file asks for, or height 720, width by the camera's aspect ratio]",
             [&](const OptionValues& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
+  table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
+            "How samples are weighed by their distance from the pixel's centre [box]",
+            [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
+  table.add("--filter-width", "PIXELS",
+            fmt::format("From end to end of what the filter weighs, {} to {} [box 1, tent 2, others 3]",
+                        kMinFilterWidth, kMaxFilterWidth),
+            [&](const OptionValues& w) {
+              view.filter_width = static_cast<float>(
+                  w.real(0, static_cast<double>(kMinFilterWidth), static_cast<double>(kMaxFilterWidth)));
+            });
   table.add("--max-depth", "N",
             fmt::format("Bounces, 0 to {}; 0 traces neither mirror nor refracted rays [{}, with glass {}]", kMaxDepth,
                         View{}.max_depth, kMaxDepthOfGlass),

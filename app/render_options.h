@@ -64,6 +64,9 @@ struct ViewOptions {
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
   uint32_t samples_per_pixel = View{}.samples_per_pixel;
+  PixelFilter filter = PixelFilter::kBox;
+  /// In pixels; the filter's own where it is not given.
+  std::optional<float> filter_width = std::nullopt;
   /// As the scene needs where it is not given.
   std::optional<uint32_t> max_depth = std::nullopt;
   DebugView debug_view = DebugView::kNone;

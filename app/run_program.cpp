@@ -11,6 +11,7 @@
 #include <new>
 #include <vector>
 
+#include "manual.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -64,6 +65,18 @@ void name_option(Problem& problem) {
   if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
 }
 
+/// For the build alone, which installs what this prints (app/CMakeLists.txt).
+constexpr std::string_view kMakeManual = "--make-manual";
+
+void print_manual(const CLI::App& program, const std::string& kind) {
+  const std::optional<std::string> manual = make_manual(program, kind);
+  if (!manual) {
+    throw UsageError({fmt::format("{} takes man, bash, zsh or fish, not \"{}\"", kMakeManual, kind),
+                      "on the command line", "name one of them"});
+  }
+  fmt::print("{}", *manual);
+}
+
 void run_command(const std::string& name, const std::string& help,
                  std::initializer_list<Command (*)(CLI::App& program)> add_commands, int argc,
                  const char* const* argv) {
@@ -72,6 +85,7 @@ void run_command(const std::string& name, const std::string& help,
   add_common_options(program);
   std::vector<Command> commands;
   for (const auto add : add_commands) commands.push_back(add(program));
+  if (argc == 3 && argv[1] == kMakeManual) return print_manual(program, argv[2]);
   if (!parse_arguments(program, argc, argv)) return;
   for (const Command& command : commands) {
     if (command.app->parsed()) return command.run();

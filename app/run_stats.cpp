@@ -31,6 +31,8 @@ std::string name_of(ToneMapping mapping) {
 Json json_of_view(const View& view, const DisplayTransform& display) {
   Json json = {{"size", {view.size.x, view.size.y}},
                {"samples_per_pixel", view.samples_per_pixel},
+               {"filter", std::string(pixel_filter_names()[static_cast<size_t>(view.filter)])},
+               {"filter_width", view.filter_width},
                {"max_depth", view.max_depth},
                {"exposure_ev", display.exposure_ev},
                {"tone_mapping", name_of(display.tone_mapping)}};
@@ -70,6 +72,8 @@ Metadata describe_picture(const RunStats& stats) {
           {"promin:driver", stats.device.driver},
           {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
           {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
+          {"promin:filter", fmt::format("{} {:g}", pixel_filter_names()[static_cast<size_t>(stats.view->filter)],
+                                        stats.view->filter_width)},
           {"promin:max_depth", std::to_string(stats.view->max_depth)},
           {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
           {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};

@@ -10,21 +10,11 @@ uvec2 pixel_in_block(uint lane) {
   return uvec2(x, y);
 }
 
-// The i-th of n sample points in the unit square. They form a lattice with one point in each of n columns and rows,
-// symmetric about the centre: (i + 1/2, g (i + 1) mod (n + 1) - 1/2) / n. n = 1 gives the centre, n = 4 the rotated
-// grid. The host chooses g (engine/device_scene/sampling.h).
-vec2 lattice_point(uint index) {
-  uint count = samples_per_pixel();
-  uint row = (lattice_generator() * (index + 1u)) % (count + 1u) - 1u;
-  precise vec2 point = vec2(float(2u * index + 1u), float(2u * row + 1u)) * CAMERA.film_center.z;
-  return point;
-}
-
 // The direction is D = V - O with V on the viewport at distance 1 along `look`. So t counts in viewport distances, and
 // t > near is what lies beyond the near plane. D is not normalised.
-Ray camera_ray(uvec2 window_pixel, uint sample_index) {
+Ray camera_ray(uvec2 window_pixel) {
   vec2 corner = vec2(window_corner() + window_pixel);
-  precise vec2 from_center = (corner - CAMERA.film_center.xy) + lattice_point(sample_index);
+  precise vec2 from_center = (corner - CAMERA.film_center.xy) + sample_point();
   precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;
   if (!is_orthographic()) {
     precise vec3 direction = CAMERA.look.xyz + on_film;

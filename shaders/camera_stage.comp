@@ -70,7 +70,7 @@ bool begin_packet() {
     uvec2 pixel = corner + pixel_in_block((place + i) % (BLOCK_SIZE * BLOCK_SIZE));
     is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
     is_any_inside = is_any_inside || is_inside[i];
-    packet[i] = camera_ray(pixel, sample_at_hand());
+    packet[i] = camera_ray(pixel);
     forget_passed(i);
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
@@ -274,7 +274,7 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, bool is_on_surface) 
   if (has(FEATURE_BLENDING) && coverage < 1.0) {
     uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
     path.cone_width = CAMERA.look.w;
-    go_through(path, camera_ray(pixel, sample_at_hand()), path.passed_t, path.passed_order, coverage);
+    go_through(path, camera_ray(pixel), path.passed_t, path.passed_order, coverage);
     uint number = put_path(path);
     if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
     ++pass_count;

@@ -21,7 +21,8 @@ uint most_tree_rays() { return dispatch.outcome.y; }
 float least_tree_weight() { return uintBitsToFloat(dispatch.outcome.z); }
 
 uint samples_per_pixel() { return dispatch.sampling.x; }
-uint lattice_generator() { return dispatch.sampling.y; }
+// In pixels from the upper left corner of each (engine/device_scene/sampling.h).
+vec2 sample_point() { return uintBitsToFloat(uvec2(dispatch.sampling.y, dispatch.outcome.w)); }
 uint blocks_per_row() { return dispatch.sampling.z; }
 bool is_orthographic() { return dispatch.sampling.w != 0u; }
 

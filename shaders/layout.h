@@ -227,7 +227,7 @@ struct ViewConstants {
   vec4 ambient;
   vec4 background;  // w = 1 where rays from the camera see the sky instead, else 0
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
-  vec4 film_center;   // x, y = half the picture's size in pixels; z = 1 / (2 * samples)
+  vec4 film_center;   // x, y = half the picture's size in pixels
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
   uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
                        // w = extensions, as ExtensionRecords
@@ -242,10 +242,12 @@ struct Dispatch {
   uvec4 range;     // x = first block, y = one past the last, z = sample, w = mirror bounces
                    // casting: x = first ray, y = one past the last
   uvec4 window;    // x, y = first pixel; z, w = width and height in pixels
-  uvec4 sampling;  // x = samples a pixel, y = lattice generator, z = blocks a row, w = 1 for an orthographic camera
+  uvec4 sampling;  // x = samples a pixel, y = bits of x of the sample's place, z = blocks a row,
+                   // w = 1 for an orthographic camera
   uvec4 counts;    // x = index of the first plane's primitive, y = planes, z = lights, w = LOOP_CHECK_TURNS
   uvec4 outcome;   // casting: x = 1 after the dispatch if were_loops_cut(); 0 else
-                   // pictures: y = the most rays of a sample's tree, z = bits of the least weight of one
+                   // pictures: y = the most rays of a sample's tree, z = bits of the least weight of one,
+                   // w = bits of y of the sample's place in its pixel
 };
 
 // The stream of paths behind the pixels of a film (stream.glsl), for a piece of a picture.

@@ -59,6 +59,10 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   std::string command =
       fmt::format("promin render {} -o view.exr --size {} {} --spp {} --max-depth {}", quote(scene.file.string()),
                   view.size.x, view.size.y, view.samples_per_pixel, view.max_depth);
+  if (view.filter != PixelFilter::kBox || view.filter_width != default_width(view.filter)) {
+    command += fmt::format(" --filter {} --filter-width {:.9g}", pixel_filter_names()[static_cast<size_t>(view.filter)],
+                           view.filter_width);
+  }
   if (view.mode.debug_view != DebugView::kNone) {
     command += fmt::format(" --shading {}", debug_view_names()[static_cast<size_t>(view.mode.debug_view)]);
   }

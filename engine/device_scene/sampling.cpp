@@ -3,6 +3,7 @@
 #include "device_scene/sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,7 +24,54 @@ uint64_t shortest_vector2(uint32_t generator, uint32_t modulus) {
   return shortest2;
 }
 
+/// The share of the weight of a filter 2 wide that lies before x in -1...1.
+double share_before(PixelFilter filter, double x) {
+  switch (filter) {
+    case PixelFilter::kBox:
+      break;
+    case PixelFilter::kTent:
+      return x < 0.0 ? 0.5 * (1.0 + x) * (1.0 + x) : 1.0 - 0.5 * (1.0 - x) * (1.0 - x);
+    case PixelFilter::kGauss: {
+      const double end = 3.0 / std::numbers::sqrt2;
+      return 0.5 + 0.5 * std::erf(end * x) / std::erf(end);
+    }
+    case PixelFilter::kBlackmanHarris: {
+      // The integral of the window's four cosines (Harris 1978).
+      const double t = 0.5 * (1.0 + x);
+      constexpr std::array kTerms = {-0.48829 / 2.0, 0.14128 / 4.0, -0.01168 / 6.0};
+      double sum = 0.35875 * t;
+      for (size_t i = 0; i < kTerms.size(); ++i) {
+        sum += kTerms[i] / std::numbers::pi * std::sin(2.0 * std::numbers::pi * static_cast<double>(i + 1) * t);
+      }
+      return sum / 0.35875;
+    }
+  }
+  return 0.5 * (1.0 + x);
+}
+
 }  // namespace
+
+double place_of_share(PixelFilter filter, double width, double u) {
+  // The share grows with the place.
+  double low = -1.0;
+  double high = 1.0;
+  while (true) {
+    const double middle = 0.5 * (low + high);
+    if (middle <= low || middle >= high) return 0.5 * width * middle;
+    (share_before(filter, middle) < u ? low : high) = middle;
+  }
+}
+
+vec2 sample_point(const View& view, uint32_t generator, uint32_t index) {
+  const uint32_t count = view.samples_per_pixel;
+  const uint32_t row = (generator * (index + 1)) % (count + 1) - 1;
+  const vec2 shares = vec2(2 * index + 1, 2 * row + 1) * static_cast<float>(0.5 / count);
+  if (view.filter == PixelFilter::kBox && view.filter_width == 1.0F) return shares;
+  const auto place = [&](float share) {
+    return 0.5 + place_of_share(view.filter, static_cast<double>(view.filter_width), static_cast<double>(share));
+  };
+  return {place(shares.x), place(shares.y)};
+}
 
 uint32_t lattice_generator(uint32_t count) {
   // The search is quadratic. For more points the golden ratio's nearest coprime is good enough (Niederreiter 1992, ch.

@@ -47,8 +47,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
       .ambient = vec4(scene.ambient, 0.0F),
       .background = vec4(scene.background, scene.shows_sky ? 1.0F : 0.0F),
       .tree_bounds = scene.tree_bounds,
-      .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
-                          static_cast<float>(0.5 / view.samples_per_pixel), 0.0F),
+      .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y), 0.0F, 0.0F),
       .first_index = scene.first_index,
       .first_lookup = scene.first_lookup,
       .first_texture = scene.first_texture,
@@ -70,12 +69,13 @@ layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& vie
   const uint32_t is_orthographic = view.camera.projection == Projection::kOrthographic ? 1 : 0;
   return {.range = uvec4(range.first_block, range.end_block, range.sample, view.max_depth),
           .window = uvec4(window.lo, size),
-          .sampling = uvec4(view.samples_per_pixel, range.lattice_generator, divide_up(size.x, layout::BLOCK_SIZE),
-                            is_orthographic),
+          .sampling = uvec4(view.samples_per_pixel, std::bit_cast<uint32_t>(range.sample_point.x),
+                            divide_up(size.x, layout::BLOCK_SIZE), is_orthographic),
           .counts = counts_of(scene),
           // Kernels that know glass may trace scenes without it, which have no limits.
           .outcome = uvec4(0, scene.has_glass ? layout::MOST_TREE_RAYS : ~0U,
-                           std::bit_cast<uint32_t>(scene.has_glass ? layout::LEAST_TREE_WEIGHT : 0.0F), 0)};
+                           std::bit_cast<uint32_t>(scene.has_glass ? layout::LEAST_TREE_WEIGHT : 0.0F),
+                           std::bit_cast<uint32_t>(range.sample_point.y))};
 }
 
 layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_ray, uint32_t end_ray) {

@@ -52,8 +52,8 @@ struct TileRange {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   uint32_t sample = 0;
-  /// The value of lattice_generator (device_scene/sampling.h) for the view's samples.
-  uint32_t lattice_generator = 1;
+  /// In the pixel (device_scene/sampling.h).
+  vec2 sample_point{0.5F};
 };
 layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,
                                     const TileRange& range);

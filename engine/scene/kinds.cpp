@@ -5,6 +5,7 @@
 
 #include "promin/aovs.h"
 #include "promin/debug_view.h"
+#include "promin/view.h"
 
 namespace promin {
 
@@ -22,6 +23,22 @@ static_assert(0
 #include "promin/kinds/debug_views.def"
                   < 256,
               "the number of a debug view has 8 bits");
+
+std::span<const std::string_view> pixel_filter_names() {
+  static constexpr std::array kNames = {
+#define PROMIN_PIXEL_FILTER(ENUMERATOR, NAME, WIDTH) std::string_view(NAME),
+#include "promin/kinds/pixel_filters.def"
+  };
+  return kNames;
+}
+
+float default_width(PixelFilter filter) {
+  static constexpr std::array kWidths = {
+#define PROMIN_PIXEL_FILTER(ENUMERATOR, NAME, WIDTH) static_cast<float>(WIDTH),
+#include "promin/kinds/pixel_filters.def"
+  };
+  return kWidths.at(static_cast<size_t>(filter));
+}
 
 std::span<const std::string_view> aov_names() {
   static constexpr std::array kNames = {

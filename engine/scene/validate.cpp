@@ -267,6 +267,10 @@ class Validation {
           "take at most 32768 pixels a side");
     check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
           "the number of samples a pixel is out of range", "view.samples_per_pixel", "take 1 to 65535");
+    check(static_cast<size_t>(view.filter) < pixel_filter_names().size(), "the filter is none of PixelFilter",
+          "view.filter", "name one that there is");
+    check(view.filter_width >= kMinFilterWidth && view.filter_width <= kMaxFilterWidth,
+          "the width of the filter is out of range", "view.filter_width", "take 0.01 to 32 pixels");
     check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "take 0 to 1000");
     check(static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(), "the debug view is none of DebugView",
           "view.mode.debug_view", "name one that there is");

@@ -57,7 +57,7 @@ TileSample TileScheduler::next(double units) {
                                       {.first_block = first_block_,
                                        .end_block = first_block_ + block_count_,
                                        .sample = sample_,
-                                       .lattice_generator = lattice_generator_});
+                                       .sample_point = sample_point(view_, lattice_generator_, sample_)});
   piece.group_count = arrange_in_rows(divide_up(block_count_, options_.packet_size), options_.most_group_rows);
   piece.steps = most_steps(view_.max_depth, options_.refracted_rays, options_.most_layers);
   piece.depth = view_.max_depth;

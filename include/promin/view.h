@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include "promin/camera.h"
 #include "promin/debug_view.h"
@@ -31,6 +33,27 @@ struct RenderMode {
   bool operator==(const RenderMode&) const = default;
 };
 
+/// How the light around a pixel's centre is weighed. Samples are drawn by the filter's weight, so that each counts the
+/// same and a pixel hangs on its own rays alone (Ernst, Stamminger and Greiner, "Filter Importance Sampling", 2006).
+/// kBox, kTent; kGauss, cut off where it is 3 standard deviations from the centre; kBlackmanHarris, near to it and
+/// smoothly 0 at its ends.
+enum class PixelFilter : uint32_t {
+/// @cond
+#define PROMIN_PIXEL_FILTER(ENUMERATOR, NAME, WIDTH) ENUMERATOR,
+#include "promin/kinds/pixel_filters.def"
+  /// @endcond
+};
+
+/// Names for people, by the value of the PixelFilter; the first is "box".
+PROMIN_EXPORT std::span<const std::string_view> pixel_filter_names();
+/// The width that a filter has where none is asked for, in pixels.
+PROMIN_EXPORT float default_width(PixelFilter filter);
+
+/// The least and the largest width of a filter in pixels.
+inline constexpr float kMinFilterWidth = 0.01F;
+/// See kMinFilterWidth.
+inline constexpr float kMaxFilterWidth = 32.0F;
+
 /// The longest side of a picture in pixels.
 inline constexpr uint32_t kMaxSide = 32768;
 /// The largest number of samples a pixel.
@@ -49,6 +72,10 @@ struct View {
   std::optional<PixelWindow> crop;
   /// Samples a pixel, 1...kMaxSamplesPerPixel, at fixed points of a lattice; 1 samples the centre.
   uint32_t samples_per_pixel = 1;
+  /// The weight of samples by their distance from the pixel's centre.
+  PixelFilter filter = PixelFilter::kBox;
+  /// From end to end of what the filter weighs, in pixels, kMinFilterWidth...kMaxFilterWidth.
+  float filter_width = 1.0F;
   /// Bounces, 0...kMaxDepth; 0 traces neither mirror nor refracted rays. See default_max_depth.
   uint32_t max_depth = 5;
   /// What is shown; another mode than the last one's is compiled first.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -32,6 +34,65 @@ TEST_P(SamplingTest, EachRowHasOneSampleAndTheCentreIsTheMean) {
 
 INSTANTIATE_TEST_SUITE_P(Counts, SamplingTest,
                          testing::Values(1U, 2U, 3U, 4U, 5U, 8U, 16U, 64U, 100U, 128U, 129U, 1000U, 65535U));
+
+/// Of a filter 2 wide, unnormalised.
+double weight_of(PixelFilter filter, double x) {
+  const double t = 0.5 * (1.0 + x);
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  switch (filter) {
+    case PixelFilter::kBox:
+      return 1.0;
+    case PixelFilter::kTent:
+      return 1.0 - std::abs(x);
+    case PixelFilter::kGauss:
+      return std::exp(-4.5 * x * x);
+    case PixelFilter::kBlackmanHarris:
+      return 0.35875 - 0.48829 * std::cos(kTurn * t) + 0.14128 * std::cos(2 * kTurn * t) -
+             0.01168 * std::cos(3 * kTurn * t);
+  }
+  return 0.0;
+}
+
+// The share of samples before a place is that of the filter's weight, by a sum over small steps.
+TEST(PixelFilterTest, SamplesAreAsDenseAsTheWeight) {
+  for (size_t number = 0; number < pixel_filter_names().size(); ++number) {
+    const auto filter = static_cast<PixelFilter>(number);
+    SCOPED_TRACE(pixel_filter_names()[number]);
+    constexpr int kSteps = 1 << 18;
+    double total = 0.0;
+    for (int i = 0; i < kSteps; ++i) total += weight_of(filter, (2 * i + 1.0) / kSteps - 1);
+    double before = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      before += weight_of(filter, (2 * i + 1.0) / kSteps - 1) / total;
+      if ((i + 1) % 8192 != 0 || i + 1 == kSteps) continue;
+      EXPECT_NEAR(place_of_share(filter, 5.0, before), 2.5 * (2 * (i + 1.0) / kSteps - 1),
+                  2e-5 / weight_of(filter, 2 * (i + 1.0) / kSteps - 1))
+          << before;
+    }
+    EXPECT_NEAR(place_of_share(filter, 5.0, 0.5), 0.0, 1e-15) << "symmetric";
+    EXPECT_NEAR(place_of_share(filter, 5.0, 0.3), -place_of_share(filter, 5.0, 0.7), 1e-14);
+    EXPECT_GE(place_of_share(filter, 5.0, 0.0), -2.5);
+    EXPECT_LE(place_of_share(filter, 5.0, 1.0), 2.5);
+  }
+}
+
+TEST(PixelFilterTest, PointsOfTheLatticeAreMoved) {
+  View view;
+  view.samples_per_pixel = 4;
+  const uint32_t generator = lattice_generator(4);
+  EXPECT_EQ(sample_point(view, generator, 0).x, 0.125F);
+  EXPECT_EQ(sample_point(view, generator, 3).x, 0.875F);
+  view.filter_width = 3.0F;
+  EXPECT_FLOAT_EQ(sample_point(view, generator, 0).x, 0.5F - 3.0F * 0.375F);
+  view.filter = PixelFilter::kTent;
+  view.filter_width = 2.0F;
+  EXPECT_FLOAT_EQ(sample_point(view, generator, 0).x, 0.5F - (1.0F - 0.5F));
+  view.samples_per_pixel = 1;
+  for (const PixelFilter filter : {PixelFilter::kBox, PixelFilter::kGauss, PixelFilter::kBlackmanHarris}) {
+    view.filter = filter;
+    EXPECT_EQ(sample_point(view, 1, 0), vec2(0.5F)) << "the centre";
+  }
+}
 
 TEST(SampleLatticeTest, FourSamplesAreTheRotatedGrid) {
   const uint32_t generator = lattice_generator(4);

@@ -191,7 +191,11 @@ TEST_F(GltfCompressionTest, MeshoptFiltersGiveUnitVectorsAndFloats) {
   const size_t normal = add_compressed(gltf, compress_attributes(packed_normals.data(), 3, 4), 3, 4, "ATTRIBUTES",
                                        {{"componentType", 5120}, {"type", "VEC3"}, {"normalized", true}}, "OCTAHEDRAL");
   std::vector<uint32_t> packed_positions(9);
+#if MESHOPTIMIZER_VERSION >= 200
+  meshopt_encodeFilterExp(packed_positions.data(), 3, 12, 15, positions.data(), meshopt_EncodeExpSharedVector);
+#else
   meshopt_encodeFilterExp(packed_positions.data(), 3, 12, 15, positions.data());
+#endif
   const size_t position = add_compressed(gltf, compress_attributes(packed_positions.data(), 3, 12), 3, 12, "ATTRIBUTES",
                                          kPositions, "EXPONENTIAL");
   gltf.show({{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}});
