@@ -37,6 +37,7 @@ struct CompareChoice {
 
 /// How far apart two pictures are, in the units of their numbers.
 struct PictureDifference {
+  /// Of each of the two.
   uint64_t pixel_count = 0;
   /// Of the absolute differences of all channels of all pixels that are finite in both pictures.
   double mean = 0.0;
