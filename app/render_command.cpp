@@ -214,12 +214,21 @@ std::future<void> open_pictures_aside() {
   return std::async(std::launch::async, [] { open_pictures(); });
 }
 
+bool is_file_there(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::exists(file, error);
+}
+
 /// Whether all pictures of a frame are there.
 bool is_there(const PlannedFrame& frame) {
-  return std::ranges::all_of(frame.pictures, [](const std::filesystem::path& file) {
-    std::error_code error;
-    return std::filesystem::exists(file, error);
-  });
+  return std::ranges::all_of(frame.pictures, is_file_there);
+}
+
+/// Throws UsageError where a picture is there whose name the user has not given.
+void check_default_names(const std::vector<std::filesystem::path>& pictures) {
+  const auto found = std::ranges::find_if(pictures, is_file_there);
+  if (found == pictures.end()) return;
+  throw UsageError({"the picture is there already", found->string(), "say by -o where to write"});
 }
 
 void render(const RenderOptions& given) {
@@ -230,13 +239,15 @@ void render(const RenderOptions& given) {
   options.pictures = name_pictures(given);
   check_pictures(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);
+  if (given.pictures.empty()) check_default_names(pictures_of(frames));
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const bool has_pictures = !options.explained_pixel;
   if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
-  if (skipped > 0)
+  if (skipped > 0) {
     console.note(fmt::format("skipped {} of {} frames, whose pictures are there", skipped, skipped + frames.size()));
+  }
   if (frames.empty()) return;
   if (given.pictures.empty() && has_pictures) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));

@@ -244,13 +244,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
   if (!options.pictures.empty() || options.explained_pixel) return options.pictures;
   const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
-  const std::vector<std::filesystem::path> pictures = {stem + ".exr", stem + ".png"};
-  for (const std::filesystem::path& picture : pictures) {
-    std::error_code error;
-    if (options.path || !std::filesystem::exists(picture, error)) continue;
-    throw UsageError({"the picture is there already", picture.string(), "say by -o where to write"});
-  }
-  return pictures;
+  return {stem + ".exr", stem + ".png"};
 }
 
 void check_no_camera(const ViewOptions& options, std::string_view name) {

@@ -131,8 +131,7 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps);
 void add_render_options(CLI::App& command, RenderOptions& options);
 
 /// The pictures that a command writes: those named or, where none is and no pixel is explained, the scene's name with
-/// .exr and .png in the current folder, of a path's frames with their numbers. Throws UsageError where one of these is
-/// there.
+/// .exr and .png in the current folder, of a path's frames with #### for their numbers.
 std::vector<std::filesystem::path> name_pictures(const RenderOptions& options);
 
 /// Throws UsageError where there is a camera beside the option of this name, which brings cameras of its own.

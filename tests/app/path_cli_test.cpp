@@ -88,6 +88,15 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   EXPECT_THAT(nothing.err, HasSubstr("skipped 3 of 3 frames"));
 }
 
+TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
+  ASSERT_EQ(render_path({"--frames", "0-1"}).exit_code, 0);
+  EXPECT_THAT(files(), UnorderedElementsAre("path.json", "square.0000.exr", "square.0000.png", "square.0001.exr",
+                                            "square.0001.png"));
+  std::filesystem::remove(folder() / "square.0000.exr");
+  expect_failure(render_path({"--frames", "0-1"}), 2, "the picture is there already, square.0000.png");
+  EXPECT_EQ(render_path({"--frames", "2", "--quiet"}).exit_code, 0) << "another frame";
+}
+
 TEST_F(PathCliTest, FpsTakesThePathByTime) {
   EXPECT_EQ(render_path({"--fps", "10", "-o", "t#.exr", "--quiet"}).exit_code, 0);
   EXPECT_THAT(files(), UnorderedElementsAre("path.json", "t0.exr", "t1.exr", "t2.exr", "t3.exr"));
