@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "cli_fixture.h"
+#include "image/plugin/pictures.h"
 
 namespace promin {
 namespace {
@@ -83,7 +84,10 @@ TEST_F(PicturesPluginCliTest, OneThatDoesNotLoadIsRefused) {
 
 TEST_F(PicturesPluginCliTest, OneOfAnotherInterfaceIsRefused) {
   fs::copy_file(PROMIN_OTHER_PICTURES_PLUGIN, plugin());
-  expect_refusal("belongs to another version of promin (its interface is 3, not 2), plugins/libpromin_pictures.so;");
+  const std::string ours = std::to_string(PROMIN_PICTURES_INTERFACE);
+  const std::string others = std::to_string(PROMIN_PICTURES_INTERFACE + 1);
+  expect_refusal("belongs to another version of promin (its interface is " + others + ", not " + ours +
+                 "), plugins/libpromin_pictures.so;");
 }
 
 TEST_F(PicturesPluginCliTest, OneThatLacksAFunctionIsRefused) {
