@@ -18,7 +18,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// What follows the program's name, and its commands where it has any: each with its options.
+/// Whatever has options: the program itself, then its commands.
 std::vector<const CLI::App*> with_commands(const CLI::App& program) {
   std::vector<const CLI::App*> all = {&program};
   for (const CLI::App* command : commands_of(program)) all.push_back(command);
@@ -34,19 +34,11 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& app) {
-  std::vector<const CLI::Option*> options;
-  for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_positional()) options.push_back(option);
-  }
-  return options;
+  return app.get_options([](const CLI::Option* option) { return !option->get_positional(); });
 }
 
 std::vector<const CLI::Option*> positionals_of(const CLI::App& app) {
-  std::vector<const CLI::Option*> options;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_positional()) options.push_back(option);
-  }
-  return options;
+  return app.get_options([](const CLI::Option* option) { return option->get_positional(); });
 }
 
 bool takes_values(const CLI::Option& option) {

@@ -28,10 +28,14 @@ std::string name_of(ToneMapping mapping) {
   return std::string(tone_mapping_names()[static_cast<size_t>(mapping)]);
 }
 
+std::string name_of(PixelFilter filter) {
+  return std::string(pixel_filter_names()[static_cast<size_t>(filter)]);
+}
+
 Json json_of_view(const View& view, const DisplayTransform& display) {
   Json json = {{"size", {view.size.x, view.size.y}},
                {"samples_per_pixel", view.samples_per_pixel},
-               {"filter", std::string(pixel_filter_names()[static_cast<size_t>(view.filter)])},
+               {"filter", name_of(view.filter)},
                {"filter_width", view.filter_width},
                {"max_depth", view.max_depth},
                {"exposure_ev", display.exposure_ev},
@@ -72,8 +76,7 @@ Metadata describe_picture(const RunStats& stats) {
           {"promin:driver", stats.device.driver},
           {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
           {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
-          {"promin:filter", fmt::format("{} {:g}", pixel_filter_names()[static_cast<size_t>(stats.view->filter)],
-                                        stats.view->filter_width)},
+          {"promin:filter", fmt::format("{} {:g}", name_of(stats.view->filter), stats.view->filter_width)},
           {"promin:max_depth", std::to_string(stats.view->max_depth)},
           {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
           {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};

@@ -23,8 +23,8 @@ struct DisplayConstants {
 constexpr uint32_t kDecodes = 0;
 /// Constants of shaders/encode_film.comp.
 constexpr uint32_t kToneMapping = 0;
-constexpr uint32_t kDithers = 2;
 constexpr uint32_t kExposure = 1;
+constexpr uint32_t kDithers = 2;
 constexpr uint32_t kEncodedBinding = 0;
 
 /// Most workgroups that encode a film: enough for any device, each takes its share.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <span>
 
@@ -98,24 +99,22 @@ const Matrix kToXyz = glm::transpose(Matrix(10135552.0 / 24577794.0, 8788810.0 /
                                             2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0,    //
                                             1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0));
 
-dvec3 white() {
-  return kToXyz * dvec3(1.0);
-}
+const dvec3 kWhite = kToXyz * dvec3(1.0);
 
 dvec3 to_opponent(const dvec3& rgb) {
-  const dvec3 p = kToXyz * rgb / white();
+  const dvec3 p = kToXyz * rgb / kWhite;
   return {116.0 * p.y - 16.0, 500.0 * (p.x - p.y), 200.0 * (p.y - p.z)};
 }
 
 dvec3 opponent_to_rgb(const dvec3& c) {
   static const Matrix to_rgb = glm::inverse(kToXyz);
   const double y = (c.x + 16.0) / 116.0;
-  return to_rgb * (dvec3(y + c.y / 500.0, y, y - c.z / 200.0) * white());
+  return to_rgb * (dvec3(y + c.y / 500.0, y, y - c.z / 200.0) * kWhite);
 }
 
 /// CIELAB with chroma that grows with lightness, as Hunt found (equation 3).
 dvec3 to_hunt_lab(const dvec3& rgb) {
-  const dvec3 p = kToXyz * rgb / white();
+  const dvec3 p = kToXyz * rgb / kWhite;
   constexpr double kBend = 6.0 / 29.0;
   const auto f = [](double t) {
     return t > kBend * kBend * kBend ? std::cbrt(t) : t / (3.0 * kBend * kBend) + 4.0 / 29.0;
@@ -139,10 +138,10 @@ struct Gaussian {
 constexpr Gaussian kAchromatic = {1.0, 0.0047};
 constexpr Gaussian kRedGreen = {1.0, 0.0053};
 constexpr Gaussian kBlueYellow[] = {{34.1, 0.04}, {13.5, 0.025}};
-constexpr double kWidest = 0.04;
+constexpr Gaussian kWidest = kBlueYellow[0];
 
 int sensitivity_radius(double pixels_per_degree) {
-  return static_cast<int>(std::ceil(3.0 * std::sqrt(kWidest / (2.0 * kPi * kPi)) * pixels_per_degree));
+  return static_cast<int>(std::ceil(3.0 * std::sqrt(kWidest.b / (2.0 * kPi * kPi)) * pixels_per_degree));
 }
 
 double weight_of(const Gaussian& gaussian, double pixels, double pixels_per_degree) {

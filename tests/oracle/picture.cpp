@@ -428,16 +428,20 @@ class Tracer {
     }
     return bounded;
   }
+  /// How far the angle between a ray and the normal may be off, as what the normal is then off to one side.
+  static Vector tilt_of(const SurfacePoint& point, const Vector& direction, const PointError& error) {
+    const Vector across = direction - glm::dot(direction, point.normal) * point.normal;
+    if (!(glm::length(across) > 1e-9L)) return Vector(0);
+    return (error.normal + error.to_eye + 8 * kRoundoff) * glm::normalize(across);
+  }
   /// A face answers another angle otherwise: near that of total reflection much so.
   void add_errors_of_face(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction,
                           const PointError& error, BoundedResponse& bounded) const {
-    const Real off = error.normal + error.to_eye + 8 * kRoundoff;
-    const Vector across = direction - glm::dot(direction, point.normal) * point.normal;
-    const Vector aside = glm::length(across) > 1e-9L ? glm::normalize(across) : Vector(0);
+    const Vector tilt = tilt_of(point, direction, error);
     const Response whole = bounded;
     for (const Real sign : {-1, 1}) {
       SurfacePoint turned = point;
-      turned.normal = glm::normalize(point.normal + sign * off * aside);
+      turned.normal = glm::normalize(point.normal + sign * tilt);
       const Response other = respond(turned, texels, direction, error, {}, surroundings_);
       bounded.weight_error =
           std::max(bounded.weight_error, largest_difference(other.mirror_weight, whole.mirror_weight));
@@ -583,7 +587,7 @@ class Tracer {
       return;
     }
     const Vector direction = glm::normalize(ray.direction);
-    const Real off = error.normal + error.to_eye + 8 * kRoundoff;
+    const Vector tilt = tilt_of(point, direction, error);
     for (int color = 0; color < 3; ++color) {
       BoundedResponse colored = response;
       colored.through = Vector(0);
@@ -592,11 +596,9 @@ class Tracer {
       SurfacePoint with_face = point;
       with_face.face = face_of(color);
       colored.beyond = refract(direction, response.refracting_normal, point.geometric_normal, *with_face.face);
-      const Vector across = direction - glm::dot(direction, point.normal) * point.normal;
-      const Vector aside = glm::length(across) > 1e-9L ? glm::normalize(across) : Vector(0);
       Real through_error = response.through_error;
       for (const Real sign : {-1, 1}) {
-        const Vector turned = glm::normalize(response.refracting_normal + sign * off * aside);
+        const Vector turned = glm::normalize(response.refracting_normal + sign * tilt);
         const Refraction other = refract(direction, turned, point.geometric_normal, *with_face.face);
         // Next to the angle of total reflection a device may do the other.
         if (other.is_total != colored.beyond.is_total) through_error += kUnknown;
