@@ -35,7 +35,8 @@ namespace {
 uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options) {
   if (options.explained_pixel) return view.samples_per_pixel;
   const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
-  return uint64_t{size.x} * size.y * view.samples_per_pixel * frames * options.tracing.repeat_count;
+  const uint32_t samples = view.error_target ? view.error_target->min_samples : view.samples_per_pixel;
+  return uint64_t{size.x} * size.y * samples * frames * options.tracing.repeat_count;
 }
 
 TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_t expected_samples) {
@@ -56,14 +57,17 @@ struct TracedFrame {
   std::vector<double> trace_ms;
 };
 
-TracedFrame trace(Renderer& renderer, const View& view, uint32_t repeats,
+TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
                   const std::function<void(double)>& on_progress) {
   TracedFrame frame;
+  const uint32_t repeats = options.tracing.repeat_count;
   for (uint32_t i = 0; i < repeats; ++i) {
-    frame.result = renderer.render(view, [&](double fraction) {
+    const auto tell = [&](double fraction) {
       on_progress((i + fraction) / repeats);
       return true;
-    });
+    };
+    const std::optional<double> limit_s = options.error.time_limit_s;
+    frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
     frame.trace_ms.push_back(frame.result.trace_ms);
   }
   return frame;
@@ -119,13 +123,38 @@ void write_pictures(const RenderOptions& options, const PlannedFrame& planned, c
   }
 }
 
+/// The samples of a pixel and, with an error target, how exact that is; of several frames the worst.
+std::string describe_samples(const RunStats& stats) {
+  if (stats.errors.empty()) return fmt::format("{} spp", stats.view->samples_per_pixel);
+  PictureError all = stats.errors.front();
+  for (const PictureError& error : std::span(stats.errors).subspan(1)) {
+    all.target = std::max(all.target, error.target);
+    all.largest_claim = std::max(all.largest_claim, error.largest_claim);
+    all.unmet_pixels += error.unmet_pixels;
+    all.samples += error.samples;
+  }
+  const auto pictures = static_cast<double>(stats.errors.size());
+  const std::string unmet =
+      all.unmet_pixels == 0 ? ""
+                            : fmt::format(" but for {} pixels of at most {:.3g}", all.unmet_pixels, all.largest_claim);
+  return fmt::format("{:.4g} spp, error {:.9g}{}", mean_samples(*stats.view, all) / pictures, all.target, unmet);
+}
+
+/// The options that give a picture of a time limit again.
+std::string describe_target(const RunStats& stats) {
+  const ErrorTarget& target = *stats.view->error_target;
+  return fmt::format("the picture{} of --target-error {:.9g} --min-spp {} --max-spp {}",
+                     stats.frames.empty() ? "" : " of the last frame", stats.errors.back().target, target.min_samples,
+                     target.max_samples);
+}
+
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
   std::vector<std::string> files;
   for (const std::filesystem::path& file : options.pictures) files.push_back(file.string());
   const std::string frames = stats.frames.empty() ? "" : fmt::format("{} frames, ", stats.frames.size());
   const std::string time_of = stats.frames.empty() ? "" : " a frame";
-  return fmt::format("{}x{}, {} spp, {}{:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
-                     stats.view->size.y, stats.view->samples_per_pixel, frames,
+  return fmt::format("{}x{}, {}, {}{:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
+                     stats.view->size.y, describe_samples(stats), frames,
                      1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
                      stats.mrays_per_s(), stats.device.name, fmt::join(files, ", "));
 }
@@ -149,10 +178,11 @@ void expose_by_first(const RenderOptions& options, const TracedFrame& traced, Ru
 void render_frame(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
                   const Scene& scene, Renderer& renderer, RunStats& stats,
                   const std::function<void(double)>& on_progress) {
-  TracedFrame traced = trace(renderer, *stats.view, options.tracing.repeat_count, on_progress);
+  TracedFrame traced = trace(renderer, *stats.view, options, on_progress);
   check_validation(device, stats);
   number_as_in_file(scene, traced.result.aovs);
   stats.rays += traced.result.rays;
+  if (traced.result.error) stats.errors.push_back(*traced.result.error);
   if (planned.number) {
     stats.frames.push_back(*planned.number);
     stats.trace_ms.push_back(median(traced.trace_ms));
@@ -258,6 +288,7 @@ void render(const RenderOptions& given) {
   ViewOptions view = options.view;
   view.given_camera = frames.front().camera;
   stats.view = make_view(scene, view, console);
+  stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
   const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
   stats.display = choose_display(scene, view.look, view.debug_view);
@@ -286,6 +317,7 @@ void render(const RenderOptions& given) {
   pictures.get();
   render_frames(frames, options, *device, scene, renderer, stats, console);
 
+  if (options.error.time_limit_s) console.note(describe_target(stats));
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <charconv>
 #include <sstream>
@@ -30,6 +31,9 @@ constexpr double kMaxBackground = 1e9;
 /// More would leave the range of floats.
 constexpr double kMaxExposureEv = 64.0;
 constexpr uint32_t kMaxTextureMib = 8192;
+/// Seconds.
+constexpr double kMinTimeLimit = 1e-3;
+constexpr double kMaxTimeLimit = 1e6;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
@@ -112,6 +116,8 @@ void check_explain_options(const RenderOptions& options) {
                                                       {options.aovs.any(), "--aov"},
                                                       {options.view.crop.has_value(), "--crop"},
                                                       {options.view.debug_view != DebugView::kNone, "--shading"},
+                                                      {options.error.target.has_value(), "--target-error"},
+                                                      {options.error.time_limit_s.has_value(), "--time-limit"},
                                                       {options.tracing.stats.has_value(), "--stats"},
                                                       {options.tracing.repeat_count > 1, "--repeat"}};
   for (const auto& [is_given, name] : others) {
@@ -206,6 +212,50 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
       });
 }
 
+namespace {
+
+void add_error_options(OptionTable& table, ErrorOptions& error) {
+  const auto read_power = [](const OptionValues& w) {
+    const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
+    if (!std::has_single_bit(samples)) w.refuse(fmt::format("the samples are a power of two, not {}", samples));
+    return samples;
+  };
+  table.add("--target-error", "E",
+            fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {:.2g} to 1, where 1 is "
+                        "white",
+                        kMinTargetError),
+            [&](const OptionValues& w) {
+              error.target = static_cast<float>(w.real(0, static_cast<double>(kMinTargetError), 1.0));
+            });
+  table.add("--time-limit", "SECONDS",
+            "Instead of --spp: the most exact picture that can be had in this time, and the --target-error that gives "
+            "it again",
+            [&](const OptionValues& w) { error.time_limit_s = w.real(0, kMinTimeLimit, kMaxTimeLimit); });
+  table.add(
+      "--min-spp", "N",
+      fmt::format("Of --target-error and --time-limit: samples that each pixel takes, a power of two from {} [{}, "
+                  "for errors from 1/32 on {}]",
+                  kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
+      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w); });
+  table.add("--max-spp", "N",
+            fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
+                        kMaxRefinedSamples, ErrorTarget{}.max_samples),
+            [&, read_power](const OptionValues& w) { error.max_samples = read_power(w); });
+}
+
+}  // namespace
+
+std::optional<ErrorTarget> ErrorOptions::error_target() const {
+  if (!is_given()) return {};
+  ErrorTarget result;
+  result.error = target.value_or(kMinTargetError);
+  // What is coarse at any rate needs fewer.
+  if (target && !time_limit_s && *target >= 1.0F / 32.0F) result.min_samples = kMinRefinedSamples;
+  result.min_samples = min_samples.value_or(std::min(result.min_samples, max_samples.value_or(result.min_samples)));
+  result.max_samples = max_samples.value_or(std::max(result.max_samples, result.min_samples));
+  return result;
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
@@ -221,6 +271,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             });
   table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  add_error_options(table, options.error);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
   table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
@@ -254,10 +305,41 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
        "on the command line", "leave one out"});
 }
 
+namespace {
+
+void check_error_options(const RenderOptions& options) {
+  const ErrorOptions& error = options.error;
+  if (!error.is_given()) {
+    const bool has_limit = error.min_samples || error.max_samples;
+    if (!has_limit && !options.aovs.error) return;
+    throw UsageError({fmt::format("{} needs an error to aim at", options.aovs.error  ? "--aov error"
+                                                                 : error.min_samples ? "--min-spp"
+                                                                                     : "--max-spp"),
+                      "on the command line", "give --target-error as well"});
+  }
+  const std::string_view name = error.target ? "--target-error" : "--time-limit";
+  if (options.view.samples_per_pixel > 1) {
+    throw UsageError({fmt::format("{} and --spp contradict each other", name), "on the command line",
+                      "leave one out; --min-spp and --max-spp limit the samples"});
+  }
+  if (options.view.debug_view != DebugView::kNone) {
+    throw UsageError(
+        {fmt::format("{} and --shading contradict each other", name), "on the command line", "leave one out"});
+  }
+  const ErrorTarget target = *error.error_target();
+  if (target.min_samples > target.max_samples) {
+    throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
+                      "on the command line", "take more of the one or less of the other"});
+  }
+}
+
+}  // namespace
+
 void check_render_options(const RenderOptions& options) {
   check_tracing_options(options.tracing);
   if (options.path) check_no_camera(options.view, "--path");
   if (options.explained_pixel) check_explain_options(options);
+  check_error_options(options);
   if (options.skips_existing && options.pictures.empty()) {
     throw UsageError({"--skip-existing has no pictures to look for", "on the command line", "give -o as well"});
   }

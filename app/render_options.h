@@ -101,6 +101,19 @@ struct FrameRange {
   uint32_t last = 0;
 };
 
+/// How exact pictures are to be. What the user leaves open follows from the rest.
+struct ErrorOptions {
+  std::optional<float> target;
+  /// Seconds.
+  std::optional<double> time_limit_s;
+  std::optional<uint32_t> min_samples;
+  std::optional<uint32_t> max_samples;
+
+  bool is_given() const { return target || time_limit_s; }
+  /// Empty where pictures have samples of a fixed number.
+  std::optional<ErrorTarget> error_target() const;
+};
+
 struct RenderOptions {
   TracingOptions tracing;
   /// Where the user names none, those of name_pictures.
@@ -108,6 +121,7 @@ struct RenderOptions {
   /// Whether frames are left out whose pictures are there.
   bool skips_existing = false;
   ViewOptions view;
+  ErrorOptions error;
   /// Channels that an EXR carries beside R, G and B.
   AovChoice aovs;
   /// A camera path, and which of its frames to render; without `frames` all.

@@ -50,10 +50,25 @@ Json json_of_bvh(const BvhStats& bvh) {
           {"sah_cost", bvh.sah_cost}};
 }
 
+Json json_of_error(const RunStats& stats, size_t picture) {
+  const PictureError& error = stats.errors[picture];
+  return {{"target", error.target},
+          {"largest_claim", error.largest_claim},
+          {"unmet_pixels", error.unmet_pixels},
+          {"mean_samples", mean_samples(*stats.view, error)}};
+}
+
+/// As the metadata have it: of pictures with an error target the mean.
+std::string describe_samples(const RunStats& stats) {
+  if (stats.errors.empty()) return std::to_string(stats.view->samples_per_pixel);
+  return fmt::format("{:.9g}", mean_samples(*stats.view, stats.errors.back()));
+}
+
 Json json_of_frames(const RunStats& stats) {
   Json json = Json::array();
   for (size_t i = 0; i < stats.trace_ms.size(); ++i) {
     json.push_back({{"frame", stats.frames[i]}, {"trace_ms", stats.trace_ms[i]}});
+    if (!stats.errors.empty()) json.back()["error"] = json_of_error(stats, i);
   }
   return json;
 }
@@ -69,17 +84,31 @@ double RunStats::mrays_per_s() const {
   return ms > 0.0 ? static_cast<double>(rays.total()) / (1e3 * ms) : 0.0;
 }
 
+double mean_samples(const View& view, const PictureError& error) {
+  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
+  return static_cast<double>(error.samples) / (static_cast<double>(size.x) * size.y);
+}
+
 Metadata describe_picture(const RunStats& stats) {
-  return {{"promin:version", PROMIN_VERSION},
+  Metadata metadata = {{"promin:version", PROMIN_VERSION},
           {"promin:scene", stats.scene_file},
           {"promin:device", stats.device.name},
           {"promin:driver", stats.device.driver},
           {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
-          {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
+          {"promin:spp", describe_samples(stats)},
           {"promin:filter", fmt::format("{} {:g}", name_of(stats.view->filter), stats.view->filter_width)},
           {"promin:max_depth", std::to_string(stats.view->max_depth)},
           {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
           {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
+  if (stats.errors.empty()) return metadata;
+  const PictureError& error = stats.errors.back();
+  const ErrorTarget& target = *stats.view->error_target;
+  metadata.emplace_back("promin:target_error", fmt::format("{:.9g}", error.target));
+  metadata.emplace_back("promin:min_spp", std::to_string(target.min_samples));
+  metadata.emplace_back("promin:max_spp", std::to_string(target.max_samples));
+  metadata.emplace_back("promin:error_max", fmt::format("{:.9g}", error.largest_claim));
+  metadata.emplace_back("promin:error_unmet", std::to_string(error.unmet_pixels));
+  return metadata;
 }
 
 std::string to_json(const RunStats& stats) {
@@ -114,6 +143,7 @@ std::string to_json(const RunStats& stats) {
   } else {
     json["frames"] = json_of_frames(stats);
   }
+  if (stats.frames.empty() && !stats.errors.empty()) json["error"] = json_of_error(stats, 0);
   if (stats.view) json["view"] = json_of_view(*stats.view, stats.display);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -28,6 +28,8 @@ struct RunStats {
   DisplayTransform display;
   SetupStats setup;
   RayCounts rays;
+  /// Of pictures with an error target: of each frame, or of the one picture.
+  std::vector<PictureError> errors;
   /// The numbers of a camera path's frames; the rays are then those of all frames.
   std::vector<uint32_t> frames;
   /// The time of each repetition; for a path, the median of each frame.
@@ -41,6 +43,9 @@ struct RunStats {
   /// All rays over the median trace time, or over the time of all frames; 0 where that was too short to measure.
   double mrays_per_s() const;
 };
+
+/// Of a picture with an error target, a pixel.
+double mean_samples(const View& view, const PictureError& error);
 
 /// The metadata of an EXR about the run's view.
 Metadata describe_picture(const RunStats& stats);

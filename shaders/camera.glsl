@@ -12,9 +12,8 @@ uvec2 pixel_in_block(uint lane) {
 
 // The direction is D = V - O with V on the viewport at distance 1 along `look`. So t counts in viewport distances, and
 // t > near is what lies beyond the near plane. D is not normalised.
-Ray camera_ray(uvec2 window_pixel) {
-  vec2 corner = vec2(window_corner() + window_pixel);
-  precise vec2 from_center = (corner - CAMERA.film_center.xy) + sample_point();
+Ray ray_through(uvec2 pixel, vec2 place) {
+  precise vec2 from_center = (vec2(pixel) - CAMERA.film_center.xy) + place;
   precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;
   if (!is_orthographic()) {
     precise vec3 direction = CAMERA.look.xyz + on_film;
@@ -22,4 +21,12 @@ Ray camera_ray(uvec2 window_pixel) {
   }
   precise vec3 origin = CAMERA.eye.xyz + on_film;
   return make_ray(origin, CAMERA.look.xyz, CAMERA.eye.w, INFINITY);
+}
+
+Ray camera_ray(uvec2 window_pixel) { return ray_through(window_corner() + window_pixel, sample_point()); }
+
+// With FEATURE_LISTED_SAMPLES, of a record of the film as the host has put it there (engine/trace/film.h).
+Ray listed_ray(uint record) {
+  uvec4 listed = pixels[record];
+  return ray_through(uvec2(listed.z & 0xFFFFu, listed.z >> 16), uintBitsToFloat(listed.xy));
 }

@@ -69,12 +69,18 @@ bool begin_packet() {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     uvec2 pixel = corner + pixel_in_block((place + i) % (BLOCK_SIZE * BLOCK_SIZE));
     is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
+    uint index = pixel.y * window_size().x + pixel.x;
+    if (has(FEATURE_LISTED_SAMPLES)) {
+      index = first_block() * (BLOCK_SIZE * BLOCK_SIZE) + place + i;
+      is_inside[i] = block < end_block() && pixels[index].z != NO_LISTED_SAMPLE;
+      packet[i] = listed_ray(index);
+    } else {
+      packet[i] = camera_ray(pixel);
+    }
     is_any_inside = is_any_inside || is_inside[i];
-    packet[i] = camera_ray(pixel);
     forget_passed(i);
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
-    uint index = pixel.y * window_size().x + pixel.x;
     paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
                     CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, 0.0, 0u, LOG_CAMERA);
   }
@@ -86,6 +92,7 @@ bool begin_packet() {
 
 // Writes the pixel's record: a new one for the first sample, and for the middle sample what the AOVs need.
 void put_record(Path path, Ray ray, Hit hit) {
+  if (has(FEATURE_LISTED_SAMPLES)) return;
   bool is_first = sample_at_hand() == 0u;
   // Depths and ids have no average, so the middle sample stands for the pixel. With an odd number of samples it is the
   // centre.
@@ -266,15 +273,20 @@ void leave_glass(Path path, ShadingPoint point) {
   store_glass(number, path, store_children(number, 0u, children, point, false), false);
 }
 
+// The camera ray of a pixel of the film.
+Ray ray_of(uint index) {
+  if (has(FEATURE_LISTED_SAMPLES)) return listed_ray(index);
+  return camera_ray(uvec2(index % window_size().x, index / window_size().x));
+}
+
 // Adds what is seen of a pixel to its path, and sends that on.
 void leave_pixel(Path path, ShadingPoint point, vec3 light, bool is_on_surface) {
   float coverage = is_on_surface ? coverage_of(path, point) : 1.0;
   add_radiance(path, light, coverage);
   if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
   if (has(FEATURE_BLENDING) && coverage < 1.0) {
-    uvec2 pixel = uvec2(path.pixel % window_size().x, path.pixel / window_size().x);
     path.cone_width = CAMERA.look.w;
-    go_through(path, camera_ray(pixel), path.passed_t, path.passed_order, coverage);
+    go_through(path, ray_of(path.pixel), path.passed_t, path.passed_order, coverage);
     uint number = put_path(path);
     if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
     ++pass_count;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Noise for codes of 8 bits, as engine/image/dither.h has it for files.
 
-uint hash_of(uint x) {
+uint mix_bits(uint x) {
   x ^= x >> 16;
   x *= 0x7FEB352Du;
   x ^= x >> 15;
@@ -11,8 +11,8 @@ uint hash_of(uint x) {
 }
 
 float dithered(float code, uvec2 pixel, uint channel) {
-  uint first = hash_of(pixel.x + hash_of(pixel.y + hash_of(channel)));
-  uint second = hash_of(first);
+  uint first = mix_bits(pixel.x + mix_bits(pixel.y + mix_bits(channel)));
+  uint second = mix_bits(first);
   bool is_at_end = code < 1.0 || code > 254.0;
   uint sum = (first >> 9) + (is_at_end ? 1u << 22 : second >> 9);
   return clamp(code + (float(sum) * (1.0 / 8388608.0) - 1.0), 0.0, 255.0);

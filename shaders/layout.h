@@ -299,6 +299,10 @@ struct HitRecord {
 };
 LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 
+// With FEATURE_LISTED_SAMPLES each pixel of the film is a sample of a pixel of the picture: before it is traced x, y =
+// bits of its place in that pixel, z = that pixel, its row above 16 bits, or this; then xyz = its radiance.
+LAYOUT_CONSTANT NO_LISTED_SAMPLE = 0xFFFFFFFFu;
+
 // What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
 // its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is
 // in [1, 2), and t is in its units.

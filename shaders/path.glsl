@@ -113,6 +113,7 @@ void store_passed(uint number, Path path) {
 
 // Adds the path's radiance to its pixel, as one sample.
 void finish_path(Path path) {
-  precise vec3 sum = uintBitsToFloat(pixels[path.pixel].xyz) + path.radiance;
+  precise vec3 sum = path.radiance;
+  if (!has(FEATURE_LISTED_SAMPLES)) sum += uintBitsToFloat(pixels[path.pixel].xyz);
   pixels[path.pixel].xyz = floatBitsToUint(sum);
 }

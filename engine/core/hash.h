@@ -9,6 +9,15 @@
 
 namespace promin {
 
+/// An integer hash (Wellons, "Prospecting for Hash Functions", lowbias32).
+inline uint32_t mix_bits(uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7FEB352DU;
+  x ^= x >> 15;
+  x *= 0x846CA68BU;
+  return x ^ x >> 16;
+}
+
 /// A 64-bit checksum over words of 8 bytes: each is mixed in by xor, a multiplication by an odd number and a shift.
 /// Each step is one to one, so data that differ in one word alone never have the same value. It does not protect
 /// against forgers.

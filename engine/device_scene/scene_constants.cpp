@@ -36,7 +36,8 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
   const dvec3 up = dvec3(camera.up) * pixel;
   // A sample's share of a pixel, along a side (shaders/textures.glsl).
-  const auto cone = static_cast<float>(pixel / std::sqrt(static_cast<double>(view.samples_per_pixel)));
+  const uint32_t samples = view.error_target ? view.error_target->max_samples : view.samples_per_pixel;
+  const auto cone = static_cast<float>(pixel / std::sqrt(static_cast<double>(samples)));
   // A ray's interval is open, but what lies on the viewport itself is drawn.
   const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
   layout::ViewConstants constants{

@@ -15,6 +15,7 @@
 #include "trace/cut_loops.h"
 #include "trace/explain_pixel.h"
 #include "trace/progressive_picture.h"
+#include "trace/refinement.h"
 
 namespace promin {
 namespace {
@@ -28,6 +29,21 @@ constexpr size_t kMostPiecesAtOnce = 64;
 
 /// A lane's counters have 32 bits, so they are read before they can have overflowed.
 constexpr double kMaxRaysALane = 2e9;
+
+/// Samples that are traced between two looks at what they bring.
+constexpr size_t kMostListed = 1U << 19;
+/// The side of the parts of a picture that are refined one after the other.
+constexpr uint32_t kTileSide = 256;
+
+/// The errors that render_within asks for, one after the other.
+constexpr float kFirstErrorWithin = 0.125F;
+constexpr float kErrorStep = 1.41421356F;
+/// It takes so much more time for an error than is foretold.
+constexpr double kCaution = 1.2;
+
+PixelWindow picture_window(const View& view) {
+  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
+}
 
 vec3 vec3_of(const uvec4& bits) {
   return {std::bit_cast<float>(bits.x), std::bit_cast<float>(bits.y), std::bit_cast<float>(bits.z)};
@@ -116,6 +132,10 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   void prepare_film(const RenderMode& mode) {
     FeatureMask features = scene.features(mode);
     if (options.with_aovs) features |= layout::FEATURE_AOVS;
+    prepare_film(features);
+  }
+
+  void prepare_film(FeatureMask features) {
     if (film && features == film_features) return;
     film.emplace(device, scene.device_scene(), features,
                  FilmOptions{.packet_size = options.packet_size,
@@ -137,9 +157,9 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     }
   }
 
-  /// Traces one band: `window` of the picture, on a film of its size.
-  void trace_band(const PixelWindow& window, const View& view, RenderResult& result,
-                  const ProgressCallback& on_progress) {
+  /// Traces `window` of the picture, for which the film has room.
+  void trace_window(const PixelWindow& window, const View& view, RenderResult& result,
+                    const ProgressCallback& on_progress) {
     TileOptions cut = film->piece_options(view.max_depth);
     cut.blocks_per_piece = options.blocks_per_dispatch;
     if (cut.refracted_rays > 0) cut.least_blocks = TileOptions::kLeastBlocksOfTrees;
@@ -148,7 +168,6 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       refuse_cut_loops(taken.has_cut_loops);
       result.rays += taken.rays;
     };
-    film->reserve((window.hi.x - window.lo.x) * (window.hi.y - window.lo.y));
     TileScheduler picture = film->cut(view, window, cut);
     film->begin(picture);
     double uncollected = 0.0;
@@ -181,13 +200,13 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     average_samples(film_records, samples, std::span(result.image.pixels).subspan(first, count));
     if (!options.with_aovs) return;
     for (size_t i = 0; i < count; ++i) {
-      read_aovs(film_records[i], film_records[count + i], film_records[2 * count + i], first + i, result.aovs);
+      read_aovs(film_records[i], film_records[count + i], film_records[2 * count + i], samples, first + i, result.aovs);
     }
   }
 
   /// Reads a pixel's AOVs from its three records (shaders/film.glsl).
-  void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, const uvec4& albedo_and_material, size_t at,
-                 Aovs& aovs) const {
+  void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, const uvec4& albedo_and_material, uint32_t samples,
+                 size_t at, Aovs& aovs) const {
     PrimitiveId id{Aovs::kNoId, Aovs::kNoId};
     if (pixel.w != layout::NO_ORDER) id = primitive_of_order(scene.numbers(), pixel.w);
     // Members have the names of the table, so an AOV that nothing is read into does not compile.
@@ -198,18 +217,23 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       uint32_t primitive;
       uint32_t material;
       vec3 albedo;
+      uint32_t samples;
+      vec3 error;
     } told{std::bit_cast<float>(normal_and_depth.w),
            vec3_of(normal_and_depth),
            id.object,
            id.primitive,
            albedo_and_material.w,
-           vec3_of(albedo_and_material)};
+           vec3_of(albedo_and_material),
+           samples,
+           vec3(0.0F)};
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) aovs.FIELD[at] = told.FIELD;
 #include "promin/kinds/aovs.def"
   }
 
   RenderResult render(const View& view, const ProgressCallback& progress) {
-    const PixelWindow window = view.crop.value_or(PixelWindow{uvec2(0), view.size});
+    if (view.error_target) return render_to_error(view, progress);
+    const PixelWindow window = picture_window(view);
     RenderResult result;
     result.image.size = window.hi - window.lo;
     const uint32_t width = result.image.size.x;
@@ -224,11 +248,105 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       const uint32_t rows = band.hi.y - band.lo.y;
       const double done = static_cast<double>(y - window.lo.y) / result.image.size.y;
       const double fraction_of_band = static_cast<double>(rows) / result.image.size.y;
-      trace_band(band, view, result,
-                 [&](double fraction) { return !progress || progress(done + fraction_of_band * fraction); });
+      film->reserve(width * rows);
+      trace_window(band, view, result,
+                   [&](double fraction) { return !progress || progress(done + fraction_of_band * fraction); });
       read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width, view.samples_per_pixel,
                 result);
     }
+    return result;
+  }
+
+  /// Traces samples until the refinement has what it was asked for.
+  void refine(Refinement& refinement, const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+    std::vector<vec3> radiance;
+    for (auto list = refinement.next(kMostListed); !list.empty(); list = refinement.next(kMostListed)) {
+      film->put_list(list);
+      trace_window(list_window(list.size()), view, result,
+                   [&](double) { return !on_progress || on_progress(refinement.fraction_done()); });
+      radiance.resize(list.size());
+      film->read_list(radiance);
+      refinement.take(radiance);
+    }
+  }
+
+  /// Fills a result with what a refinement of `window` has come to.
+  void take_refined(const Refinement& refinement, const PixelWindow& window, const View& view,
+                    RenderResult& result) const {
+    const PixelWindow whole = picture_window(view);
+    const uvec2 size = window.hi - window.lo;
+    for (size_t i = 0; i < refinement.pixel_count(); ++i) {
+      const uvec2 place = window.lo - whole.lo + uvec2(i % size.x, i / size.x);
+      const size_t at = static_cast<size_t>(place.y) * result.image.size.x + place.x;
+      const PixelEstimate& estimate = refinement.estimate(i);
+      const vec3 mean = estimate.mean();
+      result.image.pixels[at] = mean;
+      const vec3& claim = refinement.claim(i);
+      result.error->largest_claim = std::max(result.error->largest_claim, relative_claim(claim, mean));
+      result.error->unmet_pixels += refinement.is_near_enough(i) ? 0 : 1;
+      result.error->samples += estimate.count();
+      if (!options.with_aovs) continue;
+      result.aovs.samples[at] = estimate.count();
+      result.aovs.error[at] = claim;
+    }
+  }
+
+  /// A picture without pixels yet, with its AOVs: of rays through the pixels' centres.
+  RenderResult begin_refined(const View& view, const ProgressCallback& progress) {
+    RenderResult result;
+    if (options.with_aovs) {
+      View centers = view;
+      centers.error_target.reset();
+      centers.samples_per_pixel = 1;
+      centers.max_depth = 0;
+      result = render(centers, progress);
+    }
+    const PixelWindow window = picture_window(view);
+    result.image.size = window.hi - window.lo;
+    result.image.pixels.resize(static_cast<size_t>(result.image.size.x) * result.image.size.y);
+    result.error.emplace(PictureError{.target = view.error_target->error});
+    prepare_film(scene.features(view.mode) | layout::FEATURE_LISTED_SAMPLES);
+    return result;
+  }
+
+  RenderResult render_to_error(const View& view, const ProgressCallback& progress) {
+    RenderResult result = begin_refined(view, progress);
+    const PixelWindow window = picture_window(view);
+    const uvec2 tiles = (result.image.size + kTileSide - 1U) / kTileSide;
+    for (uint32_t tile = 0; tile < tiles.x * tiles.y; ++tile) {
+      const uvec2 lo = window.lo + kTileSide * uvec2(tile % tiles.x, tile / tiles.x);
+      const PixelWindow part{lo, glm::min(window.hi, lo + kTileSide)};
+      Refinement refinement(view, part);
+      refine(refinement, view, result,
+             [&](double fraction) { return !progress || progress((tile + fraction) / (tiles.x * tiles.y)); });
+      take_refined(refinement, part, view, result);
+    }
+    return result;
+  }
+
+  RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress) {
+    const Stopwatch elapsed;
+    View step = view;
+    step.error_target->error = std::max(view.error_target->error, kFirstErrorWithin);
+    RenderResult result = begin_refined(step, progress);
+    const PixelWindow window = picture_window(view);
+    Refinement refinement(step, window);
+    const auto on_progress = [&](double) {
+      return !progress || progress(std::min(1.0, 1e-3 * elapsed.ms() / seconds));
+    };
+    const Stopwatch tracing;
+    float& error = step.error_target->error;
+    for (refine(refinement, step, result, on_progress); error > view.error_target->error;) {
+      const float next_error = std::max(view.error_target->error, error / kErrorStep);
+      const double ms_a_sample = tracing.ms() / static_cast<double>(refinement.sample_count());
+      const double ms_ahead = kCaution * ms_a_sample * refinement.foretell_samples(next_error);
+      if (elapsed.ms() + ms_ahead > 1e3 * seconds) break;
+      error = next_error;
+      refinement.aim(error);
+      refine(refinement, step, result, on_progress);
+    }
+    result.error->target = error;
+    take_refined(refinement, window, step, result);
     return result;
   }
 
@@ -336,6 +454,16 @@ Explanation Renderer::explain(const View& view, const uvec2& pixel) {
     explanation = explain_pixel(impl_->device, scene.device_scene(), scene.numbers(), features, view, pixel);
   });
   return explanation;
+}
+
+RenderResult Renderer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
+  check_view(view);
+  check(view.error_target.has_value(), "there is no error to refine to", "view.error_target", "set one");
+  check(seconds > 0.0 && std::isfinite(seconds), "the time is not positive and finite", "seconds",
+        "give a picture some seconds");
+  RenderResult result;
+  gpu::translate_vulkan_errors([&] { result = impl_->render_within(view, seconds, progress); });
+  return result;
 }
 
 RenderResult Renderer::render(const View& view, const ProgressCallback& progress) {

@@ -3,6 +3,7 @@
 #include "promin/validate.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "core/rounding.h"
@@ -274,11 +275,26 @@ class Validation {
     check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "take 0 to 1000");
     check(static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(), "the debug view is none of DebugView",
           "view.mode.debug_view", "name one that there is");
+    if (view.error_target) check_error_target(view);
     if (!view.crop) return;
     check(view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y, "the crop is empty", "view.crop",
           "take a window of pixels with lo < hi");
     check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop reaches beyond the picture",
           "view.crop", "stay within its size");
+  }
+
+  void check_error_target(const View& view) {
+    const ErrorTarget& target = *view.error_target;
+    check(target.error >= kMinTargetError && target.error <= 1.0F, "the error is out of range",
+          "view.error_target.error", "take 1/65536 to 1");
+    check(std::has_single_bit(target.min_samples) && target.min_samples >= kMinRefinedSamples, "the least number of samples is wrong",
+          "view.error_target.min_samples", "take a power of two from 4 on");
+    check(std::has_single_bit(target.max_samples) && target.max_samples >= target.min_samples &&
+              target.max_samples <= kMaxRefinedSamples,
+          "the largest number of samples is wrong", "view.error_target.max_samples",
+          "take a power of two from the least number to 32768");
+    check(view.mode.debug_view == DebugView::kNone, "a debug view has no error", "view.error_target",
+          "leave the error target out, or show light");
   }
 
   void check_geometry(const Scene& scene, size_t index) {

@@ -24,6 +24,9 @@ using Stage = vk::PipelineStageFlagBits;
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 
+/// Samples of a list that a thread takes at a time.
+constexpr size_t kListChunk = 65536;
+
 /// One for each lane of a block.
 using Counters = std::array<uvec4, kLanes>;
 
@@ -125,6 +128,26 @@ void Film::reserve(uint32_t pixel_count) {
   }
 }
 
+void Film::put_list(std::span<const ListedSample> samples) {
+  const uvec2 size = list_window(samples.size()).hi;
+  reserve(size.x * size.y);
+  list_records_.assign(size_t{size.x} * size.y, uvec4(0, 0, layout::NO_LISTED_SAMPLE, 0));
+  for_each_chunk(samples.size(), kListChunk, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const ListedSample& sample = samples[i];
+      list_records_[i] = uvec4(std::bit_cast<uint32_t>(sample.place.x), std::bit_cast<uint32_t>(sample.place.y),
+                               sample.pixel.x | sample.pixel.y << 16, 0);
+    }
+  });
+  buffer_->write(std::as_bytes(std::span(list_records_)), kPixelsOffset);
+}
+
+void Film::read_list(std::span<vec3> radiance) {
+  list_records_.resize(radiance.size());
+  buffer_->read(std::as_writable_bytes(std::span(list_records_)), kPixelsOffset);
+  average_samples(list_records_, 1, radiance);
+}
+
 TileOptions Film::piece_options(uint32_t depth) const {
   const gpu::DeviceProfile& profile = device_->profile();
   // A piece's paths have room in the stream, be they all of its pixels.
@@ -133,7 +156,12 @@ TileOptions Film::piece_options(uint32_t depth) const {
           .most_group_rows = profile.most_group_rows,
           .most_blocks = has_stream() ? most_paths / kLanes : TileOptions::kMaxBlocks,
           .most_layers = most_layers(),
-          .refracted_rays = refracted_rays(features_)};
+          .refracted_rays = refracted_rays(features_),
+          .is_listed = is_listed()};
+}
+
+bool Film::is_listed() const {
+  return features_.has_any(layout::FEATURE_LISTED_SAMPLES);
 }
 
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
@@ -182,7 +210,8 @@ FilmCounts Film::take_counts() const {
   return {sum_counts(target.mapped()), were_loops_cut(target.mapped())};
 }
 
-void Film::warm_up() const {
+void Film::warm_up() {
+  if (is_listed()) put_list({});
   if (stream_) {
     device_->run([&](const vk::raii::CommandBuffer& commands) {
       stream_->record_begin(commands, *buffer_, stream_shape(capacity_, 0));
@@ -238,6 +267,12 @@ uint32_t Film::max_capacity() const {
   const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(layout::FilmHead)) / sizeof(uvec4);
   const uint64_t most_of_stream = StreamShape::kMostBytes / sizeof(uvec4);
   return static_cast<uint32_t>((records - most_of_stream) / records_per_pixel());
+}
+
+PixelWindow list_window(size_t sample_count) {
+  // A row of blocks, one at least.
+  const auto blocks = static_cast<uint32_t>(std::max<size_t>(divide_up(sample_count, size_t{kLanes}), 1));
+  return {uvec2(0), uvec2(blocks * layout::BLOCK_SIZE, layout::BLOCK_SIZE)};
 }
 
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {

@@ -14,6 +14,7 @@
 #include "scene/features.h"
 #include "trace/path_stream.h"
 #include "trace/picture_shaders.h"
+#include "trace/refinement.h"
 #include "trace/tile_scheduler.h"
 #include "trace/tracing_kernel.h"
 
@@ -52,6 +53,12 @@ class Film {
   void reserve(uint32_t pixel_count);
   uint32_t capacity() const { return capacity_; }
 
+  /// With FEATURE_LISTED_SAMPLES: puts samples on the film, where a picture of list_window() traces them; makes room
+  /// for them. The device is idle with respect to the film.
+  void put_list(std::span<const ListedSample> samples);
+  /// What they have seen, as many as were put there.
+  void read_list(std::span<vec3> radiance);
+
   /// Takes note that the scene has changed parts; the device is idle with respect to the film.
   void bind_scene();
 
@@ -72,7 +79,7 @@ class Film {
   double run(std::span<const TileSample> pieces) const;
   FilmCounts take_counts() const;
   /// Traces a block of one pixel: drivers compile late, and a pipeline's first dispatch must not count as tracing.
-  void warm_up() const;
+  void warm_up();
 
   /// Records of a pixel, of uvec4: its sum over samples, and of the AOVs another.
   uint32_t records_per_pixel() const;
@@ -85,6 +92,8 @@ class Film {
   static const vk::DeviceSize kCountersBytes;
 
  private:
+  /// Whether its pixels are samples of a list.
+  bool is_listed() const;
   /// Whether paths go on beyond the camera stage.
   bool has_stream() const;
   /// How many surfaces that blend a ray goes through.
@@ -106,11 +115,16 @@ class Film {
   uint32_t log_records_;
   gpu::Buffer view_constants_;
   std::optional<gpu::Buffer> buffer_;
+  /// Of a list, on their way.
+  std::vector<uvec4> list_records_;
   vk::raii::BufferView texels_{nullptr};
   uint32_t capacity_ = 0;
   std::optional<TracingKernel> kernel_;
   std::optional<PathStream> stream_;
 };
+
+/// The window of a picture that traces a list of so many samples: a block's lanes take what lies side by side.
+PixelWindow list_window(size_t sample_count);
 
 /// Pixels of a film, from their first records: what they hold over the number of samples. As many as `pixels`.
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels);

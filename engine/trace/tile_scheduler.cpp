@@ -36,6 +36,7 @@ TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, cons
       view_(view),
       window_(window),
       options_(options),
+      samples_(options.is_listed ? 1 : view.samples_per_pixel),
       lattice_generator_(lattice_generator(view.samples_per_pixel)) {
   static_assert(TileOptions::kMaxBlocks <= 65535, "Vulkan's guaranteed workgroup count");
   assert(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel);
@@ -45,7 +46,7 @@ TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, cons
 }
 
 double TileScheduler::fraction_done() const {
-  return (first_block_ + block_count_ * (static_cast<double>(sample_) / view_.samples_per_pixel)) / block_total_;
+  return (first_block_ + block_count_ * (static_cast<double>(sample_) / samples_)) / block_total_;
 }
 
 TileSample TileScheduler::next(double units) {
@@ -66,7 +67,7 @@ TileSample TileScheduler::next(double units) {
   piece.most_rays_a_lane = most_hits * (1.0 + scene_.light_count) * (1.0 + options_.most_layers) * piece.units;
 
   ++sample_;
-  if (sample_ == view_.samples_per_pixel) {
+  if (sample_ == samples_) {
     first_block_ += block_count_;
     block_count_ = 0;
     sample_ = 0;

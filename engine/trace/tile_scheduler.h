@@ -44,6 +44,8 @@ struct TileOptions {
   uint32_t most_layers = 0;
   /// How many rays a surface may send through itself (refracted_rays).
   uint32_t refracted_rays = 0;
+  /// Whether each pixel is a sample of a list (FEATURE_LISTED_SAMPLES), which is traced once.
+  bool is_listed = false;
   /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
   uint32_t blocks_per_piece = 0;
 };
@@ -81,6 +83,7 @@ class TileScheduler {
   View view_;
   PixelWindow window_;
   TileOptions options_;
+  uint32_t samples_;
   uint32_t lattice_generator_;
   uint32_t pixel_count_;
   uint32_t block_total_;

@@ -14,14 +14,16 @@
 namespace promin {
 
 /// Arbitrary output variables: what a picture tells of each pixel beside its colour. They are of the pixel's middle
-/// sample, that of index samples / 2; with an odd number of samples it is the pixel's centre. The values stand row by
-/// row as those of the image:
+/// sample, that of index samples / 2; with an odd number of samples it is the pixel's centre, and so with an error
+/// target. The values stand row by row as those of the image:
 ///   - depth: distance from the eye, with an orthographic camera from the plane through it; infinite on a miss
 ///   - normal: geometric normal as Hit::normal, never flipped to the ray; 0 on a miss
 ///   - object, primitive: as Hit::object and Hit::primitive; kNoId on a miss
 ///   - material: index into Scene::materials; kNoId on a miss
 ///   - albedo: the base colour, linear RGB, with vertex colours and textures: of Phong materials the diffuse factor, of
 ///     unlit ones the colour; 0 on a miss
+///   - samples: how many the pixel has taken
+///   - error: by how much each channel may be off (promin/view.h, ErrorTarget); 0 without an error target
 struct Aovs {
   /// What object, primitive and material are on a miss.
   static constexpr uint32_t kNoId = 0xFFFFFFFF;

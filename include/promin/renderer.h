@@ -27,12 +27,26 @@ namespace gpu {
 class Device;
 }
 
+/// How exact a picture with an error target came to be (View::error_target).
+struct PictureError {
+  /// The error that was asked for: the one to ask for to have the same picture again.
+  float target = 0.0F;
+  /// The largest claim of a pixel, of 1 or of its largest channel where that is more.
+  float largest_claim = 0.0F;
+  /// Pixels that have taken the most samples and claim more than the target.
+  uint64_t unmet_pixels = 0;
+  /// Of the picture's pixels together.
+  uint64_t samples = 0;
+};
+
 /// A picture and what it took.
 struct RenderResult {
   /// Of the size of View::crop, or of View::size without one.
   Image image;
   /// Empty unless RendererOptions::with_aovs.
   Aovs aovs;
+  /// Of pictures with an error target.
+  std::optional<PictureError> error;
   /// Rays of the whole picture.
   RayCounts rays;
   /// Device time of the traversal and shading dispatches alone (timestamps where the device has them, else waiting
@@ -86,6 +100,13 @@ class PROMIN_EXPORT Renderer {
   /// Traces one picture, and compiles first where its mode is another than the last one's. `progress` is called after
   /// each dispatch. Throws UsageError for a view that breaks the rules of promin/view.h, RunError, Cancelled.
   RenderResult render(const View& view, const ProgressCallback& progress = {});
+
+  /// The most exact picture that is complete within about `seconds`: with errors of 1/8, then each less than the one
+  /// before by the root of 2, until the next would take too long or the view's own error is reached.
+  /// PictureError::target names the last, with which `render` gives the same bits; without any it is what the least
+  /// samples of each pixel bring. Takes 200 bytes of memory a pixel. `seconds` is positive. Throws as `render`, and
+  /// UsageError for a view without an error target.
+  RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress = {});
 
   /// Traces the view as a window does: in few pixels at first, as many as `budget_ms` allows, then in all of them, then
   /// with 4, 16 and 64 samples a pixel or until the view has its own number. Each picture that is complete goes to

@@ -54,6 +54,26 @@ inline constexpr float kMinFilterWidth = 0.01F;
 /// See kMinFilterWidth.
 inline constexpr float kMaxFilterWidth = 32.0F;
 
+/// How exact a picture is to be. Each pixel takes samples until a claim of its error is at most `error`, in each
+/// channel of linear light: of 1, or of the pixel's largest channel where that is more. Of the pixels that take more than
+/// `min_samples` the claim holds for at least 95 in 100 (docs/model.md, "Error of a pixel").
+struct ErrorTarget {
+  /// kMinTargetError...1.
+  float error = 1.0F / 64.0F;
+  /// The samples that each pixel takes, a power of two, kMinRefinedSamples...max_samples. What is thinner than a pixel over this number
+  /// may lie between all samples.
+  uint32_t min_samples = 8;
+  /// The samples at which a pixel stops, near enough or not, a power of two, at most kMaxRefinedSamples.
+  uint32_t max_samples = 256;
+};
+
+/// The least error to ask for.
+inline constexpr float kMinTargetError = 1.0F / 65536.0F;
+/// The least number of samples that tell of an error.
+inline constexpr uint32_t kMinRefinedSamples = 4;
+/// The most samples that a pixel is refined to.
+inline constexpr uint32_t kMaxRefinedSamples = 32768;
+
 /// The longest side of a picture in pixels.
 inline constexpr uint32_t kMaxSide = 32768;
 /// The largest number of samples a pixel.
@@ -72,6 +92,8 @@ struct View {
   std::optional<PixelWindow> crop;
   /// Samples a pixel, 1...kMaxSamplesPerPixel, at fixed points of a lattice; 1 samples the centre.
   uint32_t samples_per_pixel = 1;
+  /// Samples as the pixels need them instead, at points that hang on the pixel. Light is shown then, no debug view.
+  std::optional<ErrorTarget> error_target;
   /// The weight of samples by their distance from the pixel's centre.
   PixelFilter filter = PixelFilter::kBox;
   /// From end to end of what the filter weighs, in pixels, kMinFilterWidth...kMaxFilterWidth.

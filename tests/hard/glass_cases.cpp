@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // Refracted rays, one by one as the renderer explains them, against closed forms in long double.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -350,6 +351,82 @@ void run_coincident_faces(Lab& lab) {
   }
 }
 
+/// The unit sphere as a mesh of 8 * 4^level triangles with its normals; its longest edge.
+struct MeshSphere {
+  Mesh mesh;
+  Real longest_edge = 0;
+};
+
+MeshSphere make_mesh_sphere(int level) {
+  MeshSphere sphere;
+  const uint32_t steps = 1U << static_cast<uint32_t>(level);
+  Mesh& mesh = sphere.mesh;
+  // Faces of an octahedron, cut alike and moved out to the sphere.
+  for (int face = 0; face < 8; ++face) {
+    const dvec3 signs((face & 1) != 0 ? -1 : 1, (face & 2) != 0 ? -1 : 1, (face & 4) != 0 ? -1 : 1);
+    const bool is_turned = signs.x * signs.y * signs.z < 0;
+    std::vector<std::vector<uint32_t>> rows;
+    for (uint32_t i = 0; i <= steps; ++i) {
+      rows.emplace_back();
+      for (uint32_t j = 0; j <= steps - i; ++j) {
+        const dvec3 point = glm::normalize(signs * dvec3(i, j, steps - i - j));
+        rows.back().push_back(static_cast<uint32_t>(mesh.positions.size()));
+        mesh.positions.emplace_back(point);
+        mesh.normals.emplace_back(point);
+      }
+    }
+    const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
+      mesh.triangles.emplace_back(a, is_turned ? c : b, is_turned ? b : c);
+      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+        sphere.longest_edge =
+            std::max(sphere.longest_edge, glm::distance(Vector(mesh.positions[from]), Vector(mesh.positions[to])));
+      }
+    };
+    for (uint32_t i = 0; i < steps; ++i) {
+      for (uint32_t j = 0; j < steps - i; ++j) {
+        add(rows[i][j], rows[i + 1][j], rows[i][j + 1]);
+        if (j + 1 < steps - i) add(rows[i + 1][j], rows[i + 1][j + 1], rows[i][j + 1]);
+      }
+    }
+  }
+  return sphere;
+}
+
+/// A mesh with a sphere's normals bends light as the sphere does, but for how far its triangles lie below that: a
+/// quarter with edges half as long.
+void run_mesh_spheres(Lab& lab) {
+  GlassScene exact;
+  exact.add(world::Sphere{vec3(0.0F), 1.0F}, 1.5F);
+  GlassTracer exact_tracer(lab, exact);
+  for (const int level : {3, 5, 7}) {
+    const MeshSphere sphere = make_mesh_sphere(level);
+    GlassScene scene;
+    scene.add(sphere.mesh, 1.5F);
+    GlassTracer tracer(lab, scene);
+    Random random(53);
+    Real worst = 0;
+    uint64_t other = 0;
+    for (const double impact : {0.0, 0.2, 0.4, 0.6, 0.8}) {
+      for (int i = 0; i < 8; ++i) {
+        const dvec3 along = random.direction();
+        const dvec3 origin = -3.0 * along + impact * random.perpendicular(along);
+        const auto rays = tracer.follow(origin, along);
+        const auto exact_rays = exact_tracer.follow(origin, along);
+        if (rays.size() != 3 || exact_rays.size() != 3) {
+          ++other;
+          continue;
+        }
+        worst = std::max(worst, glm::distance(direction_of(rays[2]), direction_of(exact_rays[2])));
+      }
+    }
+    const Real below = sphere.longest_edge * sphere.longest_edge / 6;
+    const std::string mesh = fmt::format(", {} triangles", sphere.mesh.triangles.size());
+    lab.expect_at_most("rays lost in a mesh of a sphere" + mesh, 0.0, static_cast<double>(other));
+    lab.expect_at_most("direction behind a mesh less behind the sphere / (edge^2 / 6)" + mesh, 4.0,
+                       static_cast<double>(worst / below));
+  }
+}
+
 /// A ball of glass without colour in the same light from everywhere sends as much, whatever goes on within.
 void run_furnace(Lab& lab) {
   for (const float ior : {1.1F, 1.5F, 2.4F}) {
@@ -389,7 +466,8 @@ constexpr HardCase kRows[] = {HardCase{45, "GlassSphere", run_spheres},
                               HardCase{49, "LightGuide", run_light_guide},
                               HardCase{50, "GlassSolids", run_nested},
                               HardCase{51, "CoincidentFacesOfGlass", run_coincident_faces},
-                              HardCase{52, "GlassFurnace", run_furnace}};
+                              HardCase{52, "GlassFurnace", run_furnace},
+                              HardCase{53, "GlassMeshSphere", run_mesh_spheres}};
 
 }  // namespace
 

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "promin/math.h"
+
+namespace promin {
+
+/// The least and the largest of some colors, by channel.
+struct ColorRange {
+  vec3 lo{0.0F};
+  vec3 hi{0.0F};
+
+  void extend(const vec3& color) {
+    lo = glm::min(lo, color);
+    hi = glm::max(hi, color);
+  }
+  void extend(const ColorRange& other) {
+    lo = glm::min(lo, other.lo);
+    hi = glm::max(hi, other.hi);
+  }
+};
+
+/// What the samples of a pixel come to, and how far their mean may be off (docs/model.md, "Error of a pixel"). The
+/// samples are scrambled nets (ScrambledPoints), whose error falls as N^(-3/4). Computed on the host alone, so it is
+/// the same for the same samples.
+class PixelEstimate {
+ public:
+  /// Takes samples in their order. Their number is read where it is a power of two.
+  void add(const vec3& radiance);
+
+  uint32_t count() const { return count_; }
+  vec3 mean() const { return vec3(sum_ / static_cast<double>(count_)); }
+  const ColorRange& range() const { return range_; }
+
+  /// By how much each channel's mean may be off, where `around` is the range of the first samples of the pixels around.
+  /// From kMinRefinedSamples on.
+  vec3 claim(const ColorRange& around) const;
+
+ private:
+  static constexpr uint32_t kMostBatches = 8;
+  /// Batches are nets too: of this many samples.
+  uint32_t batch_size() const;
+
+  dvec3 sum_{0.0};
+  std::array<vec3, kMostBatches> batches_{};
+  ColorRange range_;
+  uint32_t count_ = 0;
+  uint32_t batch_size_ = 2;
+};
+
+/// A pixel's largest claim, of 1 or of its largest channel where that is more: what an error target is about.
+float relative_claim(const vec3& claim, const vec3& mean);
+
+}  // namespace promin

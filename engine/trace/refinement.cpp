@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/refinement.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+
+namespace promin {
+namespace {
+
+/// Pixels that a thread takes at a time.
+constexpr size_t kChunk = 1024;
+
+PixelWindow grow(const PixelWindow& window, const uvec2& size) {
+  return {glm::max(window.lo, uvec2(1)) - 1U, glm::min(window.hi + 1U, size)};
+}
+
+size_t area(const PixelWindow& window) {
+  const uvec2 size = window.hi - window.lo;
+  return static_cast<size_t>(size.x) * size.y;
+}
+
+}  // namespace
+
+Refinement::Refinement(const View& view, const PixelWindow& window)
+    : error_(view.error_target->error),
+      least_samples_(view.error_target->min_samples),
+      most_samples_(view.error_target->max_samples),
+      window_(window),
+      apron_(grow(window, view.size)),
+      filter_(view),
+      estimates_(area(apron_)),
+      first_ranges_(area(apron_)),
+      claims_(area(window)),
+      pixels_(area(apron_)),
+      end_sample_(least_samples_) {
+  std::iota(pixels_.begin(), pixels_.end(), 0U);
+}
+
+size_t Refinement::apron_index(size_t pixel) const {
+  const uint32_t width = window_.hi.x - window_.lo.x;
+  const uvec2 place = window_.lo - apron_.lo + uvec2(pixel % width, pixel / width);
+  return static_cast<size_t>(place.y) * (apron_.hi.x - apron_.lo.x) + place.x;
+}
+
+std::optional<size_t> Refinement::window_index(size_t apron_index) const {
+  const uvec2 place = place_of(apron_index);
+  if (glm::any(glm::lessThan(place, window_.lo)) || glm::any(glm::greaterThanEqual(place, window_.hi))) return {};
+  const uvec2 inside = place - window_.lo;
+  return static_cast<size_t>(inside.y) * (window_.hi.x - window_.lo.x) + inside.x;
+}
+
+uvec2 Refinement::place_of(size_t apron_index) const {
+  const uint32_t width = apron_.hi.x - apron_.lo.x;
+  return apron_.lo + uvec2(apron_index % width, apron_index / width);
+}
+
+std::span<const ListedSample> Refinement::next(size_t most) {
+  if (handed_out_ == pixels_.size() && !pixels_.empty()) {
+    judge_stage();
+    begin_stage_from(end_sample_);
+  }
+  const uint32_t samples = end_sample_ - first_sample_;
+  listed_pixels_ = std::min(pixels_.size() - handed_out_, std::max<size_t>(most / samples, 1));
+  list_.resize(listed_pixels_ * samples);
+  for_each_chunk(listed_pixels_, kChunk, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const uvec2 pixel = place_of(pixels_[handed_out_ + i]);
+      const ScrambledPoints points(pixel);
+      for (uint32_t j = 0; j < samples; ++j) {
+        list_[i * samples + j] = {pixel, filter_.at(points.at(first_sample_ + j))};
+      }
+    }
+  });
+  return list_;
+}
+
+void Refinement::take(std::span<const vec3> radiance) {
+  assert(radiance.size() == list_.size());
+  const uint32_t samples = end_sample_ - first_sample_;
+  for_each_chunk(listed_pixels_, kChunk, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t pixel = pixels_[handed_out_ + i];
+      for (const vec3& color : radiance.subspan(i * samples, samples)) estimates_[pixel].add(color);
+      if (first_sample_ == 0) first_ranges_[pixel] = estimates_[pixel].range();
+    }
+  });
+  handed_out_ += listed_pixels_;
+  sample_count_ += radiance.size();
+}
+
+void Refinement::judge_stage() {
+  for_each_chunk(pixels_.size(), kChunk, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const std::optional<size_t> pixel = window_index(pixels_[i]);
+      if (pixel) claims_[*pixel] = estimates_[pixels_[i]].claim(range_around(pixels_[i]));
+    }
+  });
+}
+
+void Refinement::begin_stage_from(uint32_t sample) {
+  pixels_.clear();
+  handed_out_ = 0;
+  for (; sample < most_samples_; sample *= 2) {
+    for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
+      if (estimate(pixel).count() != sample || is_near_enough(pixel)) continue;
+      pixels_.push_back(static_cast<uint32_t>(apron_index(pixel)));
+    }
+    if (pixels_.empty()) continue;
+    first_sample_ = sample;
+    end_sample_ = 2 * sample;
+    return;
+  }
+}
+
+void Refinement::aim(float error) {
+  assert(pixels_.empty() && error <= error_);
+  error_ = error;
+  begin_stage_from(least_samples_);
+}
+
+double Refinement::foretell_samples(float error) const {
+  double samples = 0.0;
+  for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
+    const double count = estimate(pixel).count();
+    // As an edge's claim falls with them.
+    const double ratio = static_cast<double>(relative_claim(claims_[pixel], estimate(pixel).mean()) / error);
+    if (ratio <= 1.0) continue;
+    const double wanted = count * std::exp2(std::ceil(std::log2(ratio) * 4.0 / 3.0));
+    samples += std::max(std::min<double>(wanted, most_samples_) - count, 0.0);
+  }
+  return samples;
+}
+
+double Refinement::fraction_done() const {
+  if (pixels_.empty()) return 1.0;
+  const int stages = 1 + std::countr_zero(most_samples_ / least_samples_);
+  const int stage = std::countr_zero(end_sample_ / least_samples_);
+  return (stage + static_cast<double>(handed_out_) / static_cast<double>(pixels_.size())) / stages;
+}
+
+bool Refinement::is_near_enough(size_t pixel) const {
+  return relative_claim(claims_[pixel], estimate(pixel).mean()) <= error_;
+}
+
+ColorRange Refinement::range_around(size_t apron_index) const {
+  const uvec2 size = apron_.hi - apron_.lo;
+  const uvec2 place(apron_index % size.x, apron_index / size.x);
+  const uvec2 lo = glm::max(place, uvec2(1)) - 1U;
+  const uvec2 hi = glm::min(place + 2U, size);
+  ColorRange range = first_ranges_[apron_index];
+  for (uint32_t y = lo.y; y < hi.y; ++y) {
+    for (uint32_t x = lo.x; x < hi.x; ++x) range.extend(first_ranges_[static_cast<size_t>(y) * size.x + x]);
+  }
+  return range;
+}
+
+}  // namespace promin

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "device_scene/scrambled_points.h"
+#include "promin/view.h"
+#include "trace/pixel_estimate.h"
+
+namespace promin {
+
+/// A sample to trace.
+struct ListedSample {
+  /// In the whole picture.
+  uvec2 pixel{0};
+  /// In pixels from the pixel's upper left corner.
+  vec2 place{0.5F};
+};
+
+/// Refines a window of a picture until each of its pixels is within View::error_target or has its most samples: hands
+/// out samples to trace, takes what was seen, doubles the samples of pixels whose claim is too large. Of the pixels
+/// around the window it takes the first samples, for those next to them; so a pixel hangs on what is within one pixel
+/// of it alone, and no crop or cut reaches a bit. Vulkan-free.
+class Refinement {
+ public:
+  /// Of a view with an error target; the window is not empty.
+  Refinement(const View& view, const PixelWindow& window);
+
+  /// The samples to trace next, at most about `most`, whose colors take() gets before the next call. Empty where the
+  /// window is as exact as it is asked for.
+  std::span<const ListedSample> next(size_t most);
+  void take(std::span<const vec3> radiance);
+
+  /// Goes on with a smaller error, where all is as exact as was asked for. What this brings is what the smaller error
+  /// would have brought at once.
+  void aim(float error);
+
+  /// How many samples it has taken, and about how many more it takes for a smaller error.
+  uint64_t sample_count() const { return sample_count_; }
+  double foretell_samples(float error) const;
+
+  /// About how much of the work for this error is done, 0...1.
+  double fraction_done() const;
+
+  /// Of the window's pixels, row by row.
+  size_t pixel_count() const { return claims_.size(); }
+  const PixelEstimate& estimate(size_t pixel) const { return estimates_[apron_index(pixel)]; }
+  const vec3& claim(size_t pixel) const { return claims_[pixel]; }
+  /// Whether the claim is within the error that is asked for; else samples were too few.
+  bool is_near_enough(size_t pixel) const;
+
+ private:
+  size_t apron_index(size_t pixel) const;
+  std::optional<size_t> window_index(size_t apron_index) const;
+  uvec2 place_of(size_t apron_index) const;
+  void judge_stage();
+  /// Begins to double the samples of pixels that have `sample` of them or more, the fewest first; without any all is
+  /// done.
+  void begin_stage_from(uint32_t sample);
+  ColorRange range_around(size_t apron_index) const;
+
+  float error_;
+  uint32_t least_samples_;
+  uint32_t most_samples_;
+  PixelWindow window_;
+  /// The window and the pixels around it that are in the picture.
+  PixelWindow apron_;
+  FilterPlaces filter_;
+  /// By apron; beyond the window with the first samples alone.
+  std::vector<PixelEstimate> estimates_;
+  /// Of the first samples.
+  std::vector<ColorRange> first_ranges_;
+  /// By window.
+  std::vector<vec3> claims_;
+  /// The stage at hand: pixels by apron, samples [first, end) of each, how many pixels have been handed out.
+  std::vector<uint32_t> pixels_;
+  uint32_t first_sample_ = 0;
+  uint32_t end_sample_;
+  size_t handed_out_ = 0;
+  size_t listed_pixels_ = 0;
+  std::vector<ListedSample> list_;
+  uint64_t sample_count_ = 0;
+};
+
+}  // namespace promin

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Pictures with an error target: whether they are as exact as they claim, and the same however they are made.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "promin/error.h"
+#include "promin/lighting.h"
+#include "promin/load_scene.h"
+#include "render/renderer_impl.h"
+
+namespace promin::test {
+namespace {
+
+View with_target(View view, float error, uint32_t least = 8, uint32_t most = 256) {
+  view.error_target = ErrorTarget{.error = error, .min_samples = least, .max_samples = most};
+  return view;
+}
+
+View view_of(const Scene& scene, const uvec2& size) {
+  View view;
+  view.camera = scene.cameras.empty() ? frame_scene(scene, static_cast<float>(size.x) / static_cast<float>(size.y))
+                                      : scene.cameras.front();
+  view.size = size;
+  view.max_depth = default_max_depth(scene);
+  return view;
+}
+
+/// Wires of a quarter of a pixel and more before a dark wall, lit from the front.
+world::Scene make_wires() {
+  world::Scene scene;
+  scene.materials = {make_unlit(vec3(0.9F, 0.6F, 0.2F))};
+  scene.environment.background = vec3(0.05F);
+  for (int i = 0; i < 12; ++i) {
+    const float angle = 0.13F + 0.25F * static_cast<float>(i);
+    const vec3 along(std::cos(angle), std::sin(angle), 0.0F);
+    const vec3 center(0.04F * static_cast<float>(i - 6), 0.03F * static_cast<float>(i - 6), 0.0F);
+    scene.objects.push_back({"wire", world::Cylinder{center, along, 2.0F, 0.004F * static_cast<float>(1 + i % 4)}, 0});
+  }
+  return scene;
+}
+
+/// A board of squares of all colors that lies flat, seen to the horizon.
+Scene make_floor() {
+  Scene scene;
+  std::vector<uint32_t> texels;
+  for (uint32_t i = 0; i < 64; ++i) texels.push_back(0xFF000000U | (i * 0x9E3779U & 0xFFFFFFU));
+  Material material = make_unlit(vec3(1.0F));
+  std::get<Unlit>(material.model).color_texture.texture = add_texture(scene, uvec2(8), texels, ImageUse::kColor);
+  scene.materials = {material};
+  scene.geometries = {make_board(0.0F, vec2(0.0F), vec2(12.0F))};
+  scene.objects = {{"floor", 0, 0}};
+  return scene;
+}
+
+class ErrorTargetTest : public DeviceTest {
+ protected:
+  /// Holds a picture's claims against one of many samples of a lattice.
+  static void expect_honest(Renderer& renderer, const View& view, const char* name) {
+    View fine = view;
+    fine.error_target.reset();
+    fine.samples_per_pixel = 1024;
+    const Image truth = renderer.render(fine).image;
+    const RenderResult result = renderer.render(view);
+    size_t refined = 0;
+    size_t honest = 0;
+    for (size_t i = 0; i < truth.pixels.size(); ++i) {
+      if (result.aovs.samples[i] == view.error_target->min_samples) continue;
+      ++refined;
+      const vec3 error = glm::abs(result.image.pixels[i] - truth.pixels[i]);
+      honest += glm::all(glm::lessThanEqual(error, result.aovs.error[i])) ? 1 : 0;
+    }
+    const double share = static_cast<double>(honest) / static_cast<double>(refined);
+    std::printf("%-16s %6.2f spp, %5zu pixels refined, %.2f %% honest\n", name,
+                static_cast<double>(result.error->samples) / static_cast<double>(truth.pixels.size()), refined,
+                100.0 * share);
+    EXPECT_GE(share, 0.95) << name;
+    EXPECT_GE(refined, truth.pixels.size() / 50) << name;
+  }
+};
+
+TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
+  TunedRendererOptions options;
+  options.with_aovs = true;
+  for (const char* name : {"showcase", "sphereflake", "mirrors", "glass"}) {
+    Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / (std::string(name) + ".gltf"));
+    light_scene(scene, LightChoice::kAuto);
+    Renderer renderer = make_renderer(device(), scene, options);
+    expect_honest(renderer, with_target(view_of(scene, uvec2(48, 36)), 1.0F / 64.0F), name);
+  }
+  Renderer wires = make_renderer(device(), make_wires(), options);
+  View view = make_board_view(uvec2(48));
+  expect_honest(wires, with_target(view, 1.0F / 64.0F), "wires");
+  Renderer floor = make_renderer(device(), make_floor(), options);
+  view.camera = Camera{};
+  view.camera.eye = vec3(0.1F, -1.3F, 0.3F);
+  view.camera.look = glm::normalize(vec3(0.05F, 1.0F, -0.25F));
+  view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 0, 1)), view.camera.look));
+  expect_honest(floor, with_target(view, 1.0F / 64.0F), "a floor's texture");
+}
+
+TEST_F(ErrorTargetTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
+  const world::Scene scene = make_scene_of_everything();
+  const View view = with_target(make_view(uvec2(75, 50)), 1.0F / 32.0F, 4, 64);
+  TunedRendererOptions options;
+  options.with_aovs = true;
+  options.packet_size = 1;
+  const RenderResult expected = make_renderer(device(), scene, options).render(view);
+  EXPECT_GT(expected.error->samples, 5U * 75 * 50);
+  for (const uint32_t packet_size : {2U, 4U}) {
+    options.packet_size = packet_size;
+    options.blocks_per_dispatch = 7;
+    const RenderResult result = make_renderer(device(), scene, options).render(view);
+    EXPECT_TRUE(has_same_bits(result.image, expected.image)) << packet_size;
+    EXPECT_EQ(result.aovs.error, expected.aovs.error) << packet_size;
+    EXPECT_EQ(result.aovs.samples, expected.aovs.samples) << packet_size;
+    EXPECT_EQ(result.rays.total(), expected.rays.total()) << packet_size;
+  }
+  View crop = view;
+  crop.crop = PixelWindow{uvec2(20, 11), uvec2(53, 49)};
+  const RenderResult part = make_renderer(device(), scene, options).render(crop);
+  for (uint32_t y = 0; y < part.image.size.y; ++y) {
+    for (uint32_t x = 0; x < part.image.size.x; ++x) {
+      ASSERT_EQ(part.image.at(x, y), expected.image.at(x + 20, y + 11)) << x << " " << y;
+    }
+  }
+}
+
+// Surfaces that blend, from behind which camera rays go on.
+TEST_F(ErrorTargetTest, AgreesWithManySamplesWhereRaysGoOn) {
+  View view = make_view(uvec2(40, 30));
+  view.samples_per_pixel = 256;
+  Renderer renderer = make_renderer(device(), make_scene_of_alpha());
+  const Image truth = renderer.render(view).image;
+  const RenderResult result = renderer.render(with_target(view, 1.0F / 32.0F, 4, 64));
+  double sum = 0.0;
+  for (size_t i = 0; i < truth.pixels.size(); ++i) {
+    const vec3 error = glm::abs(result.image.pixels[i] - truth.pixels[i]) /
+                       std::max({1.0F, truth.pixels[i].x, truth.pixels[i].y, truth.pixels[i].z});
+    sum += static_cast<double>(std::max({error.x, error.y, error.z}));
+  }
+  EXPECT_LT(sum / static_cast<double>(truth.pixels.size()), 1.0 / 32.0);
+}
+
+// The parts that a large picture is refined in leave no seam.
+TEST_F(ErrorTargetTest, LargePicturesAreRefinedInParts) {
+  const world::Scene scene = make_wires();
+  Renderer renderer = make_renderer(device(), scene);
+  const View view = with_target(make_board_view(uvec2(300)), 1.0F / 16.0F, 4, 16);
+  const Image whole = renderer.render(view).image;
+  View crop = view;
+  crop.crop = PixelWindow{uvec2(250), uvec2(262)};
+  const Image part = renderer.render(crop).image;
+  for (uint32_t y = 0; y < 12; ++y) {
+    for (uint32_t x = 0; x < 12; ++x) ASSERT_EQ(part.at(x, y), whole.at(x + 250, y + 250));
+  }
+}
+
+TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheErrorThatItTells) {
+  const world::Scene scene = make_scene_of_everything(20);
+  Renderer renderer = make_renderer(device(), scene);
+  View view = with_target(make_view(uvec2(60, 40)), 1.0F / 32.0F);
+  for (const double seconds : {1e-3, 1000.0}) {
+    const RenderResult result = renderer.render_within(view, seconds);
+    View again = view;
+    again.error_target->error = result.error->target;
+    EXPECT_EQ(result.error->target, seconds < 1.0 ? 0.125F : 1.0F / 32.0F);
+    const RenderResult expected = renderer.render(again);
+    EXPECT_TRUE(has_same_bits(result.image, expected.image));
+    EXPECT_EQ(result.error->samples, expected.error->samples);
+    EXPECT_EQ(result.error->largest_claim, expected.error->largest_claim);
+  }
+}
+
+// They are of rays through the centres, whatever the error.
+TEST_F(ErrorTargetTest, AovsAreThoseOfOneSample) {
+  const world::Scene scene = make_scene_of_everything(20);
+  RendererOptions options;
+  options.with_aovs = true;
+  Renderer renderer = make_renderer(device(), scene, options);
+  const View view = make_view(uvec2(60, 40));
+  const Aovs expected = renderer.render(view).aovs;
+  const RenderResult result = renderer.render(with_target(view, 1.0F / 16.0F, 4));
+  EXPECT_EQ(result.aovs.depth, expected.depth);
+  EXPECT_EQ(result.aovs.normal, expected.normal);
+  EXPECT_EQ(result.aovs.primitive, expected.primitive);
+  EXPECT_EQ(result.aovs.albedo, expected.albedo);
+  EXPECT_EQ(expected.samples, std::vector<uint32_t>(2400, 1U));
+  EXPECT_EQ(*std::ranges::min_element(result.aovs.samples), 4U);
+  EXPECT_GT(*std::ranges::max_element(result.aovs.samples), 4U);
+  // And the next picture of a fixed number of samples is as ever.
+  EXPECT_TRUE(has_same_bits(renderer.render(view).image, make_renderer(device(), scene).render(view).image));
+}
+
+TEST_F(ErrorTargetTest, WhatIsWrongIsRefused) {
+  Renderer renderer = make_renderer(device(), make_scene_of_everything(1));
+  const View view = make_view(uvec2(8));
+  EXPECT_THROW(renderer.render(with_target(view, 0.0F)), UsageError);
+  EXPECT_THROW(renderer.render(with_target(view, std::nanf(""))), UsageError);
+  EXPECT_THROW(renderer.render(with_target(view, 0.1F, 2)), UsageError);
+  EXPECT_THROW(renderer.render(with_target(view, 0.1F, 12)), UsageError);
+  EXPECT_THROW(renderer.render(with_target(view, 0.1F, 16, 8)), UsageError);
+  EXPECT_THROW(renderer.render(with_target(view, 0.1F, 4, 65536)), UsageError);
+  View normals = with_target(view, 0.1F);
+  normals.mode.debug_view = DebugView::kNormals;
+  EXPECT_THROW(renderer.render(normals), UsageError);
+  EXPECT_THROW(renderer.render_within(view, 1.0), UsageError);
+  EXPECT_THROW(renderer.render_within(with_target(view, 0.1F), 0.0), UsageError);
+}
+
+}  // namespace
+}  // namespace promin::test

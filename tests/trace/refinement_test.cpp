@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace promin {
+namespace {
+
+/// What is seen at a place of the picture, in pixels.
+using Scene = std::function<vec3(const dvec2&)>;
+
+/// What a window of a picture has come to, row by row.
+struct Refined {
+  std::vector<vec3> means;
+  std::vector<vec3> claims;
+  std::vector<uint32_t> counts;
+  std::vector<bool> are_near_enough;
+  uint64_t samples = 0;
+};
+
+View make_view(float error, uint32_t least = 8, uint32_t most = 256) {
+  View view;
+  view.size = uvec2(96, 64);
+  view.error_target = {.error = error, .min_samples = least, .max_samples = most};
+  return view;
+}
+
+void run(Refinement& refinement, const Scene& scene, size_t most_at_once) {
+  std::vector<vec3> seen;
+  for (auto list = refinement.next(most_at_once); !list.empty(); list = refinement.next(most_at_once)) {
+    seen.clear();
+    for (const ListedSample& sample : list) seen.push_back(scene(dvec2(sample.pixel) + dvec2(sample.place)));
+    refinement.take(seen);
+  }
+}
+
+Refined results_of(const Refinement& refinement) {
+  Refined refined;
+  for (size_t i = 0; i < refinement.pixel_count(); ++i) {
+    refined.means.push_back(refinement.estimate(i).mean());
+    refined.claims.push_back(refinement.claim(i));
+    refined.counts.push_back(refinement.estimate(i).count());
+    refined.are_near_enough.push_back(refinement.is_near_enough(i));
+  }
+  refined.samples = refinement.sample_count();
+  return refined;
+}
+
+Refined refine(const View& view, const Scene& scene, const PixelWindow& window, size_t most_at_once = 5000) {
+  Refinement refinement(view, window);
+  run(refinement, scene, most_at_once);
+  return results_of(refinement);
+}
+
+Refined refine(const View& view, const Scene& scene) {
+  return refine(view, scene, {uvec2(0), view.size});
+}
+
+/// Discs of any size and brightness before a chequered floor that goes to a horizon.
+vec3 discs_and_floor(const dvec2& p) {
+  vec3 color(0.1F, 0.2F, 0.4F);
+  if (p.y > 20.0) {
+    const double depth = 300.0 / (p.y - 20.0);
+    const auto square =
+        static_cast<int64_t>(std::floor(depth)) + static_cast<int64_t>(std::floor((p.x - 48.0) * depth * 0.02));
+    color = (square & 1) != 0 ? vec3(0.9F) : vec3(0.15F, 0.1F, 0.1F);
+  }
+  for (int i = 0; i < 24; ++i) {
+    const dvec2 center(std::fmod(37.0 * i + 5.3, 96.0), std::fmod(23.0 * i + 9.7, 64.0));
+    const double radius = 0.7 + 0.4 * i;
+    const dvec2 off = p - center;
+    const double d2 = glm::dot(off, off) / (radius * radius);
+    // Shaded, with a highlight.
+    if (d2 < 1.0) {
+      const auto z = static_cast<float>(std::sqrt(1.0 - d2));
+      color = vec3(0.2F + 0.6F * z, 0.04F * static_cast<float>(i), 0.5F * z) + vec3(4.0F * std::pow(z, 60.0F));
+    }
+  }
+  return color;
+}
+
+/// Lines of 1/8 to 1.5 pixels, at all angles.
+vec3 wires(const dvec2& p) {
+  for (int i = 0; i < 14; ++i) {
+    const double angle = 0.11 + 0.22 * i;
+    const dvec2 normal(std::cos(angle), std::sin(angle));
+    const double off = glm::dot(p - dvec2(48.0 + i, 32.0 - i), normal);
+    const double half_width = 0.0625 + 0.05 * i;
+    if (std::abs(off - (6.0 * i - 40.0)) < half_width) return vec3(0.9F, 0.5F, 0.1F);
+  }
+  return vec3(0.05F);
+}
+
+/// Waves that are smooth, and a step.
+vec3 waves(const dvec2& p) {
+  const double wave = 0.5 + 0.5 * std::sin(1.3 * p.x) * std::cos(0.9 * p.y);
+  return vec3(static_cast<float>(wave), p.x * 0.83 + p.y < 70.0 ? 1.0F : 0.0F, static_cast<float>(wave * wave));
+}
+
+struct Share {
+  double honest = 0.0;
+  size_t refined = 0;
+};
+
+/// The pixels of a view, by a grid of many samples.
+std::vector<dvec3> find_truth(const View& view, const Scene& scene) {
+  constexpr int kSide = 48;
+  std::vector<dvec3> truth;
+  for (uint32_t i = 0; i < view.size.x * view.size.y; ++i) {
+    dvec3 sum(0.0);
+    for (int k = 0; k < kSide * kSide; ++k) {
+      const dvec2 place((k % kSide + 0.5) / kSide, (k / kSide + 0.5) / kSide);
+      sum += dvec3(scene(dvec2(i % view.size.x, i / view.size.x) + place));
+    }
+    truth.push_back(sum / double{kSide * kSide});
+  }
+  return truth;
+}
+
+/// Of pixels that have taken more than the first samples, how many are off by no more than they claim.
+Share judge(const Refined& refined, const View& view, const std::vector<dvec3>& truth) {
+  Share share;
+  size_t honest = 0;
+  for (size_t i = 0; i < refined.means.size(); ++i) {
+    if (refined.counts[i] == view.error_target->min_samples) continue;
+    ++share.refined;
+    const dvec3 error = glm::abs(dvec3(refined.means[i]) - truth[i]);
+    const dvec3 claim(refined.claims[i]);
+    if (error.x <= claim.x && error.y <= claim.y && error.z <= claim.z) ++honest;
+  }
+  share.honest = static_cast<double>(honest) / static_cast<double>(share.refined);
+  return share;
+}
+
+TEST(RefinementTest, ClaimsHoldOf95In100Pixels) {
+  const std::pair<const char*, Scene> scenes[] = {
+      {"discs and floor", discs_and_floor}, {"wires", wires}, {"waves", waves}};
+  for (const auto& [name, scene] : scenes) {
+    const std::vector<dvec3> truth = find_truth(make_view(1.0F), scene);
+    for (const float error : {1.0F / 16.0F, 1.0F / 64.0F, 1.0F / 128.0F}) {
+      const View view = make_view(error);
+      const Share share = judge(refine(view, scene), view, truth);
+      EXPECT_GE(share.honest, 0.95) << name << " to " << error;
+      EXPECT_GE(share.refined, 500U) << name;
+    }
+  }
+}
+
+TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
+  const View view = make_view(1.0F / 64.0F);
+  const Refined refined = refine(view, discs_and_floor);
+  size_t unmet = 0;
+  for (size_t i = 0; i < refined.means.size(); ++i) {
+    const float claim = relative_claim(refined.claims[i], refined.means[i]);
+    EXPECT_EQ(refined.are_near_enough[i], claim <= 1.0F / 64.0F);
+    if (claim > 1.0F / 64.0F) {
+      EXPECT_EQ(refined.counts[i], 256U);
+      ++unmet;
+    }
+  }
+  EXPECT_GT(unmet, 0U);
+  EXPECT_LT(unmet, refined.means.size() / 4);
+}
+
+TEST(RefinementTest, WhatIsFlatTakesTheFirstSamplesAlone) {
+  const View view = make_view(1.0F / 4096.0F);
+  const Refined refined = refine(view, [](const dvec2&) { return vec3(0.3F, 7.0F, 0.0F); });
+  for (const uint32_t count : refined.counts) EXPECT_EQ(count, 8U);
+  EXPECT_EQ(refined.means.front(), vec3(0.3F, 7.0F, 0.0F));
+  EXPECT_EQ(refined.samples, 8U * 96 * 64);
+}
+
+// An edge of contrast c takes (0.62 c / E)^(4/3) samples or less, rounded up to a power of two.
+TEST(RefinementTest, AnEdgeTakesWhatItsContrastAsksFor) {
+  const auto edge = [](const dvec2& p) { return vec3(p.x + 0.31 * p.y < 50.0 ? 0.25F : 0.0F); };
+  const Refined refined = refine(make_view(1.0F / 64.0F), edge);
+  uint32_t most = 0;
+  for (const uint32_t count : refined.counts) most = std::max(most, count);
+  EXPECT_GE(most, 32U);
+  EXPECT_LE(most, 64U);
+}
+
+TEST(RefinementTest, ACropHasThePixelsOfTheWhole) {
+  const View view = make_view(1.0F / 64.0F);
+  const Refined whole = refine(view, discs_and_floor);
+  for (const PixelWindow& window : {PixelWindow{uvec2(0), uvec2(1)}, PixelWindow{uvec2(13, 20), uvec2(41, 37)},
+                                    PixelWindow{uvec2(95, 0), uvec2(96, 64)}}) {
+    const Refined crop = refine(view, discs_and_floor, window, 777);
+    const uint32_t width = window.hi.x - window.lo.x;
+    for (size_t i = 0; i < crop.means.size(); ++i) {
+      const size_t at = (window.lo.y + i / width) * view.size.x + window.lo.x + i % width;
+      ASSERT_EQ(crop.means[i], whole.means[at]);
+      ASSERT_EQ(crop.claims[i], whole.claims[at]);
+      ASSERT_EQ(crop.counts[i], whole.counts[at]);
+    }
+  }
+}
+
+TEST(RefinementTest, ItDoesNotMatterHowManyAreTracedAtOnce) {
+  const View view = make_view(1.0F / 64.0F);
+  const PixelWindow window{uvec2(0), view.size};
+  const Refined expected = refine(view, wires, window, 1U << 20);
+  for (const size_t most : {1U, 8U, 1000U}) EXPECT_EQ(refine(view, wires, window, most).means, expected.means) << most;
+}
+
+// And its forecast is of the right size.
+TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
+  const View view = make_view(1.0F / 16.0F);
+  const PixelWindow window{uvec2(0), view.size};
+  Refinement refinement(view, window);
+  run(refinement, discs_and_floor, 5000);
+  for (const float error : {1.0F / 20.0F, 1.0F / 64.0F}) {
+    const auto before = static_cast<double>(refinement.sample_count());
+    const double forecast = refinement.foretell_samples(error);
+    refinement.aim(error);
+    run(refinement, discs_and_floor, 5000);
+    const double taken = static_cast<double>(refinement.sample_count()) - before;
+    EXPECT_GT(forecast, 0.6 * taken) << error;
+    EXPECT_LT(forecast, 2.0 * taken) << error;
+    const Refined expected = refine(make_view(error), discs_and_floor);
+    const Refined refined = results_of(refinement);
+    EXPECT_EQ(refined.means, expected.means);
+    EXPECT_EQ(refined.claims, expected.claims);
+    EXPECT_EQ(refined.counts, expected.counts);
+  }
+}
+
+TEST(RefinementTest, ProgressGrows) {
+  const View view = make_view(1.0F / 64.0F);
+  Refinement refinement(view, {uvec2(0), view.size});
+  double last = 0.0;
+  std::vector<vec3> seen;
+  for (auto list = refinement.next(5000); !list.empty(); list = refinement.next(5000)) {
+    EXPECT_GE(refinement.fraction_done(), last);
+    last = refinement.fraction_done();
+    seen.clear();
+    for (const ListedSample& sample : list) seen.push_back(waves(dvec2(sample.pixel) + dvec2(sample.place)));
+    refinement.take(seen);
+  }
+  EXPECT_EQ(refinement.fraction_done(), 1.0);
+}
+
+}  // namespace
+}  // namespace promin
