@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/suggest.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -44,6 +45,16 @@ const CLI::App& deepest_command(const CLI::App& program) {
   return commands.empty() ? program : *commands.front();
 }
 
+/// The command's option whose name is nearest to this one; empty where none is near.
+std::string nearest_option(const std::string& name, const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+  }
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  return std::string(nearest_name(name, known));
+}
+
 /// CLI11 collects what it does not know: options, commands and words too many.
 void refuse_leftovers(const CLI::App& program) {
   std::vector<std::string> leftovers = program.remaining(true);
@@ -54,7 +65,9 @@ void refuse_leftovers(const CLI::App& program) {
   const CLI::App& command = deepest_command(program);
   const std::string cure = cure_for(path_of(command));
   if (option != leftovers.end()) {
-    throw UsageError({"unknown option " + option->substr(0, option->find('=')), kWhere, cure});
+    const std::string name = option->substr(0, option->find('='));
+    const std::string near = nearest_option(name, command);
+    throw UsageError({"unknown option " + name, kWhere, near.empty() ? cure : "did you mean " + near + "?"});
   }
   // A program without commands is one itself.
   const bool lacks_command =

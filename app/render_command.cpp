@@ -45,6 +45,7 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
   choose_tree(options.tracing, result);
   result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
   result.force_all_features = options.has_all_features;
+  result.has_error_target = options.error.is_given();
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
   // The average takes pixels that hit something.
   result.with_aovs = options.aovs.any() || options.view.look.averages_exposure;

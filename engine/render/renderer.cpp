@@ -123,7 +123,11 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     // The callback belonged to the constructor's caller.
     options.progress = {};
     const Stopwatch compiling;
-    prepare_film(options.mode);
+    if (options.has_error_target) {
+      prepare_refining_film(options.mode);
+    } else {
+      prepare_film(options.mode);
+    }
     stats.pipeline_ms = compiling.ms();
     stats.features = feature_names(film_features);
   }
@@ -133,6 +137,11 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     FeatureMask features = scene.features(mode);
     if (options.with_aovs) features |= layout::FEATURE_AOVS;
     prepare_film(features);
+  }
+
+  /// The film on which samples of a list are traced.
+  void prepare_refining_film(const RenderMode& mode) {
+    prepare_film(scene.features(mode) | layout::FEATURE_LISTED_SAMPLES);
   }
 
   void prepare_film(FeatureMask features) {
@@ -257,13 +266,15 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     return result;
   }
 
-  /// Traces samples until the refinement has what it was asked for.
-  void refine(Refinement& refinement, const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+  /// Traces samples until the refinement has what it was asked for. `on_samples` is told how many it has taken.
+  void refine(Refinement& refinement, const View& view, RenderResult& result, const ProgressCallback& on_samples) {
     std::vector<vec3> radiance;
     for (auto list = refinement.next(kMostListed); !list.empty(); list = refinement.next(kMostListed)) {
       film->put_list(list);
-      trace_window(list_window(list.size()), view, result,
-                   [&](double) { return !on_progress || on_progress(refinement.fraction_done()); });
+      const auto taken = static_cast<double>(refinement.sample_count());
+      trace_window(list_window(list.size()), view, result, [&](double fraction) {
+        return !on_samples || on_samples(taken + fraction * static_cast<double>(list.size()));
+      });
       radiance.resize(list.size());
       film->read_list(radiance);
       refinement.take(radiance);
@@ -305,7 +316,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     result.image.size = window.hi - window.lo;
     result.image.pixels.resize(static_cast<size_t>(result.image.size.x) * result.image.size.y);
     result.error.emplace(PictureError{.target = view.error_target->error});
-    prepare_film(scene.features(view.mode) | layout::FEATURE_LISTED_SAMPLES);
+    prepare_refining_film(view.mode);
     return result;
   }
 
@@ -313,12 +324,24 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     RenderResult result = begin_refined(view, progress);
     const PixelWindow window = picture_window(view);
     const uvec2 tiles = (result.image.size + kTileSide - 1U) / kTileSide;
+    // All tiles take what those before have taken, as far as is known.
+    double taken = 0.0;
+    double pixels_done = 0.0;
+    const auto pixels = static_cast<double>(result.image.pixels.size());
     for (uint32_t tile = 0; tile < tiles.x * tiles.y; ++tile) {
       const uvec2 lo = window.lo + kTileSide * uvec2(tile % tiles.x, tile / tiles.x);
       const PixelWindow part{lo, glm::min(window.hi, lo + kTileSide)};
       Refinement refinement(view, part);
-      refine(refinement, view, result,
-             [&](double fraction) { return !progress || progress((tile + fraction) / (tiles.x * tiles.y)); });
+      const auto part_pixels = static_cast<double>(refinement.pixel_count());
+      refine(refinement, view, result, [&](double of_part) {
+        if (!progress) return true;
+        const double left_of_part = std::max(refinement.foretell_total() - of_part, 0.0);
+        const double a_pixel = (taken + of_part + left_of_part) / (pixels_done + part_pixels);
+        const double left = left_of_part + a_pixel * (pixels - pixels_done - part_pixels);
+        return progress((taken + of_part) / (taken + of_part + left));
+      });
+      taken += static_cast<double>(refinement.sample_count());
+      pixels_done += part_pixels;
       take_refined(refinement, part, view, result);
     }
     return result;

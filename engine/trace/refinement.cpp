@@ -16,6 +16,9 @@ namespace {
 /// Pixels that a thread takes at a time.
 constexpr size_t kChunk = 1024;
 
+/// Before anything is known, all samples over the first ones.
+constexpr double kMoreThanFirst = 1.5;
+
 PixelWindow grow(const PixelWindow& window, const uvec2& size) {
   return {glm::max(window.lo, uvec2(1)) - 1U, glm::min(window.hi + 1U, size)};
 }
@@ -38,7 +41,8 @@ Refinement::Refinement(const View& view, const PixelWindow& window)
       first_ranges_(area(apron_)),
       claims_(area(window)),
       pixels_(area(apron_)),
-      end_sample_(least_samples_) {
+      end_sample_(least_samples_),
+      total_(kMoreThanFirst * least_samples_ * static_cast<double>(area(apron_))) {
   std::iota(pixels_.begin(), pixels_.end(), 0U);
 }
 
@@ -106,6 +110,7 @@ void Refinement::judge_stage() {
 void Refinement::begin_stage_from(uint32_t sample) {
   pixels_.clear();
   handed_out_ = 0;
+  total_ = static_cast<double>(sample_count_) + foretell_samples(error_);
   for (; sample < most_samples_; sample *= 2) {
     for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
       if (estimate(pixel).count() != sample || is_near_enough(pixel)) continue;
@@ -135,13 +140,6 @@ double Refinement::foretell_samples(float error) const {
     samples += std::max(std::min<double>(wanted, most_samples_) - count, 0.0);
   }
   return samples;
-}
-
-double Refinement::fraction_done() const {
-  if (pixels_.empty()) return 1.0;
-  const int stages = 1 + std::countr_zero(most_samples_ / least_samples_);
-  const int stage = std::countr_zero(end_sample_ / least_samples_);
-  return (stage + static_cast<double>(handed_out_) / static_cast<double>(pixels_.size())) / stages;
 }
 
 bool Refinement::is_near_enough(size_t pixel) const {

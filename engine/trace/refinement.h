@@ -43,8 +43,8 @@ class Refinement {
   uint64_t sample_count() const { return sample_count_; }
   double foretell_samples(float error) const;
 
-  /// About how much of the work for this error is done, 0...1.
-  double fraction_done() const;
+  /// About how many samples the error takes that was asked for, with those that it has taken.
+  double foretell_total() const { return total_; }
 
   /// Of the window's pixels, row by row.
   size_t pixel_count() const { return claims_.size(); }
@@ -84,6 +84,7 @@ class Refinement {
   size_t listed_pixels_ = 0;
   std::vector<ListedSample> list_;
   uint64_t sample_count_ = 0;
+  double total_;
 };
 
 }  // namespace promin

@@ -64,6 +64,8 @@ struct RendererOptions {
   std::optional<std::filesystem::path> bvh = std::nullopt;
   /// What the first pictures will show: its pipeline is compiled at once, others as they are asked for.
   RenderMode mode = {};
+  /// Whether the first pictures have an error target, for which another pipeline is compiled.
+  bool has_error_target = false;
   /// About how many samples all pictures will have together, over all pixels. Where they are few, kernels are taken
   /// that are compiled sooner and trace slower. Pictures have the same bits.
   uint64_t expected_samples = std::numeric_limits<uint64_t>::max();

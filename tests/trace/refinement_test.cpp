@@ -231,19 +231,22 @@ TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
   }
 }
 
-TEST(RefinementTest, ProgressGrows) {
+// From the end of the first samples on.
+TEST(RefinementTest, WhatAllWillTakeIsForetold) {
   const View view = make_view(1.0F / 64.0F);
+  const auto total = static_cast<double>(refine(view, waves).samples);
   Refinement refinement(view, {uvec2(0), view.size});
-  double last = 0.0;
   std::vector<vec3> seen;
   for (auto list = refinement.next(5000); !list.empty(); list = refinement.next(5000)) {
-    EXPECT_GE(refinement.fraction_done(), last);
-    last = refinement.fraction_done();
+    if (refinement.sample_count() >= 8 * 96 * 64) {
+      EXPECT_GT(refinement.foretell_total(), 0.75 * total);
+      EXPECT_LT(refinement.foretell_total(), 1.5 * total);
+    }
     seen.clear();
     for (const ListedSample& sample : list) seen.push_back(waves(dvec2(sample.pixel) + dvec2(sample.place)));
     refinement.take(seen);
   }
-  EXPECT_EQ(refinement.fraction_done(), 1.0);
+  EXPECT_EQ(refinement.foretell_total(), total);
 }
 
 }  // namespace

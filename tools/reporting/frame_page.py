@@ -72,7 +72,7 @@ def frames(report):
         panels.append(_same_error_panel(scene, of_scene))
     text = [
         "What each knob takes and brings, all others at their defaults (1 sample, depth 5, builder <em>sah</em>, "
-        "boxes in bytes, promin's offset and methods). The truth is a picture of "
+        "boxes in bytes, promin's offset and methods); <em>error</em> is <code>--target-error</code>. The truth is a picture of "
         f"{report['frames']['truth_samples']} samples and {report['frames']['truth_depth']} bounces; smaller pictures "
         "are enlarged by repetition, larger ones averaged. A Whitted tracer has no noise: what is left is bias. Dotted "
         "is the Pareto front, ringed the default."

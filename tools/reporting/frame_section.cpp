@@ -45,6 +45,9 @@ std::vector<Setting> list_settings(const Session& session, const View& view) {
   for (const uint32_t samples : session.pick<std::vector<uint32_t>>({2, 4, 8, 16}, {4})) {
     add("samples", std::to_string(samples)).view.samples_per_pixel = samples;
   }
+  for (const float error : session.pick<std::vector<float>>({1.0F / 8, 1.0F / 16, 1.0F / 32, 1.0F / 64}, {1.0F / 16})) {
+    add("error", fmt::format("1/{:g}", 1.0F / error)).view.error_target = ErrorTarget{.error = error};
+  }
   for (const uint32_t depth : session.pick<std::vector<uint32_t>>({0, 1, 2, 3, 8, 16}, {0, 8})) {
     add("depth", std::to_string(depth)).view.max_depth = depth;
   }
