@@ -23,7 +23,7 @@ namespace promin::measure {
 namespace {
 
 struct HonestyOptions {
-  std::vector<std::string> scenes;
+  std::string scene;
   uvec2 size{1280, 720};
   uint32_t truth_samples = 1024;
   uint32_t most_samples = 128;
@@ -194,16 +194,15 @@ void measure_honesty(const HonestyOptions& options) {
       "| scene | picture | samples a pixel | ms | RMSE | 99.9 % error | within the claim | time over uniform "
       "sampling's "
       "of equal RMSE | of equal 99.9 % error |\n|---|---|---|---|---|---|---|---|---|\n");
-  for (const std::string& scene : options.scenes) HonestyBench(*device, scene, options).run();
+  HonestyBench(*device, options.scene, options).run();
 }
 
 app::Command add_honesty_command(CLI::App& program) {
   using app::OptionValues;
   const auto options = std::make_shared<HonestyOptions>();
   app::OptionTable table(program);
-  table.add_required_repeated("SCENE", "", "Scenes to make pictures of", [=](const OptionValues& words) {
-    options->scenes.assign(words.all().begin(), words.all().end());
-  });
+  table.add_required("SCENE", "", "A scene to make pictures of",
+                     [=](const OptionValues& words) { options->scene = words.text(); });
   table.add("--size", "W H", "Size of the pictures, 25 to 8192 [1280 720]", [=](const OptionValues& words) {
     options->size = uvec2(words.whole(0, 25, 8192), words.whole(1, 25, 8192));
   });
