@@ -528,10 +528,12 @@ def tells_scenes_apart(folder):
     files = (folder / "a" / "x.gltf", folder / "b" / "x.gltf")
     done = run("--quick", "-o", folder / "twice", files[0], folder / "b" / ".." / "a" / "x.gltf")
     expect(done.returncode == 2 and "given twice" in done.stderr, f"a scene given twice: {done.stderr}")
-    done = run("--quick", "--runs", 1, "-o", folder / "out", *files)
+    # Not what specialisation brings, whose kernels of all features take long to compile.
+    sections = ("frames", "robustness", "rates")
+    done = run("--quick", "--runs", 1, "--only", ",".join(sections), "-o", folder / "out", *files)
     expect(done.returncode == 0, f"exit code {done.returncode}: {done.stderr[-2000:]}")
     report = read_report(folder / "out" / "runs.json")
-    for section in ("frames", "robustness", "specialisation", "rates"):
+    for section in sections:
         scenes = {row["scene"]: row["scene_hash"] for row in report[section]["rows"]}
         expect(sorted(scenes) == ["a/x.gltf", "b/x.gltf"], f"{section}: {scenes}")
         expect(len(set(scenes.values())) == 1, f"{section}: the same content has two hashes: {scenes}")
