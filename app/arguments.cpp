@@ -183,6 +183,16 @@ void OptionTable::add_flag(const std::string& names, const std::string& help, bo
   command_.add_flag(names, value, help);
 }
 
+std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> given;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    given.emplace_back(option->get_lnames().empty() ? option->get_name() : "--" + option->get_lnames().back(),
+                       option->results());
+  }
+  return given;
+}
+
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help) {
   CLI::App* command = program.add_subcommand(name, help);
   add_common_options(*command);

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "promin/math.h"
@@ -73,6 +74,10 @@ struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;
 };
+
+/// The options and arguments that a parsed command was given, by the names that messages have, with their words; in the
+/// order of its table.
+std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command);
 
 /// Adds a command with --help and --version.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help);

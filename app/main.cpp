@@ -4,6 +4,7 @@
 #include "compare_command.h"
 #include "devices_command.h"
 #include "info_command.h"
+#include "merge_command.h"
 #include "render_command.h"
 #include "run_program.h"
 
@@ -12,6 +13,6 @@ int main(int argc, char** argv) {
   return run_program("promin",
                      "Ray tracer in Vulkan compute shaders: glTF, OBJ, PLY, STL and NFF scenes to EXR and PNG "
                      "pictures, or rays to hits.",
-                     {add_render_command, add_cast_command, add_compare_command, add_info_command, add_devices_command},
+                     {add_render_command, add_merge_command, add_cast_command, add_compare_command, add_info_command, add_devices_command},
                      argc, argv);
 }

@@ -34,6 +34,12 @@ void check_writable(const fs::path& file) {
 
 }  // namespace
 
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : files) names.push_back(file.string());
+  return names;
+}
+
 void check_pictures(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures) {
     if (!is_writable_format(picture)) {
@@ -60,7 +66,12 @@ void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::pa
     }
   }
   const DeferredSignals while_probing;
-  for (const fs::path& file : files) check_writable(file);
+  std::set<fs::path> folders;
+  for (const fs::path& file : files) {
+    check_writable(file);
+    folders.insert(resolve(file).parent_path());
+  }
+  for (const fs::path& folder : folders) clear_leftovers(folder);
 }
 
 }  // namespace promin::app

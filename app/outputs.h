@@ -4,15 +4,20 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace promin::app {
+
+/// For messages.
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 
 /// Throws UsageError for a picture of an ending that write_image does not know.
 void check_pictures(const std::vector<std::filesystem::path>& pictures);
 
 /// Finds before the work what would make it useless: the same file twice, or an input as an output (UsageError), a
-/// missing folder or one that cannot be written (RunError). No file is changed.
+/// missing folder or one that cannot be written (RunError). No file is changed, but for what runs that were killed have
+/// left beside the outputs, which is cleared.
 void check_outputs(const std::vector<std::filesystem::path>& inputs, const std::vector<std::filesystem::path>& outputs,
                    const std::optional<std::filesystem::path>& stats);
 

@@ -14,12 +14,15 @@
 
 #include "console.h"
 #include "core/file.h"
+#include "core/hash.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "frame_plan.h"
 #include "image/open_pictures.h"
+#include "jobs/job.h"
 #include "outputs.h"
+#include "picture_job.h"
 #include "progress.h"
 #include "promin/error.h"
 #include "promin/image.h"
@@ -30,6 +33,18 @@
 
 namespace promin::app {
 namespace {
+
+using GivenOptions = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+/// Of the kernels of pictures, by which other bits could come.
+std::string hash_of_shaders() {
+  Hash64 hash;
+  const PictureShaders shaders = picture_shaders();
+  for (const auto& spirv : {shaders.camera_stage, shaders.trace_shadow_rays, shaders.follow_paths}) {
+    hash.add(std::as_bytes(std::span(spirv)));
+  }
+  return fmt::format("{:016x}", hash.value());
+}
 
 /// Of all pictures together.
 uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options) {
@@ -107,9 +122,9 @@ std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
 }
 
 /// No times: equal pictures are equal files.
-Metadata make_metadata(const RunStats& stats, const PlannedFrame& planned) {
+Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame) {
   Metadata metadata = describe_picture(stats);
-  if (planned.number) metadata.emplace_back("promin:frame", std::to_string(*planned.number));
+  if (frame) metadata.emplace_back("promin:frame", std::to_string(*frame));
   return metadata;
 }
 
@@ -117,7 +132,7 @@ void write_pictures(const RenderOptions& options, const PlannedFrame& planned, c
                     const RunStats& stats) {
   std::optional<CropPlacement> placement;
   if (stats.view->crop) placement = CropPlacement{stats.view->crop->lo, stats.view->size};
-  const Metadata metadata = make_metadata(stats, planned);
+  const Metadata metadata = make_metadata(stats, planned.number);
   const std::vector<Channel> channels = make_channels(traced.result.aovs, options.aovs);
   for (const std::filesystem::path& file : planned.pictures) {
     write_image(file, traced.result.image, metadata, placement, channels, stats.display);
@@ -150,14 +165,12 @@ std::string describe_target(const RunStats& stats) {
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
-  std::vector<std::string> files;
-  for (const std::filesystem::path& file : options.pictures) files.push_back(file.string());
   const std::string frames = stats.frames.empty() ? "" : fmt::format("{} frames, ", stats.frames.size());
   const std::string time_of = stats.frames.empty() ? "" : " a frame";
   return fmt::format("{}x{}, {}, {}{:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
                      stats.view->size.y, describe_samples(stats), frames,
                      1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
-                     stats.mrays_per_s(), stats.device.name, fmt::join(files, ", "));
+                     stats.mrays_per_s(), stats.device.name, fmt::join(names_of(options.pictures), ", "));
 }
 
 /// Gives pixels the numbers that the file has for its objects.
@@ -196,6 +209,128 @@ void render_frame(const PlannedFrame& planned, const RenderOptions& options, con
   write_pictures(options, planned, traced, stats);
   stats.write_ms += write.ms();
 }
+
+/// What of the options does not reach a bit of a piece; the files that others name are in the manifest by their hashes.
+constexpr std::string_view kNotInJob[] = {"SCENE",   "--output",   "--job",     "--piece", "--pieces",
+                                          "--tiles", "--stats",    "--device",  "--quiet", "--builder",
+                                          "--bvh",   "--features", "--verbose", "--repeat"};
+constexpr std::string_view kNamesFile[] = {"--path", "--environment"};
+
+jobs::Manifest make_manifest(const RenderOptions& options, const GivenOptions& given, const RunStats& stats,
+                             const std::vector<SourceFile>& sources, std::vector<std::string> pieces) {
+  jobs::Manifest manifest;
+  manifest.kind = kPictureJob;
+  manifest.options = {{"version", PROMIN_VERSION}, {"shaders", hash_of_shaders()}};
+  for (const auto& [name, words] : given) {
+    if (std::ranges::find(kNotInJob, name) != std::end(kNotInJob)) continue;
+    const bool is_file = std::ranges::find(kNamesFile, name) != std::end(kNamesFile);
+    const std::string value = fmt::format("{}", fmt::join(words, " "));
+    manifest.options.emplace_back(name, is_file ? std::filesystem::path(value).filename().string() : value);
+  }
+  manifest.options.emplace_back("size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y));
+  for (const SourceFile& source : sources) {
+    if (source.stamp) manifest.files.push_back(jobs::describe_input(source.file));
+  }
+  if (options.path) manifest.files.push_back(jobs::describe_input(*options.path));
+  const auto& panorama = options.view.environment.panorama;
+  if (panorama) manifest.files.push_back(jobs::describe_input(*panorama));
+  manifest.pieces = std::move(pieces);
+  return manifest;
+}
+
+/// Makes the pieces of a job: each a part of a frame.
+class JobRun {
+ public:
+  JobRun(const RenderOptions& options, const std::vector<PlannedFrame>& frames, const Scene& scene, RunStats& stats,
+         const Console& console)
+      : options_(options),
+        frames_(frames),
+        scene_(scene),
+        stats_(stats),
+        console_(console),
+        whole_view_(*stats.view),
+        window_(stats.view->crop.value_or(PixelWindow{uvec2(0), stats.view->size})),
+        parts_(cut_picture(window_, options.job, frames.size() == 1)),
+        progress_(console.is_quiet()) {}
+
+  std::vector<std::string> piece_names() const {
+    std::vector<std::optional<uint32_t>> numbers;
+    for (const PlannedFrame& frame : frames_) numbers.push_back(frame.number);
+    return name_pieces(numbers, parts_);
+  }
+
+  /// Returns how many pieces it has made. False in `is_whole` where a signal has ended it before its share was done.
+  size_t run(const jobs::Job& job, bool& is_whole) {
+    const jobs::Share share = options_.job.share.value_or(jobs::Share{});
+    is_whole = true;
+    size_t done = 0;
+    // A signal ends the work when the piece at hand is written, and the program at the end of this.
+    const DeferredSignals while_working;
+    const auto before = [&](size_t piece, const std::string& why) {
+      if (while_working.is_pending()) {
+        console_.note(fmt::format("stopped before piece {} of {}; the same command goes on", piece, job.piece_count()));
+        is_whole = false;
+        return false;
+      }
+      if (!why.empty()) console_.warn(fmt::format("{} {}; it is made anew", job.file_of(piece).string(), why));
+      first_fraction_ = static_cast<double>(piece) / static_cast<double>(job.piece_count());
+      piece_share_ = 1.0 / static_cast<double>(job.piece_count());
+      return true;
+    };
+    open_device();
+    done = jobs::run_share(job, share, fmt::format("{}, {}", stats_.device.name, stats_.device.driver), before,
+                           [&](size_t piece) { return make(piece); });
+    return done;
+  }
+
+ private:
+  void open_device() {
+    device_ = open_device_for(options_.tracing, stats_, console_);
+    const size_t pieces = frames_.size() * parts_.size();
+    const size_t shares = options_.job.share ? options_.job.share->count : 1;
+    const uint64_t samples = count_samples(whole_view_, frames_.size(), options_) / std::min(shares, pieces);
+    renderer_.emplace(make_renderer(*device_, scene_, make_renderer_options(options_, samples)));
+    take_setup(renderer_->setup_stats(), stats_, console_);
+  }
+
+  jobs::Content make(size_t piece) {
+    const PlannedFrame& frame = frames_[piece / parts_.size()];
+    View view = whole_view_;
+    if (frame.camera) view.camera = *frame.camera;
+    view.crop = parts_[piece % parts_.size()];
+    TracedFrame traced = trace(*renderer_, view, options_,
+                               [&](double fraction) { progress_.update(first_fraction_ + piece_share_ * fraction); });
+    check_validation(*device_, stats_);
+    number_as_in_file(scene_, traced.result.aovs);
+    stats_.rays += traced.result.rays;
+    stats_.trace_ms.push_back(median(traced.trace_ms));
+    stats_.errors.clear();
+    if (traced.result.error) stats_.errors.push_back(*traced.result.error);
+    return encode_part({.frame = frame.number,
+                        .full_size = view.size,
+                        .window = window_,
+                        .part = *view.crop,
+                        .metadata = make_metadata(stats_, frame.number),
+                        .display = stats_.display,
+                        .error = traced.result.error,
+                        .image = std::move(traced.result.image),
+                        .channels = make_channels(traced.result.aovs, options_.aovs)});
+  }
+
+  const RenderOptions& options_;
+  const std::vector<PlannedFrame>& frames_;
+  const Scene& scene_;
+  RunStats& stats_;
+  const Console& console_;
+  View whole_view_;
+  PixelWindow window_;
+  std::vector<PixelWindow> parts_;
+  Progress progress_;
+  double first_fraction_ = 0.0;
+  double piece_share_ = 1.0;
+  gpu::DeviceHandle device_;
+  std::optional<Renderer> renderer_;
+};
 
 /// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
 /// are whole.
@@ -262,7 +397,27 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures) {
   throw UsageError({"the picture is there already", found->string(), "say by -o where to write"});
 }
 
-void render(const RenderOptions& given) {
+/// Goes on with a job, and where it has all pieces writes its pictures.
+void render_job(const RenderOptions& options, const GivenOptions& words, const std::vector<PlannedFrame>& frames,
+                const Scene& scene, const std::vector<SourceFile>& sources, RunStats& stats, const Console& console) {
+  JobRun run(options, frames, scene, stats, console);
+  const jobs::Job job =
+      jobs::Job::create(*options.job.folder, make_manifest(options, words, stats, sources, run.piece_names()));
+  const jobs::Share share = options.job.share.value_or(jobs::Share{});
+  bool is_whole = true;
+  const size_t made = jobs::has_work(job, share) ? run.run(job, is_whole) : 0;
+  if (!is_whole) return;
+  if (!share.is_all()) {
+    if (!console.is_quiet())
+      fmt::print("{} pieces made of {}, in {}\n", made, job.piece_count(), options.job.folder->string());
+    return;
+  }
+  merge_pictures(job, options.pictures);
+  if (console.is_quiet()) return;
+  fmt::print("{} of {} pieces made now: {}\n", made, job.piece_count(), fmt::join(names_of(options.pictures), ", "));
+}
+
+void render(const RenderOptions& given, const GivenOptions& words) {
   const Stopwatch total;
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
@@ -273,19 +428,20 @@ void render(const RenderOptions& given) {
   if (given.pictures.empty()) check_default_names(pictures_of(frames));
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
-  const bool has_pictures = !options.explained_pixel;
+  const bool has_pictures = !options.pictures.empty();
   if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
   if (skipped > 0) {
     console.note(fmt::format("skipped {} of {} frames, whose pictures are there", skipped, skipped + frames.size()));
   }
   if (frames.empty()) return;
-  if (given.pictures.empty() && has_pictures) {
+  if (given.pictures.empty() && !options.pictures.empty()) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
   }
 
   RunStats stats;
-  Scene scene = load_for(tracing, stats, console);
+  std::vector<SourceFile> sources;
+  Scene scene = load_for(tracing, stats, console, sources);
   ViewOptions view = options.view;
   view.given_camera = frames.front().camera;
   stats.view = make_view(scene, view, console);
@@ -302,6 +458,12 @@ void render(const RenderOptions& given) {
   const auto is_on = [](const Light& light) { return light.is_on; };
   stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));
 
+  if (options.job.folder) {
+    render_job(options, words, frames, scene, sources, stats, console);
+    stats.total_ms = total.ms();
+    if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
+    return;
+  }
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   std::future<void> pictures;
   if (has_pictures) pictures = open_pictures_aside();
@@ -331,7 +493,7 @@ Command add_render_command(CLI::App& program) {
   CLI::App& command = add_command(program, "render", "Render a picture of a scene");
   const auto options = std::make_shared<RenderOptions>();
   add_render_options(command, *options);
-  return {&command, [options] { render(*options); }};
+  return {&command, [options, &command] { render(*options, given_options(command)); }};
 }
 
 }  // namespace promin::app

@@ -31,6 +31,7 @@ constexpr double kMaxBackground = 1e9;
 /// More would leave the range of floats.
 constexpr double kMaxExposureEv = 64.0;
 constexpr uint32_t kMaxTextureMib = 8192;
+constexpr uint32_t kMostShares = 1000000;
 /// Seconds.
 constexpr double kMinTimeLimit = 1e-3;
 constexpr double kMaxTimeLimit = 1e6;
@@ -214,6 +215,15 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
 
 namespace {
 
+jobs::Share read_share(const OptionValues& words) {
+  const std::string& text = words.text();
+  const size_t slash = text.find('/');
+  if (slash == std::string::npos) words.refuse(fmt::format("--piece takes I/N, as 0/4, not \"{}\"", text));
+  const OptionValues numbers = words.with({text.substr(0, slash), text.substr(slash + 1)});
+  const uint32_t count = numbers.whole(1, 1, kMostShares);
+  return {numbers.whole(0, 0, count - 1), count};
+}
+
 void add_error_options(OptionTable& table, ErrorOptions& error) {
   const auto read_power = [](const OptionValues& w) {
     const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
@@ -244,6 +254,20 @@ void add_error_options(OptionTable& table, ErrorOptions& error) {
 }
 
 }  // namespace
+
+void add_job_options(OptionTable& table, JobOptions& job) {
+  table.add("--job", "DIR", "Keep the work in this folder, piece by piece: the same command goes on where it was ended",
+            [&](const OptionValues& w) { job.folder = w.text(); });
+  table.add("--pieces", "N",
+            "Of a job: bands of rows that each picture is cut into, 1 to 32768 [as suits its size; a path's frames 1]",
+            [&](const OptionValues& w) { job.bands = w.whole(0, 1, kMaxSide); });
+  table.add("--tiles", "C R", "The same in columns and rows of tiles",
+            [&](const OptionValues& w) { job.tiles = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
+  table.add("--piece", "I/N",
+            "Of a job: make only the pieces whose number is I more than a multiple of N, and no picture; promin merge "
+            "makes it of all",
+            [&](const OptionValues& w) { job.share = read_share(w); });
+}
 
 std::optional<ErrorTarget> ErrorOptions::error_target() const {
   if (!is_given()) return {};
@@ -284,6 +308,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_fps_option(table, options.fps);
   table.add_flag("--skip-existing", "Leave out frames whose pictures are there", options.skips_existing);
 
+  add_job_options(table, options.job);
   table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(aov_names(), ",")),
             [&](const OptionValues& w) { options.aovs = read_aovs(w); });
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
@@ -293,7 +318,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 }
 
 std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
-  if (!options.pictures.empty() || options.explained_pixel) return options.pictures;
+  if (!options.pictures.empty() || options.explained_pixel || options.job.share) return options.pictures;
   const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
   return {stem + ".exr", stem + ".png"};
 }
@@ -306,6 +331,31 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
 }
 
 namespace {
+
+void check_job_options(const RenderOptions& options) {
+  const JobOptions& job = options.job;
+  if (!job.folder) {
+    const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.bands ? "--pieces" : "";
+    if (name.empty()) return;
+    throw UsageError({fmt::format("{} has no job to cut", name), "on the command line", "give --job as well"});
+  }
+  const std::pair<bool, std::string_view> others[] = {{options.explained_pixel.has_value(), "--explain"},
+                                                      {options.error.time_limit_s.has_value(), "--time-limit"},
+                                                      {options.view.look.averages_exposure, "--exposure average"},
+                                                      {options.skips_existing, "--skip-existing"},
+                                                      {options.tracing.repeat_count > 1, "--repeat"}};
+  for (const auto& [is_given, name] : others) {
+    if (!is_given) continue;
+    throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
+  }
+  if (job.bands && job.tiles) {
+    throw UsageError({"--pieces and --tiles contradict each other", "on the command line", "leave one out"});
+  }
+  if (job.share && !options.pictures.empty()) {
+    throw UsageError({"--piece and --output contradict each other: a share makes no picture", "on the command line",
+                      "leave one out; promin merge writes the picture"});
+  }
+}
 
 void check_error_options(const RenderOptions& options) {
   const ErrorOptions& error = options.error;
@@ -340,6 +390,7 @@ void check_render_options(const RenderOptions& options) {
   if (options.path) check_no_camera(options.view, "--path");
   if (options.explained_pixel) check_explain_options(options);
   check_error_options(options);
+  check_job_options(options);
   if (options.skips_existing && options.pictures.empty()) {
     throw UsageError({"--skip-existing has no pictures to look for", "on the command line", "give -o as well"});
   }

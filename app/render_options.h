@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "environment_options.h"
+#include "picture_job.h"
 #include "promin/lighting.h"
 #include "promin/math.h"
 #include "promin/renderer.h"
@@ -122,6 +123,7 @@ struct RenderOptions {
   bool skips_existing = false;
   ViewOptions view;
   ErrorOptions error;
+  JobOptions job;
   /// Channels that an EXR carries beside R, G and B.
   AovChoice aovs;
   /// A camera path, and which of its frames to render; without `frames` all.

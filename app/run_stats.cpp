@@ -13,6 +13,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Metadata of pictures with an error target: the mean number of samples, and the others' beginning.
+constexpr std::string_view kSamplesEntry = "promin:spp";
+constexpr std::string_view kErrorEntries = "promin:error_";
+
+uint64_t pixel_count(const View& view) {
+  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
+  return uint64_t{size.x} * size.y;
+}
+
 Json json_of_scene(const RunStats& stats) {
   Json json = {{"file", stats.scene_file}, {"objects", stats.object_count}};
   for (size_t i = 0; i < kObjectNames.size(); ++i) json[std::string(kObjectNames[i])] = stats.scene.objects[i];
@@ -58,12 +67,6 @@ Json json_of_error(const RunStats& stats, size_t picture) {
           {"mean_samples", mean_samples(*stats.view, error)}};
 }
 
-/// As the metadata have it: of pictures with an error target the mean.
-std::string describe_samples(const RunStats& stats) {
-  if (stats.errors.empty()) return std::to_string(stats.view->samples_per_pixel);
-  return fmt::format("{:.9g}", mean_samples(*stats.view, stats.errors.back()));
-}
-
 Json json_of_frames(const RunStats& stats) {
   Json json = Json::array();
   for (size_t i = 0; i < stats.trace_ms.size(); ++i) {
@@ -85,29 +88,46 @@ double RunStats::mrays_per_s() const {
 }
 
 double mean_samples(const View& view, const PictureError& error) {
-  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
-  return static_cast<double>(error.samples) / (static_cast<double>(size.x) * size.y);
+  return static_cast<double>(error.samples) / static_cast<double>(pixel_count(view));
+}
+
+bool is_error_metadata(std::string_view name) {
+  return name == kSamplesEntry || name.starts_with(kErrorEntries);
+}
+
+void put_error(Metadata& metadata, const PictureError& error, uint64_t pixel_count) {
+  const auto put = [&](const std::string& name, const std::string& value) {
+    const auto found = std::ranges::find(metadata, name, &Metadata::value_type::first);
+    if (found == metadata.end()) {
+      metadata.emplace_back(name, value);
+    } else {
+      found->second = value;
+    }
+  };
+  const double samples = static_cast<double>(error.samples) / static_cast<double>(pixel_count);
+  put(std::string(kSamplesEntry), fmt::format("{:.9g}", samples));
+  const std::string entries(kErrorEntries);
+  put(entries + "target", fmt::format("{:.9g}", error.target));
+  put(entries + "max", fmt::format("{:.9g}", error.largest_claim));
+  put(entries + "unmet", std::to_string(error.unmet_pixels));
 }
 
 Metadata describe_picture(const RunStats& stats) {
   Metadata metadata = {{"promin:version", PROMIN_VERSION},
-          {"promin:scene", stats.scene_file},
-          {"promin:device", stats.device.name},
-          {"promin:driver", stats.device.driver},
-          {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
-          {"promin:spp", describe_samples(stats)},
-          {"promin:filter", fmt::format("{} {:g}", name_of(stats.view->filter), stats.view->filter_width)},
-          {"promin:max_depth", std::to_string(stats.view->max_depth)},
-          {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
-          {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
+                       {"promin:scene", stats.scene_file},
+                       {"promin:device", stats.device.name},
+                       {"promin:driver", stats.device.driver},
+                       {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},
+                       {"promin:spp", std::to_string(stats.view->samples_per_pixel)},
+                       {"promin:filter", fmt::format("{} {:g}", name_of(stats.view->filter), stats.view->filter_width)},
+                       {"promin:max_depth", std::to_string(stats.view->max_depth)},
+                       {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
+                       {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
   if (stats.errors.empty()) return metadata;
-  const PictureError& error = stats.errors.back();
   const ErrorTarget& target = *stats.view->error_target;
-  metadata.emplace_back("promin:target_error", fmt::format("{:.9g}", error.target));
   metadata.emplace_back("promin:min_spp", std::to_string(target.min_samples));
   metadata.emplace_back("promin:max_spp", std::to_string(target.max_samples));
-  metadata.emplace_back("promin:error_max", fmt::format("{:.9g}", error.largest_claim));
-  metadata.emplace_back("promin:error_unmet", std::to_string(error.unmet_pixels));
+  put_error(metadata, stats.errors.back(), pixel_count(*stats.view));
   return metadata;
 }
 

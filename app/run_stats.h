@@ -47,6 +47,11 @@ struct RunStats {
 /// Of a picture with an error target, a pixel.
 double mean_samples(const View& view, const PictureError& error);
 
+/// What metadata say of a picture with an error target, of so many pixels: put where it is or at their end.
+void put_error(Metadata& metadata, const PictureError& error, uint64_t pixel_count);
+/// Whether an entry of this name is put there by put_error.
+bool is_error_metadata(std::string_view name);
+
 /// The metadata of an EXR about the run's view.
 Metadata describe_picture(const RunStats& stats);
 

@@ -3,12 +3,15 @@
 #include "core/file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 
@@ -58,6 +61,12 @@ std::vector<std::byte> read_file(const fs::path& file, uint64_t most_bytes) {
   return bytes;
 }
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) return "host";
+  return name.data();
+}
+
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
   // rename() would replace a symbolic link, not what it points to.
@@ -77,7 +86,8 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     throw RunError({"the output file is a device or a pipe", target_.string(), "name a file"});
   }
   fs::path name = target_.stem();
-  name += ".tmp" + std::to_string(getpid());
+  // A folder may be seen by several machines.
+  name += ".tmp" + std::to_string(getpid()) + "-" + host_name();
   name += target_.extension();
   temporary_ = folder / name;
 }
@@ -98,6 +108,24 @@ void AtomicFile::commit() {
                     "check the disk and permissions"});
   }
   committed_ = true;
+}
+
+void clear_leftovers(const fs::path& folder) {
+  constexpr std::string_view kMark = ".tmp";
+  std::string owner = "-";
+  owner += host_name();
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().stem().string();
+    const size_t mark = name.rfind(kMark);
+    if (mark == std::string::npos) continue;
+    pid_t pid = 0;
+    const char* end = name.data() + name.size();
+    const auto [rest, problem] = std::from_chars(name.data() + mark + kMark.size(), end, pid);
+    if (problem != std::errc() || pid <= 0 || std::string_view(rest, end) != owner) continue;
+    const bool is_alive = pid != getpid() && (kill(pid, 0) == 0 || errno != ESRCH);
+    if (!is_alive) fs::remove(entry.path(), error);
+  }
 }
 
 void write_file(const fs::path& file, std::initializer_list<std::span<const std::byte>> parts) {

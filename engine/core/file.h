@@ -36,6 +36,9 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 std::vector<std::byte> read_file(const std::filesystem::path& file,
                                  uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
+/// The machine's name.
+std::string host_name();
+
 /// A file that appears whole or not at all: write to temporary(), then commit() renames it to the target. Without a
 /// commit the destructor removes the temporary file and the target stays as it was. A program that may reach the file
 /// size limit must ignore SIGXFSZ, because the signal would end it before the destructor runs.
@@ -49,7 +52,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// The temporary file lies beside the target and has its ending, so that writers which pick the format by the ending
-  /// see the right one.
+  /// see the right one: NAME.tmpPID-HOST.ENDING.
   const std::filesystem::path& temporary() const { return temporary_; }
 
   /// Flushes the temporary file to disk and renames it. Throws RunError.
@@ -60,6 +63,10 @@ class AtomicFile {
   std::filesystem::path temporary_;
   bool committed_ = false;
 };
+
+/// Removes from a folder the temporary files of AtomicFiles whose processes have ended on this machine without a chance
+/// to do so. What cannot be removed stays.
+void clear_leftovers(const std::filesystem::path& folder);
 
 /// Writes a whole file atomically, part after part. Throws RunError.
 void write_file(const std::filesystem::path& file, std::initializer_list<std::span<const std::byte>> parts);

@@ -44,6 +44,20 @@ TEST_F(FileTest, WithoutCommitTheOldFileStays) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "the temporary file was left behind";
 }
 
+// Of processes of this machine that are gone; others may still write, and a user's files are none of ours.
+TEST_F(FileTest, LeftoversOfTheDeadAreCleared) {
+  // Beyond the largest process number.
+  const std::string dead = "a.tmp99999999-" + host_name() + ".exr";
+  const std::string others[] = {"a.tmp1-" + host_name() + ".exr", "a.tmp99999999-elsewhere.exr", "a.tmp.exr",
+                                "a.tmp99999999.exr", "a.exr"};
+  write_text_file(folder_ / dead, "half");
+  for (const std::string& name : others) write_text_file(folder_ / name, "whole");
+  clear_leftovers(folder_);
+  EXPECT_FALSE(fs::exists(folder_ / dead));
+  for (const std::string& name : others) EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+  clear_leftovers(folder_ / "nowhere");
+}
+
 TEST_F(FileTest, UnreadableFilesSayWhy) {
   std::ofstream(folder_ / "empty.obj").close();
   EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasSubstr("not found"));

@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_job.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "frame_plan.h"
+#include "promin/error.h"
+#include "run_stats.h"
+
+namespace promin::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Bands where nothing else is asked for have about so many pixels.
+constexpr uint64_t kBandPixels = uint64_t{1} << 19;
+/// Missing pieces that a message names.
+constexpr size_t kMostNamed = 5;
+
+Json json_of(const PixelWindow& window) {
+  return {window.lo.x, window.lo.y, window.hi.x, window.hi.y};
+}
+
+PixelWindow window_of(const Json& json) {
+  return {uvec2(json.at(0).get<uint32_t>(), json.at(1).get<uint32_t>()),
+          uvec2(json.at(2).get<uint32_t>(), json.at(3).get<uint32_t>())};
+}
+
+Json json_of(const PictureError& error) {
+  return {{"target", error.target},
+          {"largest_claim", error.largest_claim},
+          {"unmet_pixels", error.unmet_pixels},
+          {"samples", error.samples}};
+}
+
+PictureError error_of(const Json& json) {
+  return {.target = json.at("target"),
+          .largest_claim = json.at("largest_claim"),
+          .unmet_pixels = json.at("unmet_pixels"),
+          .samples = json.at("samples")};
+}
+
+uvec2 size_of(const PixelWindow& window) {
+  return window.hi - window.lo;
+}
+
+size_t area_of(const PixelWindow& window) {
+  return static_cast<size_t>(size_of(window).x) * size_of(window).y;
+}
+
+/// Where each of `count` nearly equal parts of 0...length begins, and the end.
+std::vector<uint32_t> divide(uint32_t length, uint32_t count) {
+  std::vector<uint32_t> places;
+  for (uint64_t i = 0; i <= count; ++i) places.push_back(static_cast<uint32_t>(i * length / count));
+  return places;
+}
+
+bool is_known(const PixelWindow& part, const PixelWindow& window) {
+  return glm::all(glm::lessThanEqual(window.lo, part.lo)) && glm::all(glm::lessThanEqual(part.hi, window.hi)) &&
+         glm::all(glm::lessThan(part.lo, part.hi));
+}
+
+/// Copies a part's values to their places in the whole.
+template <typename Value>
+void place(const std::vector<Value>& values, const PicturePart& part, std::vector<Value>& whole) {
+  const uvec2 size = size_of(part.part);
+  const uvec2 lo = part.part.lo - part.window.lo;
+  const uint32_t width = size_of(part.window).x;
+  for (uint32_t y = 0; y < size.y; ++y) {
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(size_t{y} * size.x), size.x,
+                whole.begin() + static_cast<std::ptrdiff_t>(size_t{lo.y + y} * width + lo.x));
+  }
+}
+
+/// A picture that is put together.
+class Assembly {
+ public:
+  explicit Assembly(PicturePart first) : whole_(std::move(first)) {
+    const PicturePart part = whole_;
+    whole_.image.size = size_of(part.window);
+    whole_.image.pixels.assign(area_of(part.window), vec3(0.0F));
+    for (Channel& channel : whole_.channels) channel.values.assign(area_of(part.window), 0);
+    if (whole_.error) whole_.error = PictureError{.target = part.error->target};
+    add(part, {});
+  }
+
+  void add(const PicturePart& part, const fs::path& file) {
+    check_same(part, file);
+    place(part.image.pixels, part, whole_.image.pixels);
+    for (size_t i = 0; i < part.channels.size(); ++i) place(part.channels[i].values, part, whole_.channels[i].values);
+    if (!part.error) return;
+    whole_.error->largest_claim = std::max(whole_.error->largest_claim, part.error->largest_claim);
+    whole_.error->unmet_pixels += part.error->unmet_pixels;
+    whole_.error->samples += part.error->samples;
+  }
+
+  void write(const fs::path& file) const {
+    Metadata metadata = whole_.metadata;
+    if (whole_.error) put_error(metadata, *whole_.error, area_of(whole_.window));
+    std::optional<CropPlacement> placement;
+    if (size_of(whole_.window) != whole_.full_size) placement = CropPlacement{whole_.window.lo, whole_.full_size};
+    write_image(file, whole_.image, metadata, placement, whole_.channels, whole_.display);
+  }
+
+ private:
+  /// Whether the parts are of one picture: what was made by another driver has other bits.
+  void check_same(const PicturePart& part, const fs::path& file) const {
+    const auto is_same_channel = [](const Channel& a, const Channel& b) { return a.name == b.name; };
+    const bool is_same = part.full_size == whole_.full_size && part.window.lo == whole_.window.lo &&
+                         part.window.hi == whole_.window.hi && part.error.has_value() == whole_.error.has_value() &&
+                         std::ranges::equal(part.channels, whole_.channels, is_same_channel);
+    if (!is_same) throw InputError({"is not of the picture of the other pieces", file.string(), "remove it"});
+    for (size_t i = 0; i < std::min(part.metadata.size(), whole_.metadata.size()); ++i) {
+      const auto& [name, value] = part.metadata[i];
+      if (part.metadata[i] == whole_.metadata[i] || is_error_metadata(name)) continue;
+      throw InputError(
+          {fmt::format("its {} is \"{}\", and of other pieces \"{}\"", name, value, whole_.metadata[i].second),
+           file.string(), "remove the ones or the others, and run the job again on one device"});
+    }
+  }
+
+  PicturePart whole_;
+};
+
+}  // namespace
+
+std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, bool is_one_picture) {
+  const uvec2 size = size_of(window);
+  const auto default_bands =
+      is_one_picture ? static_cast<uint32_t>(std::clamp<uint64_t>(area_of(window) / kBandPixels, 1, size.y)) : 1;
+  const uvec2 tiles = options.tiles.value_or(uvec2(1, options.bands.value_or(default_bands)));
+  if (tiles.x > size.x || tiles.y > size.y) {
+    throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the {}x{} pixels have", tiles.x,
+                                  tiles.y, size.x, size.y),
+                      "on the command line", "give fewer by --pieces or --tiles"});
+  }
+  const std::vector<uint32_t> columns = divide(size.x, tiles.x);
+  const std::vector<uint32_t> rows = divide(size.y, tiles.y);
+  std::vector<PixelWindow> parts;
+  for (size_t row = 0; row < tiles.y; ++row) {
+    for (size_t column = 0; column < tiles.x; ++column) {
+      parts.push_back(
+          {window.lo + uvec2(columns[column], rows[row]), window.lo + uvec2(columns[column + 1], rows[row + 1])});
+    }
+  }
+  return parts;
+}
+
+std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
+                                     const std::vector<PixelWindow>& parts) {
+  std::vector<std::string> names;
+  for (const std::optional<uint32_t>& frame : frames) {
+    for (const PixelWindow& part : parts) {
+      const std::string of_frame = frame ? fmt::format("frame{:06}_", *frame) : "";
+      names.push_back(fmt::format("{}y{:05}-{:05}_x{:05}-{:05}", of_frame, part.lo.y, part.hi.y, part.lo.x, part.hi.x));
+    }
+  }
+  return names;
+}
+
+jobs::Content encode_part(const PicturePart& part) {
+  Json channels = Json::array();
+  for (const Channel& channel : part.channels) {
+    channels.push_back({{"name", channel.name}, {"is_integer", channel.is_integer}});
+  }
+  Json json = {{"full_size", {part.full_size.x, part.full_size.y}},
+               {"window", json_of(part.window)},
+               {"part", json_of(part.part)},
+               {"exposure_ev", part.display.exposure_ev},
+               {"tone_mapping", part.display.tone_mapping},
+               {"dithers", part.display.dithers},
+               {"channels", channels},
+               {"metadata", part.metadata}};
+  if (part.frame) json["frame"] = *part.frame;
+  if (part.error) json["error"] = json_of(*part.error);
+  jobs::Content content{json.dump(-1, ' ', false, Json::error_handler_t::replace), {}};
+  const auto append = [&](const auto& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    content.bytes.insert(content.bytes.end(), bytes.begin(), bytes.end());
+  };
+  append(part.image.pixels);
+  for (const Channel& channel : part.channels) append(channel.values);
+  return content;
+}
+
+PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
+  const InputError bad({"is no part of a picture", file.string(), "remove it and run the job again"});
+  PicturePart part;
+  try {
+    const Json json = Json::parse(content.description);
+    if (json.contains("frame")) part.frame = json.at("frame").get<uint32_t>();
+    part.full_size = uvec2(json.at("full_size").at(0).get<uint32_t>(), json.at("full_size").at(1).get<uint32_t>());
+    part.window = window_of(json.at("window"));
+    part.part = window_of(json.at("part"));
+    part.display.exposure_ev = json.at("exposure_ev");
+    part.display.tone_mapping = json.at("tone_mapping").get<ToneMapping>();
+    part.display.dithers = json.at("dithers");
+    part.metadata = json.at("metadata").get<Metadata>();
+    for (const Json& channel : json.at("channels")) {
+      part.channels.push_back({channel.at("name"), channel.at("is_integer"), {}});
+    }
+    if (json.contains("error")) part.error = error_of(json.at("error"));
+  } catch (const nlohmann::json::exception&) {
+    throw bad;
+  }
+  if (!is_known(part.part, part.window) || glm::any(glm::greaterThan(part.window.hi, part.full_size))) throw bad;
+  const size_t pixels = area_of(part.part);
+  if (content.bytes.size() != pixels * (sizeof(vec3) + sizeof(uint32_t) * part.channels.size())) throw bad;
+  part.image.size = size_of(part.part);
+  part.image.pixels.resize(pixels);
+  const std::byte* from = content.bytes.data();
+  std::memcpy(part.image.pixels.data(), from, pixels * sizeof(vec3));
+  from += pixels * sizeof(vec3);
+  for (Channel& channel : part.channels) {
+    channel.values.resize(pixels);
+    std::memcpy(channel.values.data(), from, pixels * sizeof(uint32_t));
+    from += pixels * sizeof(uint32_t);
+  }
+  return part;
+}
+
+void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
+  const std::vector<size_t> missing = jobs::find_missing(job);
+  if (!missing.empty()) {
+    std::vector<std::string> names;
+    for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
+      names.push_back(job.manifest().pieces[missing[i]]);
+    const std::string more = missing.size() > kMostNamed ? ", …" : "";
+    throw RunError({fmt::format("{} of {} pieces are missing or bad: {}{}", missing.size(), job.piece_count(),
+                                fmt::join(names, ", "), more),
+                    job.file_of(missing.front()).parent_path().string(),
+                    "run the job again, which makes what is missing"});
+  }
+  std::optional<Assembly> assembly;
+  std::optional<uint32_t> frame;
+  const auto write = [&] {
+    for (const fs::path& file : files) assembly->write(frame ? number_file(file, *frame) : file);
+  };
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    PicturePart part = decode_part(job.read(piece), job.file_of(piece));
+    if (assembly && part.frame != frame) {
+      write();
+      assembly.reset();
+    }
+    frame = part.frame;
+    if (assembly) {
+      assembly->add(part, job.file_of(piece));
+    } else {
+      assembly.emplace(std::move(part));
+    }
+  }
+  write();
+}
+
+}  // namespace promin::app

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "jobs/job.h"
+#include "promin/image.h"
+#include "promin/renderer.h"
+
+namespace promin::app {
+
+/// The kind of a job whose pieces are parts of pictures.
+inline constexpr std::string_view kPictureJob = "render";
+
+/// How pictures are made in pieces that a folder keeps.
+struct JobOptions {
+  std::optional<std::filesystem::path> folder;
+  /// Bands of rows that each picture is cut into, or columns and rows of tiles; empty: as suits it.
+  std::optional<uint32_t> bands;
+  std::optional<uvec2> tiles;
+  /// What of the pieces is to be made; without it all, and then the pictures of them.
+  std::optional<jobs::Share> share;
+};
+
+/// The pieces of a picture's window, row by row, of which there are several pictures or one. Throws UsageError for more
+/// of them than the window has rows or columns.
+std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, bool is_one_picture);
+
+/// A part of a picture with all that the whole one's files are written with.
+struct PicturePart {
+  /// Of a camera path.
+  std::optional<uint32_t> frame;
+  /// Of the whole picture, its window that is rendered, and the part of that.
+  uvec2 full_size{0};
+  PixelWindow window;
+  PixelWindow part;
+  Metadata metadata;
+  DisplayTransform display;
+  std::optional<PictureError> error;
+  Image image;
+  std::vector<Channel> channels;
+};
+
+jobs::Content encode_part(const PicturePart& part);
+/// Throws InputError, which names the file, where the content is none of a picture.
+PicturePart decode_part(const jobs::Content& content, const std::filesystem::path& file);
+
+/// The manifest's names of pieces: of each frame, or of the one picture, its parts.
+std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
+                                     const std::vector<PixelWindow>& parts);
+
+/// Puts the pieces of a job of pictures together and writes each picture to the files of these names, with the number
+/// of its frame. Throws RunError where pieces are missing, which names some, InputError where pieces do not belong
+/// together (made by different drivers) or are damaged.
+void merge_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
+
+}  // namespace promin::app

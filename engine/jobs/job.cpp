@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/job.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "core/stopwatch.h"
+#include "jobs/sha256.h"
+#include "promin/error.h"
+
+namespace promin::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Of manifests and of pieces.
+constexpr int kFormat = 1;
+constexpr std::string_view kMagic = "promin piece 1";
+/// Longer than any header of a piece.
+constexpr size_t kMostHeaderBytes = 1U << 20;
+
+Json json_of(const Manifest& manifest) {
+  Json options = Json::object();
+  for (const auto& [name, value] : manifest.options) options[name] = value;
+  Json files = Json::array();
+  for (const InputFile& file : manifest.files) {
+    files.push_back({{"name", file.name}, {"size_bytes", file.size_bytes}, {"sha256", file.sha256}});
+  }
+  return {{"promin_job", kFormat},
+          {"kind", manifest.kind},
+          {"options", options},
+          {"files", files},
+          {"pieces", manifest.pieces}};
+}
+
+Manifest manifest_of(const Json& json) {
+  Manifest manifest;
+  manifest.kind = json.at("kind").get<std::string>();
+  for (const auto& [name, value] : json.at("options").items()) {
+    manifest.options.emplace_back(name, value.get<std::string>());
+  }
+  for (const Json& file : json.at("files")) {
+    manifest.files.push_back({file.at("name"), file.at("size_bytes"), file.at("sha256")});
+  }
+  manifest.pieces = json.at("pieces").get<std::vector<std::string>>();
+  return manifest;
+}
+
+fs::path manifest_file(const fs::path& folder) {
+  return folder / "job.json";
+}
+
+std::string text_of(const Manifest& manifest) {
+  return json_of(manifest).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// The manifest of a folder that has one. Throws InputError.
+Manifest read_manifest(const fs::path& folder) {
+  const fs::path file = manifest_file(folder);
+  const std::vector<std::byte> bytes = read_file(file);
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const char* cure = "take another folder, or remove this one";
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("promin_job") != kFormat) throw InputError({"is a job of another version", file.string(), cure});
+    Manifest manifest = manifest_of(json);
+    // What was changed by hand is no longer what its pieces are of.
+    if (text_of(manifest) == text) return manifest;
+  } catch (const nlohmann::json::exception&) {
+  }
+  throw InputError({"is no manifest of a job, or a damaged one", file.string(), cure});
+}
+
+std::string shown(const std::string& value) {
+  return value.empty() ? "nothing" : "\"" + value + "\"";
+}
+
+/// What is different about two jobs, in a sentence about the wanted one.
+std::string find_difference(const Manifest& there, const Manifest& wanted) {
+  if (there.kind != wanted.kind) return "it is of the kind " + shown(there.kind);
+  const auto value_of = [](const Manifest& manifest, const std::string& name) -> std::optional<std::string> {
+    for (const auto& [key, value] : manifest.options) {
+      if (key == name) return value;
+    }
+    return {};
+  };
+  for (const auto& [name, value] : wanted.options) {
+    const std::optional<std::string> other = value_of(there, name);
+    if (!other) return fmt::format("it has no {}, which is {} now", name, shown(value));
+    if (*other != value) return fmt::format("its {} is {}, and {} now", name, shown(*other), shown(value));
+  }
+  for (const auto& [name, value] : there.options) {
+    if (!value_of(wanted, name)) return fmt::format("its {} is {}, and is not given now", name, shown(value));
+  }
+  for (size_t i = 0; i < std::max(there.files.size(), wanted.files.size()); ++i) {
+    if (i >= there.files.size()) return fmt::format("it does not know the file {}", shown(wanted.files[i].name));
+    if (i >= wanted.files.size()) return fmt::format("it has the file {} as well", shown(there.files[i].name));
+    if (there.files[i].name != wanted.files[i].name) {
+      return fmt::format("its file is {}, and {} now", shown(there.files[i].name), shown(wanted.files[i].name));
+    }
+    if (there.files[i].sha256 != wanted.files[i].sha256) {
+      return fmt::format("the file {} has changed since", shown(wanted.files[i].name));
+    }
+  }
+  return fmt::format("it has {} pieces, and {} now", there.pieces.size(), wanted.pieces.size());
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error) return;
+  throw RunError(
+      {"cannot make the folder (" + error.message() + ")", folder.string(), "check the disk and permissions"});
+}
+
+/// The folder's entry of a new file reaches the disk too.
+void flush_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
+/// The header of a piece, a line of JSON, and where its bytes begin.
+struct Header {
+  Json json;
+  size_t begin = 0;
+};
+
+std::optional<Header> read_header(std::string_view text) {
+  const size_t end_of_magic = text.find('\n');
+  if (text.substr(0, end_of_magic) != kMagic) return {};
+  const size_t end = text.substr(0, kMostHeaderBytes).find('\n', end_of_magic + 1);
+  if (end == std::string_view::npos) return {};
+  Json json = Json::parse(text.substr(end_of_magic + 1, end - end_of_magic - 1), nullptr, false);
+  if (!json.is_object()) return {};
+  return Header{std::move(json), end + 1};
+}
+
+std::string hash_of(const std::string& description, std::span<const std::byte> bytes) {
+  return Sha256().add(description).add(bytes).finish();
+}
+
+/// A piece's content, or what is bad about it.
+struct Reading {
+  std::optional<Content> content;
+  std::string why;
+};
+
+Reading read_piece(const fs::path& file, const std::string& job, const std::string& name) {
+  std::vector<std::byte> bytes;
+  try {
+    bytes = read_file(file);
+  } catch (const InputError& error) {
+    return {{}, error.problems().front().what};
+  }
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::optional<Header> header = read_header(text);
+  if (!header) return {{}, "is no piece of a job, or cut"};
+  const auto word = [&](const char* key) { return header->json.value(key, std::string()); };
+  try {
+    if (word("job") != job) return {{}, "is of another job"};
+    if (word("piece") != name) return {{}, "is another piece"};
+    Content content{word("description"), {bytes.begin() + static_cast<std::ptrdiff_t>(header->begin), bytes.end()}};
+    if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0})) return {{}, "is cut"};
+    if (word("sha256") != hash_of(content.description, content.bytes)) return {{}, "is damaged"};
+    return {std::move(content), ""};
+  } catch (const nlohmann::json::exception&) {
+    return {{}, "is damaged"};
+  }
+}
+
+/// A line at the end of a file, which reaches the disk.
+void append_line(const fs::path& file, const std::string& line) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const bool is_written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == ssize_t(line.size()) &&
+                          fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (is_written) return;
+  throw RunError({std::string("cannot write the receipt (") + std::strerror(error) + ")", file.string(),
+                  "check the disk and permissions"});
+}
+
+}  // namespace
+
+InputFile describe_input(const fs::path& file) {
+  const std::string hash = sha256_of_file(file);
+  return {file.filename().string(), fs::file_size(file), hash};
+}
+
+Job::Job(fs::path folder, Manifest manifest)
+    : folder_(std::move(folder)), manifest_(std::move(manifest)), id_(sha256_of(text_of(manifest_))) {}
+
+Job Job::create(const fs::path& folder, const Manifest& manifest) {
+  std::error_code error;
+  if (fs::exists(manifest_file(folder), error)) {
+    const Manifest there = read_manifest(folder);
+    if (text_of(there) != text_of(manifest)) {
+      throw UsageError({"the folder has another job: " + find_difference(there, manifest), folder.string(),
+                        "take another folder, or the options and files of that one"});
+    }
+  } else {
+    make_folder(folder);
+    if (!fs::is_empty(folder, error)) {
+      throw UsageError({"the folder has files but no job", folder.string(), "name a new folder, or an empty one"});
+    }
+    write_text_file(manifest_file(folder), text_of(manifest));
+    flush_folder(folder);
+  }
+  make_folder(folder / "pieces");
+  make_folder(folder / "ledger");
+  return {folder, manifest};
+}
+
+Job Job::open(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError({"there is no such folder", folder.string(), "name that of --job"});
+  }
+  if (!fs::exists(manifest_file(folder), error)) {
+    throw InputError({"there is no job in the folder", folder.string(), "name that of --job"});
+  }
+  return {folder, read_manifest(folder)};
+}
+
+fs::path Job::file_of(size_t piece) const {
+  return folder_ / "pieces" / (manifest_.pieces[piece] + ".piece");
+}
+
+PieceState Job::state_of(size_t piece, std::string* why) const {
+  std::error_code error;
+  if (!fs::exists(file_of(piece), error)) return PieceState::kMissing;
+  const Reading reading = read_piece(file_of(piece), id_, manifest_.pieces[piece]);
+  if (reading.content) return PieceState::kDone;
+  if (why != nullptr) *why = reading.why;
+  return PieceState::kBad;
+}
+
+Content Job::read(size_t piece) const {
+  Reading reading = read_piece(file_of(piece), id_, manifest_.pieces[piece]);
+  if (reading.content) return std::move(*reading.content);
+  throw InputError({reading.why, file_of(piece).string(), "run the job again, which makes it anew"});
+}
+
+void Job::write(size_t piece, const Content& content, double ms, const std::string& made_on) const {
+  const std::string hash = hash_of(content.description, content.bytes);
+  const Json header = {{"job", id_},
+                       {"piece", manifest_.pieces[piece]},
+                       {"size_bytes", content.bytes.size()},
+                       {"sha256", hash},
+                       {"description", content.description}};
+  const std::string head = fmt::format("{}\n{}\n", kMagic, header.dump(-1, ' ', false, Json::error_handler_t::replace));
+  write_file(file_of(piece), {std::as_bytes(std::span(head)), content.bytes});
+  flush_folder(folder_ / "pieces");
+  const Json receipt = {{"piece", manifest_.pieces[piece]},
+                        {"sha256", hash},
+                        {"size_bytes", content.bytes.size()},
+                        {"ms", ms},
+                        {"made_on", made_on}};
+  append_line(folder_ / "ledger" / fmt::format("{}-{}.jsonl", host_name(), getpid()),
+              receipt.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+void Job::clear_leftovers() const {
+  promin::clear_leftovers(folder_ / "pieces");
+}
+
+size_t run_share(const Job& job, const Share& share, const std::string& made_on, const BeforePiece& before,
+                 const std::function<Content(size_t piece)>& make) {
+  job.clear_leftovers();
+  size_t made = 0;
+  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) {
+    std::string why;
+    if (job.state_of(piece, &why) == PieceState::kDone) continue;
+    if (!before(piece, why)) return made;
+    const Stopwatch making;
+    const Content content = make(piece);
+    job.write(piece, content, making.ms(), made_on);
+    ++made;
+  }
+  return made;
+}
+
+bool has_work(const Job& job, const Share& share) {
+  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) {
+    if (job.state_of(piece) != PieceState::kDone) return true;
+  }
+  return false;
+}
+
+std::vector<size_t> find_missing(const Job& job) {
+  std::vector<size_t> missing;
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    if (job.state_of(piece) != PieceState::kDone) missing.push_back(piece);
+  }
+  return missing;
+}
+
+}  // namespace promin::jobs

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace promin::jobs {
+
+/// A file that the pieces of a job hang on.
+struct InputFile {
+  /// Without its folder.
+  std::string name;
+  uint64_t size_bytes = 0;
+  std::string sha256;
+};
+/// Reads it for its hash. Throws InputError.
+InputFile describe_input(const std::filesystem::path& file);
+
+/// What a job is: all that its pieces hang on. Jobs of equal manifests have equal pieces, to the bit.
+struct Manifest {
+  /// What the pieces are: "render".
+  std::string kind;
+  /// Name and value of whatever else decides their bytes, the program's version too.
+  std::vector<std::pair<std::string, std::string>> options;
+  std::vector<InputFile> files;
+  /// Names of the pieces, all different, of letters, digits, '_' and '-'; by their numbers.
+  std::vector<std::string> pieces;
+};
+
+/// What a piece is made of: what its maker says of it, a text, and its bytes.
+struct Content {
+  std::string description;
+  std::vector<std::byte> bytes;
+};
+
+enum class PieceState {
+  kMissing,
+  /// Whole, of this job and as it was written.
+  kDone,
+  /// There, but cut, damaged or of another job.
+  kBad,
+};
+
+/// Work in pieces in a folder: `job.json`, which is the manifest, a file for each piece in `pieces`, and in `ledger` a
+/// receipt of each piece, by those who made them. The folder alone tells what is done: whoever was ended, by whatever,
+/// goes on from there, and several may work on one job, on any machines that see the folder. A piece that two make is
+/// written twice, the same.
+class Job {
+ public:
+  /// Makes the folder, or goes on with what is in it. Throws UsageError where that is another job, which says what
+  /// differs; InputError where its manifest is damaged; RunError where it cannot be written.
+  static Job create(const std::filesystem::path& folder, const Manifest& manifest);
+  /// A job that there is. Throws InputError.
+  static Job open(const std::filesystem::path& folder);
+
+  const Manifest& manifest() const { return manifest_; }
+  /// SHA-256 of the manifest.
+  const std::string& id() const { return id_; }
+  size_t piece_count() const { return manifest_.pieces.size(); }
+  std::filesystem::path file_of(size_t piece) const;
+
+  /// What the disk tells: reads the piece whole. `why` is told what is bad about it: "is cut".
+  PieceState state_of(size_t piece, std::string* why = nullptr) const;
+  /// Throws InputError where the piece is missing or bad.
+  Content read(size_t piece) const;
+  /// Writes a piece and its receipt, with the time that it took and a word for what it was made on. Throws RunError;
+  /// the piece is there whole, or as it was before.
+  void write(size_t piece, const Content& content, double ms, const std::string& made_on) const;
+  /// Removes what writers have left behind that were ended on this machine.
+  void clear_leftovers() const;
+
+ private:
+  Job(std::filesystem::path folder, Manifest manifest);
+
+  std::filesystem::path folder_;
+  Manifest manifest_;
+  std::string id_;
+};
+
+/// A share of the pieces of a job: those whose number is `index` more than a multiple of `count`.
+struct Share {
+  size_t index = 0;
+  size_t count = 1;
+
+  bool is_all() const { return count == 1; }
+};
+
+/// Told of each piece of the share before it is made: its number and what was bad about it where it was there; and
+/// whether to go on.
+using BeforePiece = std::function<bool(size_t piece, const std::string& why)>;
+
+/// Makes the pieces of a share that are not done, in their order. `make` returns a piece's content by its number.
+/// Returns how many it has made; fewer than there were to make where `before` has said so.
+size_t run_share(const Job& job, const Share& share, const std::string& made_on, const BeforePiece& before,
+                 const std::function<Content(size_t piece)>& make);
+
+/// Whether a piece of the share is not done.
+bool has_work(const Job& job, const Share& share);
+
+/// Pieces that are not done.
+std::vector<size_t> find_missing(const Job& job);
+
+}  // namespace promin::jobs

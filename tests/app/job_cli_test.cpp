@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// `promin render --job` and `promin merge`: pictures in pieces, whatever ends the work.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "cli_fixture.h"
+
+namespace promin {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, "frames": [
+  {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45},
+  {"time_s": 0.1, "eye": [1, 0.5, 3], "look": [-0.28, 0, -0.96], "up": [0, 1, 0], "fov_deg": 60}]})";
+
+class JobCliTest : public CliTest {
+ protected:
+  ProcessResult render(OptionValues more) const {
+    more.insert(more.begin(), {"render", "square.gltf", "--size", "61", "47", "--quiet"});
+    return run(more);
+  }
+  void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
+  std::vector<std::filesystem::path> pieces(const std::string& job = "job") const {
+    std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder() / job / "pieces"),
+                                             std::filesystem::directory_iterator());
+    std::ranges::sort(files);
+    return files;
+  }
+};
+
+TEST_F(JobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
+  for (const OptionValues& how : {OptionValues{"--spp", "4", "--aov", "depth,normal,object,albedo"},
+                                  OptionValues{"--target-error", "0.03", "--aov", "samples,error"},
+                                  OptionValues{"--crop", "5", "3", "40", "41", "--dither"}}) {
+    const auto with = [&](OptionValues words) {
+      words.insert(words.end(), how.begin(), how.end());
+      return words;
+    };
+    expect_done(render(with({"-o", "whole.exr", "-o", "whole.png"})));
+    for (const OptionValues& cut : {OptionValues{"--pieces", "1"}, OptionValues{"--pieces", "7"},
+                                    OptionValues{"--tiles", "8", "8"}, OptionValues{}}) {
+      std::filesystem::remove_all(folder() / "job");
+      OptionValues words = with({"--job", "job", "-o", "cut.exr", "-o", "cut.png"});
+      words.insert(words.end(), cut.begin(), cut.end());
+      expect_done(render(words));
+      EXPECT_EQ(read("cut.exr") == read("whole.exr"), true);
+      EXPECT_EQ(read("cut.png") == read("whole.png"), true);
+    }
+  }
+}
+
+TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {
+  expect_done(render({"-o", "whole.exr"}));
+  expect_done(render({"--job", "job", "--pieces", "5", "--piece", "1/2"}));
+  EXPECT_EQ(pieces().size(), 2U);
+  ProcessResult result = run({"merge", "job", "-o", "merged.exr"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("3 of 5 pieces are missing or bad: y00000-00009_x00000-00061, y00018-00028_"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "merged.exr"));
+  expect_done(render({"--job", "job", "--pieces", "5", "--piece", "0/2"}));
+  expect_done(run({"merge", "job", "-o", "merged.exr", "-o", "merged.png"}));
+  EXPECT_TRUE(read("merged.exr") == read("whole.exr"));
+}
+
+TEST_F(JobCliTest, FramesOfAPathAreAJob) {
+  write("path.json", kPath);
+  const OptionValues path = {"--path", "path.json"};
+  expect_done(render({"--path", "path.json", "-o", "whole.##.exr"}));
+  expect_done(render({"--path", "path.json", "--job", "job", "--tiles", "2", "1", "-o", "cut.##.exr"}));
+  EXPECT_EQ(pieces().size(), 4U);
+  for (const char* number : {"00", "01"}) {
+    EXPECT_TRUE(read(std::string("cut.") + number + ".exr") == read(std::string("whole.") + number + ".exr"));
+  }
+}
+
+TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
+  expect_done(render({"-o", "whole.exr"}));
+  const OptionValues words = {"--job", "job", "--pieces", "4", "-o", "cut.exr"};
+  expect_done(render(words));
+  const auto files = pieces();
+  std::filesystem::resize_file(files[0], std::filesystem::file_size(files[0]) - 10);
+  std::filesystem::resize_file(files[1], 0);
+  std::string bytes = read("job/pieces/" + files[2].filename().string());
+  bytes[bytes.size() - 5] = static_cast<char>(bytes[bytes.size() - 5] ^ 4);
+  write("job/pieces/" + files[2].filename().string(), bytes);
+  const ProcessResult refused = run({"merge", "job", "-o", "cut.exr"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("3 of 4 pieces are missing or bad"));
+  const ProcessResult result =
+      run({"render", "square.gltf", "--size", "61", "47", "--job", "job", "--pieces", "4", "-o", "cut.exr"});
+  expect_done(result);
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + " is cut; it is made anew"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + " is damaged; it is made anew"));
+  EXPECT_THAT(result.out, HasSubstr("3 of 4 pieces made now"));
+  EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
+}
+
+TEST_F(JobCliTest, AnotherJobIsRefused) {
+  expect_done(render({"--job", "job", "-o", "cut.exr"}));
+  const ProcessResult other_samples = render({"--job", "job", "-o", "cut.exr", "--spp", "2"});
+  EXPECT_EQ(other_samples.exit_code, 2);
+  EXPECT_THAT(other_samples.err, HasSubstr("the folder has another job: it has no --spp, which is \"2\" now"));
+  write("square.gltf", std::string(kSquareGltf) + "\n");
+  const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
+  EXPECT_EQ(other_scene.exit_code, 2);
+  EXPECT_THAT(other_scene.err, HasSubstr("the file \"square.gltf\" has changed since"));
+}
+
+TEST_F(JobCliTest, WrongUseIsRefused) {
+  const std::pair<OptionValues, std::string> cases[] = {
+      {{"-o", "a.exr", "--pieces", "4"}, "--pieces has no job to cut"},
+      {{"-o", "a.exr", "--job", "job", "--pieces", "4", "--tiles", "2", "2"}, "--pieces and --tiles contradict"},
+      {{"-o", "a.exr", "--job", "job", "--pieces", "48"}, "1 columns and 48 rows of pieces are more than the 61x47"},
+      {{"-o", "a.exr", "--job", "job", "--piece", "0/4"}, "--piece and --output contradict each other"},
+      {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\""},
+      {{"--job", "job", "--piece", "4"}, "--piece takes I/N, as 0/4, not \"4\""},
+      {{"-o", "a.exr", "--job", "job", "--time-limit", "1"}, "--job and --time-limit contradict each other"},
+      {{"-o", "a.exr", "--job", "job", "--exposure", "average"}, "--job and --exposure average contradict"}};
+  for (const auto& [words, sentence] : cases) {
+    const ProcessResult result = render(words);
+    EXPECT_EQ(result.exit_code, 2) << sentence;
+    EXPECT_THAT(result.err, HasSubstr(sentence));
+    EXPECT_FALSE(std::filesystem::exists(folder() / "job")) << sentence;
+  }
+  const ProcessResult merge = run({"merge", "nowhere", "-o", "a.exr"});
+  EXPECT_EQ(merge.exit_code, 3);
+  EXPECT_THAT(merge.err, HasSubstr("there is no such folder, nowhere"));
+}
+
+/// Ends the work again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does not say.
+TEST_F(JobCliTest, WhateverEndsItTheSameCommandGoesOn) {
+  const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");
+  const int kills = kills_word == nullptr ? 6 : std::atoi(kills_word);
+  const OptionValues words = {"render", "square.gltf", "--size", "160", "120", "--spp",   "16",     "--job",
+                              "job",    "--tiles",     "5",      "5",   "-o",  "cut.exr", "--quiet"};
+  expect_done(run({"render", "square.gltf", "--size", "160", "120", "--spp", "16", "-o", "whole.exr", "--quiet"}));
+  const auto start = std::chrono::steady_clock::now();
+  expect_done(run(words));
+  const auto whole = std::chrono::steady_clock::now() - start;
+  std::filesystem::remove_all(folder() / "job");
+  std::filesystem::remove(folder() / "cut.exr");
+  int ended = 0;
+  for (int i = 0; i < kills; ++i) {
+    Process program(PROMIN_EXECUTABLE, words, options_);
+    // At any time of a run, by the golden ratio.
+    const double share = std::fmod(0.618033988749895 * (i + 1), 1.0);
+    std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(whole * share));
+    const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
+    program.send(signal);
+    const ProcessResult result = program.wait();
+    ended += result.signal == signal ? 1 : 0;
+    // What is there is whole, or nothing.
+    if (std::filesystem::exists(folder() / "cut.exr")) {
+      EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
+      std::filesystem::remove_all(folder() / "job");
+      std::filesystem::remove(folder() / "cut.exr");
+    }
+  }
+  EXPECT_GT(ended, kills / 4);
+  expect_done(run(words));
+  EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
+  // Nothing is left lying about.
+  EXPECT_EQ(pieces().size(), 25U);
+}
+
+}  // namespace
+}  // namespace promin

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Jobs of pieces that are mere bytes: what the folder alone tells, whatever happened to it.
+#include "jobs/job.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "core/file.h"
+#include "jobs/sha256.h"
+#include "promin/error.h"
+#include "support/temp_folder.h"
+
+namespace promin::jobs {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace fs = std::filesystem;
+
+Manifest make_manifest(size_t pieces = 5) {
+  Manifest manifest{
+      .kind = "bytes", .options = {{"version", "1"}, {"--spp", "4"}}, .files = {{"a.gltf", 12, "ab"}}, .pieces = {}};
+  for (size_t i = 0; i < pieces; ++i) manifest.pieces.push_back("part" + std::to_string(i));
+  return manifest;
+}
+
+Content make_content(size_t piece) {
+  Content content{"number " + std::to_string(piece), {}};
+  for (size_t i = 0; i < 1000 + piece; ++i) content.bytes.push_back(static_cast<std::byte>(i * (piece + 3)));
+  return content;
+}
+
+class JobTest : public TempFolder {
+ protected:
+  /// Which pieces were made, and which of those were bad.
+  std::vector<size_t> run(const Job& job, const Share& share = {}) {
+    std::vector<size_t> made;
+    bad_.clear();
+    run_share(
+        job, share, "here",
+        [&](size_t piece, const std::string& why) {
+          if (!why.empty()) bad_.push_back(std::to_string(piece) + " " + why);
+          return true;
+        },
+        [&](size_t piece) {
+          made.push_back(piece);
+          return make_content(piece);
+        });
+    return made;
+  }
+
+  std::string read(const fs::path& file) const {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  void write(const fs::path& file, const std::string& text) const { std::ofstream(file, std::ios::binary) << text; }
+
+  /// The sentence of what it throws.
+  template <typename Exception, typename Call>
+  static std::string refusal_of(const Call& call) {
+    try {
+      call();
+    } catch (const Exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  /// Of the job; there is none yet.
+  fs::path job_folder_ = folder_ / "job";
+  std::vector<std::string> bad_;
+};
+
+TEST(Sha256Test, IsThatOfTheStandard) {
+  EXPECT_EQ(sha256_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(Sha256().add("a").add("bc").finish(), sha256_of("abc"));
+}
+
+TEST_F(JobTest, WhatIsDoneIsNotMadeAgain) {
+  const Job job = Job::create(job_folder_, make_manifest());
+  EXPECT_EQ(find_missing(job).size(), 5U);
+  EXPECT_THAT(run(job, {1, 2}), ElementsAre(1, 3));
+  EXPECT_THAT(run(job, {1, 2}), IsEmpty());
+  EXPECT_FALSE(has_work(job, {1, 2}));
+  EXPECT_THAT(run(Job::create(job_folder_, make_manifest())), ElementsAre(0, 2, 4));
+  const Job again = Job::open(job_folder_);
+  EXPECT_EQ(again.id(), job.id());
+  EXPECT_EQ(again.manifest().options, job.manifest().options);
+  for (size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(again.read(i).bytes, make_content(i).bytes);
+    EXPECT_EQ(again.read(i).description, make_content(i).description);
+  }
+}
+
+TEST_F(JobTest, SharesEachHaveTheirOwn) {
+  const Job job = Job::create(job_folder_, make_manifest(10));
+  EXPECT_THAT(run(job, {0, 3}), ElementsAre(0, 3, 6, 9));
+  EXPECT_THAT(run(job, {2, 3}), ElementsAre(2, 5, 8));
+  EXPECT_THAT(run(job, {7, 20}), ElementsAre(7));
+  EXPECT_THAT(run(job, {15, 20}), IsEmpty());
+}
+
+TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
+  const Job job = Job::create(job_folder_, make_manifest(6));
+  run(job);
+  const std::string whole = read(job.file_of(0));
+  std::string flipped = whole;
+  flipped.back() = static_cast<char>(flipped.back() ^ 1);
+  write(job.file_of(0), flipped);
+  write(job.file_of(1), read(job.file_of(1)).substr(0, 900));
+  write(job.file_of(2), "");
+  fs::copy_file(job.file_of(4), job.file_of(3), fs::copy_options::overwrite_existing);
+  // What was said of it counts as well.
+  std::string renumbered = read(job.file_of(5));
+  renumbered.replace(renumbered.find("number 5"), 8, "number 6");
+  write(job.file_of(5), renumbered);
+  EXPECT_EQ(job.state_of(0), PieceState::kBad);
+  EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasSubstr("is damaged"));
+  EXPECT_THAT(find_missing(job), ElementsAre(0, 1, 2, 3, 5));
+  EXPECT_THAT(run(job), ElementsAre(0, 1, 2, 3, 5));
+  EXPECT_THAT(bad_,
+              ElementsAre("0 is damaged", "1 is cut", "2 the file is empty", "3 is another piece", "5 is damaged"));
+  EXPECT_EQ(read(job.file_of(0)), whole);
+  EXPECT_THAT(find_missing(job), IsEmpty());
+}
+
+TEST_F(JobTest, PiecesOfAnotherJobAreForeign) {
+  const Job job = Job::create(job_folder_, make_manifest());
+  run(job);
+  Manifest other = make_manifest();
+  other.options[1].second = "8";
+  const fs::path second = folder_ / "other";
+  const Job foreign = Job::create(second, other);
+  EXPECT_NE(foreign.id(), job.id());
+  fs::copy_file(job.file_of(2), foreign.file_of(2));
+  std::string why;
+  EXPECT_EQ(foreign.state_of(2, &why), PieceState::kBad);
+  EXPECT_EQ(why, "is of another job");
+}
+
+TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
+  Job::create(job_folder_, make_manifest());
+  const std::pair<void (*)(Manifest&), const char*> cases[] = {
+      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", and \"8\" now"},
+      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given now"},
+      {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); }, "it has no --crop, which is \"0 0 1 1\" now"},
+      {[](Manifest& m) { m.options[0].second = "2"; }, "its version is \"1\", and \"2\" now"},
+      {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
+      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
+      {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
+      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, and 4 now"},
+      {[](Manifest& m) { m.kind = "rays"; }, "it is of the kind \"bytes\""}};
+  for (const auto& [change, sentence] : cases) {
+    Manifest other = make_manifest();
+    change(other);
+    EXPECT_THAT(refusal_of<UsageError>([&] { Job::create(job_folder_, other); }), HasSubstr(sentence));
+  }
+}
+
+TEST_F(JobTest, FoldersWithoutAJobAreRefused) {
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("there is no such folder"));
+  fs::create_directories(job_folder_);
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("there is no job in the folder"));
+  write(job_folder_ / "letter.txt", "dear");
+  EXPECT_THAT(refusal_of<UsageError>([&] { Job::create(job_folder_, make_manifest()); }),
+              HasSubstr("the folder has files but no job"));
+  EXPECT_EQ(read(job_folder_ / "letter.txt"), "dear");
+  for (const char* text : {"{", "[]", R"({"promin_job": 1})", R"({"promin_job": 2})"}) {
+    write(job_folder_ / "job.json", text);
+    EXPECT_NE(refusal_of<InputError>([&] { Job::open(job_folder_); }), "") << text;
+    EXPECT_NE(refusal_of<InputError>([&] { Job::create(job_folder_, make_manifest()); }), "") << text;
+  }
+}
+
+TEST_F(JobTest, AManifestThatWasChangedByHandIsDamaged) {
+  Job::create(job_folder_, make_manifest());
+  std::string text = read(job_folder_ / "job.json");
+  text.replace(text.find(" \"options\""), 1, "  ");
+  write(job_folder_ / "job.json", text);
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
+}
+
+TEST_F(JobTest, LeftoversOfTheDeadAreCleared) {
+  const Job job = Job::create(job_folder_, make_manifest());
+  const fs::path dead = job_folder_ / "pieces" / ("part0.tmp99999999-" + host_name() + ".piece");
+  write(dead, "half");
+  run(job);
+  EXPECT_FALSE(fs::exists(dead));
+}
+
+TEST_F(JobTest, EachPieceLeavesAReceipt) {
+  const Job job = Job::create(job_folder_, make_manifest());
+  run(job);
+  std::vector<fs::path> ledgers(fs::directory_iterator(job_folder_ / "ledger"), fs::directory_iterator());
+  ASSERT_EQ(ledgers.size(), 1U);
+  EXPECT_EQ(ledgers[0].filename(), host_name() + "-" + std::to_string(getpid()) + ".jsonl");
+  const std::string text = read(ledgers[0]);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
+  EXPECT_THAT(text, HasSubstr(R"({"piece":"part0","sha256":")"));
+  EXPECT_THAT(text, HasSubstr(R"("made_on":"here"})"));
+}
+
+// What stops in the middle has written nothing of the piece at hand.
+TEST_F(JobTest, WhatMakesNoPieceLeavesNone) {
+  const Job job = Job::create(job_folder_, make_manifest());
+  const auto fails_at_2 = [](size_t piece) {
+    if (piece == 2) throw RunError({"the device is gone", "here", "try again"});
+    return make_content(piece);
+  };
+  EXPECT_THROW(run_share(
+                   job, {}, "here", [](size_t, const std::string&) { return true; }, fails_at_2),
+               RunError);
+  EXPECT_THAT(find_missing(job), ElementsAre(2, 3, 4));
+  EXPECT_EQ(run_share(
+                job, {}, "here", [](size_t piece, const std::string&) { return piece < 3; }, make_content),
+            1U);
+  EXPECT_THAT(find_missing(job), ElementsAre(3, 4));
+}
+
+}  // namespace
+}  // namespace promin::jobs
