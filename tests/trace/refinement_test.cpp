@@ -152,6 +152,53 @@ TEST(RefinementTest, ClaimsHoldOf95In100Pixels) {
   }
 }
 
+/// Of the pixels that lines of this width run through, of a contrast of 0.8, the share that is off by more than the
+/// error in the end.
+double share_missed(double width, uint32_t least_samples) {
+  size_t missed = 0;
+  size_t pixels = 0;
+  for (int i = 0; i < 24; ++i) {
+    const double angle = 0.07 + std::numbers::pi * i / 24.0;
+    const dvec2 normal(std::cos(angle), std::sin(angle));
+    const auto line = [&](const dvec2& p) {
+      return vec3(std::abs(glm::dot(p - dvec2(48.3, 32.1), normal)) < 0.5 * width ? 0.8F : 0.0F);
+    };
+    const View view = make_view(1.0F / 64.0F, least_samples);
+    const Refined refined = refine(view, line);
+    for (size_t pixel = 0; pixel < refined.means.size(); ++pixel) {
+      const dvec2 corner(pixel % view.size.x, pixel / view.size.x);
+      constexpr int kSteps = 64;
+      double covered = 0.0;
+      for (int k = 0; k < kSteps * kSteps; ++k) {
+        const dvec2 place((k % kSteps + 0.5) / kSteps, (k / kSteps + 0.5) / kSteps);
+        if (k == 0 && std::abs(glm::dot(corner + 0.5 - dvec2(48.3, 32.1), normal)) > 0.8 + width) break;
+        covered += static_cast<double>(line(corner + place).x);
+      }
+      const double truth = covered / (kSteps * kSteps);
+      if (truth <= 0.0) continue;
+      ++pixels;
+      missed += std::abs(static_cast<double>(refined.means[pixel].x) - truth) > 1.0 / 64.0 ? 1 : 0;
+    }
+  }
+  return static_cast<double>(missed) / static_cast<double>(pixels);
+}
+
+// What the manual says of lines that are thinner than a pixel over the first samples: no sample of a pixel and of those
+// around it may hit them.
+TEST(RefinementTest, ThinLinesMayLieBetweenAllSamples) {
+  for (const uint32_t samples : {4U, 8U, 16U}) {
+    std::printf("%u first samples:", samples);
+    for (const double width : {1.0 / 4.0, 1.0 / 8.0, 1.0 / 16.0, 1.0 / 32.0}) {
+      const double missed = share_missed(width, samples);
+      std::printf(" 1/%g pixel %.1f %%", 1.0 / width, 100.0 * missed);
+      const double samples_across = width * samples;
+      EXPECT_LT(missed, samples_across >= 2.0 ? 0.04 : samples_across >= 1.0 ? 0.08 : 1.0) << width;
+      EXPECT_GT(missed, samples_across <= 0.25 ? 0.3 : 0.0) << width;
+    }
+    std::printf("\n");
+  }
+}
+
 TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
   const View view = make_view(1.0F / 64.0F);
   const Refined refined = refine(view, discs_and_floor);
