@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "device/buffer.h"
@@ -267,10 +268,12 @@ void Device::run(const std::function<void(const vk::raii::CommandBuffer&)>& reco
   const vk::CommandBuffer buffer = *commands_;
   submit.setCommandBuffers(buffer);
   use_queue([&](const vk::raii::Queue& queue) { queue.submit(submit, *fence_); });
-  // Work is cut into short dispatches: a device that is silent for this long is gone.
-  constexpr uint64_t kTimeoutNs = 120'000'000'000;
-  const vk::Result result = device_.waitForFences({*fence_}, VK_TRUE, kTimeoutNs);
-  if (result != vk::Result::eSuccess) throw vk::DeviceLostError("vk::Device::waitForFences: no answer for 120 s");
+  // Work is cut into short dispatches.
+  const double most_s = profile_.most_silence_s;
+  const vk::Result result = device_.waitForFences({*fence_}, VK_TRUE, static_cast<uint64_t>(1e9 * most_s));
+  if (result != vk::Result::eSuccess) {
+    throw vk::DeviceLostError("vk::Device::waitForFences: no answer for " + std::to_string(std::lround(most_s)) + " s");
+  }
   device_.resetFences({*fence_});
 }
 

@@ -18,6 +18,9 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
   constexpr uint32_t kMostThreads = 32;
   profile.fetches_film_texels = true;
   profile.target_dispatch_ms = 100.0;
+  // It compiles kernels with their first dispatch, and where others take the cores that may last minutes. No reset ends
+  // it: its threads would go on with what has been freed.
+  profile.most_silence_s = 3600.0;
   profile.most_group_rows = std::min(traits.core_count, kMostThreads);
   // Fewer paths make more dispatches, more do not fit in the caches (docs/performance_log.md).
   profile.most_stream_paths = 1U << 16;

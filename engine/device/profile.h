@@ -51,6 +51,8 @@ struct DeviceProfile {
   // How work is cut into dispatches and spread over the workgroups of each.
   /// How long a dispatch should take. At the end of each the threads of a CPU driver wait for the last one.
   double target_dispatch_ms = 25.0;
+  /// A device that is silent for so many seconds is gone.
+  double most_silence_s = 120.0;
   /// In how many rows the workgroups of a dispatch come at most (trace/group_rows.h).
   uint32_t most_group_rows = 1;
   /// Whether the driver may end loops that turn too often (trace/cut_loops.h): whoever traces then looks whether it

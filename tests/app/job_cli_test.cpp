@@ -135,6 +135,28 @@ TEST_F(JobCliTest, WrongUseIsRefused) {
   EXPECT_THAT(merge.err, HasSubstr("there is no such folder, nowhere"));
 }
 
+TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::filesystem::remove_all(folder() / "job");
+    Process program(PROMIN_EXECUTABLE,
+                    {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job", "job", "--tiles", "10",
+                     "10", "-o", "cut.exr"},
+                    options_);
+    const auto is_begun = [&] {
+      return std::filesystem::is_directory(folder() / "job" / "ledger") && !pieces().empty();
+    };
+    for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    program.send(signal);
+    const ProcessResult result = program.wait();
+    EXPECT_EQ(result.signal, signal);
+    EXPECT_THAT(result.err, HasSubstr("of 100; the same command goes on"));
+    EXPECT_GT(pieces().size(), 0U);
+    EXPECT_LT(pieces().size(), 100U);
+    for (const auto& piece : pieces()) EXPECT_EQ(piece.string().find(".tmp"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder() / "cut.exr"));
+  }
+}
+
 /// Ends the work again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does not say.
 TEST_F(JobCliTest, WhateverEndsItTheSameCommandGoesOn) {
   const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");

@@ -34,6 +34,7 @@ void expect_gpu(const DeviceProfile& profile) {
     EXPECT_FALSE(form.waits_with_solids);
   }
   EXPECT_EQ(profile.target_dispatch_ms, 25.0);
+  EXPECT_EQ(profile.most_silence_s, 120.0);
   EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
@@ -54,6 +55,7 @@ void expect_cpu(const DeviceProfile& profile) {
   EXPECT_TRUE(profile.fetches_film_texels);
   EXPECT_EQ(profile.most_stream_paths, 1U << 16);
   EXPECT_EQ(profile.target_dispatch_ms, 100.0);
+  EXPECT_EQ(profile.most_silence_s, 3600.0);
   EXPECT_EQ(profile.most_group_rows, 8U);
   EXPECT_TRUE(profile.sorts_rays);
   EXPECT_EQ(profile.most_frames_in_flight, 1U);
