@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   return run_program("promin",
                      "Ray tracer in Vulkan compute shaders: glTF, OBJ, PLY, STL and NFF scenes to EXR and PNG "
                      "pictures, or rays to hits.",
-                     {add_render_command, add_merge_command, add_cast_command, add_compare_command, add_info_command, add_devices_command},
+                     {add_render_command, add_merge_command, add_cast_command, add_compare_command, add_info_command,
+                      add_devices_command},
                      argc, argv);
 }

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "console.h"
-#include "deferred_signals.h"
 #include "image/open_pictures.h"
 #include "jobs/job.h"
 #include "outputs.h"
@@ -33,7 +32,6 @@ void merge(const MergeOptions& options) {
     throw InputError({fmt::format("the job is no pictures but \"{}\"", job.manifest().kind), options.folder.string(),
                       "name the folder of promin render --job"});
   }
-  const DeferredSignals while_writing;
   merge_pictures(job, options.pictures);
   if (!options.is_quiet) fmt::print("{} pieces: {}\n", job.piece_count(), fmt::join(names_of(options.pictures), ", "));
 }

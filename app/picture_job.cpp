@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
+#include "deferred_signals.h"
 #include "frame_plan.h"
 #include "promin/error.h"
 #include "run_stats.h"
@@ -21,6 +21,10 @@ using Json = nlohmann::ordered_json;
 
 /// Bands where nothing else is asked for have about so many pixels.
 constexpr uint64_t kBandPixels = uint64_t{1} << 19;
+/// Of a picture.
+constexpr uint64_t kMostParts = 1'000'000;
+/// The names of a path's pieces begin so.
+constexpr std::string_view kOfFrame = "frame";
 /// Missing pieces that a message names.
 constexpr size_t kMostNamed = 5;
 
@@ -62,7 +66,7 @@ std::vector<uint32_t> divide(uint32_t length, uint32_t count) {
   return places;
 }
 
-bool is_known(const PixelWindow& part, const PixelWindow& window) {
+bool is_within(const PixelWindow& part, const PixelWindow& window) {
   return glm::all(glm::lessThanEqual(window.lo, part.lo)) && glm::all(glm::lessThanEqual(part.hi, window.hi)) &&
          glm::all(glm::lessThan(part.lo, part.hi));
 }
@@ -129,6 +133,17 @@ class Assembly {
   PicturePart whole_;
 };
 
+/// Before anything is written: whether the frames go to files of their own.
+void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
+  const auto frame_of = [](const std::string& piece) { return piece.substr(0, piece.find('_')); };
+  const std::vector<std::string>& pieces = job.manifest().pieces;
+  if (frame_of(pieces.front()) == frame_of(pieces.back())) return;
+  for (const fs::path& file : files) {
+    if (number_file(file, 0) != file) continue;
+    throw UsageError({"several frames would go to one file", file.string(), "put #### where their numbers go"});
+  }
+}
+
 }  // namespace
 
 std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, bool is_one_picture) {
@@ -139,6 +154,10 @@ std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions
   if (tiles.x > size.x || tiles.y > size.y) {
     throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the {}x{} pixels have", tiles.x,
                                   tiles.y, size.x, size.y),
+                      "on the command line", "give fewer by --pieces or --tiles"});
+  }
+  if (uint64_t{tiles.x} * tiles.y > kMostParts) {
+    throw UsageError({fmt::format("{} pieces are more than {}", uint64_t{tiles.x} * tiles.y, kMostParts),
                       "on the command line", "give fewer by --pieces or --tiles"});
   }
   const std::vector<uint32_t> columns = divide(size.x, tiles.x);
@@ -158,7 +177,7 @@ std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>&
   std::vector<std::string> names;
   for (const std::optional<uint32_t>& frame : frames) {
     for (const PixelWindow& part : parts) {
-      const std::string of_frame = frame ? fmt::format("frame{:06}_", *frame) : "";
+      const std::string of_frame = frame ? fmt::format("{}{:06}_", kOfFrame, *frame) : "";
       names.push_back(fmt::format("{}y{:05}-{:05}_x{:05}-{:05}", of_frame, part.lo.y, part.hi.y, part.lo.x, part.hi.x));
     }
   }
@@ -210,7 +229,7 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
   } catch (const nlohmann::json::exception&) {
     throw bad;
   }
-  if (!is_known(part.part, part.window) || glm::any(glm::greaterThan(part.window.hi, part.full_size))) throw bad;
+  if (!is_within(part.part, part.window) || glm::any(glm::greaterThan(part.window.hi, part.full_size))) throw bad;
   const size_t pixels = area_of(part.part);
   if (content.bytes.size() != pixels * (sizeof(vec3) + sizeof(uint32_t) * part.channels.size())) throw bad;
   part.image.size = size_of(part.part);
@@ -226,7 +245,24 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
   return part;
 }
 
+std::string driver_of(const Metadata& metadata) {
+  std::string driver;
+  for (const auto& [name, value] : metadata) {
+    if (name == "promin:device" || name == "promin:driver") driver += (driver.empty() ? "" : ", ") + value;
+  }
+  return driver;
+}
+
+std::string find_driver(const jobs::Job& job) {
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    if (job.state_of(piece) != jobs::PieceState::kDone) continue;
+    return driver_of(decode_part(job.read(piece), job.file_of(piece)).metadata);
+  }
+  return "";
+}
+
 void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
+  if (job.manifest().pieces.front().starts_with(kOfFrame)) check_numbered(job, files);
   const std::vector<size_t> missing = jobs::find_missing(job);
   if (!missing.empty()) {
     std::vector<std::string> names;
@@ -241,7 +277,10 @@ void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
   std::optional<Assembly> assembly;
   std::optional<uint32_t> frame;
   const auto write = [&] {
-    for (const fs::path& file : files) assembly->write(frame ? number_file(file, *frame) : file);
+    for (const fs::path& file : files) {
+      const DeferredSignals while_writing;
+      assembly->write(frame ? number_file(file, *frame) : file);
+    }
   };
   for (size_t piece = 0; piece < job.piece_count(); ++piece) {
     PicturePart part = decode_part(job.read(piece), job.file_of(piece));

@@ -57,9 +57,15 @@ PicturePart decode_part(const jobs::Content& content, const std::filesystem::pat
 std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
                                      const std::vector<PixelWindow>& parts);
 
+/// What the pieces of a job that are there were made on; empty where there is none.
+std::string find_driver(const jobs::Job& job);
+/// What pieces of a picture with these metadata are made on: device and driver.
+std::string driver_of(const Metadata& metadata);
+
 /// Puts the pieces of a job of pictures together and writes each picture to the files of these names, with the number
 /// of its frame. Throws RunError where pieces are missing, which names some, InputError where pieces do not belong
-/// together (made by different drivers) or are damaged.
+/// together (made by different drivers) or are damaged, UsageError where several frames would go to one file. A signal
+/// waits until the file at hand is whole.
 void merge_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
 
 }  // namespace promin::app

@@ -8,19 +8,20 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <functional>
 #include <future>
 #include <memory>
 
 #include "console.h"
 #include "core/file.h"
-#include "core/hash.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "frame_plan.h"
 #include "image/open_pictures.h"
 #include "jobs/job.h"
+#include "jobs/sha256.h"
 #include "outputs.h"
 #include "picture_job.h"
 #include "progress.h"
@@ -35,16 +36,6 @@ namespace promin::app {
 namespace {
 
 using GivenOptions = std::vector<std::pair<std::string, std::vector<std::string>>>;
-
-/// Of the kernels of pictures, by which other bits could come.
-std::string hash_of_shaders() {
-  Hash64 hash;
-  const PictureShaders shaders = picture_shaders();
-  for (const auto& spirv : {shaders.camera_stage, shaders.trace_shadow_rays, shaders.follow_paths}) {
-    hash.add(std::as_bytes(std::span(spirv)));
-  }
-  return fmt::format("{:016x}", hash.value());
-}
 
 /// Of all pictures together.
 uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options) {
@@ -220,7 +211,7 @@ jobs::Manifest make_manifest(const RenderOptions& options, const GivenOptions& g
                              const std::vector<SourceFile>& sources, std::vector<std::string> pieces) {
   jobs::Manifest manifest;
   manifest.kind = kPictureJob;
-  manifest.options = {{"version", PROMIN_VERSION}, {"shaders", hash_of_shaders()}};
+  manifest.options = {{"version", PROMIN_VERSION}, {"program", jobs::sha256_of_file("/proc/self/exe")}};
   for (const auto& [name, words] : given) {
     if (std::ranges::find(kNotInJob, name) != std::end(kNotInJob)) continue;
     const bool is_file = std::ranges::find(kNamesFile, name) != std::end(kNamesFile);
@@ -229,7 +220,10 @@ jobs::Manifest make_manifest(const RenderOptions& options, const GivenOptions& g
   }
   manifest.options.emplace_back("size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y));
   for (const SourceFile& source : sources) {
-    if (source.stamp) manifest.files.push_back(jobs::describe_input(source.file));
+    if (!source.stamp) continue;
+    manifest.files.push_back(jobs::describe_input(source.file));
+    if (stamp_of(source.file) == source.stamp) continue;
+    throw InputError({"the file has changed while it was read", source.file.string(), "try again"});
   }
   if (options.path) manifest.files.push_back(jobs::describe_input(*options.path));
   const auto& panorama = options.view.environment.panorama;
@@ -266,18 +260,21 @@ class JobRun {
     size_t done = 0;
     // A signal ends the work when the piece at hand is written, and the program at the end of this.
     const DeferredSignals while_working;
-    const auto before = [&](size_t piece, const std::string& why) {
+    const auto before = [&](const jobs::NextPiece& next) {
       if (while_working.is_pending()) {
-        console_.note(fmt::format("stopped before piece {} of {}; the same command goes on", piece, job.piece_count()));
+        console_.note(
+            fmt::format("stopped before piece {} of {}; the same command goes on", next.number, job.piece_count()));
         is_whole = false;
         return false;
       }
-      if (!why.empty()) console_.warn(fmt::format("{} {}; it is made anew", job.file_of(piece).string(), why));
-      first_fraction_ = static_cast<double>(piece) / static_cast<double>(job.piece_count());
-      piece_share_ = 1.0 / static_cast<double>(job.piece_count());
+      if (!next.why.empty()) {
+        console_.warn(fmt::format("{} {}; it is made anew", job.file_of(next.number).string(), next.why));
+      }
+      next_ = next;
       return true;
     };
     open_device();
+    check_driver(job);
     done = jobs::run_share(job, share, fmt::format("{}, {}", stats_.device.name, stats_.device.driver), before,
                            [&](size_t piece) { return make(piece); });
     return done;
@@ -293,17 +290,25 @@ class JobRun {
     take_setup(renderer_->setup_stats(), stats_, console_);
   }
 
+  /// Another driver's pieces have other bits.
+  void check_driver(const jobs::Job& job) const {
+    const std::string of_pieces = find_driver(job);
+    const std::string own = driver_of(describe_picture(stats_));
+    if (of_pieces.empty() || of_pieces == own) return;
+    throw UsageError({fmt::format("the job's pieces were made on {}, and this is {}", of_pieces, own),
+                      options_.job.folder->string(), "go on with that device by --device, or take another folder"});
+  }
+
   jobs::Content make(size_t piece) {
     const PlannedFrame& frame = frames_[piece / parts_.size()];
     View view = whole_view_;
     if (frame.camera) view.camera = *frame.camera;
     view.crop = parts_[piece % parts_.size()];
-    TracedFrame traced = trace(*renderer_, view, options_,
-                               [&](double fraction) { progress_.update(first_fraction_ + piece_share_ * fraction); });
+    TracedFrame traced = trace(*renderer_, view, options_, [&](double fraction) {
+      progress_.update((static_cast<double>(next_.before) + fraction) / static_cast<double>(next_.total));
+    });
     check_validation(*device_, stats_);
     number_as_in_file(scene_, traced.result.aovs);
-    stats_.rays += traced.result.rays;
-    stats_.trace_ms.push_back(median(traced.trace_ms));
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);
     return encode_part({.frame = frame.number,
@@ -326,8 +331,7 @@ class JobRun {
   PixelWindow window_;
   std::vector<PixelWindow> parts_;
   Progress progress_;
-  double first_fraction_ = 0.0;
-  double piece_share_ = 1.0;
+  jobs::NextPiece next_;
   gpu::DeviceHandle device_;
   std::optional<Renderer> renderer_;
 };
@@ -405,7 +409,7 @@ void render_job(const RenderOptions& options, const GivenOptions& words, const s
       jobs::Job::create(*options.job.folder, make_manifest(options, words, stats, sources, run.piece_names()));
   const jobs::Share share = options.job.share.value_or(jobs::Share{});
   bool is_whole = true;
-  const size_t made = jobs::has_work(job, share) ? run.run(job, is_whole) : 0;
+  const size_t made = jobs::find_missing(job, share).empty() ? 0 : run.run(job, is_whole);
   if (!is_whole) return;
   if (!share.is_all()) {
     if (!console.is_quiet())
@@ -425,7 +429,8 @@ void render(const RenderOptions& given, const GivenOptions& words) {
   options.pictures = name_pictures(given);
   check_pictures(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);
-  if (given.pictures.empty()) check_default_names(pictures_of(frames));
+  const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
+  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames));
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const bool has_pictures = !options.pictures.empty();
@@ -449,6 +454,7 @@ void render(const RenderOptions& given, const GivenOptions& words) {
   check_explained_pixel(options, stats.view->size);
   const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
   stats.display = choose_display(scene, view.look, view.debug_view);
+  if (stats.view->error_target) stats.view->error_target->white = std::exp2(-stats.display.exposure_ev);
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
   const std::string assumptions =
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
@@ -460,8 +466,6 @@ void render(const RenderOptions& given, const GivenOptions& words) {
 
   if (options.job.folder) {
     render_job(options, words, frames, scene, sources, stats, console);
-    stats.total_ms = total.ms();
-    if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
     return;
   }
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);

@@ -231,9 +231,7 @@ void add_error_options(OptionTable& table, ErrorOptions& error) {
     return samples;
   };
   table.add("--target-error", "E",
-            fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {:.2g} to 1, where 1 is "
-                        "white",
-                        kMinTargetError),
+            "Instead of --spp: take samples until each pixel is off by at most E, 2^-16 to 1, where 1 is white",
             [&](const OptionValues& w) {
               error.target = static_cast<float>(w.real(0, static_cast<double>(kMinTargetError), 1.0));
             });
@@ -244,7 +242,7 @@ void add_error_options(OptionTable& table, ErrorOptions& error) {
   table.add(
       "--min-spp", "N",
       fmt::format("Of --target-error and --time-limit: samples that each pixel takes, a power of two from {} [{}, "
-                  "for errors from 1/32 on {}]",
+                  "for a --target-error from 1/32 on {}]",
                   kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
       [&, read_power](const OptionValues& w) { error.min_samples = read_power(w); });
   table.add("--max-spp", "N",
@@ -343,6 +341,7 @@ void check_job_options(const RenderOptions& options) {
                                                       {options.error.time_limit_s.has_value(), "--time-limit"},
                                                       {options.view.look.averages_exposure, "--exposure average"},
                                                       {options.skips_existing, "--skip-existing"},
+                                                      {options.tracing.stats.has_value(), "--stats"},
                                                       {options.tracing.repeat_count > 1, "--repeat"}};
   for (const auto& [is_given, name] : others) {
     if (!is_given) continue;

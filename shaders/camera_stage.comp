@@ -71,7 +71,8 @@ bool begin_packet() {
     is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
     uint index = pixel.y * window_size().x + pixel.x;
     if (has(FEATURE_LISTED_SAMPLES)) {
-      index = first_block() * (BLOCK_SIZE * BLOCK_SIZE) + place + i;
+      // Lanes beyond the last block stay on the film.
+      index = min(first_block() * (BLOCK_SIZE * BLOCK_SIZE) + place + i, window_pixel_count() - 1u);
       is_inside[i] = block < end_block() && pixels[index].z != NO_LISTED_SAMPLE;
       packet[i] = listed_ray(index);
     } else {

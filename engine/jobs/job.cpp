@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
@@ -113,7 +112,11 @@ std::string find_difference(const Manifest& there, const Manifest& wanted) {
       return fmt::format("the file {} has changed since", shown(wanted.files[i].name));
     }
   }
-  return fmt::format("it has {} pieces, and {} now", there.pieces.size(), wanted.pieces.size());
+  if (there.pieces.size() != wanted.pieces.size()) {
+    return fmt::format("it has {} pieces, and {} now", there.pieces.size(), wanted.pieces.size());
+  }
+  const auto [own, other] = std::ranges::mismatch(there.pieces, wanted.pieces);
+  return fmt::format("its piece {} is {} now", *own, *other);
 }
 
 void make_folder(const fs::path& folder) {
@@ -122,6 +125,16 @@ void make_folder(const fs::path& folder) {
   if (!error) return;
   throw RunError(
       {"cannot make the folder (" + error.message() + ")", folder.string(), "check the disk and permissions"});
+}
+
+/// Whether the folder has what no job brings, which begins with its manifest, by a temporary file.
+bool has_strangers(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("job.") && name != "pieces" && name != "ledger") return true;
+  }
+  return false;
 }
 
 /// The folder's entry of a new file reaches the disk too.
@@ -204,20 +217,21 @@ Job::Job(fs::path folder, Manifest manifest)
     : folder_(std::move(folder)), manifest_(std::move(manifest)), id_(sha256_of(text_of(manifest_))) {}
 
 Job Job::create(const fs::path& folder, const Manifest& manifest) {
+  make_folder(folder);
+  promin::clear_leftovers(folder);
   std::error_code error;
-  if (fs::exists(manifest_file(folder), error)) {
-    const Manifest there = read_manifest(folder);
-    if (text_of(there) != text_of(manifest)) {
-      throw UsageError({"the folder has another job: " + find_difference(there, manifest), folder.string(),
-                        "take another folder, or the options and files of that one"});
-    }
-  } else {
-    make_folder(folder);
-    if (!fs::is_empty(folder, error)) {
-      throw UsageError({"the folder has files but no job", folder.string(), "name a new folder, or an empty one"});
-    }
+  // Others may begin the same job at this moment: what they write is the same.
+  if (has_strangers(folder) && !fs::exists(manifest_file(folder), error)) {
+    throw UsageError({"the folder has files but no job", folder.string(), "name a new folder, or an empty one"});
+  }
+  if (!fs::exists(manifest_file(folder), error)) {
     write_text_file(manifest_file(folder), text_of(manifest));
     flush_folder(folder);
+  }
+  const Manifest there = read_manifest(folder);
+  if (text_of(there) != text_of(manifest)) {
+    throw UsageError({"the folder has another job: " + find_difference(there, manifest), folder.string(),
+                      "take another folder, or the options and files of that one"});
   }
   make_folder(folder / "pieces");
   make_folder(folder / "ledger");
@@ -280,11 +294,14 @@ void Job::clear_leftovers() const {
 size_t run_share(const Job& job, const Share& share, const std::string& made_on, const BeforePiece& before,
                  const std::function<Content(size_t piece)>& make) {
   job.clear_leftovers();
+  const std::vector<size_t> missing = find_missing(job, share);
   size_t made = 0;
-  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) {
+  for (size_t i = 0; i < missing.size(); ++i) {
+    const size_t piece = missing[i];
     std::string why;
+    // Another may have made it by now.
     if (job.state_of(piece, &why) == PieceState::kDone) continue;
-    if (!before(piece, why)) return made;
+    if (!before({piece, i, missing.size(), why})) return made;
     const Stopwatch making;
     const Content content = make(piece);
     job.write(piece, content, making.ms(), made_on);
@@ -293,16 +310,9 @@ size_t run_share(const Job& job, const Share& share, const std::string& made_on,
   return made;
 }
 
-bool has_work(const Job& job, const Share& share) {
-  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) {
-    if (job.state_of(piece) != PieceState::kDone) return true;
-  }
-  return false;
-}
-
-std::vector<size_t> find_missing(const Job& job) {
+std::vector<size_t> find_missing(const Job& job, const Share& share) {
   std::vector<size_t> missing;
-  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) {
     if (job.state_of(piece) != PieceState::kDone) missing.push_back(piece);
   }
   return missing;

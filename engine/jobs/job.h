@@ -94,19 +94,25 @@ struct Share {
   bool is_all() const { return count == 1; }
 };
 
-/// Told of each piece of the share before it is made: its number and what was bad about it where it was there; and
-/// whether to go on.
-using BeforePiece = std::function<bool(size_t piece, const std::string& why)>;
+/// A piece that is about to be made.
+struct NextPiece {
+  size_t number = 0;
+  /// Of those of the share that are to be made, how many come before it, and all.
+  size_t before = 0;
+  size_t total = 0;
+  /// What is bad about it where it is there: "is cut".
+  std::string why;
+};
+
+/// Is told of each piece before it is made; whether to go on.
+using BeforePiece = std::function<bool(const NextPiece& next)>;
 
 /// Makes the pieces of a share that are not done, in their order. `make` returns a piece's content by its number.
 /// Returns how many it has made; fewer than there were to make where `before` has said so.
 size_t run_share(const Job& job, const Share& share, const std::string& made_on, const BeforePiece& before,
                  const std::function<Content(size_t piece)>& make);
 
-/// Whether a piece of the share is not done.
-bool has_work(const Job& job, const Share& share);
-
-/// Pieces that are not done.
-std::vector<size_t> find_missing(const Job& job);
+/// The pieces of a share that are not done.
+std::vector<size_t> find_missing(const Job& job, const Share& share = {});
 
 }  // namespace promin::jobs

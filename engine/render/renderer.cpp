@@ -293,7 +293,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       const vec3 mean = estimate.mean();
       result.image.pixels[at] = mean;
       const vec3& claim = refinement.claim(i);
-      result.error->largest_claim = std::max(result.error->largest_claim, relative_claim(claim, mean));
+      result.error->largest_claim = std::max(result.error->largest_claim, refinement.relative_claim(i));
       result.error->unmet_pixels += refinement.is_near_enough(i) ? 0 : 1;
       result.error->samples += estimate.count();
       if (!options.with_aovs) continue;

@@ -287,12 +287,14 @@ class Validation {
     const ErrorTarget& target = *view.error_target;
     check(target.error >= kMinTargetError && target.error <= 1.0F, "the error is out of range",
           "view.error_target.error", "take 1/65536 to 1");
-    check(std::has_single_bit(target.min_samples) && target.min_samples >= kMinRefinedSamples, "the least number of samples is wrong",
-          "view.error_target.min_samples", "take a power of two from 4 on");
+    check(std::has_single_bit(target.min_samples) && target.min_samples >= kMinRefinedSamples,
+          "the least number of samples is wrong", "view.error_target.min_samples", "take a power of two from 4 on");
     check(std::has_single_bit(target.max_samples) && target.max_samples >= target.min_samples &&
               target.max_samples <= kMaxRefinedSamples,
           "the largest number of samples is wrong", "view.error_target.max_samples",
           "take a power of two from the least number to 32768");
+    check(target.white > 0.0F && std::isfinite(target.white), "what is shown as white is not positive and finite",
+          "view.error_target.white", "take 1, or 2 to the power of -EV");
     check(view.mode.debug_view == DebugView::kNone, "a debug view has no error", "view.error_target",
           "leave the error target out, or show light");
   }

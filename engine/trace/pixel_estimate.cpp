@@ -67,8 +67,8 @@ vec3 PixelEstimate::claim(const ColorRange& around) const {
   return claim;
 }
 
-float relative_claim(const vec3& claim, const vec3& mean) {
-  return std::max({claim.x, claim.y, claim.z}) / std::max({1.0F, mean.x, mean.y, mean.z});
+float relative_claim(const vec3& claim, const vec3& mean, float white) {
+  return std::max({claim.x, claim.y, claim.z}) / std::max({white, mean.x, mean.y, mean.z});
 }
 
 }  // namespace promin

@@ -42,17 +42,15 @@ class PixelEstimate {
 
  private:
   static constexpr uint32_t kMostBatches = 8;
-  /// Batches are nets too: of this many samples.
-  uint32_t batch_size() const;
-
   dvec3 sum_{0.0};
   std::array<vec3, kMostBatches> batches_{};
   ColorRange range_;
   uint32_t count_ = 0;
+  /// Batches are nets too: of this many samples.
   uint32_t batch_size_ = 2;
 };
 
-/// A pixel's largest claim, of 1 or of its largest channel where that is more: what an error target is about.
-float relative_claim(const vec3& claim, const vec3& mean);
+/// A pixel's largest claim, of white or of its largest channel where that is more: what an error target is about.
+float relative_claim(const vec3& claim, const vec3& mean, float white);
 
 }  // namespace promin

@@ -3,7 +3,6 @@
 #include "trace/refinement.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -32,6 +31,7 @@ size_t area(const PixelWindow& window) {
 
 Refinement::Refinement(const View& view, const PixelWindow& window)
     : error_(view.error_target->error),
+      white_(view.error_target->white),
       least_samples_(view.error_target->min_samples),
       most_samples_(view.error_target->max_samples),
       window_(window),
@@ -134,8 +134,9 @@ double Refinement::foretell_samples(float error) const {
   for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
     const double count = estimate(pixel).count();
     // As an edge's claim falls with them.
-    const double ratio = static_cast<double>(relative_claim(claims_[pixel], estimate(pixel).mean()) / error);
-    if (ratio <= 1.0) continue;
+    const double ratio = static_cast<double>(relative_claim(pixel) / error);
+    // Of what is not finite nothing is foretold.
+    if (!(ratio > 1.0) || std::isinf(ratio)) continue;
     const double wanted = count * std::exp2(std::ceil(std::log2(ratio) * 4.0 / 3.0));
     samples += std::max(std::min<double>(wanted, most_samples_) - count, 0.0);
   }
@@ -143,7 +144,11 @@ double Refinement::foretell_samples(float error) const {
 }
 
 bool Refinement::is_near_enough(size_t pixel) const {
-  return relative_claim(claims_[pixel], estimate(pixel).mean()) <= error_;
+  return relative_claim(pixel) <= error_;
+}
+
+float Refinement::relative_claim(size_t pixel) const {
+  return promin::relative_claim(claims_[pixel], estimate(pixel).mean(), white_);
 }
 
 ColorRange Refinement::range_around(size_t apron_index) const {

@@ -50,6 +50,8 @@ class Refinement {
   size_t pixel_count() const { return claims_.size(); }
   const PixelEstimate& estimate(size_t pixel) const { return estimates_[apron_index(pixel)]; }
   const vec3& claim(size_t pixel) const { return claims_[pixel]; }
+  /// Of white or of the pixel's largest channel.
+  float relative_claim(size_t pixel) const;
   /// Whether the claim is within the error that is asked for; else samples were too few.
   bool is_near_enough(size_t pixel) const;
 
@@ -64,6 +66,7 @@ class Refinement {
   ColorRange range_around(size_t apron_index) const;
 
   float error_;
+  float white_;
   uint32_t least_samples_;
   uint32_t most_samples_;
   PixelWindow window_;

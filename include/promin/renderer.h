@@ -31,7 +31,7 @@ class Device;
 struct PictureError {
   /// The error that was asked for: the one to ask for to have the same picture again.
   float target = 0.0F;
-  /// The largest claim of a pixel, of 1 or of its largest channel where that is more.
+  /// The largest claim of a pixel, of ErrorTarget::white or of its largest channel where that is more.
   float largest_claim = 0.0F;
   /// Pixels that have taken the most samples and claim more than the target.
   uint64_t unmet_pixels = 0;
@@ -103,11 +103,11 @@ class PROMIN_EXPORT Renderer {
   /// each dispatch. Throws UsageError for a view that breaks the rules of promin/view.h, RunError, Cancelled.
   RenderResult render(const View& view, const ProgressCallback& progress = {});
 
-  /// The most exact picture that is complete within about `seconds`: with errors of 1/8, then each less than the one
-  /// before by the root of 2, until the next would take too long or the view's own error is reached.
-  /// PictureError::target names the last, with which `render` gives the same bits; without any it is what the least
-  /// samples of each pixel bring. Takes 200 bytes of memory a pixel. `seconds` is positive. Throws as `render`, and
-  /// UsageError for a view without an error target.
+  /// The most exact picture that is complete within about `seconds`: with an error of 1/8, then each less than the one
+  /// before by the root of 2, until the next is foretold to take too long or the view's own error is reached.
+  /// PictureError::target names the last, with which `render` gives the same bits. The first is completed however long
+  /// it takes, and none is broken off. Takes 200 bytes of memory a pixel. `seconds` is positive. Throws as `render`,
+  /// and UsageError for a view without an error target.
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress = {});
 
   /// Traces the view as a window does: in few pixels at first, as many as `budget_ms` allows, then in all of them, then
@@ -131,8 +131,8 @@ class PROMIN_EXPORT Renderer {
   /// Replaces all lights, by any number. Throws InputError as validate() finds fault, RunError.
   void set_lights(std::span<const Light> lights);
   /// Replaces all materials, by as many as the scene had. What meshes and images were made ready for holds on: which
-  /// materials have textures of normals, how textures are placed and wrapped, cutoffs of masks, in which solids of glass
-  /// a camera may be. Throws InputError for another number of them and as validate() finds fault, RunError.
+  /// materials have textures of normals, how textures are placed and wrapped, cutoffs of masks, in which solids of
+  /// glass a camera may be. Throws InputError for another number of them and as validate() finds fault, RunError.
   void set_materials(std::span<const Material> materials);
   /// Replaces ambient light and background. Throws InputError as validate() finds fault.
   void set_environment(const Environment& environment);

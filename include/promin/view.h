@@ -55,14 +55,17 @@ inline constexpr float kMinFilterWidth = 0.01F;
 inline constexpr float kMaxFilterWidth = 32.0F;
 
 /// How exact a picture is to be. Each pixel takes samples until a claim of its error is at most `error`, in each
-/// channel of linear light: of 1, or of the pixel's largest channel where that is more. Of the pixels that take more than
-/// `min_samples` the claim holds for at least 95 in 100 (docs/model.md, "Error of a pixel").
+/// channel of linear light: of `white`, or of the pixel's largest channel where that is more. Of the pixels that take
+/// more than `min_samples` the claim holds for at least 95 in 100 in every scene that the tests know (docs/model.md,
+/// "Error of a pixel"); it is no proof.
 struct ErrorTarget {
   /// kMinTargetError...1.
   float error = 1.0F / 64.0F;
-  /// The samples that each pixel takes, a power of two, kMinRefinedSamples...max_samples. What is thinner than a pixel over this number
-  /// may lie between all samples.
+  /// The samples that each pixel takes, a power of two, kMinRefinedSamples...max_samples. What is thinner than a pixel
+  /// over this number may lie between all samples.
   uint32_t min_samples = 8;
+  /// What is shown as white, positive and finite: 2^-EV where pictures are exposed by EV stops.
+  float white = 1.0F;
   /// The samples at which a pixel stops, near enough or not, a power of two, at most kMaxRefinedSamples.
   uint32_t max_samples = 256;
 };

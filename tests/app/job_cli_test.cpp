@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
+#include <memory>
 #include <thread>
 
 #include "cli_fixture.h"
@@ -72,13 +74,36 @@ TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {
 
 TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   write("path.json", kPath);
-  const OptionValues path = {"--path", "path.json"};
   expect_done(render({"--path", "path.json", "-o", "whole.##.exr"}));
   expect_done(render({"--path", "path.json", "--job", "job", "--tiles", "2", "1", "-o", "cut.##.exr"}));
   EXPECT_EQ(pieces().size(), 4U);
+  const ProcessResult one_file = run({"merge", "job", "-o", "one.exr"});
+  EXPECT_EQ(one_file.exit_code, 2);
+  EXPECT_THAT(one_file.err, HasSubstr("several frames would go to one file, one.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "one.exr"));
   for (const char* number : {"00", "01"}) {
     EXPECT_TRUE(read(std::string("cut.") + number + ".exr") == read(std::string("whole.") + number + ".exr"));
   }
+}
+
+// With pictures of default names, which a second run finds there.
+TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
+  for (int i = 0; i < 2; ++i) expect_done(render({"--job", "job"}));
+  EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
+}
+
+TEST_F(JobCliTest, SeveralMayBeginAtOnce) {
+  expect_done(render({"-o", "whole.exr"}));
+  std::vector<std::unique_ptr<Process>> programs;
+  for (const char* share : {"0/4", "1/4", "2/4", "3/4"}) {
+    programs.push_back(std::make_unique<Process>(
+        PROMIN_EXECUTABLE,
+        OptionValues{"render", "square.gltf", "--size", "61", "47", "--job", "job", "--pieces", "8", "--piece", share},
+        options_));
+  }
+  for (const auto& program : programs) expect_done(program->wait());
+  expect_done(run({"merge", "job", "-o", "merged.exr"}));
+  EXPECT_TRUE(read("merged.exr") == read("whole.exr"));
 }
 
 TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
@@ -123,6 +148,7 @@ TEST_F(JobCliTest, WrongUseIsRefused) {
       {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\""},
       {{"--job", "job", "--piece", "4"}, "--piece takes I/N, as 0/4, not \"4\""},
       {{"-o", "a.exr", "--job", "job", "--time-limit", "1"}, "--job and --time-limit contradict each other"},
+      {{"-o", "a.exr", "--job", "job", "--stats", "s.json"}, "--job and --stats contradict each other"},
       {{"-o", "a.exr", "--job", "job", "--exposure", "average"}, "--job and --exposure average contradict"}};
   for (const auto& [words, sentence] : cases) {
     const ProcessResult result = render(words);

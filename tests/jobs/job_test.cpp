@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -46,8 +47,8 @@ class JobTest : public TempFolder {
     bad_.clear();
     run_share(
         job, share, "here",
-        [&](size_t piece, const std::string& why) {
-          if (!why.empty()) bad_.push_back(std::to_string(piece) + " " + why);
+        [&](const NextPiece& next) {
+          if (!next.why.empty()) bad_.push_back(std::to_string(next.number) + " " + next.why);
           return true;
         },
         [&](size_t piece) {
@@ -91,7 +92,7 @@ TEST_F(JobTest, WhatIsDoneIsNotMadeAgain) {
   EXPECT_EQ(find_missing(job).size(), 5U);
   EXPECT_THAT(run(job, {1, 2}), ElementsAre(1, 3));
   EXPECT_THAT(run(job, {1, 2}), IsEmpty());
-  EXPECT_FALSE(has_work(job, {1, 2}));
+  EXPECT_THAT(find_missing(job, {1, 2}), IsEmpty());
   EXPECT_THAT(run(Job::create(job_folder_, make_manifest())), ElementsAre(0, 2, 4));
   const Job again = Job::open(job_folder_);
   EXPECT_EQ(again.id(), job.id());
@@ -159,6 +160,7 @@ TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
       {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
       {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, and 4 now"},
+      {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is other now"},
       {[](Manifest& m) { m.kind = "rays"; }, "it is of the kind \"bytes\""}};
   for (const auto& [change, sentence] : cases) {
     Manifest other = make_manifest();
@@ -180,6 +182,30 @@ TEST_F(JobTest, FoldersWithoutAJobAreRefused) {
     EXPECT_NE(refusal_of<InputError>([&] { Job::open(job_folder_); }), "") << text;
     EXPECT_NE(refusal_of<InputError>([&] { Job::create(job_folder_, make_manifest()); }), "") << text;
   }
+}
+
+// As many processes of a queue do, and one that was killed before it had begun.
+TEST_F(JobTest, SeveralMayBeginAtOnce) {
+  std::vector<pid_t> children;
+  for (int i = 0; i < 8; ++i) {
+    children.push_back(fork());
+    if (children.back() != 0) continue;
+    try {
+      for (int k = 0; k < 50; ++k) Job::create(job_folder_ / std::to_string(k), make_manifest());
+    } catch (const Error& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      _exit(1);
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  fs::create_directories(job_folder_ / "begun");
+  write(job_folder_ / "begun" / ("job.tmp99999999-" + host_name() + ".json"), "{");
+  EXPECT_NO_THROW(Job::create(job_folder_ / "begun", make_manifest()));
 }
 
 TEST_F(JobTest, AManifestThatWasChangedByHandIsDamaged) {
@@ -218,11 +244,11 @@ TEST_F(JobTest, WhatMakesNoPieceLeavesNone) {
     return make_content(piece);
   };
   EXPECT_THROW(run_share(
-                   job, {}, "here", [](size_t, const std::string&) { return true; }, fails_at_2),
+                   job, {}, "here", [](const NextPiece&) { return true; }, fails_at_2),
                RunError);
   EXPECT_THAT(find_missing(job), ElementsAre(2, 3, 4));
   EXPECT_EQ(run_share(
-                job, {}, "here", [](size_t piece, const std::string&) { return piece < 3; }, make_content),
+                job, {}, "here", [](const NextPiece& next) { return next.number < 3; }, make_content),
             1U);
   EXPECT_THAT(find_missing(job), ElementsAre(3, 4));
 }

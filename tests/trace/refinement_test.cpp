@@ -204,7 +204,7 @@ TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
   const Refined refined = refine(view, discs_and_floor);
   size_t unmet = 0;
   for (size_t i = 0; i < refined.means.size(); ++i) {
-    const float claim = relative_claim(refined.claims[i], refined.means[i]);
+    const float claim = relative_claim(refined.claims[i], refined.means[i], 1.0F);
     EXPECT_EQ(refined.are_near_enough[i], claim <= 1.0F / 64.0F);
     if (claim > 1.0F / 64.0F) {
       EXPECT_EQ(refined.counts[i], 256U);
@@ -213,6 +213,17 @@ TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
   }
   EXPECT_GT(unmet, 0U);
   EXPECT_LT(unmet, refined.means.size() / 4);
+}
+
+// What is shown brighter by some stops is refined as if its light were brighter.
+TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
+  const auto dimmed = [](const dvec2& p) { return discs_and_floor(p) / 64.0F; };
+  View view = make_view(1.0F / 64.0F);
+  const Refined expected = refine(view, discs_and_floor);
+  view.error_target->white = 1.0F / 64.0F;
+  const Refined refined = refine(view, dimmed);
+  EXPECT_EQ(refined.counts, expected.counts);
+  for (size_t i = 0; i < refined.means.size(); ++i) EXPECT_EQ(64.0F * refined.means[i], expected.means[i]);
 }
 
 TEST(RefinementTest, WhatIsFlatTakesTheFirstSamplesAlone) {
