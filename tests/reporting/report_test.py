@@ -47,7 +47,7 @@ def expect(condition, what):
 
 
 def run_program(*words, environment=None):
-    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=280, env=environment)
+    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=900, env=environment)
 
 
 def run(*words, environment=None):

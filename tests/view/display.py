@@ -15,7 +15,7 @@ class Failure(Exception):
     """What a test found wrong."""
 
 
-def wait_for(condition, what, seconds=60.0):
+def wait_for(condition, what, seconds=180.0):
     """The first true value of condition(), which is asked again and again."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
