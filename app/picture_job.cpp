@@ -10,6 +10,7 @@
 
 #include "deferred_signals.h"
 #include "frame_plan.h"
+#include "picture_files.h"
 #include "promin/error.h"
 #include "run_stats.h"
 
@@ -71,71 +72,101 @@ bool is_within(const PixelWindow& part, const PixelWindow& window) {
          glm::all(glm::lessThan(part.lo, part.hi));
 }
 
-/// Copies a part's values to their places in the whole.
+/// Copies a part's values to their places in a row of parts.
 template <typename Value>
-void place(const std::vector<Value>& values, const PicturePart& part, std::vector<Value>& whole) {
+void place(const std::vector<Value>& values, const PicturePart& part, std::vector<Value>& row) {
   const uvec2 size = size_of(part.part);
-  const uvec2 lo = part.part.lo - part.window.lo;
   const uint32_t width = size_of(part.window).x;
+  const uint32_t x = part.part.lo.x - part.window.lo.x;
   for (uint32_t y = 0; y < size.y; ++y) {
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(size_t{y} * size.x), size.x,
-                whole.begin() + static_cast<std::ptrdiff_t>(size_t{lo.y + y} * width + lo.x));
+                row.begin() + static_cast<std::ptrdiff_t>(size_t{y} * width + x));
   }
 }
 
-/// A picture that is put together.
-class Assembly {
- public:
-  explicit Assembly(PicturePart first) : whole_(std::move(first)) {
-    const PicturePart part = whole_;
-    whole_.image.size = size_of(part.window);
-    whole_.image.pixels.assign(area_of(part.window), vec3(0.0F));
-    for (Channel& channel : whole_.channels) channel.values.assign(area_of(part.window), 0);
-    if (whole_.error) whole_.error = PictureError{.target = part.error->target};
-    add(part, {});
+/// Parts of a picture that lie side by side.
+struct RowOfParts {
+  Image image;
+  std::vector<Channel> channels;
+
+  explicit RowOfParts(const PicturePart& first) : channels(first.channels) {
+    image.size = uvec2(size_of(first.window).x, size_of(first.part).y);
+    image.pixels.assign(size_t{image.size.x} * image.size.y, vec3(0.0F));
+    for (Channel& channel : channels) channel.values.assign(image.pixels.size(), 0);
   }
 
-  void add(const PicturePart& part, const fs::path& file) {
-    check_same(part, file);
-    place(part.image.pixels, part, whole_.image.pixels);
-    for (size_t i = 0; i < part.channels.size(); ++i) place(part.channels[i].values, part, whole_.channels[i].values);
-    if (!part.error) return;
-    whole_.error->largest_claim = std::max(whole_.error->largest_claim, part.error->largest_claim);
-    whole_.error->unmet_pixels += part.error->unmet_pixels;
-    whole_.error->samples += part.error->samples;
+  void add(const PicturePart& part) {
+    place(part.image.pixels, part, image.pixels);
+    for (size_t i = 0; i < part.channels.size(); ++i) place(part.channels[i].values, part, channels[i].values);
   }
-
-  void write(const fs::path& file) const {
-    Metadata metadata = whole_.metadata;
-    if (whole_.error) put_error(metadata, *whole_.error, area_of(whole_.window));
-    std::optional<CropPlacement> placement;
-    if (size_of(whole_.window) != whole_.full_size) placement = CropPlacement{whole_.window.lo, whole_.full_size};
-    write_image(file, whole_.image, metadata, placement, whole_.channels, whole_.display);
-  }
-
- private:
-  /// Whether the parts are of one picture: what was made by another driver has other bits.
-  void check_same(const PicturePart& part, const fs::path& file) const {
-    const auto is_same_channel = [](const Channel& a, const Channel& b) { return a.name == b.name; };
-    const bool is_same = part.full_size == whole_.full_size && part.window.lo == whole_.window.lo &&
-                         part.window.hi == whole_.window.hi && part.error.has_value() == whole_.error.has_value() &&
-                         std::ranges::equal(part.channels, whole_.channels, is_same_channel);
-    if (!is_same) throw InputError({"is not of the picture of the other pieces", file.string(), "remove it"});
-    for (size_t i = 0; i < std::min(part.metadata.size(), whole_.metadata.size()); ++i) {
-      const auto& [name, value] = part.metadata[i];
-      if (part.metadata[i] == whole_.metadata[i] || is_error_metadata(name)) continue;
-      throw InputError(
-          {fmt::format("its {} is \"{}\", and of other pieces \"{}\"", name, value, whole_.metadata[i].second),
-           file.string(), "remove the ones or the others, and run the job again on one device"});
-    }
-  }
-
-  PicturePart whole_;
 };
+
+/// Whether a part is of the same picture as the first: what was made by another driver has other bits.
+void check_same(const PicturePart& part, const PicturePart& first, const fs::path& file) {
+  const auto is_same_channel = [](const Channel& a, const Channel& b) { return a.name == b.name; };
+  const bool is_same = part.full_size == first.full_size && part.window.lo == first.window.lo &&
+                       part.window.hi == first.window.hi && part.error.has_value() == first.error.has_value() &&
+                       std::ranges::equal(part.channels, first.channels, is_same_channel);
+  if (!is_same) throw InputError({"is not of the picture of the other pieces", file.string(), "remove it"});
+  for (size_t i = 0; i < std::min(part.metadata.size(), first.metadata.size()); ++i) {
+    const auto& [name, value] = part.metadata[i];
+    if (part.metadata[i] == first.metadata[i] || is_error_metadata(name)) continue;
+    throw InputError(
+        {fmt::format("its {} is \"{}\", and of other pieces \"{}\"", name, value, first.metadata[i].second),
+         file.string(), "remove the ones or the others, and run the job again on one device"});
+  }
+}
+
+/// Of a whole picture, of its parts'.
+std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const size_t> pieces, const PicturePart& first) {
+  if (!first.error) return std::nullopt;
+  PictureError whole{.target = first.error->target};
+  for (const size_t piece : pieces) {
+    const PicturePart part = decode_part(job.read(piece), job.file_of(piece));
+    check_same(part, first, job.file_of(piece));
+    whole.largest_claim = std::max(whole.largest_claim, part.error->largest_claim);
+    whole.unmet_pixels += part.error->unmet_pixels;
+    whole.samples += part.error->samples;
+  }
+  return whole;
+}
+
+/// Writes one picture of its pieces, which lie row by row. A row of them is held at a time.
+void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const std::vector<fs::path>& files) {
+  const PicturePart first = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
+  PictureHeader header;
+  header.size = size_of(first.window);
+  if (header.size != first.full_size) header.crop = CropPlacement{first.window.lo, first.full_size};
+  header.metadata = first.metadata;
+  if (const auto error = sum_errors(job, pieces, first)) put_error(header.metadata, *error, area_of(first.window));
+  for (const Channel& channel : first.channels) header.channels.push_back({channel.name, channel.is_integer, {}});
+  header.display = first.display;
+  header.exr = first.exr;
+
+  const DeferredSignals while_writing;
+  PictureFiles written(files, header);
+  std::optional<RowOfParts> row;
+  for (const size_t piece : pieces) {
+    // What the signal's sender wants is an end; what is written goes.
+    if (while_writing.is_pending()) return;
+    const PicturePart part = decode_part(job.read(piece), job.file_of(piece));
+    check_same(part, first, job.file_of(piece));
+    if (!row) row.emplace(part);
+    row->add(part);
+    if (part.part.hi.x < part.window.hi.x) continue;
+    written.write_rows(std::move(row->image), std::move(row->channels));
+    row.reset();
+  }
+  written.commit();
+}
+
+/// The first word of a piece's name tells frames apart; without frames there is one, and the name's rest differs.
+std::string frame_of(const std::string& piece) {
+  return piece.starts_with(kOfFrame) ? piece.substr(0, piece.find('_')) : "";
+}
 
 /// Before anything is written: whether the frames go to files of their own.
 void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
-  const auto frame_of = [](const std::string& piece) { return piece.substr(0, piece.find('_')); };
   const std::vector<std::string>& pieces = job.manifest().pieces;
   if (frame_of(pieces.front()) == frame_of(pieces.back())) return;
   for (const fs::path& file : files) {
@@ -195,6 +226,7 @@ jobs::Content encode_part(const PicturePart& part) {
                {"exposure_ev", part.display.exposure_ev},
                {"tone_mapping", part.display.tone_mapping},
                {"dithers", part.display.dithers},
+               {"exr", {part.exr.is_half, part.exr.compression, part.exr.is_multipart}},
                {"channels", channels},
                {"metadata", part.metadata}};
   if (part.frame) json["frame"] = *part.frame;
@@ -221,6 +253,8 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
     part.display.exposure_ev = json.at("exposure_ev");
     part.display.tone_mapping = json.at("tone_mapping").get<ToneMapping>();
     part.display.dithers = json.at("dithers");
+    const Json& exr = json.at("exr");
+    part.exr = {exr.at(0).get<bool>(), exr.at(1).get<ExrCompression>(), exr.at(2).get<bool>()};
     part.metadata = json.at("metadata").get<Metadata>();
     for (const Json& channel : json.at("channels")) {
       part.channels.push_back({channel.at("name"), channel.at("is_integer"), {}});
@@ -274,28 +308,18 @@ void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
                     job.file_of(missing.front()).parent_path().string(),
                     "run the job again, which makes what is missing"});
   }
-  std::optional<Assembly> assembly;
-  std::optional<uint32_t> frame;
-  const auto write = [&] {
-    for (const fs::path& file : files) {
-      const DeferredSignals while_writing;
-      assembly->write(frame ? number_file(file, *frame) : file);
+  const std::vector<std::string>& names = job.manifest().pieces;
+  for (size_t begin = 0; begin < names.size();) {
+    std::vector<size_t> pieces;
+    while (begin < names.size() && (pieces.empty() || frame_of(names[begin]) == frame_of(names[pieces.front()]))) {
+      pieces.push_back(begin++);
     }
-  };
-  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
-    PicturePart part = decode_part(job.read(piece), job.file_of(piece));
-    if (assembly && part.frame != frame) {
-      write();
-      assembly.reset();
-    }
-    frame = part.frame;
-    if (assembly) {
-      assembly->add(part, job.file_of(piece));
-    } else {
-      assembly.emplace(std::move(part));
-    }
+    const std::optional<uint32_t> frame =
+        decode_part(job.read(pieces.front()), job.file_of(pieces.front())).frame;
+    std::vector<fs::path> numbered;
+    for (const fs::path& file : files) numbered.push_back(frame ? number_file(file, *frame) : file);
+    write_merged(job, pieces, numbered);
   }
-  write();
 }
 
 }  // namespace promin::app

@@ -43,6 +43,7 @@ struct PicturePart {
   PixelWindow window;
   PixelWindow part;
   Metadata metadata;
+  ExrOptions exr;
   DisplayTransform display;
   std::optional<PictureError> error;
   Image image;

@@ -7,7 +7,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <future>
@@ -23,6 +22,7 @@
 #include "jobs/job.h"
 #include "jobs/sha256.h"
 #include "outputs.h"
+#include "picture_files.h"
 #include "picture_job.h"
 #include "progress.h"
 #include "promin/error.h"
@@ -53,8 +53,9 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
   result.force_all_features = options.has_all_features;
   result.has_error_target = options.error.is_given();
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
+  result.aovs = options.aovs;
   // The average takes pixels that hit something.
-  result.with_aovs = options.aovs.any() || options.view.look.averages_exposure;
+  if (options.view.look.averages_exposure) result.aovs.object = true;
   return result;
 }
 
@@ -65,13 +66,12 @@ struct TracedFrame {
 };
 
 TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
-                  const std::function<void(double)>& on_progress) {
+                  const std::function<bool(double)>& on_progress) {
   TracedFrame frame;
   const uint32_t repeats = options.tracing.repeat_count;
   for (uint32_t i = 0; i < repeats; ++i) {
     const auto tell = [&](double fraction) {
-      on_progress((i + fraction) / repeats);
-      return true;
+      return on_progress((i + fraction) / repeats);
     };
     const std::optional<double> limit_s = options.error.time_limit_s;
     frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
@@ -80,54 +80,30 @@ TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& opt
   return frame;
 }
 
-// An AOV's channels, by the type of its values.
-
-void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<uint32_t>& values,
-                  std::vector<Channel>& channels) {
-  channels.push_back({name, true, values});
-}
-
-void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<float>& values,
-                  std::vector<Channel>& channels) {
-  Channel channel{name, false, std::vector<uint32_t>(values.size())};
-  std::transform(values.begin(), values.end(), channel.values.begin(),
-                 [](float value) { return std::bit_cast<uint32_t>(value); });
-  channels.push_back(std::move(channel));
-}
-
-void add_channels(const std::string& name, std::string_view components, const std::vector<vec3>& values,
-                  std::vector<Channel>& channels) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<float> component;
-    for (const vec3& value : values) component.push_back(value[axis]);
-    add_channels(name + "." + components[static_cast<size_t>(axis)], {}, component, channels);
-  }
-}
-
-std::vector<Channel> make_channels(const Aovs& aovs, const AovChoice& choice) {
-  std::vector<Channel> channels;
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) \
-  if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, aovs.FIELD, channels);
-#include "promin/kinds/aovs.def"
-  return channels;
-}
-
 /// No times: equal pictures are equal files.
-Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame) {
+Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs) {
   Metadata metadata = describe_picture(stats);
   if (frame) metadata.emplace_back("promin:frame", std::to_string(*frame));
+  metadata.insert(metadata.end(), aovs.metadata.begin(), aovs.metadata.end());
   return metadata;
 }
 
-void write_pictures(const RenderOptions& options, const PlannedFrame& planned, const TracedFrame& traced,
-                    const RunStats& stats) {
-  std::optional<CropPlacement> placement;
-  if (stats.view->crop) placement = CropPlacement{stats.view->crop->lo, stats.view->size};
-  const Metadata metadata = make_metadata(stats, planned.number);
-  const std::vector<Channel> channels = make_channels(traced.result.aovs, options.aovs);
-  for (const std::filesystem::path& file : planned.pictures) {
-    write_image(file, traced.result.image, metadata, placement, channels, stats.display);
-  }
+PixelWindow window_of(const View& view) {
+  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
+}
+
+PictureHeader make_header(const RenderOptions& options, const Scene& scene, const std::optional<uint32_t>& frame,
+                          const RunStats& stats) {
+  const View& view = *stats.view;
+  AovHeader aovs = describe_aovs(scene, options.aovs, view.depth_kind);
+  PictureHeader header;
+  header.size = window_of(view).hi - window_of(view).lo;
+  if (view.crop) header.crop = CropPlacement{view.crop->lo, view.size};
+  header.metadata = make_metadata(stats, frame, aovs);
+  header.channels = std::move(aovs.channels);
+  header.display = stats.display;
+  header.exr = options.exr;
+  return header;
 }
 
 /// The samples of a pixel and, with an error target, how exact that is; of several frames the worst.
@@ -172,33 +148,60 @@ void number_as_in_file(const Scene& scene, Aovs& aovs) {
   }
 }
 
-/// Where the picture tells its exposure itself, that of a path's first frame for all.
-void expose_by_first(const RenderOptions& options, const TracedFrame& traced, RunStats& stats) {
-  const bool is_first = stats.frames.size() <= 1;
-  if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
-  stats.display.exposure_ev = average_exposure_ev(traced.result.image.pixels, traced.result.aovs.object);
+/// Whether the whole picture decides what its files begin with, or takes one call: it is not written band by band then.
+bool is_written_whole(const RenderOptions& options) {
+  return options.error.is_given() || options.view.look.averages_exposure;
 }
 
-/// Traces a frame and writes its pictures.
+/// Where the picture tells its exposure itself, that of a path's first frame for all.
+void expose_by_first(const RenderOptions& options, const RenderResult& result, RunStats& stats) {
+  const bool is_first = stats.frames.size() <= 1;
+  if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
+  stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object);
+}
+
+/// Traces a frame and writes its pictures, of large ones a band while the next is traced.
 void render_frame(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
                   const Scene& scene, Renderer& renderer, RunStats& stats,
                   const std::function<void(double)>& on_progress) {
-  TracedFrame traced = trace(renderer, *stats.view, options, on_progress);
-  check_validation(device, stats);
-  number_as_in_file(scene, traced.result.aovs);
-  stats.rays += traced.result.rays;
-  if (traced.result.error) stats.errors.push_back(*traced.result.error);
-  if (planned.number) {
-    stats.frames.push_back(*planned.number);
-    stats.trace_ms.push_back(median(traced.trace_ms));
-  } else {
-    stats.trace_ms = traced.trace_ms;
+  if (planned.number) stats.frames.push_back(*planned.number);
+  const PixelWindow window = window_of(*stats.view);
+  const size_t channels = 3 + describe_aovs(scene, options.aovs, stats.view->depth_kind).channels.size();
+  const auto bands = is_written_whole(options) ? std::vector{window} : cut_bands(window, channels);
+  // From the first band that is written on a signal waits until nothing is left behind.
+  std::optional<DeferredSignals> while_writing;
+  std::optional<PictureFiles> files;
+  std::vector<double> trace_ms(options.tracing.repeat_count, 0.0);
+  const auto rows = static_cast<double>(window.hi.y - window.lo.y);
+  for (const PixelWindow& band : bands) {
+    View view = *stats.view;
+    if (bands.size() > 1) view.crop = band;
+    TracedFrame traced = trace(renderer, view, options, [&](double fraction) {
+      on_progress((band.lo.y - window.lo.y + fraction * (band.hi.y - band.lo.y)) / rows);
+      return !while_writing || !while_writing->is_pending();
+    });
+    check_validation(device, stats);
+    number_as_in_file(scene, traced.result.aovs);
+    stats.rays += traced.result.rays;
+    if (traced.result.error) stats.errors.push_back(*traced.result.error);
+    for (size_t i = 0; i < trace_ms.size(); ++i) trace_ms[i] += traced.trace_ms[i];
+    expose_by_first(options, traced.result, stats);
+    const Stopwatch write;
+    if (!files) {
+      while_writing.emplace();
+      files.emplace(planned.pictures, make_header(options, scene, planned.number, stats));
+    }
+    files->write_rows(std::move(traced.result.image), make_channels(scene, traced.result.aovs, options.aovs));
+    stats.write_ms += write.ms();
   }
-  expose_by_first(options, traced, stats);
-  const DeferredSignals while_writing;
   const Stopwatch write;
-  write_pictures(options, planned, traced, stats);
+  files->commit();
   stats.write_ms += write.ms();
+  if (planned.number) {
+    stats.trace_ms.push_back(median(trace_ms));
+  } else {
+    stats.trace_ms = trace_ms;
+  }
 }
 
 /// What of the options does not reach a bit of a piece; the files that others name are in the manifest by their hashes.
@@ -243,7 +246,7 @@ class JobRun {
         stats_(stats),
         console_(console),
         whole_view_(*stats.view),
-        window_(stats.view->crop.value_or(PixelWindow{uvec2(0), stats.view->size})),
+        window_(window_of(*stats.view)),
         parts_(cut_picture(window_, options.job, frames.size() == 1)),
         progress_(console.is_quiet()) {}
 
@@ -306,20 +309,23 @@ class JobRun {
     view.crop = parts_[piece % parts_.size()];
     TracedFrame traced = trace(*renderer_, view, options_, [&](double fraction) {
       progress_.update((static_cast<double>(next_.before) + fraction) / static_cast<double>(next_.total));
+      return true;
     });
     check_validation(*device_, stats_);
     number_as_in_file(scene_, traced.result.aovs);
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);
+    const AovHeader aovs = describe_aovs(scene_, options_.aovs, view.depth_kind);
     return encode_part({.frame = frame.number,
                         .full_size = view.size,
                         .window = window_,
                         .part = *view.crop,
-                        .metadata = make_metadata(stats_, frame.number),
+                        .metadata = make_metadata(stats_, frame.number, aovs),
+                        .exr = options_.exr,
                         .display = stats_.display,
                         .error = traced.result.error,
                         .image = std::move(traced.result.image),
-                        .channels = make_channels(traced.result.aovs, options_.aovs)});
+                        .channels = make_channels(scene_, traced.result.aovs, options_.aovs)});
   }
 
   const RenderOptions& options_;

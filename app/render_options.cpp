@@ -38,20 +38,24 @@ constexpr double kMaxTimeLimit = 1e6;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
+constexpr std::string_view kCryptomatte = "cryptomatte";
+constexpr std::array<std::string_view, 2> kDepthKinds = {"ray", "plane"};  // by their values
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
 /// Reads names between commas.
-AovChoice read_aovs(const OptionValues& words) {
-  AovChoice choice;
+AovSet read_aovs(const OptionValues& words) {
+  AovSet choice;
   std::istringstream list(words.text() + ",");
   for (std::string name; std::getline(list, name, ',');) {
     bool is_known = false;
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) \
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
   if (name == #FIELD) is_known = choice.FIELD = true;
 #include "promin/kinds/aovs.def"
+    if (name == kCryptomatte) is_known = choice.cryptomatte = true;
     if (is_known) continue;
     words.refuse(
-        fmt::format("--aov takes names of {} with commas between, not \"{}\"", fmt::join(aov_names(), ", "), name));
+        fmt::format("--aov takes names of {}, {} with commas between, not \"{}\"", fmt::join(aov_names(), ", "),
+                    kCryptomatte, name));
   }
   return choice;
 }
@@ -307,8 +311,21 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add_flag("--skip-existing", "Leave out frames whose pictures are there", options.skips_existing);
 
   add_job_options(table, options.job);
-  table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {}", fmt::join(aov_names(), ",")),
-            [&](const OptionValues& w) { options.aovs = read_aovs(w); });
+  table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {},{}", fmt::join(aov_names(), ","), kCryptomatte),
+            [&](const OptionValues& w) { options.aovs = options.aovs | read_aovs(w); });
+  table.add_flag("--alpha", "Tell how much of each pixel the scene covers, and leave the background out",
+                 options.aovs.alpha);
+  table.add("--depth", fmt::format("{}", fmt::join(kDepthKinds, "|")),
+            "The AOV depth: distance from the eye, or from the plane through it across the view [ray]",
+            [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, kDepthKinds); });
+  table.add_flag("--half", "Keep an EXR's colours, normals and shares as halves: off by 1/2048 of them at most",
+                 options.exr.is_half);
+  table.add("--compression", fmt::format("{}", fmt::join(exr_compression_names(), "|")),
+            "How an EXR is compressed, always without loss [zip]", [&](const OptionValues& w) {
+              options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
+            });
+  table.add_flag("--multipart", "Give an EXR a part for each AOV, which some programs read faster and others cannot",
+                 options.exr.is_multipart);
   table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
@@ -403,9 +420,28 @@ void check_render_options(const RenderOptions& options) {
   if (options.fps && !options.path) {
     throw UsageError({"--fps has no path to play", "on the command line", "give --path as well"});
   }
+  // PNG files take alpha alone.
+  AovSet named = options.aovs;
+  named.alpha = false;
+  const ExrOptions& exr = options.exr;
+  const std::pair<bool, std::string_view> of_exr[] = {
+      {named.any(), "--aov"},
+      {options.view.depth_kind != DepthKind::kRay, "--depth"},
+      {exr.is_half, "--half"},
+      {exr.compression != ExrCompression::kZip, "--compression"},
+      {exr.is_multipart, "--multipart"}};
   const auto& pictures = options.pictures;
-  if (options.aovs.any() && !pictures.empty() && std::none_of(pictures.begin(), pictures.end(), has_named_channels)) {
-    throw UsageError({"--aov has no picture to go to", "on the command line", "give -o with the ending .exr as well"});
+  const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
+  for (const auto& [is_given, name] : of_exr) {
+    if (!is_given || has_exr) continue;
+    throw UsageError({fmt::format("{} has no picture to go to", name), "on the command line",
+                      "give -o with the ending .exr as well"});
+  }
+  if (options.view.depth_kind != DepthKind::kRay && !options.aovs.depth) {
+    throw UsageError({"--depth has no AOV to measure", "on the command line", "give --aov depth as well"});
+  }
+  if (options.aovs.alpha && options.view.debug_view != DebugView::kNone) {
+    throw UsageError({"--alpha and --shading contradict each other", "on the command line", "leave one out"});
   }
 }
 

@@ -71,6 +71,7 @@ struct ViewOptions {
   /// As the scene needs where it is not given.
   std::optional<uint32_t> max_depth = std::nullopt;
   DebugView debug_view = DebugView::kNone;
+  DepthKind depth_kind = DepthKind::kRay;
   bool has_no_shadows = false;
   LookOptions look;
   /// Indices of the scene's lights to leave out.
@@ -81,19 +82,6 @@ struct ViewOptions {
   std::optional<Camera> given_camera;
   PoseOptions pose;
   EnvironmentOptions environment;
-};
-
-/// The AOVs that --aov asks for.
-struct AovChoice {
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) bool FIELD = false;
-#include "promin/kinds/aovs.def"
-
-  bool any() const {
-    return false
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) || FIELD
-#include "promin/kinds/aovs.def"
-        ;
-  }
 };
 
 /// Numbers of frames from 0, both included.
@@ -125,7 +113,8 @@ struct RenderOptions {
   ErrorOptions error;
   JobOptions job;
   /// Channels that an EXR carries beside R, G and B.
-  AovChoice aovs;
+  AovSet aovs;
+  ExrOptions exr;
   /// A camera path, and which of its frames to render; without `frames` all.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;

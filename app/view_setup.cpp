@@ -115,6 +115,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   view.filter_width = options.filter_width.value_or(default_width(options.filter));
   view.max_depth = options.max_depth.value_or(default_max_depth(scene));
   view.mode = {options.debug_view, !options.has_no_shadows};
+  view.depth_kind = options.depth_kind;
   return view;
 }
 

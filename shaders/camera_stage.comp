@@ -83,7 +83,8 @@ bool begin_packet() {
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
     paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
-                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, 0.0, 0u, LOG_CAMERA);
+                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, 0.0, 0u, LOG_CAMERA,
+                    PART_BACKGROUND);
   }
   passes_backs = true;
   sight_width = CAMERA.look.w;
@@ -91,35 +92,71 @@ bool begin_packet() {
   return is_any_inside;
 }
 
-// Writes the pixel's record: a new one for the first sample, and for the middle sample what the AOVs need.
-void put_record(Path path, Ray ray, Hit hit) {
-  if (has(FEATURE_LISTED_SAMPLES)) return;
+// Keeps what the sample shows, of a list its film's only one.
+void put_sample_id(uint pixel, uint order) {
+  if (has(FEATURE_LISTED_SAMPLES)) {
+    pixels[pixel].w = order;
+    return;
+  }
+  uint place = sample_at_hand() % SAMPLE_IDS;
+  uint before = (has(FEATURE_AOVS) ? AOV_RECORDS : 1u) + (has(FEATURE_LIGHT_AOVS) ? PART_RECORDS : 0u);
+  pixels[(before + place / 4u) * window_pixel_count() + pixel][place % 4u] = order;
+}
+
+// Depths and ids have no average, so the middle sample stands for the pixel. With an odd number of samples it is the
+// centre.
+bool is_middle_sample() { return has(FEATURE_AOVS) && sample_at_hand() == samples_per_pixel() / 2u; }
+
+// Writes the pixel's records: new sums for the first sample, and what it shows for the middle one.
+void put_record(Path path, Hit hit) {
+  uint order = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
   bool is_first = sample_at_hand() == 0u;
-  // Depths and ids have no average, so the middle sample stands for the pixel. With an odd number of samples it is the
-  // centre.
-  bool is_middle = has(FEATURE_AOVS) && sample_at_hand() == samples_per_pixel() / 2u;
-  if (is_middle) pixels[window_pixel_count() + path.pixel] = normal_and_depth(ray, hit);
+  if (has(FEATURE_LIGHT_AOVS) && is_first) clear_parts(path.pixel);
+  if (has(FEATURE_SAMPLE_IDS)) put_sample_id(path.pixel, order);
+  if (has(FEATURE_LISTED_SAMPLES)) return;
   if (is_first) pixels[path.pixel] = uvec4(0u, 0u, 0u, NO_ORDER);
-  if (is_middle) pixels[path.pixel].w = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
+  if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 
 // Debug views show no light, but their AOVs need what is lit.
 const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | uint(DEBUG_VIEW == DEBUG_VIEW_NONE);
 
-// Of the middle sample, as put_record.
-void put_albedo(uint pixel, Hit hit, ShadingPoint point) {
-  if (sample_at_hand() != samples_per_pixel() / 2u) return;
-  uvec4 record = uvec4(0u, 0u, 0u, NO_ORDER);
-  if (hit.primitive != NO_PRIMITIVE) {
-    record = uvec4(floatBitsToUint(albedo_color(point)),
+// The texture coordinates of a hit, of the first set; 0 where the surface shows no texture.
+vec2 texture_coordinates(Hit hit) {
+  uvec4 corners = load_surface(hit.primitive).corners_material;
+  if (!has(FEATURE_TEXTURES) || (corners.w & SURFACE_HAS_UVS) == 0u) return vec2(0.0);
+  CornerUvs uvs = load_corner_uvs(corners.xyz);
+  precise vec2 sum = (1.0 - hit.u - hit.v) * uvs.a.xy + hit.u * uvs.b.xy + hit.v * uvs.c.xy;
+  return sum;
+}
+
+// Keeps what the middle sample has met.
+void put_aovs(uint pixel, Ray ray, Hit hit, ShadingPoint point) {
+  if (!is_middle_sample()) return;
+  uint count = window_pixel_count();
+  bool is_hit = hit.primitive != NO_PRIMITIVE;
+  uvec4 albedo = uvec4(0u, 0u, 0u, NO_ORDER);
+  uvec4 position = uvec4(0u);
+  uvec4 shading_normal = uvec4(0u);
+  vec3 measures = vec3(0.0, 0.0, INFINITY);
+  if (is_hit) {
+    albedo = uvec4(floatBitsToUint(albedo_color(point)),
                    load_surface(hit.primitive).corners_material.w & SURFACE_MATERIAL_MASK);
+    position.xyz = floatBitsToUint(point.position);
+    shading_normal.xyz = floatBitsToUint(point.normal);
+    precise float along = hit.t * dot3(ray.direction, CAMERA.look.xyz);
+    measures = vec3(texture_coordinates(hit), along);
   }
-  pixels[2u * window_pixel_count() + pixel] = record;
+  pixels[AOV_NORMAL * count + pixel] = normal_and_depth(ray, hit);
+  pixels[AOV_ALBEDO * count + pixel] = albedo;
+  pixels[AOV_POSITION * count + pixel] = position;
+  pixels[AOV_SHADING_NORMAL * count + pixel] = shading_normal;
+  pixels[AOV_MEASURES * count + pixel] = uvec4(floatBitsToUint(measures), step_counts.x + step_counts.y);
 }
 
 // Shades what a pixel's camera ray hit, without any source. Returns what is seen of it so far.
 vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
-  put_record(path, ray, hit);
+  put_record(path, hit);
   bool is_hit = hit.primitive != NO_PRIMITIVE;
   hit_count += is_hit ? 1u : 0u;
   if (is_hit && DEBUG_VIEW == DEBUG_VIEW_NONE) absorb(path, ray, hit);
@@ -128,7 +165,7 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
     widen_cone(path, ray, hit);
     make_shading_point(ray, path.direction, hit, path.cone_width, path.media, color_of(path.weight), point);
   }
-  if (has(FEATURE_AOVS)) put_albedo(path.pixel, hit, point);
+  if (has(FEATURE_AOVS)) put_aovs(path.pixel, ray, hit, point);
   if (DEBUG_VIEW != DEBUG_VIEW_NONE) return debug_color(ray, hit, uintBitsToFloat(normal_and_depth(ray, hit)));
   vec3 light = radiance_behind(path.direction);
   if (is_hit) {
@@ -253,6 +290,7 @@ uint put_path(Path path) {
   }
   pixels[record_of_weight(number, 0u)].xyz = floatBitsToUint(path.weight);
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
+  store_part_of_ray(path);
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
   words[path_list(turn) + number] = number;
   return number;
@@ -280,10 +318,25 @@ Ray ray_of(uint index) {
   return camera_ray(uvec2(index % window_size().x, index / window_size().x));
 }
 
+// Adds what is seen of a pixel to the parts of its light.
+void add_parts(Path path, ShadingPoint point, vec3 light, bool is_on_surface, float coverage) {
+  if (!is_on_surface) {
+    add_beyond(path, light);
+    return;
+  }
+  vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, 0u));
+  precise vec3 weight = coverage * path.weight;
+  add_own_parts(path, point, own, coverage);
+  add_seen_part(path.pixel, path.part, weight, own, light);
+}
+
 // Adds what is seen of a pixel to its path, and sends that on.
 void leave_pixel(Path path, ShadingPoint point, vec3 light, bool is_on_surface) {
   float coverage = is_on_surface ? coverage_of(path, point) : 1.0;
   add_radiance(path, light, coverage);
+  if (has(FEATURE_LIGHT_AOVS) && DEBUG_VIEW == DEBUG_VIEW_NONE) {
+    add_parts(path, point, light, is_on_surface, coverage);
+  }
   if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
   if (has(FEATURE_BLENDING) && coverage < 1.0) {
     path.cone_width = CAMERA.look.w;
@@ -302,7 +355,7 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, bool is_on_surface) 
   }
 }
 
-// One pixel after the other where glass may part their paths, which is long, as in arrive.
+// One pixel after the other where there is much to do for each, as in arrive.
 void leave_one_by_one() {
   uint at = 0u;
   do {
@@ -325,7 +378,7 @@ void leave_one_by_one() {
 }
 
 void leave() {
-  if (has(FEATURE_GLASS)) {
+  if (has(FEATURE_GLASS) || has(FEATURE_LIGHT_AOVS)) {
     leave_one_by_one();
     return;
   }

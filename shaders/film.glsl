@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buffer that the stages of a picture write to.
 
-// `pixels` holds, for each pixel, the bits of its sum over samples and the `order` of what it shows. With FEATURE_AOVS
-// the bits of each pixel's geometric normal and depth follow, then those of its albedo and its material, and then the
-// stream of paths that camera_stage.comp leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y =
+// `pixels` holds the records of pixels (layout.h, AOV_* and what follows there), and behind them the stream of paths
+// that camera_stage.comp leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y =
 // shadow, z = reflection) and how often loops were cut (w), `pass_counts` how often rays passed through a surface (x),
 // refracted rays (y) and primary rays that have met something (z). Each lane of a workgroup has a counter of its own, because all lanes would queue for a single one, and a
 // sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per subgroup and leaks it.

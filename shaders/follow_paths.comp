@@ -112,6 +112,7 @@ uint ask_ray(uint number, Path path) {
   store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
   store_vector(record_of_path(number) + RECORD_DIRECTION, path.direction);
   store_passed(number, path);
+  store_part_of_ray(path);
   if (SEES_ENVIRONMENT) pixels[record_of_path(number) + RECORD_DIRECTION].w = floatBitsToUint(path.roughness);
   if (has(FEATURE_TEXTURES)) {
     pixels[record_of_path(number) + RECORD_RADIANCE].w = floatBitsToUint(path.cone_width);
@@ -148,7 +149,8 @@ uint ask_waiting(uint number, Path path, bool has_seen) {
   path.weight = weight.xyz;
   path.roughness = weight.w;
   path.media = rest.xy;
-  path.bounces = rest.z & ((1u << WAITING_OBJECT_SHIFT) - 1u);
+  path.bounces = rest.z & WAITING_BOUNCES_MASK;
+  path.part = (rest.z & WAITING_IS_TRANSMITTED) != 0u ? PART_TRANSMISSION : PART_REFLECTION;
   path.skipped = rest.z >> WAITING_OBJECT_SHIFT;
   path.skip = uintBitsToFloat(rest.w);
   path.kind = LOG_REFRACTION;
@@ -206,6 +208,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     vec3 beyond = has(FEATURE_BLENDING) && bounces == 0u ? radiance_behind(normalize3(ray.direction))
                                                          : radiance_beyond(ray.direction, path.roughness);
     add_radiance(path, beyond, 1.0);
+    add_beyond(path, beyond);
     log_own_light(beyond);
     end_path_log(path.radiance, 1.0);
     if (has_waiting) return ask_after_miss(number, path, ray);
@@ -222,7 +225,13 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
   log_own_light(own);
-  if (begins_bounce(turn)) seen = own;
+  if (begins_bounce(turn)) {
+    seen = own;
+    if (has(FEATURE_LIGHT_AOVS)) {
+      store_seen_part(path, own);
+      add_own_parts(path, point, own, coverage);
+    }
+  }
   if (has(FEATURE_SHADOWS)) {
     ask_sources(number, point, -path.direction);
   } else {
@@ -269,6 +278,12 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
     path.kind = path_glass.w >> KIND_SHIFT;
     has_seen = !begins_bounce(turn) || (path_glass.z >> HAS_SEEN_SHIFT) != 0u;
   }
+  uvec4 seen_part = uvec4(0u);
+  path.part = PART_BACKGROUND;
+  if (has(FEATURE_LIGHT_AOVS)) {
+    seen_part = pixels[record_of_part(path.pixel, PART_SEEN)];
+    path.part = seen_part.w >> PART_OF_RAY_SHIFT;
+  }
   path.roughness = SEES_ENVIRONMENT ? load_record(record + RECORD_DIRECTION).w : NO_ENVIRONMENT;
   vec3 seen = vec3(0.0);
   if (has_seen) {
@@ -278,6 +293,10 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
       vec3 weight = load_record(record_of_weight(number, turn - 1u)).xyz;
       precise vec3 sum = path.radiance + weight * seen;
       path.radiance = sum;
+      if (has(FEATURE_LIGHT_AOVS)) {
+        uint part = seen_part.w & ((1u << PART_OF_RAY_SHIFT) - 1u);
+        add_seen_part(path.pixel, part, weight, uintBitsToFloat(seen_part.xyz), seen);
+      }
       if (has(FEATURE_RAY_LOG)) log_sum(1u, path.radiance);
     }
   }

@@ -303,6 +303,27 @@ LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 // bits of its place in that pixel, z = that pixel, its row above 16 bits, or this; then xyz = its radiance.
 LAYOUT_CONSTANT NO_LISTED_SAMPLE = 0xFFFFFFFFu;
 
+// What a film holds of each pixel, each kind for all pixels together: first the sum over its samples, and `order` of what
+// it shows; with FEATURE_AOVS then what its middle sample has met, of which the sum is the first record.
+LAYOUT_CONSTANT AOV_NORMAL = 1u;          // geometric; w = distance from the eye
+LAYOUT_CONSTANT AOV_ALBEDO = 2u;          // w = material
+LAYOUT_CONSTANT AOV_POSITION = 3u;
+LAYOUT_CONSTANT AOV_SHADING_NORMAL = 4u;
+LAYOUT_CONSTANT AOV_MEASURES = 5u;        // x, y = texture coordinates; z = distance along the view; w = steps, an integer
+LAYOUT_CONSTANT AOV_RECORDS = 6u;
+// With FEATURE_LIGHT_AOVS the parts of the sum behind these.
+LAYOUT_CONSTANT PART_EMISSION = 0u;      // what the surface that the camera sees emits,
+LAYOUT_CONSTANT PART_DIRECT = 1u;        // what lights bring to it,
+LAYOUT_CONSTANT PART_INDIRECT = 2u;      // what its surroundings do,
+LAYOUT_CONSTANT PART_REFLECTION = 3u;    // mirror rays from it,
+LAYOUT_CONSTANT PART_TRANSMISSION = 4u;  // and rays through it
+LAYOUT_CONSTANT PART_BACKGROUND = 5u;    // what is seen beside and behind surfaces; w = how much of the pixel shows it
+LAYOUT_CONSTANT LIGHT_PARTS = 6u;
+LAYOUT_CONSTANT PART_SEEN = 6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
+LAYOUT_CONSTANT PART_RECORDS = 7u;
+// With FEATURE_SAMPLE_IDS the `order` of what each of so many samples shows behind these, four a record.
+LAYOUT_CONSTANT SAMPLE_IDS = 16u;
+
 // What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
 // its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is
 // in [1, 2), and t is in its units.

@@ -4,6 +4,7 @@
 // prefix; `direction` is the unit direction of the ray that has met the point:
 //   own_light         what the point sends without any source: emitted, ambient and from the environment; with
 //                     `follows_mirror` without the part that the mirror ray brings
+//   emitted_light     the part of that which is emitted
 //   contribution      what a source of strength 1 adds where nothing is between
 //   mirror_weight     the weight of what the mirror ray brings; 0: none is traced
 //   albedo_color      its base colour
@@ -23,6 +24,13 @@ uint model_of(ShadingPoint point) { return flags_of(point.material) & MATERIAL_M
 vec3 own_light(ShadingPoint point, vec3 direction, bool follows_mirror) {
 #define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, own_light_##PREFIX(point, direction, follows_mirror))
+#include "promin/kinds/materials.def"
+  return vec3(0.0);
+}
+
+vec3 emitted_light(ShadingPoint point) {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, emitted_light_##PREFIX(point))
 #include "promin/kinds/materials.def"
   return vec3(0.0);
 }

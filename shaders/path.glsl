@@ -23,7 +23,16 @@ struct Path {
   float skip;   // along its next ray, how far it skips faces of an object (packet.glsl), of this hash
   uint skipped;
   uint kind;    // LOG_*, of its next ray
+  // With FEATURE_LIGHT_AOVS:
+  uint part;  // PART_*, that takes what its next ray brings; of the camera's PART_BACKGROUND
 };
+
+// Makes the path's next ray one of a part of the picture, unless it is already.
+void enter_part(inout Path path, uint part) {
+  if (has(FEATURE_LIGHT_AOVS) && path.part == PART_BACKGROUND) path.part = part;
+}
+
+#include "light_parts.glsl"
 
 // Takes what the medium absorbs on the way to a hit, from where the ray has passed a surface before.
 void absorb(inout Path path, Ray ray, Hit hit) {
@@ -87,6 +96,7 @@ void turn_back(inout Path path, ShadingPoint point) {
   path.passed_t = -1.0;
   path.passed_order = 0u;
   path.kind = LOG_REFLECTION;
+  enter_part(path, PART_REFLECTION);
   path.skip = 0.0;
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
 }

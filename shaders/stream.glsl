@@ -23,6 +23,8 @@ const uint RECORD_MEDIA = 0u;         // x, y = the media that its ray is in; z 
                                       // whether there is something in RECORD_SEEN; w = rays that wait, and the ray's kind
 const uint RECORD_SHADOW_MEDIA = 1u;  // x, y = the media that its shadow rays begin in; z, w = skip and skipped of a Path
 const uint WAITING_OBJECT_SHIFT = 15u;
+const uint WAITING_IS_TRANSMITTED = 0x4000u;  // of PART_TRANSMISSION, else of PART_REFLECTION
+const uint WAITING_BOUNCES_MASK = 0x3FFFu;
 const uint HAS_SEEN_SHIFT = 16u;
 const uint KIND_SHIFT = 16u;
 

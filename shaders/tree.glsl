@@ -14,8 +14,10 @@ bool is_followed(inout Path parent, ShadingPoint point, Path child) {
     return true;
   }
   if (!is_phong) {
-    precise vec3 sum = parent.radiance + child.weight * radiance_beyond(child.direction, child.roughness);
+    vec3 beyond = radiance_beyond(child.direction, child.roughness);
+    precise vec3 sum = parent.radiance + child.weight * beyond;
     parent.radiance = sum;
+    add_beyond(child, beyond);
   }
   return false;
 }
@@ -46,6 +48,7 @@ void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   path.media = point.glass.beyond;
   path.roughness = max(path.roughness, point.glass.roughness);
   path.kind = LOG_REFRACTION;
+  enter_part(path, PART_TRANSMISSION);
   ++path.bounces;
   path.passed_t = -1.0;
   path.passed_order = 0u;
@@ -87,6 +90,7 @@ void send_color(inout Path path, ShadingPoint point, bool touches, uint color) {
   } else {
     precise vec3 weight = path.weight * kept;
     path.weight = weight;
+    enter_part(path, PART_TRANSMISSION);
     turn_back(path, point);
     path.kind = LOG_REFRACTION;
   }
@@ -153,7 +157,9 @@ void store_waiting(uint number, uint place, Path path) {
   pixels[record] = uvec4(floatBitsToUint(path.origin), floatBitsToUint(path.cone_width));
   pixels[record + 1u] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.cone_spread));
   pixels[record + 2u] = uvec4(floatBitsToUint(path.weight), floatBitsToUint(path.roughness));
-  pixels[record + 3u] = uvec4(path.media, path.bounces | path.skipped << WAITING_OBJECT_SHIFT, floatBitsToUint(path.skip));
+  uint progress = path.bounces | path.skipped << WAITING_OBJECT_SHIFT;
+  if (has(FEATURE_LIGHT_AOVS) && path.part == PART_TRANSMISSION) progress |= WAITING_IS_TRANSMITTED;
+  pixels[record + 3u] = uvec4(path.media, progress, floatBitsToUint(path.skip));
 }
 
 // Keeps the children that wait for the first, the last to be followed first; `waiting` are there already. Returns how many

@@ -124,7 +124,10 @@ PicturesPlugin load_plugin() {
              std::to_string(version) + ", not " + std::to_string(PROMIN_PICTURES_INTERFACE) + ")",
          file.string(), kCure});
   }
-  find_function(library, "promin_pictures_encode", file, plugin.encode);
+  find_function(library, "promin_pictures_begin", file, plugin.begin);
+  find_function(library, "promin_pictures_write_rows", file, plugin.write_rows);
+  find_function(library, "promin_pictures_finish", file, plugin.finish);
+  find_function(library, "promin_pictures_end", file, plugin.end);
   find_function(library, "promin_pictures_open", file, plugin.open);
   find_function(library, "promin_pictures_open_bytes", file, plugin.open_bytes);
   find_function(library, "promin_pictures_read_rgb", file, plugin.read_rgb);

@@ -11,7 +11,10 @@ namespace promin {
 /// The plugin that reads and writes picture files, by the functions of image/plugin/pictures.h.
 struct PicturesPlugin {
   decltype(&promin_pictures_interface) interface = nullptr;
-  decltype(&promin_pictures_encode) encode = nullptr;
+  decltype(&promin_pictures_begin) begin = nullptr;
+  decltype(&promin_pictures_write_rows) write_rows = nullptr;
+  decltype(&promin_pictures_finish) finish = nullptr;
+  decltype(&promin_pictures_end) end = nullptr;
   decltype(&promin_pictures_open) open = nullptr;
   decltype(&promin_pictures_open_bytes) open_bytes = nullptr;
   decltype(&promin_pictures_read_rgb) read_rgb = nullptr;

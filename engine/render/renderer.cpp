@@ -14,6 +14,7 @@
 #include "render/renderer_impl.h"
 #include "trace/cut_loops.h"
 #include "trace/explain_pixel.h"
+#include "trace/film_records.h"
 #include "trace/progressive_picture.h"
 #include "trace/refinement.h"
 
@@ -41,12 +42,20 @@ constexpr float kErrorStep = 1.41421356F;
 /// It takes so much more time for an error than is foretold.
 constexpr double kCaution = 1.2;
 
-PixelWindow picture_window(const View& view) {
-  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
+/// Samples of each pixel: [first, end).
+struct SampleRange {
+  uint32_t first;
+  uint32_t end;
+};
+
+/// Tells no progress yet, but whether to go on.
+ProgressCallback keep_going(const ProgressCallback& progress) {
+  if (!progress) return {};
+  return [&progress](double) { return progress(0.0); };
 }
 
-vec3 vec3_of(const uvec4& bits) {
-  return {std::bit_cast<float>(bits.x), std::bit_cast<float>(bits.y), std::bit_cast<float>(bits.z)};
+PixelWindow picture_window(const View& view) {
+  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
 }
 
 PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options) {
@@ -69,6 +78,7 @@ void check_view(const View& view) {
 SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
                              SetupStats& stats)
     : force_all_features_(options.force_all_features) {
+  for (const world::Object& object : scene.objects) object_materials_.push_back(object.material);
   PackedScene packed = pack(scene, options);
   stats.bvh = packed.bvh;
   stats.bvh_ms = packed.bvh_ms;
@@ -117,6 +127,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedRendererOptions& the_options)
       : device(the_device),
         options(the_options),
+        wanted(options.with_aovs ? options.aovs | AovSet::of_surfaces() : options.aovs),
         pipelines_before(device.compiled_pipelines().size()),
         pacer(options.target_dispatch_ms.value_or(device.profile().target_dispatch_ms), TileScheduler::kMinBlocks),
         scene(device, the_scene, options, stats) {
@@ -134,29 +145,46 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
 
   /// Makes the film that a mode needs, unless it is there.
   void prepare_film(const RenderMode& mode) {
-    FeatureMask features = scene.features(mode);
-    if (options.with_aovs) features |= layout::FEATURE_AOVS;
+    FeatureMask features = scene.features(mode) | features_of_samples(mode);
+    if (wanted.has_any(AovSource::kSurface)) features |= layout::FEATURE_AOVS;
     prepare_film(features);
+  }
+
+  /// Of what is told of all samples.
+  FeatureMask features_of_samples(const RenderMode& mode) const {
+    FeatureMask features;
+    if (has_parts(mode)) features |= layout::FEATURE_LIGHT_AOVS;
+    if (wanted.cryptomatte) features |= layout::FEATURE_SAMPLE_IDS;
+    return features;
+  }
+
+  /// Whether parts of light are told: a debug view has none.
+  bool has_parts(const RenderMode& mode) const {
+    return wanted.has_any(AovSource::kParts) && mode.debug_view == DebugView::kNone;
   }
 
   /// The film on which samples of a list are traced.
   void prepare_refining_film(const RenderMode& mode) {
-    prepare_film(scene.features(mode) | layout::FEATURE_LISTED_SAMPLES);
+    prepare_film(scene.features(mode) | features_of_samples(mode) | layout::FEATURE_LISTED_SAMPLES);
   }
 
   void prepare_film(FeatureMask features) {
     if (film && features == film_features) return;
-    film.emplace(device, scene.device_scene(), features,
-                 FilmOptions{.packet_size = options.packet_size,
-                             .expected_samples = options.expected_samples,
-                             .avoids_texels = options.avoids_texels,
-                             .shaders = options.shaders});
+    film.emplace(device, scene.device_scene(), features, film_options());
     film->warm_up();
     film_features = features;
   }
 
+  FilmOptions film_options() const {
+    return {.packet_size = options.packet_size,
+            .expected_samples = options.expected_samples,
+            .avoids_texels = options.avoids_texels,
+            .shaders = options.shaders};
+  }
+
   /// Is called after a part of the scene has changed. A film that cannot be bound to it is made anew when it is needed.
   void take_change() {
+    step_film.reset();
     if (!film) return;
     try {
       film->bind_scene();
@@ -166,19 +194,21 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     }
   }
 
-  /// Traces `window` of the picture, for which the film has room.
-  void trace_window(const PixelWindow& window, const View& view, RenderResult& result,
-                    const ProgressCallback& on_progress) {
-    TileOptions cut = film->piece_options(view.max_depth);
+  /// Traces samples of a window of the picture, for which the film has room.
+  void trace_window(Film& onto, const PixelWindow& window, const View& view, const SampleRange& samples,
+                    RenderResult& result, const ProgressCallback& on_progress) {
+    TileOptions cut = onto.piece_options(view.max_depth);
     cut.blocks_per_piece = options.blocks_per_dispatch;
+    cut.first_sample = samples.first;
+    cut.end_sample = samples.end;
     if (cut.refracted_rays > 0) cut.least_blocks = TileOptions::kLeastBlocksOfTrees;
     const auto collect = [&] {
-      const FilmCounts taken = film->take_counts();
+      const FilmCounts taken = onto.take_counts();
       refuse_cut_loops(taken.has_cut_loops);
       result.rays += taken.rays;
     };
-    TileScheduler picture = film->cut(view, window, cut);
-    film->begin(picture);
+    TileScheduler picture = onto.cut(view, window, cut);
+    onto.begin(picture);
     double uncollected = 0.0;
     std::vector<TileSample> pieces;
     while (!picture.is_done()) {
@@ -190,7 +220,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
         units += pieces.back().units;
         uncollected += pieces.back().most_rays_a_lane;
       } while (units < pacer.units() && pieces.size() < kMostPiecesAtOnce && !picture.is_done());
-      const double time_ms = film->run(pieces);
+      const double time_ms = onto.run(pieces);
       result.trace_ms += time_ms;
       pacer.learn(units, time_ms);
       if (uncollected > kMaxRaysALane) {
@@ -202,119 +232,221 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     collect();
   }
 
-  /// Adds what the film holds of a band to the result. The band's first pixel is pixel `first` of the result.
-  void read_film(size_t first, size_t count, uint32_t samples, RenderResult& result) {
-    film_records.resize(count * film->records_per_pixel());
-    film->buffer().read(std::as_writable_bytes(std::span(film_records)), Film::kPixelsOffset);
+  /// Traces a band of the picture, samples a pixel as far as there is room for what is told of each, and adds it to
+  /// the result, whose pixel `first` is the band's first.
+  void trace_band(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
+                  const ProgressCallback& on_progress) {
+    const uvec2 size = band.hi - band.lo;
+    const size_t count = static_cast<size_t>(size.x) * size.y;
+    const uint32_t samples = view.samples_per_pixel;
+    const uint32_t samples_at_once = wanted.cryptomatte ? layout::SAMPLE_IDS : samples;
+    film->reserve(size.x * size.y);
+    CoverageTally tally(wanted.cryptomatte ? count : 0, scene.object_materials());
+    ReadFilm read{{}, 0, film->records()};
+    for (SampleRange range{0, 0}; range.end < samples;) {
+      range = {range.end, std::min(samples, range.end + samples_at_once)};
+      trace_window(*film, band, view, range, result, [&](double fraction) {
+        return !on_progress || on_progress((range.first + fraction * (range.end - range.first)) / samples);
+      });
+      // What is told of all samples together is read once.
+      if (!wanted.cryptomatte && range.end < samples) continue;
+      read = read_film(*film, size);
+      if (wanted.cryptomatte) tally_samples(read, range.end - range.first, tally);
+    }
     average_samples(film_records, samples, std::span(result.image.pixels).subspan(first, count));
-    if (!options.with_aovs) return;
+    if (wanted.has_any(AovSource::kSurface)) {
+      read_surfaces(read, scene.numbers(), view.depth_kind, first, result.aovs);
+    }
     for (size_t i = 0; i < count; ++i) {
-      read_aovs(film_records[i], film_records[count + i], film_records[2 * count + i], samples, first + i, result.aovs);
+      if (!result.aovs.samples.empty()) result.aovs.samples[first + i] = samples;
+      if (wanted.cryptomatte) tally.put(i, samples, first + i, result.aovs);
+      if (!has_parts(view.mode)) continue;
+      LightParts parts;
+      parts.add(read, i);
+      parts.put(samples, first + i, result.aovs, result.image.pixels[first + i]);
     }
   }
 
-  /// Reads a pixel's AOVs from its three records (shaders/film.glsl).
-  void read_aovs(const uvec4& pixel, const uvec4& normal_and_depth, const uvec4& albedo_and_material, uint32_t samples,
-                 size_t at, Aovs& aovs) const {
-    PrimitiveId id{Aovs::kNoId, Aovs::kNoId};
-    if (pixel.w != layout::NO_ORDER) id = primitive_of_order(scene.numbers(), pixel.w);
-    // Members have the names of the table, so an AOV that nothing is read into does not compile.
-    const struct {
-      float depth;
-      vec3 normal;
-      uint32_t object;
-      uint32_t primitive;
-      uint32_t material;
-      vec3 albedo;
-      uint32_t samples;
-      vec3 error;
-    } told{std::bit_cast<float>(normal_and_depth.w),
-           vec3_of(normal_and_depth),
-           id.object,
-           id.primitive,
-           albedo_and_material.w,
-           vec3_of(albedo_and_material),
-           samples,
-           vec3(0.0F)};
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) aovs.FIELD[at] = told.FIELD;
-#include "promin/kinds/aovs.def"
+  void tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const {
+    for (uint32_t sample = 0; sample < samples; ++sample) {
+      for (size_t i = 0; i < read.pixel_count; ++i) {
+        tally.add(i, object_of(read.record(read.layout.first_ids + sample / 4, i)[static_cast<int>(sample % 4)]));
+      }
+    }
+  }
+
+  uint32_t object_of(uint32_t order) const {
+    return order == layout::NO_ORDER ? Aovs::kNoId : primitive_of_order(scene.numbers(), order).object;
+  }
+
+  /// Traces a sample of each pixel of a band for what it has met alone.
+  void trace_surfaces(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
+                      const ProgressCallback& on_progress) {
+    const uvec2 size = band.hi - band.lo;
+    film->reserve(size.x * size.y);
+    trace_window(*film, band, view, {0, 1}, result, on_progress);
+    read_surfaces(read_film(*film, size), scene.numbers(), view.depth_kind, first, result.aovs);
+  }
+
+  /// Reads what a film holds of a window; what was read before is gone then.
+  ReadFilm read_film(const Film& from, const uvec2& size) {
+    const size_t count = static_cast<size_t>(size.x) * size.y;
+    film_records.resize(count * from.records().count);
+    from.buffer().read(std::as_writable_bytes(std::span(film_records)), Film::kPixelsOffset);
+    return {film_records, count, from.records()};
+  }
+
+  /// Cuts a picture into bands of whole blocks that a film has room for.
+  template <typename TraceBand>
+  void for_each_band(const View& view, uint32_t records_per_pixel, const TraceBand& trace_band) const {
+    const PixelWindow window = picture_window(view);
+    const uint32_t width = window.hi.x - window.lo.x;
+    const uint32_t film_rows = kMaxFilmRecords / records_per_pixel / width;
+    const uint32_t band_rows = std::max(layout::BLOCK_SIZE, film_rows / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
+    for (uint32_t y = window.lo.y; y < window.hi.y; y += band_rows) {
+      const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
+      trace_band(band, static_cast<size_t>(y - window.lo.y) * width);
+    }
+  }
+
+  /// Traces the middle sample once more, as steps are of single rays, and packets are not.
+  void trace_steps(const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+    View step_view = view;
+    step_view.max_depth = 0;
+    step_view.mode.debug_view = DebugView::kSteps;
+    FeatureMask features = scene.features(step_view.mode) | layout::FEATURE_AOVS;
+    features = features.without(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
+    if (!step_film) {
+      FilmOptions film_of_steps = film_options();
+      film_of_steps.packet_size = 1;
+      step_film.emplace(device, scene.device_scene(), features, film_of_steps);
+      step_film->warm_up();
+    }
+    const SampleRange middle{view.samples_per_pixel / 2, view.samples_per_pixel / 2 + 1};
+    for_each_band(view, step_film->records().count, [&](const PixelWindow& band, size_t first) {
+      const uvec2 size = band.hi - band.lo;
+      step_film->reserve(size.x * size.y);
+      // Its rays are the picture's, counted there.
+      RenderResult of_steps;
+      trace_window(*step_film, band, step_view, middle, of_steps, on_progress);
+      result.trace_ms += of_steps.trace_ms;
+      read_steps(read_film(*step_film, size), first, result.aovs);
+    });
+  }
+
+  /// A picture without pixels yet.
+  RenderResult make_result(const View& view) const {
+    const PixelWindow window = picture_window(view);
+    RenderResult result;
+    result.image.size = window.hi - window.lo;
+    result.image.pixels.resize(static_cast<size_t>(result.image.size.x) * result.image.size.y);
+    result.aovs.resize(result.image.pixels.size(), wanted);
+    return result;
   }
 
   RenderResult render(const View& view, const ProgressCallback& progress) {
     if (view.error_target) return render_to_error(view, progress);
-    const PixelWindow window = picture_window(view);
-    RenderResult result;
-    result.image.size = window.hi - window.lo;
-    const uint32_t width = result.image.size.x;
-    const size_t pixel_count = static_cast<size_t>(width) * result.image.size.y;
-    result.image.pixels.resize(pixel_count);
-    if (options.with_aovs) result.aovs.resize(pixel_count);
+    RenderResult result = make_result(view);
     prepare_film(view.mode);
-    const uint32_t film_rows = kMaxFilmRecords / film->records_per_pixel() / width;
-    const uint32_t band_rows = std::max(layout::BLOCK_SIZE, film_rows / layout::BLOCK_SIZE * layout::BLOCK_SIZE);
-    for (uint32_t y = window.lo.y; y < window.hi.y; y += band_rows) {
-      const PixelWindow band{uvec2(window.lo.x, y), uvec2(window.hi.x, std::min(window.hi.y, y + band_rows))};
-      const uint32_t rows = band.hi.y - band.lo.y;
-      const double done = static_cast<double>(y - window.lo.y) / result.image.size.y;
-      const double fraction_of_band = static_cast<double>(rows) / result.image.size.y;
-      film->reserve(width * rows);
-      trace_window(band, view, result,
-                   [&](double fraction) { return !progress || progress(done + fraction_of_band * fraction); });
-      read_film(static_cast<size_t>(y - window.lo.y) * width, static_cast<size_t>(rows) * width, view.samples_per_pixel,
-                result);
-    }
+    const double steps_share = wanted.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
+    const auto pixel_count = static_cast<double>(result.image.pixels.size());
+    if (wanted.steps) trace_steps(view, result, keep_going(progress));
+    for_each_band(view, film->records().count, [&](const PixelWindow& band, size_t first) {
+      const uvec2 size = band.hi - band.lo;
+      trace_band(band, view, first, result, [&](double fraction) {
+        const double done = (static_cast<double>(first) + fraction * size.x * size.y) / pixel_count;
+        return !progress || progress(steps_share + (1.0 - steps_share) * done);
+      });
+    });
     return result;
   }
 
+  /// What the samples of a window of a refined picture tell beside their colors, by pixel.
+  struct RefinedAovs {
+    PixelWindow window;
+    std::vector<LightParts> parts;
+    CoverageTally tally;
+  };
+
+  RefinedAovs begin_refined_aovs(const PixelWindow& window, const View& view) const {
+    const uvec2 size = window.hi - window.lo;
+    const size_t count = static_cast<size_t>(size.x) * size.y;
+    return {window, std::vector<LightParts>(has_parts(view.mode) ? count : 0),
+            CoverageTally(wanted.cryptomatte ? count : 0, scene.object_materials())};
+  }
+
+  /// Takes those of a list.
+  void take_aovs(std::span<const ListedSample> list, const ReadFilm& read, RefinedAovs& aovs) const {
+    if (aovs.parts.empty() && !wanted.cryptomatte) return;
+    const uint32_t width = aovs.window.hi.x - aovs.window.lo.x;
+    for (size_t i = 0; i < list.size(); ++i) {
+      const uvec2& pixel = list[i].pixel;
+      // The samples of pixels around the window are theirs.
+      if (glm::any(glm::lessThan(pixel, aovs.window.lo)) || glm::any(glm::greaterThanEqual(pixel, aovs.window.hi))) {
+        continue;
+      }
+      const uvec2 place = pixel - aovs.window.lo;
+      const size_t at = static_cast<size_t>(place.y) * width + place.x;
+      if (!aovs.parts.empty()) aovs.parts[at].add(read, i);
+      if (wanted.cryptomatte) aovs.tally.add(at, object_of(read.record(0, i).w));
+    }
+  }
+
   /// Traces samples until the refinement has what it was asked for. `on_samples` is told how many it has taken.
-  void refine(Refinement& refinement, const View& view, RenderResult& result, const ProgressCallback& on_samples) {
+  void refine(Refinement& refinement, const View& view, RefinedAovs& aovs, RenderResult& result,
+              const ProgressCallback& on_samples) {
+    const size_t most_listed = std::min<size_t>(kMostListed, kMaxFilmRecords / film->records().count);
     std::vector<vec3> radiance;
-    for (auto list = refinement.next(kMostListed); !list.empty(); list = refinement.next(kMostListed)) {
+    for (auto list = refinement.next(most_listed); !list.empty(); list = refinement.next(most_listed)) {
       film->put_list(list);
       const auto taken = static_cast<double>(refinement.sample_count());
-      trace_window(list_window(list.size()), view, result, [&](double fraction) {
+      trace_window(*film, list_window(list.size()), view, {0, 1}, result, [&](double fraction) {
         return !on_samples || on_samples(taken + fraction * static_cast<double>(list.size()));
       });
+      const ReadFilm read = film->read_list();
       radiance.resize(list.size());
-      film->read_list(radiance);
+      average_samples(read.records, 1, radiance);
+      take_aovs(list, read, aovs);
       refinement.take(radiance);
     }
   }
 
-  /// Fills a result with what a refinement of `window` has come to.
-  void take_refined(const Refinement& refinement, const PixelWindow& window, const View& view,
+  /// Fills a result with what a refinement of a window has come to.
+  void take_refined(const Refinement& refinement, const RefinedAovs& aovs, const View& view,
                     RenderResult& result) const {
+    const PixelWindow& window = aovs.window;
     const PixelWindow whole = picture_window(view);
     const uvec2 size = window.hi - window.lo;
     for (size_t i = 0; i < refinement.pixel_count(); ++i) {
       const uvec2 place = window.lo - whole.lo + uvec2(i % size.x, i / size.x);
       const size_t at = static_cast<size_t>(place.y) * result.image.size.x + place.x;
       const PixelEstimate& estimate = refinement.estimate(i);
-      const vec3 mean = estimate.mean();
-      result.image.pixels[at] = mean;
-      const vec3& claim = refinement.claim(i);
+      result.image.pixels[at] = estimate.mean();
       result.error->largest_claim = std::max(result.error->largest_claim, refinement.relative_claim(i));
       result.error->unmet_pixels += refinement.is_near_enough(i) ? 0 : 1;
       result.error->samples += estimate.count();
-      if (!options.with_aovs) continue;
-      result.aovs.samples[at] = estimate.count();
-      result.aovs.error[at] = claim;
+      if (!result.aovs.samples.empty()) result.aovs.samples[at] = estimate.count();
+      if (!result.aovs.error.empty()) result.aovs.error[at] = refinement.claim(i);
+      if (!aovs.parts.empty()) aovs.parts[i].put(estimate.count(), at, result.aovs, result.image.pixels[at]);
+      if (wanted.cryptomatte) aovs.tally.put(i, estimate.count(), at, result.aovs);
     }
   }
 
-  /// A picture without pixels yet, with its AOVs: of rays through the pixels' centres.
+  /// A picture without pixels yet, with what rays through the centres of pixels tell.
   RenderResult begin_refined(const View& view, const ProgressCallback& progress) {
-    RenderResult result;
-    if (options.with_aovs) {
-      View centers = view;
-      centers.error_target.reset();
-      centers.samples_per_pixel = 1;
-      centers.max_depth = 0;
-      result = render(centers, progress);
+    RenderResult result = make_result(view);
+    View centers = view;
+    centers.error_target.reset();
+    centers.samples_per_pixel = 1;
+    centers.max_depth = 0;
+    const ProgressCallback goes_on = keep_going(progress);
+    if (wanted.has_any(AovSource::kSurface)) {
+      prepare_film(scene.features(view.mode) | layout::FEATURE_AOVS);
+      for_each_band(centers, film->records().count, [&](const PixelWindow& band, size_t first) {
+        trace_surfaces(band, centers, first, result, goes_on);
+      });
     }
-    const PixelWindow window = picture_window(view);
-    result.image.size = window.hi - window.lo;
-    result.image.pixels.resize(static_cast<size_t>(result.image.size.x) * result.image.size.y);
+    if (wanted.steps) trace_steps(centers, result, goes_on);
     result.error.emplace(PictureError{.target = view.error_target->error});
     prepare_refining_film(view.mode);
     return result;
@@ -332,8 +464,9 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       const uvec2 lo = window.lo + kTileSide * uvec2(tile % tiles.x, tile / tiles.x);
       const PixelWindow part{lo, glm::min(window.hi, lo + kTileSide)};
       Refinement refinement(view, part);
+      RefinedAovs aovs = begin_refined_aovs(part, view);
       const auto part_pixels = static_cast<double>(refinement.pixel_count());
-      refine(refinement, view, result, [&](double of_part) {
+      refine(refinement, view, aovs, result, [&](double of_part) {
         if (!progress) return true;
         const double left_of_part = std::max(refinement.foretell_total() - of_part, 0.0);
         const double a_pixel = (taken + of_part + left_of_part) / (pixels_done + part_pixels);
@@ -342,7 +475,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       });
       taken += static_cast<double>(refinement.sample_count());
       pixels_done += part_pixels;
-      take_refined(refinement, part, view, result);
+      take_refined(refinement, aovs, view, result);
     }
     return result;
   }
@@ -354,22 +487,23 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     RenderResult result = begin_refined(step, progress);
     const PixelWindow window = picture_window(view);
     Refinement refinement(step, window);
+    RefinedAovs aovs = begin_refined_aovs(window, step);
     const auto on_progress = [&](double) {
       return !progress || progress(std::min(1.0, 1e-3 * elapsed.ms() / seconds));
     };
     const Stopwatch tracing;
     float& error = step.error_target->error;
-    for (refine(refinement, step, result, on_progress); error > view.error_target->error;) {
+    for (refine(refinement, step, aovs, result, on_progress); error > view.error_target->error;) {
       const float next_error = std::max(view.error_target->error, error / kErrorStep);
       const double ms_a_sample = tracing.ms() / static_cast<double>(refinement.sample_count());
       const double ms_ahead = kCaution * ms_a_sample * refinement.foretell_samples(next_error);
       if (elapsed.ms() + ms_ahead > 1e3 * seconds) break;
       error = next_error;
       refinement.aim(error);
-      refine(refinement, step, result, on_progress);
+      refine(refinement, step, aovs, result, on_progress);
     }
     result.error->target = error;
-    take_refined(refinement, window, step, result);
+    take_refined(refinement, aovs, step, result);
     return result;
   }
 
@@ -393,12 +527,15 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
 
   const gpu::Device& device;
   TunedRendererOptions options;
+  AovSet wanted;
   size_t pipelines_before;
   Pacer pacer;
   SetupStats stats;
   SceneOnDevice scene;
   std::optional<Film> film;
   FeatureMask film_features;
+  /// Counts steps; there as soon as somebody has asked for them.
+  std::optional<Film> step_film;
   std::vector<uvec4> film_records;
 };
 

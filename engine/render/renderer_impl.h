@@ -44,6 +44,8 @@ class SceneOnDevice {
   const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
   const PrimitiveNumbers& numbers() const { return numbers_; }
   size_t material_count() const { return shown_materials_.size(); }
+  /// Of each object.
+  std::span<const uint32_t> object_materials() const { return object_materials_; }
 
   /// The features of a picture in a mode, with the scene's lights or with others.
   FeatureMask features(const RenderMode& mode) const { return features_with(light_features_, mode); }
@@ -65,6 +67,7 @@ class SceneOnDevice {
   FeatureMask environment_features_;
   uint64_t primitive_count_ = 0;
   std::vector<bool> shown_materials_;
+  std::vector<uint32_t> object_materials_;
   PrimitiveNumbers numbers_;
   std::shared_ptr<DeviceScene> device_scene_;
 };

@@ -40,17 +40,4 @@ float default_width(PixelFilter filter) {
   return kWidths.at(static_cast<size_t>(filter));
 }
 
-std::span<const std::string_view> aov_names() {
-  static constexpr std::array kNames = {
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) std::string_view(#FIELD),
-#include "promin/kinds/aovs.def"
-  };
-  return kNames;
-}
-
-void Aovs::resize(size_t pixel_count) {
-#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS) FIELD.assign(pixel_count, MISS);
-#include "promin/kinds/aovs.def"
-}
-
 }  // namespace promin

@@ -62,6 +62,7 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
     : device_(&device),
       scene_(std::move(scene)),
       features_(features),
+      records_(features),
       packet_size_(pick_packet_size(device.profile(), features, options)),
       avoids_texels_(options.avoids_texels),
       shaders_(options.shaders),
@@ -111,7 +112,7 @@ void Film::bind_scene() {
 
 void Film::reserve(uint32_t pixel_count) {
   pixel_count = std::max(pixel_count, capacity_);
-  const uint64_t records = uint64_t{pixel_count} * records_per_pixel() + log_records_;
+  const uint64_t records = uint64_t{pixel_count} * records_.count + log_records_;
   const uint64_t bytes = sizeof(layout::FilmHead) + records * sizeof(uvec4) + bytes_of_stream(pixel_count);
   if (buffer_ && buffer_->size_bytes() >= bytes && capacity_ == pixel_count) return;
   using Usage = vk::BufferUsageFlagBits;
@@ -140,12 +141,13 @@ void Film::put_list(std::span<const ListedSample> samples) {
     }
   });
   buffer_->write(std::as_bytes(std::span(list_records_)), kPixelsOffset);
+  list_records_.resize(list_records_.size() * records_.count);
 }
 
-void Film::read_list(std::span<vec3> radiance) {
-  list_records_.resize(radiance.size());
+ReadFilm Film::read_list() {
+  const size_t pixel_count = list_records_.size() / records_.count;
   buffer_->read(std::as_writable_bytes(std::span(list_records_)), kPixelsOffset);
-  average_samples(list_records_, 1, radiance);
+  return {list_records_, pixel_count, records_};
 }
 
 TileOptions Film::piece_options(uint32_t depth) const {
@@ -231,10 +233,6 @@ uint32_t Film::most_layers() const {
   return features_.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
 }
 
-uint32_t Film::records_per_pixel() const {
-  return features_.has_any(layout::FEATURE_AOVS) ? 3 : 1;
-}
-
 uint64_t Film::bytes_of_stream(uint32_t pixel_count) const {
   uint64_t bytes = stream_shape(pixel_count, 0).bytes();
   // With glass deep pictures need more for a path, and have room for fewer paths.
@@ -259,14 +257,14 @@ StreamShape Film::stream_shape(uint32_t pixel_count, uint32_t depth) const {
   if (!has_stream()) return {};
   const uint32_t most_paths = std::min(device_->profile().most_stream_paths, divide_up(pixel_count, kLanes) * kLanes);
   StreamShape shape = StreamShape::of(scene_->constants().light_count, features_, most_paths, depth);
-  shape.first_record = pixel_count * records_per_pixel() + log_records_;
+  shape.first_record = pixel_count * records_.count + log_records_;
   return shape;
 }
 
 uint32_t Film::max_capacity() const {
   const uint64_t records = (device_->limits().maxStorageBufferRange - sizeof(layout::FilmHead)) / sizeof(uvec4);
   const uint64_t most_of_stream = StreamShape::kMostBytes / sizeof(uvec4);
-  return static_cast<uint32_t>((records - most_of_stream) / records_per_pixel());
+  return static_cast<uint32_t>((records - most_of_stream) / records_.count);
 }
 
 PixelWindow list_window(size_t sample_count) {

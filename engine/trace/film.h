@@ -12,6 +12,7 @@
 #include "device_scene/device_scene.h"
 #include "promin/ray_counts.h"
 #include "scene/features.h"
+#include "trace/film_records.h"
 #include "trace/path_stream.h"
 #include "trace/picture_shaders.h"
 #include "trace/refinement.h"
@@ -45,7 +46,7 @@ struct FilmOptions {
 class Film {
  public:
   /// Compiles unless the device has compiled the same already. `features` of the scene and of the debug view
-  /// (scene/features.h), and FEATURE_AOVS.
+  /// (scene/features.h), and of AOVs.
   Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
        const FilmOptions& options = {});
 
@@ -56,8 +57,8 @@ class Film {
   /// With FEATURE_LISTED_SAMPLES: puts samples on the film, where a picture of list_window() traces them; makes room
   /// for them. The device is idle with respect to the film.
   void put_list(std::span<const ListedSample> samples);
-  /// What they have seen, as many as were put there.
-  void read_list(std::span<vec3> radiance);
+  /// What they have seen, as long as nothing else is put there or read; of the pixels of list_window().
+  ReadFilm read_list();
 
   /// Takes note that the scene has changed parts; the device is idle with respect to the film.
   void bind_scene();
@@ -81,8 +82,8 @@ class Film {
   /// Traces a block of one pixel: drivers compile late, and a pipeline's first dispatch must not count as tracing.
   void warm_up();
 
-  /// Records of a pixel, of uvec4: its sum over samples, and of the AOVs another.
-  uint32_t records_per_pixel() const;
+  /// Of a pixel, each an uvec4.
+  const FilmRecords& records() const { return records_; }
   /// Most pixels that a film can have on this device.
   uint32_t max_capacity() const;
   const gpu::Buffer& buffer() const { return *buffer_; }
@@ -109,6 +110,7 @@ class Film {
   const gpu::Device* device_;
   std::shared_ptr<const DeviceScene> scene_;
   FeatureMask features_;
+  FilmRecords records_;
   uint32_t packet_size_;
   bool avoids_texels_;
   PictureShaders shaders_;

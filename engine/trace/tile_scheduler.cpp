@@ -36,8 +36,10 @@ TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, cons
       view_(view),
       window_(window),
       options_(options),
-      samples_(options.is_listed ? 1 : view.samples_per_pixel),
-      lattice_generator_(lattice_generator(view.samples_per_pixel)) {
+      end_sample_(options.is_listed ? 1 : std::min(view.samples_per_pixel, options.end_sample)),
+      lattice_generator_(lattice_generator(view.samples_per_pixel)),
+      sample_(options.first_sample) {
+  assert(sample_ < end_sample_);
   static_assert(TileOptions::kMaxBlocks <= 65535, "Vulkan's guaranteed workgroup count");
   assert(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel);
   const uvec2 size = window.hi - window.lo;
@@ -46,12 +48,14 @@ TileScheduler::TileScheduler(const SceneConstants& scene, const View& view, cons
 }
 
 double TileScheduler::fraction_done() const {
-  return (first_block_ + block_count_ * (static_cast<double>(sample_) / samples_)) / block_total_;
+  const double fraction_of_piece =
+      static_cast<double>(sample_ - options_.first_sample) / (end_sample_ - options_.first_sample);
+  return (first_block_ + block_count_ * fraction_of_piece) / block_total_;
 }
 
 TileSample TileScheduler::next(double units) {
   assert(!is_done());
-  if (sample_ == 0) block_count_ = pick_block_count(units);
+  if (sample_ == options_.first_sample) block_count_ = pick_block_count(units);
 
   TileSample piece;
   piece.dispatch = make_tile_dispatch(scene_, view_, window_,
@@ -67,10 +71,10 @@ TileSample TileScheduler::next(double units) {
   piece.most_rays_a_lane = most_hits * (1.0 + scene_.light_count) * (1.0 + options_.most_layers) * piece.units;
 
   ++sample_;
-  if (sample_ == samples_) {
+  if (sample_ == end_sample_) {
     first_block_ += block_count_;
     block_count_ = 0;
-    sample_ = 0;
+    sample_ = options_.first_sample;
   }
   return piece;
 }

@@ -44,6 +44,9 @@ struct TileOptions {
   uint32_t most_layers = 0;
   /// How many rays a surface may send through itself (refracted_rays).
   uint32_t refracted_rays = 0;
+  /// The samples of each pixel that are traced, of those that the view has: [first, end).
+  uint32_t first_sample = 0;
+  uint32_t end_sample = kMaxSamplesPerPixel;
   /// Whether each pixel is a sample of a list (FEATURE_LISTED_SAMPLES), which is traced once.
   bool is_listed = false;
   /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
@@ -83,14 +86,14 @@ class TileScheduler {
   View view_;
   PixelWindow window_;
   TileOptions options_;
-  uint32_t samples_;
+  uint32_t end_sample_;
   uint32_t lattice_generator_;
   uint32_t pixel_count_;
   uint32_t block_total_;
   uint32_t first_block_ = 0;
   /// The number of blocks in the current range, and the next sample of them.
   uint32_t block_count_ = 0;
-  uint32_t sample_ = 0;
+  uint32_t sample_;
 };
 
 }  // namespace promin

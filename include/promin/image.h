@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -56,16 +57,35 @@ PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 /// Whether a file of this ending holds channels beside R, G and B: .exr.
 PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
+/// How an EXR is compressed, always without loss; by blocks of 16 rows, kZips by rows.
+enum class ExrCompression : uint32_t { kNone, kRle, kZips, kZip, kPiz };
+
+/// Names for people, by the value of the ExrCompression.
+PROMIN_EXPORT std::span<const std::string_view> exr_compression_names();
+
+/// How an EXR keeps its numbers.
+struct ExrOptions {
+  /// Halves in place of floats for colours, normals and shares: off by 2^-11 of the value at most, 65504 at most.
+  /// Distances, places, errors and what tells one thing from another stay as they are.
+  bool is_half = false;
+  /// See ExrCompression.
+  ExrCompression compression = ExrCompression::kZip;
+  /// A part for each group of channels in place of one for all: some programs read single groups faster, and others
+  /// cannot read such files.
+  bool is_multipart = false;
+};
+
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
-/// picture's display window) or .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels`; a crop is a
-/// picture of its own). Equal arguments give equal bytes. Atomic: the picture is written to a temporary file beside the
+/// picture's display window) or .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for
+/// one named "A", by which the pixels are taken as multiplied; a crop is a picture of its own). Equal arguments give equal bytes. Atomic: the picture is written to a temporary file beside the
 /// target and renamed; on failure the target is as it was. Any thread may call it. Throws UsageError for another
 /// ending, for a picture without pixels and where the pixels, a channel's values or the crop do not suit the size;
 /// RunError where the file cannot be written, and where libpromin_pictures.so, the plugin that encodes pictures, is
 /// missing.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
-                               std::span<const Channel> channels = {}, const DisplayTransform& display = {});
+                               std::span<const Channel> channels = {}, const DisplayTransform& display = {},
+                               const ExrOptions& exr = {});
 
 /// The most pixels that read_image takes; larger pictures are refused before their pixels are read.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;

@@ -43,7 +43,7 @@ struct PictureError {
 struct RenderResult {
   /// Of the size of View::crop, or of View::size without one.
   Image image;
-  /// Empty unless RendererOptions::with_aovs.
+  /// What RendererOptions ask for; else empty.
   Aovs aovs;
   /// Of pictures with an error target.
   std::optional<PictureError> error;
@@ -73,8 +73,10 @@ struct RendererOptions {
   /// halved until all fit, which SetupStats::warnings tells. It decides about pictures, never the device: one that has
   /// no room for what fits is a RunError.
   uint64_t texture_bytes = kDefaultTextureBytes;
-  /// Whether render() fills RenderResult::aovs. The image's bits stay the same.
+  /// Whether render() tells AovSet::of_surfaces() in RenderResult::aovs. The image's bits stay the same.
   bool with_aovs = false;
+  /// What else it tells there. Where `alpha` is among them the image has no background; else its bits stay the same.
+  AovSet aovs = {};
   /// Told how far building the tree is; where it returns false the constructor throws Cancelled.
   ProgressCallback progress = {};
 };

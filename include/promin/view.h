@@ -49,6 +49,10 @@ PROMIN_EXPORT std::span<const std::string_view> pixel_filter_names();
 /// The width that a filter has where none is asked for, in pixels.
 PROMIN_EXPORT float default_width(PixelFilter filter);
 
+/// How the AOV `depth` is measured: kRay: from the eye to the hit, with an orthographic camera from the plane through
+/// the eye; kPlane: from the plane through the eye across the view, as compositors blur by.
+enum class DepthKind : uint32_t { kRay, kPlane };
+
 /// The least and the largest width of a filter in pixels.
 inline constexpr float kMinFilterWidth = 0.01F;
 /// See kMinFilterWidth.
@@ -97,6 +101,8 @@ struct View {
   uint32_t samples_per_pixel = 1;
   /// Samples as the pixels need them instead, at points that hang on the pixel. Light is shown then, no debug view.
   std::optional<ErrorTarget> error_target;
+  /// What the AOV `depth` is.
+  DepthKind depth_kind = DepthKind::kRay;
   /// The weight of samples by their distance from the pixel's centre.
   PixelFilter filter = PixelFilter::kBox;
   /// From end to end of what the filter weighs, in pixels, kMinFilterWidth...kMaxFilterWidth.

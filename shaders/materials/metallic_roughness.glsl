@@ -144,6 +144,12 @@ vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follo
   return own;
 }
 
+vec3 emitted_light_metallic_roughness(ShadingPoint point) {
+  precise vec3 emitted = point.material.emissive.xyz;
+  if (is_coated(point)) emitted *= 1.0 - point.coat.weight;
+  return emitted;
+}
+
 // The microfacets' density D, where h is the half vector: as k^2 / pi, because 1 - (N.H)^2 loses all its digits in a
 // highlight, while |H - N| keeps them.
 float density_of(vec3 normal, vec3 h, float alpha) {

@@ -8,6 +8,8 @@ vec3 own_light_phong(ShadingPoint point, vec3 direction, bool follows_mirror) {
   return own;
 }
 
+vec3 emitted_light_phong(ShadingPoint point) { return point.material.emissive.xyz; }
+
 vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 contribution = point.material.b.xyz * point.color * light.diffuse.xyz * cosine;
   if (has(FEATURE_SPECULAR) && point.material.c.w > 0.0) {

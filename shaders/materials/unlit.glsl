@@ -7,6 +7,9 @@ vec3 own_light_unlit(ShadingPoint point, vec3 direction, bool follows_mirror) {
   return own;
 }
 
+// All of it: no light changes it.
+vec3 emitted_light_unlit(ShadingPoint point) { return own_light_unlit(point, vec3(0.0), false); }
+
 vec3 contribution_unlit(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   return vec3(0.0);
 }

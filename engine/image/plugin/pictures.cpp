@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "image/plugin/webp.h"
 
@@ -61,20 +62,62 @@ OIIO::TypeDesc type_of(uint32_t sample) {
       return OIIO::TypeDesc::UINT8;
     case PROMIN_PICTURES_UINT32:
       return OIIO::TypeDesc::UINT32;
+    case PROMIN_PICTURES_HALF:
+      return OIIO::TypeDesc::HALF;
     default:
       return OIIO::TypeDesc::FLOAT;
   }
 }
 
-OIIO::ImageSpec make_exr_spec(const ProminPicturesSource& source) {
-  OIIO::ImageSpec spec(static_cast<int>(source.width), static_cast<int>(source.height),
-                       static_cast<int>(source.channel_count), OIIO::TypeDesc::FLOAT);
-  spec.channelnames.clear();
-  for (const ProminPicturesChannel& channel : std::span(source.channels, source.channel_count)) {
-    spec.channelnames.emplace_back(channel.name);
-    spec.channelformats.push_back(type_of(channel.sample));
+/// Hands what is encoded to a sink.
+class SinkProxy final : public OIIO::Filesystem::IOProxy {
+ public:
+  SinkProxy(const char* file_name, const ProminPicturesSink& sink) : IOProxy(file_name, Write), sink_(sink) {}
+
+  const char* proxytype() const override { return "promin"; }
+  size_t write(const void* bytes, size_t byte_count) override {
+    const size_t written = pwrite(bytes, byte_count, m_pos);
+    m_pos += static_cast<int64_t>(written);
+    return written;
   }
-  spec.attribute("compression", "zip");
+  size_t pwrite(const void* bytes, size_t byte_count, int64_t place) override {
+    if (sink_.write(sink_.context, static_cast<uint64_t>(place), bytes, byte_count) == 0) {
+      is_full_ = true;
+      return 0;
+    }
+    size_ = std::max(size_, static_cast<size_t>(place) + byte_count);
+    return byte_count;
+  }
+  size_t size() const override { return size_; }
+  /// Whether the sink has not taken something. OpenImageIO's PNG writer does not notice.
+  bool is_full() const { return is_full_; }
+
+ private:
+  ProminPicturesSink sink_;
+  size_t size_ = 0;
+  bool is_full_ = false;
+};
+
+/// A part of an EXR, or the one picture.
+struct Part {
+  OIIO::ImageSpec spec;
+  /// Places of its channels among the source's.
+  std::vector<size_t> channels;
+  /// Rows that wait, as all parts but the first do: a file has its parts one after the other.
+  std::vector<unsigned char> waiting;
+};
+
+/// The part that a channel belongs to.
+std::string part_name(const std::string& channel) {
+  const size_t dot = channel.rfind('.');
+  if (dot != std::string::npos) return channel.substr(0, dot);
+  const bool is_color = channel == "R" || channel == "G" || channel == "B" || channel == "A";
+  return is_color ? "rgba" : channel;
+}
+
+OIIO::ImageSpec make_exr_spec(const ProminPicturesSource& source) {
+  OIIO::ImageSpec spec(static_cast<int>(source.width), static_cast<int>(source.height), 0, OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", source.compression);
   // Without this the writer puts the time of day in, and equal pictures would differ.
   spec.attribute("DateTime", "");
   for (const ProminPicturesAttribute& attribute : std::span(source.attributes, source.attribute_count)) {
@@ -89,11 +132,144 @@ OIIO::ImageSpec make_exr_spec(const ProminPicturesSource& source) {
   return spec;
 }
 
-OIIO::ImageSpec make_png_spec(const ProminPicturesSource& source) {
-  OIIO::ImageSpec spec(static_cast<int>(source.width), static_cast<int>(source.height), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  return spec;
+std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
+  std::vector<Part> parts;
+  for (size_t i = 0; i < source.channel_count; ++i) {
+    const ProminPicturesChannel& channel = source.channels[i];
+    const std::string name = source.is_multipart != 0 ? part_name(channel.name) : "";
+    auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {
+      return p.spec.get_string_attribute("oiio:subimagename") == name;
+    });
+    if (part == parts.end()) {
+      parts.push_back({make_exr_spec(source), {}, {}});
+      part = parts.end() - 1;
+      if (!name.empty()) part->spec.attribute("oiio:subimagename", name);
+    }
+    part->channels.push_back(i);
+    part->spec.channelnames.emplace_back(channel.name);
+    part->spec.channelformats.push_back(type_of(channel.sample));
+    ++part->spec.nchannels;
+    if (std::string_view(channel.name) == "A") part->spec.alpha_channel = part->spec.nchannels - 1;
+  }
+  return parts;
 }
+
+std::vector<Part> make_png_parts(const ProminPicturesSource& source) {
+  Part part;
+  part.spec = OIIO::ImageSpec(static_cast<int>(source.width), static_cast<int>(source.height),
+                              static_cast<int>(source.channel_count), OIIO::TypeDesc::UINT8);
+  part.spec.attribute("oiio:ColorSpace", "sRGB");
+  part.spec.attribute("oiio:UnassociatedAlpha", 1);
+  for (size_t i = 0; i < source.channel_count; ++i) part.channels.push_back(i);
+  return {part};
+}
+
+}  // namespace
+
+struct ProminPicturesWriter {
+  ProminPicturesWriter(const ProminPicturesSource& source, const ProminPicturesSink& sink)
+      : is_exr(std::string_view(source.format) == "openexr"),
+        file_name(source.file_name),
+        proxy(source.file_name, sink),
+        parts(is_exr ? make_exr_parts(source) : make_png_parts(source)),
+        output(OIIO::ImageOutput::create(source.format)) {
+    for (const ProminPicturesChannel& channel : std::span(source.channels, source.channel_count)) {
+      samples.push_back(channel.sample);
+    }
+    check(output != nullptr);
+    check(output->set_ioproxy(&proxy));
+    if (parts.size() == 1) {
+      check(output->open(file_name, parts.front().spec));
+      return;
+    }
+    std::vector<OIIO::ImageSpec> specs;
+    for (const Part& part : parts) specs.push_back(part.spec);
+    check(output->open(file_name, static_cast<int>(specs.size()), specs.data()));
+  }
+
+  void check(bool is_done) const {
+    if (proxy.is_full()) throw std::runtime_error("the file cannot be written");
+    if (!is_done) throw std::runtime_error(first_line(output ? output->geterror() : OIIO::geterror()));
+  }
+
+  /// Picks the part's channels of some pixels, as the file keeps them.
+  std::vector<unsigned char> pick(const Part& part, size_t pixel_count, const unsigned char* pixels) const {
+    const size_t sample_bytes = is_exr ? sizeof(uint32_t) : 1;
+    const size_t stride = sample_bytes * samples.size();
+    const size_t part_stride = part.spec.pixel_bytes(true);
+    std::vector<unsigned char> picked(pixel_count * part_stride);
+    size_t place = 0;
+    for (const size_t channel : part.channels) {
+      const OIIO::TypeDesc type = type_of(samples[channel]);
+      const unsigned char* from = pixels + channel * sample_bytes;
+      unsigned char* to = picked.data() + place;
+      if (type == OIIO::TypeDesc::HALF) {
+        put_halves(pixel_count, from, stride, to, part_stride);
+      } else {
+        for (size_t i = 0; i < pixel_count; ++i) std::memcpy(to + i * part_stride, from + i * stride, sample_bytes);
+      }
+      place += type.size();
+    }
+    return picked;
+  }
+
+  static void put_halves(size_t count, const unsigned char* from, size_t stride, unsigned char* to, size_t to_stride) {
+    constexpr float kLargestHalf = 65504.0F;
+    for (size_t i = 0; i < count; ++i) {
+      float value = 0.0F;
+      std::memcpy(&value, from + i * stride, sizeof value);
+      // Not a number stays so.
+      if (value > kLargestHalf) value = kLargestHalf;
+      if (value < -kLargestHalf) value = -kLargestHalf;
+      OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, &value, OIIO::TypeDesc::HALF, to + i * to_stride, 1);
+    }
+  }
+
+  void write(const Part& part, uint32_t first_row, uint32_t row_count, const void* native) const {
+    const int begin = part.spec.y + static_cast<int>(first_row);
+    check(output->write_scanlines(begin, begin + static_cast<int>(row_count), 0,
+                                  is_exr ? OIIO::TypeDesc::UNKNOWN : OIIO::TypeDesc::UINT8, native));
+  }
+
+  void write_rows(uint32_t row_count, const unsigned char* pixels) {
+    const size_t pixel_count = static_cast<size_t>(parts.front().spec.width) * row_count;
+    if (parts.size() == 1 && std::find(samples.begin(), samples.end(), PROMIN_PICTURES_HALF) == samples.end()) {
+      write(parts.front(), next_row, row_count, pixels);
+      next_row += row_count;
+      return;
+    }
+    for (Part& part : parts) {
+      const std::vector<unsigned char> native = pick(part, pixel_count, pixels);
+      if (&part == &parts.front()) {
+        write(part, next_row, row_count, native.data());
+      } else {
+        part.waiting.insert(part.waiting.end(), native.begin(), native.end());
+      }
+    }
+    next_row += row_count;
+  }
+
+  void finish() {
+    for (Part& part : std::span(parts).subspan(1)) {
+      check(output->open(file_name, part.spec, OIIO::ImageOutput::AppendSubimage));
+      write(part, 0, next_row, part.waiting.data());
+      part.waiting = {};
+    }
+    check(output->close());
+    // Close may have written more.
+    check(true);
+  }
+
+  bool is_exr;
+  std::string file_name;
+  SinkProxy proxy;
+  std::vector<Part> parts;
+  std::vector<uint32_t> samples;
+  uint32_t next_row = 0;
+  std::unique_ptr<OIIO::ImageOutput> output;
+};
+
+namespace {
 
 /// The place of the R, G, B triple among a file's channels; -1 if it has none.
 int find_rgb(const OIIO::ImageSpec& spec) {
@@ -139,22 +315,24 @@ uint32_t promin_pictures_interface() {
   return PROMIN_PICTURES_INTERFACE;
 }
 
-int promin_pictures_encode(const ProminPicturesSource* source, ProminPicturesSink sink, void* context,
-                           ProminPicturesMessage* message) {
-  return guard(message, [&] {
-    // The picture is encoded in memory first, because OpenImageIO's PNG writer does not notice a full disk.
-    OIIO::Filesystem::IOVecOutput encoded;
-    const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(source->format);
-    const bool is_exr = std::string_view(source->format) == "openexr";
-    const bool is_encoded =
-        writer && writer->set_ioproxy(&encoded) &&
-        writer->open(source->file_name, is_exr ? make_exr_spec(*source) : make_png_spec(*source)) &&
-        // Samples of several types are passed as they are.
-        writer->write_image(is_exr ? OIIO::TypeDesc::UNKNOWN : OIIO::TypeDesc::UINT8, source->pixels) &&
-        writer->close();
-    if (!is_encoded) throw std::runtime_error(first_line(writer ? writer->geterror() : OIIO::geterror()));
-    sink(context, encoded.buffer().data(), encoded.buffer().size());
-  });
+int promin_pictures_begin(const ProminPicturesSource* source, const ProminPicturesSink* sink,
+                          ProminPicturesWriter** writer, ProminPicturesMessage* message) {
+  *writer = nullptr;
+  return guard(message, [&] { *writer = std::make_unique<ProminPicturesWriter>(*source, *sink).release(); });
+}
+
+int promin_pictures_write_rows(ProminPicturesWriter* writer, uint32_t row_count, const void* pixels,
+                               ProminPicturesMessage* message) {
+  return guard(message, [&] { writer->write_rows(row_count, static_cast<const unsigned char*>(pixels)); });
+}
+
+int promin_pictures_finish(ProminPicturesWriter* writer, ProminPicturesMessage* message) {
+  return guard(message, [&] { writer->finish(); });
+}
+
+void promin_pictures_end(ProminPicturesWriter* writer) {
+  ProminPicturesMessage unread;
+  guard(&unread, [&] { delete writer; });
 }
 
 int promin_pictures_open(const char* file, ProminPicturesReader** reader, ProminPicturesInfo* info,

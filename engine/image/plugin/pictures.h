@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 3
+#define PROMIN_PICTURES_INTERFACE 4
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -34,6 +34,8 @@ enum ProminPicturesSample {
   PROMIN_PICTURES_UINT8 = 0,
   PROMIN_PICTURES_UINT32 = 1,
   PROMIN_PICTURES_FLOAT = 2,
+  /// Pixels have floats, which the file keeps as halves: the nearest, or the largest that are finite.
+  PROMIN_PICTURES_HALF = 3,
 };
 
 struct ProminPicturesChannel {
@@ -51,8 +53,13 @@ struct ProminPicturesAttribute {
 struct ProminPicturesSource {
   /// OpenImageIO's name of the format: "openexr" or "png".
   const char* format;
-  /// The file's name without a folder; the picture is encoded in memory all the same.
+  /// The file's name without a folder, for messages.
   const char* file_name;
+  /// Of an EXR, OpenImageIO's name.
+  const char* compression;
+  /// Whether an EXR has a part for each group of channels whose names have the same word before their last dot; those
+  /// without one, and R, G, B and A, are the first.
+  uint32_t is_multipart;
   uint32_t width, height;
   /// Where the pixels lie in the whole picture; the whole itself where full_width is 0.
   uint32_t x, y, full_width, full_height;
@@ -60,12 +67,17 @@ struct ProminPicturesSource {
   size_t channel_count;
   const struct ProminPicturesAttribute* attributes;
   size_t attribute_count;
-  /// Pixel after pixel, row 0 on top, the channels in their order without padding.
-  const void* pixels;
 };
 
-/// Takes the encoded file, which belongs to the plugin and is gone after the call. Must not throw.
-typedef void (*ProminPicturesSink)(void* context, const void* bytes, size_t byte_count);
+/// Takes bytes of the encoded file and their place in it; they belong to the plugin and are gone after the call. Returns
+/// 0 where they cannot be kept; the picture fails then. Must not throw.
+struct ProminPicturesSink {
+  void* context;
+  int (*write)(void* context, uint64_t place, const void* bytes, size_t byte_count);
+};
+
+/// A picture file that is being written.
+struct ProminPicturesWriter;
 
 /// A picture file that is open for reading.
 struct ProminPicturesReader;
@@ -83,9 +95,20 @@ struct ProminPicturesInfo {
 /// The PROMIN_PICTURES_INTERFACE that the plugin was built with.
 uint32_t promin_pictures_interface(void);
 
-/// Encodes a whole file and hands it to the sink, once, where it succeeds. Equal sources give equal bytes.
-int promin_pictures_encode(const struct ProminPicturesSource* source, ProminPicturesSink sink, void* context,
-                           struct ProminPicturesMessage* message);
+/// Begins a file. Where it succeeds, `writer` is to be ended by the caller. Equal sources and pixels give equal bytes.
+int promin_pictures_begin(const struct ProminPicturesSource* source, const struct ProminPicturesSink* sink,
+                          struct ProminPicturesWriter** writer, struct ProminPicturesMessage* message);
+
+/// Encodes the next rows, from the top: pixel after pixel, the channels in their order without padding, those of
+/// PROMIN_PICTURES_UINT8 a byte each and all others four.
+int promin_pictures_write_rows(struct ProminPicturesWriter* writer, uint32_t row_count, const void* pixels,
+                               struct ProminPicturesMessage* message);
+
+/// Completes the file after its last row.
+int promin_pictures_finish(struct ProminPicturesWriter* writer, struct ProminPicturesMessage* message);
+
+/// Ends what promin_pictures_begin gave, finished or not; nothing happens to null.
+void promin_pictures_end(struct ProminPicturesWriter* writer);
 
 /// Opens a file of any format that OpenImageIO knows. Where it succeeds, `reader` is to be closed by the caller.
 int promin_pictures_open(const char* file, struct ProminPicturesReader** reader, struct ProminPicturesInfo* info,

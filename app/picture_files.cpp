@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_files.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "promin/cryptomatte.h"
+
+namespace promin::app {
+namespace {
+
+/// What a band's numbers take at most: of them there are a few copies at a time.
+constexpr size_t kBandBytes = size_t{24} << 20;
+/// EXRs are compressed by so many rows.
+constexpr uint32_t kRowsOfBlock = 16;
+
+// An AOV's channels, by the type of its values.
+
+void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<uint32_t>& values,
+                  std::vector<Channel>& channels) {
+  channels.push_back({name, true, values});
+}
+
+void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<float>& values,
+                  std::vector<Channel>& channels) {
+  Channel channel{name, false, std::vector<uint32_t>(values.size())};
+  std::ranges::transform(values, channel.values.begin(), [](float value) { return std::bit_cast<uint32_t>(value); });
+  channels.push_back(std::move(channel));
+}
+
+template <typename Vector>
+void add_channels(const std::string& name, std::string_view components, const std::vector<Vector>& values,
+                  std::vector<Channel>& channels) {
+  for (int axis = 0; axis < Vector::length(); ++axis) {
+    Channel channel{name + "." + components[static_cast<size_t>(axis)], false, std::vector<uint32_t>(values.size())};
+    std::ranges::transform(values, channel.values.begin(),
+                           [axis](const Vector& value) { return std::bit_cast<uint32_t>(value[axis]); });
+    channels.push_back(std::move(channel));
+  }
+}
+
+}  // namespace
+
+std::vector<Channel> make_channels(const Scene& scene, const Aovs& aovs, const AovSet& choice) {
+  std::vector<Channel> channels;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, aovs.FIELD, channels);
+#include "promin/kinds/aovs.def"
+  if (choice.cryptomatte) {
+    for (Channel& channel : make_cryptomatte(scene, aovs).channels) channels.push_back(std::move(channel));
+  }
+  return channels;
+}
+
+AovHeader describe_aovs(const Scene& scene, const AovSet& choice, DepthKind depth_kind) {
+  AovHeader header{make_channels(scene, Aovs(), choice), {}};
+  if (choice.depth) header.metadata.emplace_back("promin:depth", depth_kind == DepthKind::kRay ? "ray" : "plane");
+  if (choice.cryptomatte) {
+    for (auto& entry : make_cryptomatte(scene, Aovs()).metadata) header.metadata.push_back(std::move(entry));
+  }
+  return header;
+}
+
+std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_count) {
+  const uvec2 size = window.hi - window.lo;
+  const size_t most_rows = std::max<size_t>(kBandBytes / (channel_count * sizeof(float) * size.x), kRowsOfBlock);
+  const auto rows = static_cast<uint32_t>(std::min<size_t>(most_rows / kRowsOfBlock * kRowsOfBlock, size.y));
+  std::vector<PixelWindow> bands;
+  for (uint32_t y = 0; y < size.y; y += rows) {
+    bands.push_back({window.lo + uvec2(0, y), {window.hi.x, window.lo.y + std::min(size.y, y + rows)}});
+  }
+  return bands;
+}
+
+PictureFiles::PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header) {
+  for (const std::filesystem::path& file : files) writers_.emplace_back(file, header);
+}
+
+PictureFiles::~PictureFiles() {
+  if (writing_.valid()) writing_.wait();
+}
+
+void PictureFiles::wait() {
+  if (writing_.valid()) writing_.get();
+}
+
+void PictureFiles::write_rows(Image rows, std::vector<Channel> channels) {
+  wait();
+  rows_ = std::move(rows);
+  channels_ = std::move(channels);
+  writing_ = std::async(std::launch::async, [this] {
+    for (PictureWriter& writer : writers_) writer.write_rows(rows_, channels_);
+  });
+}
+
+void PictureFiles::commit() {
+  wait();
+  for (PictureWriter& writer : writers_) writer.commit();
+}
+
+}  // namespace promin::app

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/film_records.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "layout.h"
+
+namespace promin {
+namespace {
+
+vec3 vec3_of(const uvec4& bits) {
+  return {std::bit_cast<float>(bits.x), std::bit_cast<float>(bits.y), std::bit_cast<float>(bits.z)};
+}
+
+}  // namespace
+
+FilmRecords::FilmRecords(FeatureMask features)
+    : first_part(features.has_any(layout::FEATURE_AOVS) ? layout::AOV_RECORDS : 1),
+      first_ids(first_part + (features.has_any(layout::FEATURE_LIGHT_AOVS) ? layout::PART_RECORDS : 0)),
+      // Samples of a list have one id each, in the record of their sum.
+      count(first_ids +
+            (features.has_any(layout::FEATURE_SAMPLE_IDS) && !features.has_any(layout::FEATURE_LISTED_SAMPLES)
+                 ? layout::SAMPLE_IDS / 4
+                 : 0)) {}
+
+dvec3 ReadFilm::part(uint32_t which, size_t pixel) const {
+  return {vec3_of(record(layout.first_part + which, pixel))};
+}
+
+void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
+                   Aovs& aovs) {
+  for (size_t i = 0; i < film.pixel_count; ++i) {
+    const uint32_t order = film.record(0, i).w;
+    const uvec4& normal = film.record(layout::AOV_NORMAL, i);
+    const uvec4& albedo = film.record(layout::AOV_ALBEDO, i);
+    const vec3 measures = vec3_of(film.record(layout::AOV_MEASURES, i));
+    PrimitiveId id{Aovs::kNoId, Aovs::kNoId};
+    if (order != layout::NO_ORDER) id = primitive_of_order(numbers, order);
+    // Members have the names of the table.
+    const struct {
+      float depth;
+      vec3 position;
+      vec3 normal;
+      vec3 shading_normal;
+      vec2 uv;
+      vec3 albedo;
+      uint32_t object;
+      uint32_t primitive;
+      uint32_t material;
+    } told{depth_kind == DepthKind::kRay ? std::bit_cast<float>(normal.w) : measures.z,
+           vec3_of(film.record(layout::AOV_POSITION, i)),
+           vec3_of(normal),
+           vec3_of(film.record(layout::AOV_SHADING_NORMAL, i)),
+           vec2(measures),
+           vec3_of(albedo),
+           id.object,
+           id.primitive,
+           albedo.w};
+    // An AOV of a surface that nothing is read into does not compile.
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) PROMIN_READ_##SOURCE(FIELD)
+#define PROMIN_READ_kSurface(FIELD) \
+  if (!aovs.FIELD.empty()) aovs.FIELD[first + i] = told.FIELD;
+#define PROMIN_READ_kParts(FIELD)
+#define PROMIN_READ_kSteps(FIELD)
+#define PROMIN_READ_kSampling(FIELD)
+#include "promin/kinds/aovs.def"
+#undef PROMIN_READ_kSurface
+#undef PROMIN_READ_kParts
+#undef PROMIN_READ_kSteps
+#undef PROMIN_READ_kSampling
+  }
+}
+
+void read_steps(const ReadFilm& film, size_t first, Aovs& aovs) {
+  for (size_t i = 0; i < film.pixel_count; ++i) aovs.steps[first + i] = film.record(layout::AOV_MEASURES, i).w;
+}
+
+void LightParts::add(const ReadFilm& film, size_t pixel) {
+  for (uint32_t part = 0; part < layout::LIGHT_PARTS; ++part) sums[part] += film.part(part, pixel);
+  background_share +=
+      std::bit_cast<float>(film.record(film.layout.first_part + layout::PART_BACKGROUND, pixel).w);
+}
+
+void LightParts::put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) const {
+  const auto put_part = [&](uint32_t part, std::vector<vec3>& values) {
+    if (!values.empty()) values[pixel] = vec3(sums[part] / static_cast<double>(samples));
+  };
+  put_part(layout::PART_EMISSION, aovs.emission);
+  put_part(layout::PART_DIRECT, aovs.direct);
+  put_part(layout::PART_INDIRECT, aovs.indirect);
+  put_part(layout::PART_REFLECTION, aovs.reflection);
+  put_part(layout::PART_TRANSMISSION, aovs.transmission);
+  put_part(layout::PART_BACKGROUND, aovs.background);
+  if (aovs.alpha.empty()) return;
+  aovs.alpha[pixel] = static_cast<float>(std::clamp(1.0 - background_share / samples, 0.0, 1.0));
+  const dvec3& background = sums[layout::PART_BACKGROUND];
+  if (background == dvec3(0.0)) return;
+  // Where nothing else is seen, exactly nothing is left; rounding may leave less than that.
+  const vec3 seen = vec3(background / static_cast<double>(samples));
+  color = aovs.alpha[pixel] == 0.0F ? vec3(0.0F) : glm::max(color - seen, vec3(0.0F));
+}
+
+void CoverageTally::add(size_t pixel, uint32_t object) {
+  if (object == Coverage::kNoId) return;
+  std::vector<Count>& counts = counts_[pixel];
+  const auto same = std::ranges::find(counts, object, &Count::id);
+  if (same != counts.end()) {
+    ++same->samples;
+  } else {
+    counts.push_back({object, 1});
+  }
+}
+
+CoverageRanks CoverageTally::rank(std::vector<Count> counts, uint32_t samples) {
+  std::ranges::sort(counts, [](const Count& a, const Count& b) {
+    return a.samples != b.samples ? a.samples > b.samples : a.id < b.id;
+  });
+  CoverageRanks ranks;
+  for (size_t i = 0; i < std::min(counts.size(), ranks.size()); ++i) {
+    ranks[i] = {counts[i].id, static_cast<float>(counts[i].samples) / static_cast<float>(samples)};
+  }
+  return ranks;
+}
+
+void CoverageTally::put(size_t tallied, uint32_t samples, size_t pixel, Aovs& aovs) const {
+  const std::vector<Count>& objects = counts_[tallied];
+  std::vector<Count> materials;
+  for (const Count& object : objects) {
+    const uint32_t material = material_of_object_[object.id];
+    const auto same = std::ranges::find(materials, material, &Count::id);
+    if (same != materials.end()) {
+      same->samples += object.samples;
+    } else {
+      materials.push_back({material, object.samples});
+    }
+  }
+  aovs.object_coverage[pixel] = rank(objects, samples);
+  aovs.material_coverage[pixel] = rank(std::move(materials), samples);
+}
+
+}  // namespace promin

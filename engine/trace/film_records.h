@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bvh/primitive_numbers.h"
+#include "promin/aovs.h"
+#include "promin/view.h"
+#include "scene/features.h"
+
+// What a film's records tell of pixels (shaders/layout.h, AOV_* and what follows there). Vulkan-free.
+namespace promin {
+
+/// The records of a pixel on a film with these features, which lie `pixel_count` apart.
+struct FilmRecords {
+  explicit FilmRecords(FeatureMask features);
+
+  /// The first of PART_*, and of the ids of samples.
+  uint32_t first_part;
+  uint32_t first_ids;
+  uint32_t count;
+};
+
+/// A film that has been read, of a window of a picture.
+struct ReadFilm {
+  std::span<const uvec4> records;
+  size_t pixel_count;
+  FilmRecords layout;
+
+  const uvec4& record(uint32_t which, size_t pixel) const { return records[which * pixel_count + pixel]; }
+  /// Of its parts, the sum over samples.
+  dvec3 part(uint32_t which, size_t pixel) const;
+};
+
+/// Reads the AOVs that surfaces tell, and those that only steps do, into those that are there. The film's first pixel is
+/// pixel `first` of theirs.
+void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
+                   Aovs& aovs);
+void read_steps(const ReadFilm& film, size_t first, Aovs& aovs);
+
+/// The parts of a pixel's light, summed over samples.
+struct LightParts {
+  dvec3 sums[layout::LIGHT_PARTS] = {};
+  /// In how many samples the background is seen.
+  double background_share = 0.0;
+
+  /// Adds those of a pixel of the film.
+  void add(const ReadFilm& film, size_t pixel);
+  /// Takes their averages for a pixel, where there are AOVs to take them. With Aovs::alpha takes the background out of
+  /// its `color`.
+  void put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) const;
+};
+
+/// Counts of which objects the samples of pixels see.
+class CoverageTally {
+ public:
+  /// `material_of_object` by the numbers of objects; lives longer.
+  CoverageTally(size_t pixel_count, std::span<const uint32_t> material_of_object)
+      : material_of_object_(material_of_object), counts_(pixel_count) {}
+
+  /// Takes note of a sample; `object` may be Coverage::kNoId.
+  void add(size_t pixel, uint32_t object);
+  void put(size_t tallied, uint32_t samples, size_t pixel, Aovs& aovs) const;
+
+ private:
+  struct Count {
+    uint32_t id;
+    uint32_t samples;
+  };
+  static CoverageRanks rank(std::vector<Count> counts, uint32_t samples);
+
+  std::span<const uint32_t> material_of_object_;
+  std::vector<std::vector<Count>> counts_;
+};
+
+}  // namespace promin

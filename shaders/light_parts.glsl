@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The parts (PART_*) that a pixel's light is made of, with FEATURE_LIGHT_AOVS: each is a sum over samples, as the whole
+// is. Of a pixel one path at a time is on its way, so nobody else touches its records.
+
+uint record_of_part(uint pixel, uint part) {
+  uint before = has(FEATURE_AOVS) ? AOV_RECORDS : 1u;
+  return (before + part) * window_pixel_count() + pixel;
+}
+
+void clear_parts(uint pixel) {
+  for (uint part = 0u; part < PART_RECORDS; ++part) pixels[record_of_part(pixel, part)] = uvec4(0u);
+}
+
+void add_to_part(uint pixel, uint part, vec3 light) {
+  if (all(equal(light, vec3(0.0)))) return;
+  uint record = record_of_part(pixel, part);
+  precise vec3 sum = uintBitsToFloat(pixels[record].xyz) + light;
+  pixels[record].xyz = floatBitsToUint(sum);
+}
+
+// Adds what a path's ray sees where it meets nothing.
+void add_beyond(Path path, vec3 beyond) {
+  if (!has(FEATURE_LIGHT_AOVS)) return;
+  precise vec3 light = path.weight * beyond;
+  add_to_part(path.pixel, path.part, light);
+  if (path.part != PART_BACKGROUND) return;
+  // Only surfaces that blend have weighed it, all colours alike.
+  uint record = record_of_part(path.pixel, PART_BACKGROUND);
+  precise float share = uintBitsToFloat(pixels[record].w) + path.weight.x;
+  pixels[record].w = floatBitsToUint(share);
+}
+
+// Adds what a point that the path's ray has met sends without lights, where the camera sees it.
+void add_own_parts(Path path, ShadingPoint point, vec3 own, float coverage) {
+  if (path.part != PART_BACKGROUND) return;
+  vec3 emitted = emitted_light(point);
+  precise vec3 weight = coverage * path.weight;
+  // Not less than 0: sums of what is not negative are not less than either.
+  precise vec3 emission = weight * emitted;
+  precise vec3 indirect = weight * (own - emitted);
+  add_to_part(path.pixel, PART_EMISSION, emission);
+  add_to_part(path.pixel, PART_INDIRECT, indirect);
+}
+
+// Adds all that is seen of a point to the part of the ray that has met it; where that is the camera's, what lights bring.
+void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
+  bool is_of_camera = part == PART_BACKGROUND;
+  precise vec3 light = weight * (is_of_camera ? seen - own : seen);
+  add_to_part(pixel, is_of_camera ? PART_DIRECT : part, light);
+}
+
+// In w of PART_SEEN: the part of the point at hand, and from here on that of the path's ray.
+const uint PART_OF_RAY_SHIFT = 8u;
+
+void store_part_of_ray(Path path) {
+  if (!has(FEATURE_LIGHT_AOVS)) return;
+  uint record = record_of_part(path.pixel, PART_SEEN);
+  pixels[record].w = (pixels[record].w & ((1u << PART_OF_RAY_SHIFT) - 1u)) | path.part << PART_OF_RAY_SHIFT;
+}
+
+// Keeps what add_stored_part needs; its light may come over several turns.
+void store_seen_part(Path path, vec3 own) {
+  pixels[record_of_part(path.pixel, PART_SEEN)] =
+      uvec4(floatBitsToUint(own), path.part | path.part << PART_OF_RAY_SHIFT);
+}
