@@ -128,6 +128,7 @@ void cast(const CastOptions& options) {
   writer.commit();
   stats.write_ms += commit.ms();
   stats.total_ms = total.ms();
+  tell_end(stats, console);
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
   if (!console.is_quiet()) {
     fmt::print("{} rays in {:.1f} ms ({:.3g} Mrays/s) on {}: {}\n", reader.count(), stats.median_trace_ms(),

@@ -493,6 +493,7 @@ void render(const RenderOptions& given, const GivenOptions& words) {
   if (options.error.time_limit_s) console.note(describe_target(stats));
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();
+  tell_end(stats, console);
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
   if (!console.is_quiet()) fmt::print("{}\n", summarize(stats, options));
 }

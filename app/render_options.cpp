@@ -228,25 +228,28 @@ jobs::Share read_share(const OptionValues& words) {
   return {numbers.whole(0, 0, count - 1), count};
 }
 
-void add_error_options(OptionTable& table, ErrorOptions& error) {
+void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
+  table.add("--time-limit", "SECONDS",
+            "Instead of --spp: the most exact picture that can be had in this time, and the --target-error that gives "
+            "it again",
+            [&](const OptionValues& w) { error.time_limit_s = w.real(0, kMinTimeLimit, kMaxTimeLimit); });
+}
+
+}  // namespace
+
+void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help) {
   const auto read_power = [](const OptionValues& w) {
     const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
     if (!std::has_single_bit(samples)) w.refuse(fmt::format("the samples are a power of two, not {}", samples));
     return samples;
   };
-  table.add("--target-error", "E",
-            "Instead of --spp: take samples until each pixel is off by at most E, 2^-16 to 1, where 1 is white",
-            [&](const OptionValues& w) {
-              error.target = static_cast<float>(w.real(0, static_cast<double>(kMinTargetError), 1.0));
-            });
-  table.add("--time-limit", "SECONDS",
-            "Instead of --spp: the most exact picture that can be had in this time, and the --target-error that gives "
-            "it again",
-            [&](const OptionValues& w) { error.time_limit_s = w.real(0, kMinTimeLimit, kMaxTimeLimit); });
+  table.add("--target-error", "E", std::string(target_help), [&](const OptionValues& w) {
+    error.target = static_cast<float>(w.real(0, static_cast<double>(kMinTargetError), 1.0));
+  });
   table.add(
       "--min-spp", "N",
-      fmt::format("Of --target-error and --time-limit: samples that each pixel takes, a power of two from {} [{}, "
-                  "for a --target-error from 1/32 on {}]",
+      fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
+                  "--target-error from 1/32 on {}]",
                   kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
       [&, read_power](const OptionValues& w) { error.min_samples = read_power(w); });
   table.add("--max-spp", "N",
@@ -255,7 +258,7 @@ void add_error_options(OptionTable& table, ErrorOptions& error) {
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w); });
 }
 
-}  // namespace
+namespace {
 
 void add_job_options(OptionTable& table, JobOptions& job) {
   table.add("--job", "DIR", "Keep the work in this folder, piece by piece: the same command goes on where it was ended",
@@ -271,10 +274,16 @@ void add_job_options(OptionTable& table, JobOptions& job) {
             [&](const OptionValues& w) { job.share = read_share(w); });
 }
 
+}  // namespace
+
 std::optional<ErrorTarget> ErrorOptions::error_target() const {
   if (!is_given()) return {};
+  return target_or(kMinTargetError);
+}
+
+ErrorTarget ErrorOptions::target_or(float error) const {
   ErrorTarget result;
-  result.error = target.value_or(kMinTargetError);
+  result.error = target.value_or(error);
   // What is coarse at any rate needs fewer.
   if (target && !time_limit_s && *target >= 1.0F / 32.0F) result.min_samples = kMinRefinedSamples;
   result.min_samples = min_samples.value_or(std::min(result.min_samples, max_samples.value_or(result.min_samples)));
@@ -297,7 +306,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             });
   table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
-  add_error_options(table, options.error);
+  add_error_options(
+      table, options.error,
+      "Instead of --spp: take samples until each pixel is off by at most E, 2^-16 to 1, where 1 is white");
+  add_time_limit_option(table, options.error);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
   table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
@@ -336,6 +348,12 @@ std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
   if (!options.pictures.empty() || options.explained_pixel || options.job.share) return options.pictures;
   const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
   return {stem + ".exr", stem + ".png"};
+}
+
+void check_error_target(const ErrorTarget& target) {
+  if (target.min_samples <= target.max_samples) return;
+  throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
+                    "on the command line", "take more of the one or less of the other"});
 }
 
 void check_no_camera(const ViewOptions& options, std::string_view name) {
@@ -377,10 +395,12 @@ void check_error_options(const RenderOptions& options) {
   const ErrorOptions& error = options.error;
   if (!error.is_given()) {
     const bool has_limit = error.min_samples || error.max_samples;
-    if (!has_limit && !options.aovs.error) return;
-    throw UsageError({fmt::format("{} needs an error to aim at", options.aovs.error  ? "--aov error"
-                                                                 : error.min_samples ? "--min-spp"
-                                                                                     : "--max-spp"),
+    if (options.aovs.error && options.view.debug_view != DebugView::kNone) {
+      throw UsageError({"--aov error and --shading contradict each other: a debug shading has no error",
+                        "on the command line", "leave one out"});
+    }
+    if (!has_limit) return;
+    throw UsageError({fmt::format("{} needs an error to aim at", error.min_samples ? "--min-spp" : "--max-spp"),
                       "on the command line", "give --target-error as well"});
   }
   const std::string_view name = error.target ? "--target-error" : "--time-limit";
@@ -392,11 +412,7 @@ void check_error_options(const RenderOptions& options) {
     throw UsageError(
         {fmt::format("{} and --shading contradict each other", name), "on the command line", "leave one out"});
   }
-  const ErrorTarget target = *error.error_target();
-  if (target.min_samples > target.max_samples) {
-    throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
-                      "on the command line", "take more of the one or less of the other"});
-  }
+  check_error_target(*error.error_target());
 }
 
 }  // namespace

@@ -101,6 +101,8 @@ struct ErrorOptions {
   bool is_given() const { return target || time_limit_s; }
   /// Empty where pictures have samples of a fixed number.
   std::optional<ErrorTarget> error_target() const;
+  /// Of this error where none is given.
+  ErrorTarget target_or(float error) const;
 };
 
 struct RenderOptions {
@@ -129,6 +131,10 @@ struct RenderOptions {
 /// parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 
+/// Adds the rows of --target-error, with this help, and of the samples that go with it. `error` must outlive the
+/// parsing.
+void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help);
+
 /// Adds the row of --fps, for whatever plays a path. `fps` must outlive the parsing.
 void add_fps_option(OptionTable& table, std::optional<double>& fps);
 
@@ -141,6 +147,9 @@ std::vector<std::filesystem::path> name_pictures(const RenderOptions& options);
 
 /// Throws UsageError where there is a camera beside the option of this name, which brings cameras of its own.
 void check_no_camera(const ViewOptions& options, std::string_view name);
+
+/// Throws UsageError where the least samples are more than the most.
+void check_error_target(const ErrorTarget& target);
 
 /// Throws UsageError where two options contradict each other.
 void check_render_options(const RenderOptions& options);

@@ -4,7 +4,10 @@
 
 #include <fmt/ranges.h>
 
+#include <numeric>
+
 #include "core/stopwatch.h"
+#include "memory_use.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
 #include "run_program.h"
@@ -27,8 +30,8 @@ Scene load_for(const TracingOptions& options, RunStats& stats, const Console& co
   stats.object_count = scene.objects.size();
   stats.material_count = scene.materials.size();
   stats.light_count = scene.lights.size();
-  console.detail(fmt::format("loaded {}: objects {}, primitives {}, {:.1f} ms", options.scene.string(),
-                             scene.objects.size(), stats.scene.primitives, stats.load_ms));
+  console.detail(fmt::format("loaded {}: objects {}, primitives {}, {:.1f} ms, {}", options.scene.string(),
+                             scene.objects.size(), stats.scene.primitives, stats.load_ms, describe_memory()));
   return scene;
 }
 
@@ -45,8 +48,14 @@ void take_setup(const SetupStats& setup, RunStats& stats, const Console& console
   console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,
                              setup.bvh.nodes, setup.bvh.depth, setup.bvh.sah_cost, setup.bvh_ms));
   console.detail(fmt::format("features: {}", fmt::join(setup.features, ", ")));
-  console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms", setup.upload_ms,
-                             1e-6 * static_cast<double>(setup.device_bytes), setup.pipeline_ms));
+  console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms, {}", setup.upload_ms,
+                             1e-6 * static_cast<double>(setup.device_bytes), setup.pipeline_ms, describe_memory()));
+}
+
+void tell_end(const RunStats& stats, const Console& console) {
+  console.detail(fmt::format("traced {:.4g} Mrays in {:.1f} ms, wrote in {:.1f} ms, {:.1f} ms in all; held {:.0f} MB at most",
+                             1e-6 * static_cast<double>(stats.rays.total()), std::accumulate(stats.trace_ms.begin(), stats.trace_ms.end(), 0.0), stats.write_ms,
+                             stats.total_ms, peak_memory_mb()));
 }
 
 void check_validation(const gpu::Device& device, const RunStats& stats) {

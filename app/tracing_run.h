@@ -26,6 +26,9 @@ gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats
 /// Takes over what setting the scene up has cost.
 void take_setup(const SetupStats& setup, RunStats& stats, const Console& console);
 
+/// Tells what tracing and writing took, the memory of the whole, once stats.total_ms is there.
+void tell_end(const RunStats& stats, const Console& console);
+
 /// Throws RunError if the validation layers have reported anything: then nothing is written.
 void check_validation(const gpu::Device& device, const RunStats& stats);
 

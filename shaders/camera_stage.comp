@@ -115,6 +115,7 @@ void put_record(Path path, Hit hit) {
   if (has(FEATURE_SAMPLE_IDS)) put_sample_id(path.pixel, order);
   if (has(FEATURE_LISTED_SAMPLES)) return;
   if (is_first) pixels[path.pixel] = uvec4(0u, 0u, 0u, NO_ORDER);
+  if (has(FEATURE_SAMPLE_RANGES) && is_first) clear_range(path.pixel);
   if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 

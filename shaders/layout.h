@@ -323,6 +323,11 @@ LAYOUT_CONSTANT PART_SEEN = 6u;  // no part: xyz = light of the point at hand wi
 LAYOUT_CONSTANT PART_RECORDS = 7u;
 // With FEATURE_SAMPLE_IDS the `order` of what each of so many samples shows behind these, four a record.
 LAYOUT_CONSTANT SAMPLE_IDS = 16u;
+// With FEATURE_SAMPLE_RANGES, on films that are not of a list, behind these the least and the largest of its samples,
+// each by channel.
+LAYOUT_CONSTANT RANGE_LEAST = 0u;
+LAYOUT_CONSTANT RANGE_LARGEST = 1u;
+LAYOUT_CONSTANT RANGE_RECORDS = 2u;
 
 // What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
 // its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is

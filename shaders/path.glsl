@@ -121,9 +121,29 @@ void store_passed(uint number, Path path) {
   pixels[record_of_path(number) + RECORD_SHADOW_ORIGIN].w = path.layers << LAYERS_SHIFT | path.bounces;
 }
 
+uint record_of_range(uint pixel, uint end) {
+  uint before = (has(FEATURE_AOVS) ? AOV_RECORDS : 1u) + (has(FEATURE_LIGHT_AOVS) ? PART_RECORDS : 0u) +
+                (has(FEATURE_SAMPLE_IDS) ? SAMPLE_IDS / 4u : 0u);
+  return (before + end) * window_pixel_count() + pixel;
+}
+
+// Begins a range without samples.
+void clear_range(uint pixel) {
+  pixels[record_of_range(pixel, RANGE_LEAST)] = uvec4(floatBitsToUint(INFINITY));
+  pixels[record_of_range(pixel, RANGE_LARGEST)] = uvec4(floatBitsToUint(-INFINITY));
+}
+
+void extend_range(uint pixel, vec3 sampled) {
+  uint least = record_of_range(pixel, RANGE_LEAST);
+  uint largest = record_of_range(pixel, RANGE_LARGEST);
+  pixels[least].xyz = floatBitsToUint(min(uintBitsToFloat(pixels[least].xyz), sampled));
+  pixels[largest].xyz = floatBitsToUint(max(uintBitsToFloat(pixels[largest].xyz), sampled));
+}
+
 // Adds the path's radiance to its pixel, as one sample.
 void finish_path(Path path) {
   precise vec3 sum = path.radiance;
   if (!has(FEATURE_LISTED_SAMPLES)) sum += uintBitsToFloat(pixels[path.pixel].xyz);
   pixels[path.pixel].xyz = floatBitsToUint(sum);
+  if (has(FEATURE_SAMPLE_RANGES)) extend_range(path.pixel, path.radiance);
 }

@@ -18,6 +18,21 @@ std::string quote(const std::string& word) {
   return quoted + "'";
 }
 
+std::string samples_of(const View& view) {
+  if (!view.error_target) return fmt::format(" --spp {}", view.samples_per_pixel);
+  const ErrorTarget& target = *view.error_target;
+  return fmt::format(" --target-error {:.9g} --min-spp {} --max-spp {}", target.error, target.min_samples,
+                     target.max_samples);
+}
+
+std::string options_of(const EnvironmentOptions& environment) {
+  std::string options;
+  if (environment.panorama) options += " --environment " + quote(environment.panorama->string());
+  if (environment.rotation_deg != 0.0) options += fmt::format(" --environment-rotation {}", environment.rotation_deg);
+  if (environment.intensity != 1.0) options += fmt::format(" --environment-intensity {}", environment.intensity);
+  return options;
+}
+
 /// The options of a look; the framing is not among them, because the command has a pose.
 std::string options_of(const LookOptions& look) {
   std::string options;
@@ -57,8 +72,8 @@ bool can_describe(const DescribedScene& scene, const View& view) {
 std::string describe_command(const DescribedScene& scene, const View& view) {
   const Camera& camera = view.camera;
   std::string command =
-      fmt::format("promin render {} -o view.exr --size {} {} --spp {} --max-depth {}", quote(scene.file.string()),
-                  view.size.x, view.size.y, view.samples_per_pixel, view.max_depth);
+      fmt::format("promin render {} -o view.exr --size {} {}{} --max-depth {}", quote(scene.file.string()),
+                  view.size.x, view.size.y, samples_of(view), view.max_depth);
   if (view.filter != PixelFilter::kBox || view.filter_width != default_width(view.filter)) {
     command += fmt::format(" --filter {} --filter-width {:.9g}", pixel_filter_names()[static_cast<size_t>(view.filter)],
                            view.filter_width);
@@ -68,7 +83,8 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   }
   if (!scene.has_shadows) command += " --no-shadows";
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
-  command += options_of(scene.look);
+  command += options_of(scene.look) + options_of(scene.environment);
+  if (!scene.variant.empty()) command += " --variant " + quote(scene.variant);
   if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
   command +=
       fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));

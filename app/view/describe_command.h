@@ -20,6 +20,8 @@ struct DescribedScene {
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
   LookOptions look = {};
+  EnvironmentOptions environment = {};
+  std::string variant = {};
   /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
   /// The tree, which decides the steps that a picture may show.

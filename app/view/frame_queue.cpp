@@ -58,6 +58,7 @@ Frame* FrameQueue::begin() {
   frame.image = *image;
   frame.begin_time = *std::exchange(asked_time_, std::nullopt);
   frame.units = 0.0;
+  frame.has_list = false;
   frame.is_of_flight = false;
   frame.commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
   if (*frame.queries) frame.commands.resetQueryPool(*frame.queries, 0, kMarkCount);
@@ -108,6 +109,7 @@ FinishedFrame FrameQueue::take(Frame& frame) {
                      stage_ms(frame, FrameMark::kTraced, FrameMark::kDisplayed),
                      stage_ms(frame, FrameMark::kDisplayed, FrameMark::kEnd)};
   finished.units = frame.units;
+  finished.has_list = frame.has_list;
   finished.is_of_flight = frame.is_of_flight;
   if (frame.units > 0.0) {
     finished.rays = sum_counts(frame.counters->mapped());

@@ -27,6 +27,8 @@ struct FinishedFrame {
   bool has_cut_loops = false;
   /// The units of tracing (ProgressivePicture::record).
   double units = 0.0;
+  /// Whether they are samples that refine (ProgressivePicture::has_recorded_list).
+  bool has_list = false;
   /// The value of Frame::is_of_flight.
   bool is_of_flight = false;
   /// The time to its end, from when it was first asked for, or from the end of the frame before if that was later.
@@ -49,6 +51,7 @@ struct Frame {
   bool is_presented = false;
   double begin_time = 0.0;
   double units = 0.0;
+  bool has_list = false;
   /// Whether it shows the next camera of a flight.
   bool is_of_flight = false;
   /// Called when the device has finished the frame.

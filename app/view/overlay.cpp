@@ -45,8 +45,16 @@ void show_times(const OverlayContent& content) {
 void show_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
   if (!shown) return show_text("no picture yet");
-  show_text("{} x {} of {} x {}, {} spp", shown->size.x, shown->size.y, picture.full_size().x, picture.full_size().y,
-            shown->samples_per_pixel);
+  const auto& size = shown->size;
+  show_text("{} x {} of {} x {}", size.x, size.y, picture.full_size().x, picture.full_size().y);
+  if (const auto& error = shown->error) {
+    show_text("error {:.2g}, {:.3g} spp", error->target, static_cast<double>(error->samples) / size.x / size.y);
+    if (error->unmet_pixels > 0) {
+      show_text("but for {} pixels of at most {:.2g}", error->unmet_pixels, error->largest_claim);
+    }
+  } else {
+    show_text("{} spp", shown->samples_per_pixel);
+  }
   ImGui::ProgressBar(static_cast<float>(picture.fraction_done()), ImVec2(-1.0F, scaled(kBarHeight)), "");
 }
 

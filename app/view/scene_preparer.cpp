@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "device/device.h"
 #include "formats/source_file.h"
 #include "promin/error.h"
@@ -15,6 +17,18 @@ namespace {
 
 /// The seconds between two looks at the scene's files.
 constexpr double kLookInterval = 0.1;
+
+/// The longest side of the picture that an average exposure goes by, in pixels.
+constexpr float kMeteredSide = 320.0F;
+
+float meter_exposure(Renderer& renderer, View view) {
+  view.mode = {};
+  view.samples_per_pixel = 1;
+  const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
+  view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
+  const RenderResult metered = renderer.render(view);
+  return average_exposure_ev(metered.image.pixels, metered.aovs.object);
+}
 
 /// Keeps the lights that a scene has.
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
@@ -32,13 +46,15 @@ void ReadyPicture::take_lights() {
 }
 
 ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                             std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment)
+                             std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
+                             View first_view)
     : device_(&device),
       budget_ms_(budget_ms),
       file_(std::move(file)),
       load_(std::move(load)),
       look_(look),
       environment_(std::move(environment)),
+      first_view_(std::move(first_view)),
       watch_(std::move(sources)) {}
 
 ScenePreparer::~ScenePreparer() {
@@ -130,6 +146,7 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
   options.builder = request.choice.builder;
   options.bvh = request.choice.bvh;
   options.mode = request.mode;
+  options.aovs.object = look_.averages_exposure;
   options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
@@ -137,6 +154,7 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
     return !is_given_up_;
   };
   shown.renderer = std::make_shared<Renderer>(*device_, *scene, options);
+  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(*shown.renderer, first_view_);
   return std::make_shared<const ShownScene>(std::move(shown));
 }
 

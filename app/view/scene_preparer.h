@@ -60,10 +60,11 @@ struct PictureRequest {
 /// picture is shown.
 class ScenePreparer {
  public:
-  /// Takes a scene's file and how it is read, the files that it was read from, how it is lit and shown, and what is
-  /// changed about its surroundings.
+  /// Takes a scene's file and how it is read, the files that it was read from, how it is lit and shown, what is changed
+  /// about its surroundings, and the view by which an average exposure goes.
   ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment);
+                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
+                View first_view);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 
@@ -102,6 +103,7 @@ class ScenePreparer {
   LoadOptions load_;
   LookOptions look_;
   EnvironmentChoice environment_;
+  View first_view_;
   SceneWatch watch_;
   double next_look_at_files_s_ = 0.0;
   PictureRequest asked_;

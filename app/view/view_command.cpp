@@ -28,6 +28,7 @@ constexpr double kMinScale = 0.01;
 struct WindowOptions {
   TracingOptions tracing;
   ViewOptions view;
+  ErrorOptions error;
   std::optional<std::string> present_mode;
   std::optional<double> target_ms;
   std::optional<double> scale;
@@ -42,6 +43,10 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
   add_scene_argument(table, options.tracing);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, options.view);
+  add_error_options(table, options.error,
+                    fmt::format("A picture at rest takes samples until each pixel is off by at most E, 2^-16 to 1, "
+                                "where 1 is white [{:g}]",
+                                ErrorTarget{}.error));
   table.add("--target-ms", "T",
             fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
                         kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
@@ -72,9 +77,7 @@ void check_window_options(const WindowOptions& options) {
   if (options.fps && !options.replay) {
     throw UsageError({"--fps has no path to play", "on the command line", "give --replay as well"});
   }
-  if (options.view.look.averages_exposure) {
-    throw UsageError({"--exposure average needs a whole picture", "on the command line", "give stops or auto"});
-  }
+  check_error_target(options.error.target_or(ErrorTarget{}.error));
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);
   if (options.replay) inputs.push_back(*options.replay);
   if (options.view.environment.panorama) inputs.push_back(*options.view.environment.panorama);
@@ -116,6 +119,9 @@ void view(const WindowOptions& options) {
   const std::string assumptions = describe_assumptions(*scene, view_options, assumed, display);
   if (!assumptions.empty()) console.note(assumptions);
   start.look = look;
+  start.environment = options.view.environment;
+  start.variant = tracing.load.material_variant;
+  start.error_target = options.error.target_or(ErrorTarget{}.error);
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;
   check_lights(*scene, options.view.lights_off);
@@ -133,7 +139,7 @@ void view(const WindowOptions& options) {
   stats.device = device.info();
   console.detail(device.choice());
   ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, tracing.load,
-                         std::move(sources), look, environment);
+                         std::move(sources), look, environment, start.view);
   // This takes longest and comes last, because without a window it would be in vain.
   preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
   std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);

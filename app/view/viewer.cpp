@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "deferred_signals.h"
@@ -29,28 +30,25 @@ Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console
       device_(device),
       console_(console),
       preparer_(preparer),
-      file_(start.file),
-      look_(start.look),
+      start_(std::move(start)),
       stats_(std::move(stats)),
-      follows_display_(!start.target_ms && device.profile().keeps_up_with_display),
-      target_ms_(start.target_ms.value_or(ViewerStart::kCpuTargetMs)),
-      control_(start.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
-      stays_open_(start.stays_open),
-      record_file_(start.record),
-      swapchain_(device, start.present_mode),
+      follows_display_(!start_.target_ms && device.profile().keeps_up_with_display),
+      target_ms_(start_.target_ms.value_or(ViewerStart::kCpuTargetMs)),
+      control_(start_.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
+      swapchain_(device, start_.present_mode),
       display_(device, swapchain_),
       frames_(device, swapchain_),
       screenshot_(device) {
-  if (start.present_mode && *start.present_mode != swapchain_.present_mode()) {
+  if (start_.present_mode && *start_.present_mode != swapchain_.present_mode()) {
     console_.warn(
-        fmt::format("the window has no present mode {}; {} is used", *start.present_mode, swapchain_.present_mode()));
+        fmt::format("the window has no present mode {}; {} is used", *start_.present_mode, swapchain_.present_mode()));
   }
-  if (start.replay) replay_.emplace(std::move(*start.replay));
-  switches_.scene = start.choice;
-  switches_.scale = start.scale;
+  if (start_.replay) replay_.emplace(*start_.replay);
+  switches_.scene = start_.choice;
+  switches_.scale = start_.scale;
   switches_.has_shadows = picture.mode.has_shadows;
   switches_.debug_view = picture.mode.debug_view;
-  switches_.max_depth = start.view.max_depth;
+  switches_.max_depth = start_.view.max_depth;
   show_picture(std::move(picture));
   fit_window();
   imgui_ = std::make_unique<ImguiRenderer>(device, window, swapchain_);
@@ -70,11 +68,11 @@ void Viewer::run() {
     show_frames(signals);
   } catch (...) {
     // The flight up to here is whole, whatever happened to the device.
-    if (record_file_) write_camera_path(*record_file_, recorder_.path());
+    if (start_.record) write_camera_path(*start_.record, recorder_.path());
     throw;
   }
   if (wants_screenshot_) console_.warn("no screenshot was taken: the window closed before its picture was complete");
-  if (record_file_) write_camera_path(*record_file_, recorder_.path());
+  if (start_.record) write_camera_path(*start_.record, recorder_.path());
   screenshot_.wait();
   update_screenshot();
 }
@@ -128,7 +126,7 @@ void Viewer::move_camera(Frame& frame) {
 }
 
 void Viewer::keep_camera() {
-  if (record_file_) recorder_.add(Window::now(), control_.camera());
+  if (start_.record) recorder_.add(Window::now(), control_.camera());
 }
 
 bool Viewer::is_picture_due() const {
@@ -144,7 +142,7 @@ void Viewer::update_replay() {
     fmt::print("{}\n", replay_->summarize());
     std::fflush(stdout);
     replay_.reset();
-    is_quitting_ = is_quitting_ || !stays_open_;
+    is_quitting_ = is_quitting_ || !start_.stays_open;
   }
 }
 
@@ -184,7 +182,7 @@ void Viewer::show_picture(ReadyPicture ready) {
   if (asked_size_ != uvec2(0)) fit_picture();
   draw_again();
   if (!is_new) return;
-  std::string text = "read " + file_.filename().string();
+  std::string text = "read " + start_.file.filename().string();
   report(text);
   const auto warn = [&](const std::string& warning) {
     console_.warn(warning);
@@ -221,6 +219,7 @@ bool Viewer::awaits_mode() const {
 
 std::string Viewer::describe_awaited() const {
   if (preparer_.is_busy()) return preparer_.describe();
+  if (picture_->is_compiling()) return "compiling what refines";
   return query_.is_busy() ? "tracing a pixel" : "";
 }
 
@@ -261,7 +260,10 @@ void Viewer::take_finished(const FinishedFrame& finished) {
   if (finished.units == 0.0) return;
   const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   try {
-    picture_->take_finished({.units = finished.units, .time_ms = trace_ms, .has_cut_loops = finished.has_cut_loops});
+    picture_->take_finished({.units = finished.units,
+                             .time_ms = trace_ms,
+                             .has_cut_loops = finished.has_cut_loops,
+                             .has_list = finished.has_list});
   } catch (const RunError& error) {
     if (!is_failure_) report_failure(error.what());
   }
@@ -272,7 +274,8 @@ bool Viewer::has_work() const {
   // The ready picture is taken in when the last frame is done, so no new frame may begin.
   if (preparer_.is_ready()) return false;
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
-  return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ || !picture_->is_settled();
+  return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ ||
+         (!picture_->is_settled() && !picture_->awaits_samples());
 }
 
 void Viewer::record(Frame& frame) {
@@ -292,18 +295,20 @@ void Viewer::record_tracing(Frame& frame) {
   // The frame before may have copied a screenshot from the film that is traced now.
   frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
   frame.units = picture_->record(frame.commands);
+  frame.has_list = picture_->has_recorded_list();
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
   if (wants_screenshot_ && picture_->is_complete() && !awaits_mode() && !screenshot_.is_busy()) {
-    View view = picture_->wanted();
-    view.samples_per_pixel = picture_->shown()->samples_per_pixel;
+    const View view = picture_->shown()->view_of(picture_->wanted());
     screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
-    frame.on_finished = [this, view](const FinishedFrame& finished) {
+    frame.on_finished = [this, view, error = picture_->shown()->error](const FinishedFrame& finished) {
       // It is not whole.
       if (finished.has_cut_loops) {
         screenshot_.drop();
         return;
       }
       stats_.view = view;
+      stats_.errors.clear();
+      if (error) stats_.errors.push_back(*error);
       stats_.display = display();
       screenshot_.write(describe_picture(stats_), stats_.display);
     };
@@ -367,16 +372,21 @@ View Viewer::current_view() const {
   View view;
   view.camera = control_.camera();
   view.size = picture_->full_size();
+  view.filter = start_.view.filter;
+  view.filter_width = start_.view.filter_width;
   view.max_depth = switches_.effective_depth();
   view.mode = mode_;
+  if (mode_.debug_view == DebugView::kNone) {
+    view.error_target = start_.error_target;
+    view.error_target->white = std::exp2(-scene_->display.exposure_ev);
+  }
   return view;
 }
 
 View Viewer::reproducible_view() const {
   View view = current_view();
-  if (picture_->is_complete() && shows_same(view, picture_->wanted())) {
-    view.samples_per_pixel = picture_->shown()->samples_per_pixel;
-  }
+  if (picture_->is_complete() && shows_same(view, picture_->wanted())) return picture_->shown()->view_of(view);
+  view.error_target.reset();
   return view;
 }
 

@@ -29,7 +29,12 @@ struct ViewerStart {
   std::filesystem::path file;
   SceneChoice choice;
   LookOptions look;
+  EnvironmentOptions environment;
+  /// LoadOptions::material_variant.
+  std::string variant;
   View view;
+  /// Of pictures at rest that show light; its white follows from the scene.
+  ErrorTarget error_target;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval where the device keeps up with it, else kCpuTargetMs.
   std::optional<double> target_ms;
@@ -111,8 +116,8 @@ class Viewer {
   const gpu::Device& device_;
   const Console& console_;
   ScenePreparer& preparer_;
-  std::filesystem::path file_;
-  LookOptions look_;
+  /// What the window was opened with.
+  const ViewerStart start_;
   RunStats stats_;
   /// Whether the target is the refresh interval of the display that the window is on.
   bool follows_display_;
@@ -129,8 +134,6 @@ class Viewer {
   std::vector<Camera> bookmarks_;
   std::optional<FlightReplay> replay_;
   bool has_replay_started_ = false;
-  bool stays_open_;
-  std::optional<std::filesystem::path> record_file_;
   FlightRecorder recorder_;
 
   Swapchain swapchain_;

@@ -17,7 +17,9 @@ void Viewer::handle_input() {
   for (const dvec2& place : window_.take_clicks()) {
     const dvec2 full_size(picture_->full_size());
     const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
-    query_.ask_why(scene_, current_view(), uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+    View view = current_view();
+    view.error_target.reset();
+    query_.ask_why(scene_, view, uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
   }
   if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
   if (window_.take_activity()) draw_again();
@@ -79,8 +81,18 @@ void Viewer::handle_press(Press press) {
 
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
+  LookOptions look = start_.look;
+  if (look.averages_exposure) look.exposure_ev = scene_->display.exposure_ev;
   const std::optional<size_t> camera = find_half_height(*scene_->scene, view.camera);
-  return {file_, mode_.has_shadows, on.lights_off, look_, camera, on.builder, on.bvh};
+  return {.file = start_.file,
+          .has_shadows = mode_.has_shadows,
+          .lights_off = on.lights_off,
+          .look = look,
+          .environment = start_.environment,
+          .variant = start_.variant,
+          .camera_index = camera,
+          .builder = on.builder,
+          .bvh = on.bvh};
 }
 
 }  // namespace promin::app

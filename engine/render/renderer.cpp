@@ -36,11 +36,27 @@ constexpr size_t kMostListed = 1U << 19;
 /// The side of the parts of a picture that are refined one after the other.
 constexpr uint32_t kTileSide = 256;
 
-/// The errors that render_within asks for, one after the other.
-constexpr float kFirstErrorWithin = 0.125F;
-constexpr float kErrorStep = 1.41421356F;
 /// It takes so much more time for an error than is foretold.
 constexpr double kCaution = 1.2;
+
+size_t area_of(const PixelWindow& window) {
+  const uvec2 size = window.hi - window.lo;
+  return static_cast<size_t>(size.x) * size.y;
+}
+
+/// Takes a window's pixels out of those of a larger one.
+template <typename Value>
+void cut_out(std::vector<Value>& values, const PixelWindow& from, const PixelWindow& window) {
+  if (values.size() == area_of(window) || values.empty()) return;
+  const uvec2 size = window.hi - window.lo;
+  const size_t from_width = from.hi.x - from.lo.x;
+  const uvec2 corner = window.lo - from.lo;
+  std::vector<Value> kept(area_of(window));
+  for (size_t y = 0; y < size.y; ++y) {
+    std::copy_n(&values[(corner.y + y) * from_width + corner.x], size.x, &kept[y * size.x]);
+  }
+  values = std::move(kept);
+}
 
 /// Samples of each pixel: [first, end).
 struct SampleRange {
@@ -147,6 +163,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   void prepare_film(const RenderMode& mode) {
     FeatureMask features = scene.features(mode) | features_of_samples(mode);
     if (wanted.has_any(AovSource::kSurface)) features |= layout::FEATURE_AOVS;
+    if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
     prepare_film(features);
   }
 
@@ -157,6 +174,9 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     if (wanted.cryptomatte) features |= layout::FEATURE_SAMPLE_IDS;
     return features;
   }
+
+  /// Whether a picture of a fixed number of samples tells how far it may be off: a debug view does not.
+  bool estimates_errors(const RenderMode& mode) const { return wanted.error && mode.debug_view == DebugView::kNone; }
 
   /// Whether parts of light are told: a debug view has none.
   bool has_parts(const RenderMode& mode) const {
@@ -259,6 +279,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     }
     for (size_t i = 0; i < count; ++i) {
       if (!result.aovs.samples.empty()) result.aovs.samples[first + i] = samples;
+      if (estimates_errors(view.mode)) ranges[first + i] = read.range(i);
       if (wanted.cryptomatte) tally.put(i, samples, first + i, result.aovs);
       if (!has_parts(view.mode)) continue;
       LightParts parts;
@@ -346,6 +367,28 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
 
   RenderResult render(const View& view, const ProgressCallback& progress) {
     if (view.error_target) return render_to_error(view, progress);
+    if (!estimates_errors(view.mode)) return render_samples(view, progress);
+    // Pixels tell of the errors of those around them.
+    const PixelWindow window = picture_window(view);
+    View wider = view;
+    wider.crop = with_neighbors(window, view.size);
+    ranges.resize(area_of(*wider.crop));
+    RenderResult result = render_samples(wider, progress);
+    for (size_t i = 0; i < ranges.size(); ++i) {
+      result.aovs.error[i] =
+          estimate_error(range_around(ranges, result.image.size, i), view.samples_per_pixel);
+    }
+    cut_out(result.image.pixels, *wider.crop, window);
+    result.image.size = window.hi - window.lo;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) cut_out(result.aovs.FIELD, *wider.crop, window);
+#include "promin/kinds/aovs.def"
+    cut_out(result.aovs.object_coverage, *wider.crop, window);
+    cut_out(result.aovs.material_coverage, *wider.crop, window);
+    return result;
+  }
+
+  /// A picture of a fixed number of samples a pixel.
+  RenderResult render_samples(const View& view, const ProgressCallback& progress) {
     RenderResult result = make_result(view);
     prepare_film(view.mode);
     const double steps_share = wanted.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
@@ -417,14 +460,12 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     const PixelWindow& window = aovs.window;
     const PixelWindow whole = picture_window(view);
     const uvec2 size = window.hi - window.lo;
+    refinement.add_to(*result.error);
     for (size_t i = 0; i < refinement.pixel_count(); ++i) {
       const uvec2 place = window.lo - whole.lo + uvec2(i % size.x, i / size.x);
       const size_t at = static_cast<size_t>(place.y) * result.image.size.x + place.x;
       const PixelEstimate& estimate = refinement.estimate(i);
       result.image.pixels[at] = estimate.mean();
-      result.error->largest_claim = std::max(result.error->largest_claim, refinement.relative_claim(i));
-      result.error->unmet_pixels += refinement.is_near_enough(i) ? 0 : 1;
-      result.error->samples += estimate.count();
       if (!result.aovs.samples.empty()) result.aovs.samples[at] = estimate.count();
       if (!result.aovs.error.empty()) result.aovs.error[at] = refinement.claim(i);
       if (!aovs.parts.empty()) aovs.parts[i].put(estimate.count(), at, result.aovs, result.image.pixels[at]);
@@ -483,7 +524,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress) {
     const Stopwatch elapsed;
     View step = view;
-    step.error_target->error = std::max(view.error_target->error, kFirstErrorWithin);
+    step.error_target->error = first_error(*view.error_target);
     RenderResult result = begin_refined(step, progress);
     const PixelWindow window = picture_window(view);
     Refinement refinement(step, window);
@@ -494,11 +535,11 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     const Stopwatch tracing;
     float& error = step.error_target->error;
     for (refine(refinement, step, aovs, result, on_progress); error > view.error_target->error;) {
-      const float next_error = std::max(view.error_target->error, error / kErrorStep);
+      const float less = next_error(*view.error_target, error);
       const double ms_a_sample = tracing.ms() / static_cast<double>(refinement.sample_count());
-      const double ms_ahead = kCaution * ms_a_sample * refinement.foretell_samples(next_error);
+      const double ms_ahead = kCaution * ms_a_sample * refinement.foretell_samples(less);
       if (elapsed.ms() + ms_ahead > 1e3 * seconds) break;
-      error = next_error;
+      error = less;
       refinement.aim(error);
       refine(refinement, step, aovs, result, on_progress);
     }
@@ -517,10 +558,9 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
       picture.trace();
       if (picture.shown_count() == shown_count) continue;
       shown_count = picture.shown_count();
-      View shown = view;
-      shown.size = picture.shown()->size;
-      shown.samples_per_pixel = picture.shown()->samples_per_pixel;
+      const View shown = picture.shown()->view_of(view);
       if (!on_picture(picture.read(), shown)) return;
+      if (view.error_target) continue;
       if (picture.is_complete() && shown.samples_per_pixel >= view.samples_per_pixel) return;
     }
   }
@@ -537,6 +577,8 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   /// Counts steps; there as soon as somebody has asked for them.
   std::optional<Film> step_film;
   std::vector<uvec4> film_records;
+  /// Of the samples of a picture's pixels, where their errors are estimated.
+  std::vector<ColorRange> ranges;
 };
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -150,6 +150,11 @@ ReadFilm Film::read_list() {
   return {list_records_, pixel_count, records_};
 }
 
+void Film::put_pixels(std::span<const uvec4> records) {
+  assert(records.size() <= capacity_);
+  buffer_->write(std::as_bytes(records), kPixelsOffset);
+}
+
 TileOptions Film::piece_options(uint32_t depth) const {
   const gpu::DeviceProfile& profile = device_->profile();
   // A piece's paths have room in the stream, be they all of its pixels.

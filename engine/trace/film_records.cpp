@@ -20,13 +20,19 @@ FilmRecords::FilmRecords(FeatureMask features)
     : first_part(features.has_any(layout::FEATURE_AOVS) ? layout::AOV_RECORDS : 1),
       first_ids(first_part + (features.has_any(layout::FEATURE_LIGHT_AOVS) ? layout::PART_RECORDS : 0)),
       // Samples of a list have one id each, in the record of their sum.
-      count(first_ids +
-            (features.has_any(layout::FEATURE_SAMPLE_IDS) && !features.has_any(layout::FEATURE_LISTED_SAMPLES)
-                 ? layout::SAMPLE_IDS / 4
-                 : 0)) {}
+      first_range(first_ids +
+                  (features.has_any(layout::FEATURE_SAMPLE_IDS) && !features.has_any(layout::FEATURE_LISTED_SAMPLES)
+                       ? layout::SAMPLE_IDS / 4
+                       : 0)),
+      count(first_range + (features.has_any(layout::FEATURE_SAMPLE_RANGES) ? layout::RANGE_RECORDS : 0)) {}
 
 dvec3 ReadFilm::part(uint32_t which, size_t pixel) const {
   return {vec3_of(record(layout.first_part + which, pixel))};
+}
+
+ColorRange ReadFilm::range(size_t pixel) const {
+  return {vec3_of(record(layout.first_range + layout::RANGE_LEAST, pixel)),
+          vec3_of(record(layout.first_range + layout::RANGE_LARGEST, pixel))};
 }
 
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,

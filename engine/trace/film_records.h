@@ -10,6 +10,7 @@
 #include "promin/aovs.h"
 #include "promin/view.h"
 #include "scene/features.h"
+#include "trace/pixel_estimate.h"
 
 // What a film's records tell of pixels (shaders/layout.h, AOV_* and what follows there). Vulkan-free.
 namespace promin {
@@ -18,9 +19,10 @@ namespace promin {
 struct FilmRecords {
   explicit FilmRecords(FeatureMask features);
 
-  /// The first of PART_*, and of the ids of samples.
+  /// The first of PART_*, of the ids of samples, and of RANGE_*.
   uint32_t first_part;
   uint32_t first_ids;
+  uint32_t first_range;
   uint32_t count;
 };
 
@@ -33,6 +35,8 @@ struct ReadFilm {
   const uvec4& record(uint32_t which, size_t pixel) const { return records[which * pixel_count + pixel]; }
   /// Of its parts, the sum over samples.
   dvec3 part(uint32_t which, size_t pixel) const;
+  /// Of its samples, with FEATURE_SAMPLE_RANGES.
+  ColorRange range(size_t pixel) const;
 };
 
 /// Reads the AOVs that surfaces tell, and those that only steps do, into those that are there. The film's first pixel is

@@ -30,6 +30,17 @@ double falloff(uint32_t count) {
 
 }  // namespace
 
+ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, size_t index) {
+  const uvec2 place(index % size.x, index / size.x);
+  const uvec2 lo = glm::max(place, uvec2(1)) - 1U;
+  const uvec2 hi = glm::min(place + 2U, size);
+  ColorRange range = ranges[index];
+  for (uint32_t y = lo.y; y < hi.y; ++y) {
+    for (uint32_t x = lo.x; x < hi.x; ++x) range.extend(ranges[static_cast<size_t>(y) * size.x + x]);
+  }
+  return range;
+}
+
 void PixelEstimate::add(const vec3& radiance) {
   if (count_ == batch_size_ * kMostBatches) {
     for (uint32_t i = 0; i < kMostBatches / 2; ++i) batches_[i] = batches_[2 * i] + batches_[2 * i + 1];
@@ -65,6 +76,12 @@ vec3 PixelEstimate::claim(const ColorRange& around) const {
         std::max({kBatchError * deviation, edge * width(range_), kNeighborShare * edge * width(wider)}));
   }
   return claim;
+}
+
+vec3 estimate_error(const ColorRange& around, uint32_t samples) {
+  // N^(3/4) by square roots, which are the same everywhere.
+  const double root = std::sqrt(std::sqrt(static_cast<double>(samples)));
+  return vec3(kEdgeError / (root * root * root) * (dvec3(around.hi) - dvec3(around.lo)));
 }
 
 float relative_claim(const vec3& claim, const vec3& mean, float white) {

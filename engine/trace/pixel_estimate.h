@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "promin/math.h"
 
@@ -23,6 +24,9 @@ struct ColorRange {
     hi = glm::max(hi, other.hi);
   }
 };
+
+/// The range of a pixel and those around it. `ranges` are of `size`, row by row; `index` is the pixel's.
+ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, size_t index);
 
 /// What the samples of a pixel come to, and how far their mean may be off (docs/model.md, "Error of a pixel"). The
 /// samples are scrambled nets (ScrambledPoints), whose error falls as N^(-3/4). Computed on the host alone, so it is
@@ -49,6 +53,11 @@ class PixelEstimate {
   /// Batches are nets too: of this many samples.
   uint32_t batch_size_ = 2;
 };
+
+/// By how much each channel of a pixel may be off that has taken any number of samples of a lattice, where `around` is
+/// the range of its samples and of those of the pixels around: what an edge through it comes to. An estimate, and
+/// no claim: it knows no more of the samples.
+vec3 estimate_error(const ColorRange& around, uint32_t samples);
 
 /// A pixel's largest claim, of white or of its largest channel where that is more: what an error target is about.
 float relative_claim(const vec3& claim, const vec3& mean, float white);

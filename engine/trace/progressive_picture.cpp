@@ -3,6 +3,7 @@
 #include "trace/progressive_picture.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -24,11 +25,26 @@ uvec2 scale_size(const uvec2& size, double scale) {
   return glm::max(uvec2(1), uvec2(glm::round(dvec2(size) * scale)));
 }
 
+bool is_ready(const std::future<std::unique_ptr<Film>>& film) {
+  return film.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 double count_blocks(const uvec2& size) {
   return static_cast<double>(divide_up(size.x, layout::BLOCK_SIZE)) * divide_up(size.y, layout::BLOCK_SIZE);
 }
 
 }  // namespace
+
+View ShownPicture::view_of(View view) const {
+  view.size = size;
+  view.samples_per_pixel = samples_per_pixel;
+  if (error) {
+    view.error_target->error = error->target;
+  } else {
+    view.error_target.reset();
+  }
+  return view;
+}
 
 ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
                                        FeatureMask features, double budget_ms)
@@ -38,6 +54,12 @@ ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_pt
       pacer_(budget_ms, TileScheduler::kMinBlocks) {
   films_.reserve(kFilmCount);
   for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
+  make_list_film_ = [&device, scene, features] {
+    auto film = std::make_unique<Film>(device, scene, features | layout::FEATURE_LISTED_SAMPLES);
+    // Drivers compile in a pipeline's first dispatch.
+    film->warm_up();
+    return film;
+  };
 }
 
 void ProgressivePicture::resize(const uvec2& size) {
@@ -48,17 +70,37 @@ void ProgressivePicture::resize(const uvec2& size) {
   shown_.reset();
   shown_count_ = 0;
   picture_.reset();
+  refined_.reset();
 }
 
 void ProgressivePicture::want(View view) {
   view.size = full_size_;
-  if (shows_same(view, wanted_)) return;
+  if (shows_same(view, wanted_) && view.error_target == wanted_.error_target) return;
   wanted_ = view;
   ++wanted_version_;
 }
 
 bool ProgressivePicture::is_settled() const {
-  return !next_view() && (!picture_ || (is_paused_ && !is_first_));
+  return !next_view() && (!picture_ || (is_paused_ && !is_first_)) && (is_paused_ || !is_refining());
+}
+
+bool ProgressivePicture::is_refinable() const {
+  return wanted_.error_target && is_complete();
+}
+
+bool ProgressivePicture::is_refining() const {
+  return is_refinable() && !(refined_ && refined_version_ == wanted_version_ && refined_->is_done());
+}
+
+bool ProgressivePicture::awaits_samples() const {
+  if (picture_ || next_view() || !is_refining()) return false;
+  if (list_film_to_come_.valid()) return !is_ready(list_film_to_come_);
+  return refined_ && refined_->is_under_way();
+}
+
+double ProgressivePicture::fraction_done() const {
+  if (picture_) return picture_->fraction_done();
+  return is_refining() && refined_ && refined_version_ == wanted_version_ ? refined_->fraction_done() : 1.0;
 }
 
 bool ProgressivePicture::is_complete() const {
@@ -68,12 +110,14 @@ bool ProgressivePicture::is_complete() const {
 std::optional<View> ProgressivePicture::next_view() const {
   View view = wanted_;
   view.samples_per_pixel = 1;
+  view.error_target.reset();
   if (!shown_ || shown_version_ != wanted_version_) {
     view.size = first_size();
     return view;
   }
   if (is_paused_) return std::nullopt;
   if (shown_->size != full_size_) return view;
+  if (wanted_.error_target) return std::nullopt;
   view.samples_per_pixel = kSampleStep * shown_->samples_per_pixel;
   return view.samples_per_pixel <= kMostSamples ? std::optional(view) : std::nullopt;
 }
@@ -94,22 +138,23 @@ void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const Vi
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
   picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options(view.max_depth));
-  picture_when_done_ = {film, view.size, view.samples_per_pixel};
+  picture_when_done_ = {film, view.size, view.samples_per_pixel, std::nullopt};
   picture_version_ = wanted_version_;
   films_[film].record_begin(commands, *picture_);
 }
 
 double ProgressivePicture::record(const vk::raii::CommandBuffer& commands) {
+  has_recorded_list_ = false;
   // A view's first picture is finished even if the view has changed meanwhile: else a slow device would show none.
   if (picture_ && picture_version_ != wanted_version_ && !is_first_) picture_.reset();
   if (picture_ && is_paused_ && !is_first_) return 0.0;
+  const double most_units = pacer_.units() * std::min(1.0, longest_piece_ms_ / budget_ms_);
   if (!picture_) {
     const std::optional<View> view = next_view();
-    if (!view) return 0.0;
+    if (!view) return is_paused_ || !is_refining() ? 0.0 : record_refinement(commands, most_units);
     begin(commands, *view);
   }
   double units = 0.0;
-  const double most_units = pacer_.units() * std::min(1.0, longest_piece_ms_ / budget_ms_);
   while (!picture_->is_done() && units < pacer_.units()) {
     const TileSample piece = picture_->next(std::min(most_units, pacer_.units() - units));
     films_[picture_when_done_.film].record(commands, piece);
@@ -117,6 +162,33 @@ double ProgressivePicture::record(const vk::raii::CommandBuffer& commands) {
   }
   if (picture_->is_done()) finish();
   return units;
+}
+
+double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& commands, double most_units) {
+  if (!list_film_) {
+    // Frames go on meanwhile, as far as the driver lets them.
+    if (!list_film_to_come_.valid()) list_film_to_come_ = std::async(std::launch::async, make_list_film_);
+    if (!is_ready(list_film_to_come_)) return 0.0;
+    list_film_ = list_film_to_come_.get();
+  }
+  if (refined_ && refined_->is_under_way()) return 0.0;
+  if (!refined_ || refined_version_ != wanted_version_) {
+    refined_.emplace(*list_film_, wanted_);
+    refined_version_ = wanted_version_;
+  }
+  const double units = refined_->record(commands, pacer_.units(), most_units);
+  has_recorded_list_ = units > 0.0;
+  if (!has_recorded_list_) show_refined();
+  return units;
+}
+
+void ProgressivePicture::show_refined() {
+  // Frames that used the film which is not shown ended before the samples that have just been taken were traced.
+  const size_t film = 1 - shown_->film;
+  films_[film].put_pixels(refined_->pixels());
+  picture_when_done_ = {film, full_size_, 1, refined_->error()};
+  picture_version_ = refined_version_;
+  finish();
 }
 
 void ProgressivePicture::finish() {
@@ -127,7 +199,8 @@ void ProgressivePicture::finish() {
 }
 
 void ProgressivePicture::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
-  films_[picture_when_done_.film].record_take_counts(commands, target);
+  const Film& film = has_recorded_list_ ? *list_film_ : films_[picture_when_done_.film];
+  film.record_take_counts(commands, target);
 }
 
 void ProgressivePicture::set_budget(double budget_ms) {
@@ -137,6 +210,8 @@ void ProgressivePicture::set_budget(double budget_ms) {
 
 void ProgressivePicture::take_finished(const Finished& finished) {
   if (finished.units == 0.0) return;
+  // Where loops were cut the samples are wrong, and the picture goes on from others nonetheless: its caller is told.
+  if (finished.has_list && refined_) refined_->take();
   // Drivers compile in a pipeline's first dispatch.
   if (std::exchange(is_warm_, true)) pacer_.learn(finished.units, finished.time_ms);
   refuse_cut_loops(finished.has_cut_loops);
@@ -144,12 +219,15 @@ void ProgressivePicture::take_finished(const Finished& finished) {
 
 void ProgressivePicture::take_scene_change() {
   for (Film& film : films_) film.bind_scene();
+  if (list_film_to_come_.valid()) list_film_ = list_film_to_come_.get();
+  if (list_film_) list_film_->bind_scene();
   picture_.reset();
   ++wanted_version_;
 }
 
 void ProgressivePicture::trace() {
   if (!counters_) counters_.emplace(gpu::Buffer::make_readback(*device_, Film::kCountersBytes));
+  if (list_film_to_come_.valid()) list_film_to_come_.wait();
   Finished finished;
   const Stopwatch waiting;
   device_->run([&](const vk::raii::CommandBuffer& commands) {
@@ -158,6 +236,7 @@ void ProgressivePicture::trace() {
   });
   finished.time_ms = waiting.ms();
   finished.has_cut_loops = were_loops_cut(counters_->mapped());
+  finished.has_list = has_recorded_list_;
   take_finished(finished);
 }
 

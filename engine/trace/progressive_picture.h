@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "promin/image.h"
 #include "promin/view.h"
 #include "trace/film.h"
+#include "trace/refining_picture.h"
 
 namespace promin {
 
@@ -17,13 +20,20 @@ struct ShownPicture {
   /// The index of its film, below kFilmCount.
   size_t film = 0;
   uvec2 size{0};
+  /// What the film's sums are over: 1 where the film has means, of a picture with an error target.
   uint32_t samples_per_pixel = 1;
+  /// Of a picture with an error target.
+  std::optional<PictureError> error;
+
+  /// The view that gives this picture, where `view` is what it shows.
+  View view_of(View view) const;
 };
 inline constexpr size_t kFilmCount = 2;
 
 /// The picture of a view that may change any time, traced in pieces of about a frame's time each. A new view comes at
-/// once in as few pixels as a frame has time for; while it stands still it comes in full size, then with 4, 16 and 64
-/// samples a pixel, each as `promin render` gives it. One film is traced while the other, complete, is shown.
+/// once in as few pixels as a frame has time for; while it stands still it comes in full size, then with less and less
+/// error until that of its target (RefiningPicture) or, without one, with 4, 16 and 64 samples a pixel, each as
+/// `promin render` gives it. One film is traced while the other, complete, is shown.
 class ProgressivePicture {
  public:
   ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
@@ -52,10 +62,17 @@ class ProgressivePicture {
   /// How many pictures have been shown so far; resize() starts anew.
   uint64_t shown_count() const { return shown_count_; }
   /// The fraction of the current picture that is traced; 1 where there is none.
-  double fraction_done() const { return picture_ ? picture_->fraction_done() : 1.0; }
+  double fraction_done() const;
+  /// Whether the pipeline that refines pictures to an error is being compiled.
+  bool is_compiling() const { return list_film_to_come_.valid(); }
 
-  /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace.
+  /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace, or
+  /// nothing yet: see awaits_samples().
   double record(const vk::raii::CommandBuffer& commands);
+  /// Whether the next pieces hang on those that are under way, or on a pipeline that is being compiled.
+  bool awaits_samples() const;
+  /// Whether the last record() recorded samples that take_finished() must be told of.
+  bool has_recorded_list() const { return has_recorded_list_; }
   /// Records a copy of the ray counts of what record() recorded, and resets them.
   void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
   /// The result of the pieces of a record(), once the device has finished them.
@@ -63,6 +80,8 @@ class ProgressivePicture {
     double units = 0.0;
     double time_ms = 0.0;
     bool has_cut_loops = false;
+    /// What has_recorded_list() was.
+    bool has_list = false;
   };
   /// Learns from their time, so that the next budget is met. Throws RunError where the driver cut loops.
   void take_finished(const Finished& finished);
@@ -83,12 +102,26 @@ class ProgressivePicture {
  private:
   /// The view to trace now; nullopt where all is done.
   std::optional<View> next_view() const;
+  /// Whether what is shown is refined to an error, now or when the pause is over.
+  bool is_refinable() const;
+  /// Whether that is yet to be done.
+  bool is_refining() const;
+  double record_refinement(const vk::raii::CommandBuffer& commands, double most_units);
+  void show_refined();
   uvec2 first_size() const;
   void begin(const vk::raii::CommandBuffer& commands, const View& view);
   void finish();
 
   const gpu::Device* device_;
   std::vector<Film> films_;
+  /// Makes the film that samples are refined on; it is there as soon as somebody has needed it.
+  std::function<std::unique_ptr<Film>()> make_list_film_;
+  std::unique_ptr<Film> list_film_;
+  std::future<std::unique_ptr<Film>> list_film_to_come_;
+  /// Of the view of refined_version_. While a list is under way it stays, however old that is.
+  std::optional<RefiningPicture> refined_;
+  uint64_t refined_version_ = 0;
+  bool has_recorded_list_ = false;
   /// The buffer that trace() takes the counts into.
   std::optional<gpu::Buffer> counters_;
   /// The longest time of one dispatch; a longer budget takes several.

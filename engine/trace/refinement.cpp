@@ -15,12 +15,11 @@ namespace {
 /// Pixels that a thread takes at a time.
 constexpr size_t kChunk = 1024;
 
+constexpr float kFirstError = 0.125F;
+constexpr float kErrorStep = 1.41421356F;
+
 /// Before anything is known, all samples over the first ones.
 constexpr double kMoreThanFirst = 1.5;
-
-PixelWindow grow(const PixelWindow& window, const uvec2& size) {
-  return {glm::max(window.lo, uvec2(1)) - 1U, glm::min(window.hi + 1U, size)};
-}
 
 size_t area(const PixelWindow& window) {
   const uvec2 size = window.hi - window.lo;
@@ -29,13 +28,25 @@ size_t area(const PixelWindow& window) {
 
 }  // namespace
 
+float first_error(const ErrorTarget& target) {
+  return std::max(target.error, kFirstError);
+}
+
+float next_error(const ErrorTarget& target, float error) {
+  return std::max(target.error, error / kErrorStep);
+}
+
+PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size) {
+  return {glm::max(window.lo, uvec2(1)) - 1U, glm::min(window.hi + 1U, size)};
+}
+
 Refinement::Refinement(const View& view, const PixelWindow& window)
     : error_(view.error_target->error),
       white_(view.error_target->white),
       least_samples_(view.error_target->min_samples),
       most_samples_(view.error_target->max_samples),
       window_(window),
-      apron_(grow(window, view.size)),
+      apron_(with_neighbors(window, view.size)),
       filter_(view),
       estimates_(area(apron_)),
       first_ranges_(area(apron_)),
@@ -99,10 +110,11 @@ void Refinement::take(std::span<const vec3> radiance) {
 }
 
 void Refinement::judge_stage() {
+  const uvec2 size = apron_.hi - apron_.lo;
   for_each_chunk(pixels_.size(), kChunk, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const std::optional<size_t> pixel = window_index(pixels_[i]);
-      if (pixel) claims_[*pixel] = estimates_[pixels_[i]].claim(range_around(pixels_[i]));
+      if (pixel) claims_[*pixel] = estimates_[pixels_[i]].claim(range_around(first_ranges_, size, pixels_[i]));
     }
   });
 }
@@ -147,20 +159,16 @@ bool Refinement::is_near_enough(size_t pixel) const {
   return relative_claim(pixel) <= error_;
 }
 
-float Refinement::relative_claim(size_t pixel) const {
-  return promin::relative_claim(claims_[pixel], estimate(pixel).mean(), white_);
+void Refinement::add_to(PictureError& whole) const {
+  for (size_t pixel = 0; pixel < pixel_count(); ++pixel) {
+    whole.largest_claim = std::max(whole.largest_claim, relative_claim(pixel));
+    whole.unmet_pixels += is_near_enough(pixel) ? 0 : 1;
+    whole.samples += estimate(pixel).count();
+  }
 }
 
-ColorRange Refinement::range_around(size_t apron_index) const {
-  const uvec2 size = apron_.hi - apron_.lo;
-  const uvec2 place(apron_index % size.x, apron_index / size.x);
-  const uvec2 lo = glm::max(place, uvec2(1)) - 1U;
-  const uvec2 hi = glm::min(place + 2U, size);
-  ColorRange range = first_ranges_[apron_index];
-  for (uint32_t y = lo.y; y < hi.y; ++y) {
-    for (uint32_t x = lo.x; x < hi.x; ++x) range.extend(first_ranges_[static_cast<size_t>(y) * size.x + x]);
-  }
-  return range;
+float Refinement::relative_claim(size_t pixel) const {
+  return promin::relative_claim(claims_[pixel], estimate(pixel).mean(), white_);
 }
 
 }  // namespace promin

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device_scene/scrambled_points.h"
+#include "promin/renderer.h"
 #include "promin/view.h"
 #include "trace/pixel_estimate.h"
 
@@ -20,6 +21,14 @@ struct ListedSample {
   /// In pixels from the pixel's upper left corner.
   vec2 place{0.5F};
 };
+
+/// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the root
+/// of 2. `error` is more than the target's.
+float first_error(const ErrorTarget& target);
+float next_error(const ErrorTarget& target, float error);
+
+/// A window and the pixels around it that are in a picture of this size.
+PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size);
 
 /// Refines a window of a picture until each of its pixels is within View::error_target or has its most samples: hands
 /// out samples to trace, takes what was seen, doubles the samples of pixels whose claim is too large. Of the pixels
@@ -54,6 +63,8 @@ class Refinement {
   float relative_claim(size_t pixel) const;
   /// Whether the claim is within the error that is asked for; else samples were too few.
   bool is_near_enough(size_t pixel) const;
+  /// Adds what the window's pixels have come to, but for the target.
+  void add_to(PictureError& whole) const;
 
  private:
   size_t apron_index(size_t pixel) const;
@@ -63,7 +74,6 @@ class Refinement {
   /// Begins to double the samples of pixels that have `sample` of them or more, the fewest first; without any all is
   /// done.
   void begin_stage_from(uint32_t sample);
-  ColorRange range_around(size_t apron_index) const;
 
   float error_;
   float white_;

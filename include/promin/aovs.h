@@ -81,7 +81,8 @@ struct AovSet {
 ///   - alpha: how much of the pixel shows the scene and not the background, 0...1. An image with it has no background:
 ///     its pixels are what is left of them without, premultiplied
 ///   - samples: how many the pixel has taken
-///   - error: by how much each channel may be off (promin/view.h, ErrorTarget); 0 without an error target
+///   - error: by how much each channel may be off: with an error target the claim (promin/view.h, ErrorTarget), else an
+///     estimate by the samples of the pixel and of those around it, which knows of edges alone; a debug view has none
 struct Aovs {
   /// What object, primitive and material are on a miss.
   static constexpr uint32_t kNoId = Coverage::kNoId;

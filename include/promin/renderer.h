@@ -113,9 +113,10 @@ class PROMIN_EXPORT Renderer {
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress = {});
 
   /// Traces the view as a window does: in few pixels at first, as many as `budget_ms` allows, then in all of them, then
-  /// with 4, 16 and 64 samples a pixel or until the view has its own number. Each picture that is complete goes to
-  /// `on_picture`, with its size and samples in the second argument's view; where that returns false, this returns. The
-  /// pictures of the view's size have the bits that render() gives with as many samples. Throws UsageError for a view
+  /// with 4, 16 and 64 samples a pixel or until the view has its own number, or where it has an error target with the
+  /// errors of render_within until that is reached. Each picture that is complete goes to `on_picture`, with its size,
+  /// and its samples or error, in the second argument's view; where that returns false, this returns. The pictures of
+  /// the view's size have the bits that render() gives of that view. Throws UsageError for a view
   /// that breaks the rules of promin/view.h or has a crop, for a budget that is not a positive finite number of
   /// milliseconds and without `on_picture`; RunError.
   void render_progressively(const View& view, double budget_ms,

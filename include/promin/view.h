@@ -72,6 +72,9 @@ struct ErrorTarget {
   float white = 1.0F;
   /// The samples at which a pixel stops, near enough or not, a power of two, at most kMaxRefinedSamples.
   uint32_t max_samples = 256;
+
+  /// Whether both ask for the same.
+  bool operator==(const ErrorTarget&) const = default;
 };
 
 /// The least error to ask for.

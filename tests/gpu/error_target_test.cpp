@@ -105,6 +105,77 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
   expect_honest(floor, with_target(view, 1.0F / 64.0F), "a floor's texture");
 }
 
+// Of pixels that are estimated to be off at all; what is flat as far as is known, is.
+TEST_F(ErrorTargetTest, EstimatesOfFixedSamplesHoldOf90In100Pixels) {
+  TunedRendererOptions options;
+  options.aovs.error = true;
+  for (const char* name : {"showcase", "sphereflake", "mirrors", "glass"}) {
+    Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / (std::string(name) + ".gltf"));
+    light_scene(scene, LightChoice::kAuto);
+    Renderer renderer = make_renderer(device(), scene, options);
+    View view = view_of(scene, uvec2(48, 36));
+    view.samples_per_pixel = 512;
+    const Image truth = renderer.render(view).image;
+    for (const uint32_t samples : {4U, 15U, 64U}) {
+      view.samples_per_pixel = samples;
+      const RenderResult result = renderer.render(view);
+      size_t uneven = 0;
+      size_t within = 0;
+      double sum = 0.0;
+      for (size_t i = 0; i < truth.pixels.size(); ++i) {
+        const vec3& estimate = result.aovs.error[i];
+        if (estimate == vec3(0.0F)) continue;
+        ++uneven;
+        within += glm::all(glm::lessThanEqual(glm::abs(result.image.pixels[i] - truth.pixels[i]), estimate)) ? 1 : 0;
+        sum += static_cast<double>(std::max({estimate.x, estimate.y, estimate.z}));
+      }
+      const double share = static_cast<double>(within) / static_cast<double>(uneven);
+      std::printf("%-16s %2u spp, %4zu pixels, mean %.4f, %.2f %% within\n", name, samples, uneven,
+                  sum / static_cast<double>(uneven), 100.0 * share);
+      EXPECT_GE(share, 0.9) << name << " " << samples;
+      EXPECT_GE(uneven, truth.pixels.size() / 50) << name;
+    }
+  }
+}
+
+TEST_F(ErrorTargetTest, EstimatesChangeNoBitAndHangOnNoCropPacketOrOtherAov) {
+  const world::Scene scene = make_scene_of_everything();
+  View view = make_view(uvec2(75, 50));
+  view.samples_per_pixel = 20;
+  const Image plain = make_renderer(device(), scene).render(view).image;
+  TunedRendererOptions options;
+  options.aovs.error = true;
+  options.packet_size = 1;
+  const RenderResult expected = make_renderer(device(), scene, options).render(view);
+  EXPECT_TRUE(has_same_bits(plain, expected.image));
+  EXPECT_EQ(expected.aovs.error.size(), 75U * 50);
+  for (const uint32_t packet_size : {2U, 4U}) {
+    options.packet_size = packet_size;
+    options.blocks_per_dispatch = 7;
+    EXPECT_EQ(make_renderer(device(), scene, options).render(view).aovs.error, expected.aovs.error) << packet_size;
+  }
+  options.aovs = options.aovs | AovSet::of_surfaces();
+  options.aovs.direct = true;
+  options.aovs.cryptomatte = true;
+  Renderer renderer = make_renderer(device(), scene, options);
+  EXPECT_EQ(renderer.render(view).aovs.error, expected.aovs.error);
+  const RenderResult whole = renderer.render(view);
+  View crop = view;
+  crop.crop = PixelWindow{uvec2(20, 11), uvec2(53, 49)};
+  const RenderResult part = renderer.render(crop);
+  ASSERT_EQ(part.image.size, uvec2(33, 38));
+  for (uint32_t y = 0; y < part.image.size.y; ++y) {
+    for (uint32_t x = 0; x < part.image.size.x; ++x) {
+      const size_t in_part = size_t{y} * 33 + x;
+      const size_t in_whole = size_t{y + 11} * 75 + x + 20;
+      ASSERT_EQ(part.image.pixels[in_part], plain.pixels[in_whole]) << x << " " << y;
+      ASSERT_EQ(part.aovs.error[in_part], expected.aovs.error[in_whole]) << x << " " << y;
+      ASSERT_EQ(part.aovs.position[in_part], whole.aovs.position[in_whole]) << x << " " << y;
+      ASSERT_EQ(part.aovs.object_coverage[in_part], whole.aovs.object_coverage[in_whole]) << x << " " << y;
+    }
+  }
+}
+
 TEST_F(ErrorTargetTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
   const world::Scene scene = make_scene_of_everything();
   const View view = with_target(make_view(uvec2(75, 50)), 1.0F / 32.0F, 4, 64);

@@ -92,6 +92,66 @@ TEST_F(ProgressivePictureTest, IsRefinedStepByStepAndThenRests) {
   EXPECT_EQ(trace(picture), 0.0);
 }
 
+View with_target(View view, float error) {
+  view.error_target = ErrorTarget{.error = error, .min_samples = 4, .max_samples = 32};
+  return view;
+}
+
+TEST_F(ProgressivePictureTest, EveryErrorIsWhatTheRendererGives) {
+  ProgressivePicture picture = make_picture();
+  Renderer renderer = make_renderer(device(), scene_);
+  const View view = with_target(test::make_view(kSize), 1.0F / 16.0F);
+  picture.want(view);
+  std::vector<float> errors;
+  while (!picture.is_settled()) {
+    const uint64_t shown_count = picture.shown_count();
+    picture.trace();
+    if (picture.shown_count() == shown_count || !picture.shown()->error) continue;
+    const PictureError& error = *picture.shown()->error;
+    errors.push_back(error.target);
+    const RenderResult expected = renderer.render(picture.shown()->view_of(view));
+    EXPECT_TRUE(test::has_same_bits(read(picture), expected.image)) << error.target;
+    EXPECT_EQ(error.largest_claim, expected.error->largest_claim);
+    EXPECT_EQ(error.unmet_pixels, expected.error->unmet_pixels);
+    EXPECT_EQ(error.samples, expected.error->samples);
+  }
+  ASSERT_EQ(errors.size(), 3U);
+  EXPECT_EQ(errors.front(), 0.125F);
+  EXPECT_EQ(errors.back(), 1.0F / 16.0F);
+  EXPECT_EQ(trace(picture), 0.0);
+}
+
+// Samples that are under way when the view changes bring nothing, and a pause holds back what has not begun.
+TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
+  ProgressivePicture picture = make_picture();
+  View view = with_target(test::make_view(kSize), 1.0F / 8.0F);
+  picture.want(view);
+  while (!picture.has_recorded_list()) {
+    picture.trace();
+    ASSERT_FALSE(picture.is_settled());
+  }
+  EXPECT_GT(picture.fraction_done(), 0.0);
+  EXPECT_LT(picture.fraction_done(), 1.0);
+  double units = 0.0;
+  device().run([&](const vk::raii::CommandBuffer& commands) { units = picture.record(commands); });
+  ASSERT_GT(units, 0.0);
+  ASSERT_TRUE(picture.has_recorded_list());
+  EXPECT_TRUE(picture.awaits_samples());
+  EXPECT_EQ(trace(picture), 0.0);
+  view.camera.eye.x += 0.25F;
+  picture.want(view);
+  EXPECT_FALSE(picture.awaits_samples());
+  trace(picture);
+  EXPECT_FALSE(picture.has_recorded_list());
+  picture.take_finished({.units = units, .time_ms = 1.0, .has_list = true});
+  picture.pause(true);
+  while (!picture.is_settled()) picture.trace();
+  EXPECT_FALSE(picture.shown()->error);
+  picture.pause(false);
+  while (!picture.is_settled()) picture.trace();
+  EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
+}
+
 TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
   ProgressivePicture picture = make_picture();
   View view = test::make_view(kSize);

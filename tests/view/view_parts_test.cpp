@@ -58,6 +58,23 @@ TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
               testing::HasSubstr(" --background environment --texture-memory 64 --eye"));
 }
 
+TEST(DescribeCommand, NamesTheErrorThatAPictureHas) {
+  View view;
+  view.error_target = ErrorTarget{.error = 0.125F / 1.41421356F, .min_samples = 4, .max_samples = 64};
+  const std::string command = describe_command({.file = "s"}, view);
+  EXPECT_THAT(command, testing::HasSubstr(" --target-error 0.0883883461 --min-spp 4 --max-spp 64 --max-depth"));
+  EXPECT_THAT(command, testing::Not(testing::HasSubstr("--spp 1")));
+}
+
+TEST(DescribeCommand, NamesTheSurroundingsAndTheVariant) {
+  EXPECT_THAT(describe_command({.file = "s",
+                                .environment = {.panorama = "a sky.hdr", .rotation_deg = 12.5, .intensity = 0.3},
+                                .variant = "red one"},
+                               View()),
+              testing::HasSubstr(" --environment 'a sky.hdr' --environment-rotation 12.5 --environment-intensity 0.3 "
+                                 "--variant 'red one' --eye"));
+}
+
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {
   View view;
   EXPECT_THAT(describe_command({.file = "s", .builder = "median"}, view), testing::Not(testing::HasSubstr("median")));

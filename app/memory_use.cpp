@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "memory_use.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace promin::app {
+
+std::string describe_memory() {
+  // Pages: the size of the address space, then what is resident (proc_pid_statm(5)).
+  std::ifstream statm("/proc/self/statm");
+  double total_pages = 0.0;
+  double resident_pages = 0.0;
+  if (!(statm >> total_pages >> resident_pages)) return "holds an unknown amount of memory";
+  return fmt::format("holds {:.0f} MB", 1e-6 * resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  // In units of 1024 bytes.
+  return 1.024e-3 * static_cast<double>(usage.ru_maxrss);
+}
+
+}  // namespace promin::app

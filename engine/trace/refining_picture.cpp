@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/refining_picture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace promin {
+namespace {
+
+constexpr uint32_t kSamplesOfUnit = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
+
+View aimed_at(View view, float error) {
+  view.error_target->error = error;
+  return view;
+}
+
+}  // namespace
+
+RefiningPicture::RefiningPicture(Film& film, const View& view)
+    : view_(view),
+      film_(&film),
+      error_(first_error(*view.error_target)),
+      refinement_(aimed_at(view, error_), {uvec2(0), view.size}) {}
+
+double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double units, double most_units) {
+  assert(!is_under_way());
+  if (is_done()) return 0.0;
+  if (done_ && done_->target == error_) {
+    error_ = next_error(*view_.error_target, error_);
+    refinement_.aim(error_);
+  }
+  list_ = refinement_.next(static_cast<size_t>(units) * kSamplesOfUnit);
+  if (list_.empty()) {
+    done_ = PictureError{.target = error_};
+    refinement_.add_to(*done_);
+    samples_when_done_ = refinement_.sample_count();
+    return 0.0;
+  }
+  film_->put_list(list_);
+  TileScheduler pieces = film_->cut(view_, list_window(list_.size()), film_->piece_options(view_.max_depth));
+  film_->record_begin(commands, pieces);
+  double recorded = 0.0;
+  while (!pieces.is_done()) {
+    const TileSample piece = pieces.next(most_units);
+    film_->record(commands, piece);
+    recorded += piece.units;
+  }
+  return recorded;
+}
+
+void RefiningPicture::take() {
+  assert(is_under_way());
+  const ReadFilm read = film_->read_list();
+  std::vector<vec3> radiance(list_.size());
+  average_samples(read.records, 1, radiance);
+  list_ = {};
+  refinement_.take(radiance);
+}
+
+std::vector<uvec4> RefiningPicture::pixels() const {
+  std::vector<uvec4> records;
+  records.reserve(refinement_.pixel_count());
+  for (size_t i = 0; i < refinement_.pixel_count(); ++i) {
+    const vec3 mean = refinement_.estimate(i).mean();
+    records.emplace_back(std::bit_cast<uint32_t>(mean.x), std::bit_cast<uint32_t>(mean.y),
+                         std::bit_cast<uint32_t>(mean.z), layout::NO_ORDER);
+  }
+  return records;
+}
+
+double RefiningPicture::fraction_done() const {
+  const auto taken = static_cast<double>(refinement_.sample_count() - samples_when_done_);
+  const double total = refinement_.foretell_total() - static_cast<double>(samples_when_done_);
+  return total > 0.0 ? std::min(taken / total, 1.0) : 1.0;
+}
+
+}  // namespace promin
