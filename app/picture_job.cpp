@@ -314,8 +314,7 @@ void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
     while (begin < names.size() && (pieces.empty() || frame_of(names[begin]) == frame_of(names[pieces.front()]))) {
       pieces.push_back(begin++);
     }
-    const std::optional<uint32_t> frame =
-        decode_part(job.read(pieces.front()), job.file_of(pieces.front())).frame;
+    const std::optional<uint32_t> frame = decode_part(job.read(pieces.front()), job.file_of(pieces.front())).frame;
     std::vector<fs::path> numbered;
     for (const fs::path& file : files) numbered.push_back(frame ? number_file(file, *frame) : file);
     write_merged(job, pieces, numbered);

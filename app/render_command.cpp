@@ -70,9 +70,7 @@ TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& opt
   TracedFrame frame;
   const uint32_t repeats = options.tracing.repeat_count;
   for (uint32_t i = 0; i < repeats; ++i) {
-    const auto tell = [&](double fraction) {
-      return on_progress((i + fraction) / repeats);
-    };
+    const auto tell = [&](double fraction) { return on_progress((i + fraction) / repeats); };
     const std::optional<double> limit_s = options.error.time_limit_s;
     frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
     frame.trace_ms.push_back(frame.result.trace_ms);

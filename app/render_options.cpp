@@ -53,9 +53,8 @@ AovSet read_aovs(const OptionValues& words) {
 #include "promin/kinds/aovs.def"
     if (name == kCryptomatte) is_known = choice.cryptomatte = true;
     if (is_known) continue;
-    words.refuse(
-        fmt::format("--aov takes names of {}, {} with commas between, not \"{}\"", fmt::join(aov_names(), ", "),
-                    kCryptomatte, name));
+    words.refuse(fmt::format("--aov takes names of {}, {} with commas between, not \"{}\"",
+                             fmt::join(aov_names(), ", "), kCryptomatte, name));
   }
   return choice;
 }
@@ -246,12 +245,11 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   table.add("--target-error", "E", std::string(target_help), [&](const OptionValues& w) {
     error.target = static_cast<float>(w.real(0, static_cast<double>(kMinTargetError), 1.0));
   });
-  table.add(
-      "--min-spp", "N",
-      fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
-                  "--target-error from 1/32 on {}]",
-                  kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
-      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w); });
+  table.add("--min-spp", "N",
+            fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
+                        "--target-error from 1/32 on {}]",
+                        kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
+            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w); });
   table.add("--max-spp", "N",
             fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),
@@ -323,7 +321,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add_flag("--skip-existing", "Leave out frames whose pictures are there", options.skips_existing);
 
   add_job_options(table, options.job);
-  table.add("--aov", "NAMES", fmt::format("Channels of an EXR beside R, G, B, of {},{}", fmt::join(aov_names(), ","), kCryptomatte),
+  table.add("--aov", "NAMES",
+            fmt::format("Channels of an EXR beside R, G, B, of {},{}", fmt::join(aov_names(), ","), kCryptomatte),
             [&](const OptionValues& w) { options.aovs = options.aovs | read_aovs(w); });
   table.add_flag("--alpha", "Tell how much of each pixel the scene covers, and leave the background out",
                  options.aovs.alpha);
@@ -440,12 +439,11 @@ void check_render_options(const RenderOptions& options) {
   AovSet named = options.aovs;
   named.alpha = false;
   const ExrOptions& exr = options.exr;
-  const std::pair<bool, std::string_view> of_exr[] = {
-      {named.any(), "--aov"},
-      {options.view.depth_kind != DepthKind::kRay, "--depth"},
-      {exr.is_half, "--half"},
-      {exr.compression != ExrCompression::kZip, "--compression"},
-      {exr.is_multipart, "--multipart"}};
+  const std::pair<bool, std::string_view> of_exr[] = {{named.any(), "--aov"},
+                                                      {options.view.depth_kind != DepthKind::kRay, "--depth"},
+                                                      {exr.is_half, "--half"},
+                                                      {exr.compression != ExrCompression::kZip, "--compression"},
+                                                      {exr.is_multipart, "--multipart"}};
   const auto& pictures = options.pictures;
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
   for (const auto& [is_given, name] : of_exr) {

@@ -63,8 +63,7 @@ class ScenePreparer {
   /// Takes a scene's file and how it is read, the files that it was read from, how it is lit and shown, what is changed
   /// about its surroundings, and the view by which an average exposure goes.
   ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
-                View first_view);
+                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment, View first_view);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 

@@ -23,4 +23,13 @@ void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task
                  [&](size_t i) { task(i * size, std::min(count, (i + 1) * size)); });
 }
 
+/// Calls task(i) for each pixel, or whatever else takes little: many to a piece.
+template <typename Task>
+void for_each_pixel(size_t count, const Task& task) {
+  constexpr size_t kPixels = 4096;
+  for_each_chunk(count, kPixels, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) task(i);
+  });
+}
+
 }  // namespace promin

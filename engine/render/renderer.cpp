@@ -6,8 +6,10 @@
 #include <bit>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "core/shared_progress.h"
 #include "core/stopwatch.h"
+#include "core/unset_vector.h"
 #include "device/device.h"
 #include "layout.h"
 #include "promin/validate.h"
@@ -277,23 +279,29 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     if (wanted.has_any(AovSource::kSurface)) {
       read_surfaces(read, scene.numbers(), view.depth_kind, first, result.aovs);
     }
-    for (size_t i = 0; i < count; ++i) {
+    for_each_pixel(count, [&](size_t i) {
       if (!result.aovs.samples.empty()) result.aovs.samples[first + i] = samples;
       if (estimates_errors(view.mode)) ranges[first + i] = read.range(i);
       if (wanted.cryptomatte) tally.put(i, samples, first + i, result.aovs);
-      if (!has_parts(view.mode)) continue;
+      if (!has_parts(view.mode)) return;
       LightParts parts;
       parts.add(read, i);
       parts.put(samples, first + i, result.aovs, result.image.pixels[first + i]);
-    }
+    });
   }
 
   void tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const {
-    for (uint32_t sample = 0; sample < samples; ++sample) {
-      for (size_t i = 0; i < read.pixel_count; ++i) {
-        tally.add(i, object_of(read.record(read.layout.first_ids + sample / 4, i)[static_cast<int>(sample % 4)]));
+    for_each_pixel(read.pixel_count, [&](size_t i) {
+      // Samples of a pixel mostly show the same.
+      uint32_t order = layout::NO_ORDER;
+      uint32_t object = Aovs::kNoId;
+      for (uint32_t sample = 0; sample < samples; ++sample) {
+        const uint32_t shown = read.record(read.layout.first_ids + sample / 4, i)[static_cast<int>(sample % 4)];
+        if (shown != order) object = object_of(shown);
+        order = shown;
+        tally.add(i, object);
       }
-    }
+    });
   }
 
   uint32_t object_of(uint32_t order) const {
@@ -374,10 +382,9 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
     wider.crop = with_neighbors(window, view.size);
     ranges.resize(area_of(*wider.crop));
     RenderResult result = render_samples(wider, progress);
-    for (size_t i = 0; i < ranges.size(); ++i) {
-      result.aovs.error[i] =
-          estimate_error(range_around(ranges, result.image.size, i), view.samples_per_pixel);
-    }
+    for_each_pixel(ranges.size(), [&](size_t i) {
+      result.aovs.error[i] = estimate_error(range_around(ranges, result.image.size, i), view.samples_per_pixel);
+    });
     cut_out(result.image.pixels, *wider.crop, window);
     result.image.size = window.hi - window.lo;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) cut_out(result.aovs.FIELD, *wider.crop, window);
@@ -576,7 +583,7 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
   FeatureMask film_features;
   /// Counts steps; there as soon as somebody has asked for them.
   std::optional<Film> step_film;
-  std::vector<uvec4> film_records;
+  UnsetVector<uvec4> film_records;
   /// Of the samples of a picture's pixels, where their errors are estimated.
   std::vector<ColorRange> ranges;
 };

@@ -279,10 +279,10 @@ PixelWindow list_window(size_t sample_count) {
 }
 
 void average_samples(std::span<const uvec4> records, uint32_t samples, std::span<vec3> pixels) {
-  for (size_t i = 0; i < pixels.size(); ++i) {
+  for_each_pixel(pixels.size(), [&](size_t i) {
     const auto sum = std::bit_cast<std::array<float, 4>>(records[i]);
     pixels[i] = vec3(sum[0], sum[1], sum[2]) / static_cast<float>(samples);
-  }
+  });
 }
 
 RayCounts sum_counts(std::span<const std::byte> counters) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/parallel.h"
 #include "layout.h"
 
 namespace promin {
@@ -37,7 +38,7 @@ ColorRange ReadFilm::range(size_t pixel) const {
 
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
                    Aovs& aovs) {
-  for (size_t i = 0; i < film.pixel_count; ++i) {
+  for_each_pixel(film.pixel_count, [&](size_t i) {
     const uint32_t order = film.record(0, i).w;
     const uvec4& normal = film.record(layout::AOV_NORMAL, i);
     const uvec4& albedo = film.record(layout::AOV_ALBEDO, i);
@@ -76,7 +77,7 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
 #undef PROMIN_READ_kParts
 #undef PROMIN_READ_kSteps
 #undef PROMIN_READ_kSampling
-  }
+  });
 }
 
 void read_steps(const ReadFilm& film, size_t first, Aovs& aovs) {
@@ -85,8 +86,7 @@ void read_steps(const ReadFilm& film, size_t first, Aovs& aovs) {
 
 void LightParts::add(const ReadFilm& film, size_t pixel) {
   for (uint32_t part = 0; part < layout::LIGHT_PARTS; ++part) sums[part] += film.part(part, pixel);
-  background_share +=
-      std::bit_cast<float>(film.record(film.layout.first_part + layout::PART_BACKGROUND, pixel).w);
+  background_share += std::bit_cast<float>(film.record(film.layout.first_part + layout::PART_BACKGROUND, pixel).w);
 }
 
 void LightParts::put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) const {
@@ -108,42 +108,47 @@ void LightParts::put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) co
   color = aovs.alpha[pixel] == 0.0F ? vec3(0.0F) : glm::max(color - seen, vec3(0.0F));
 }
 
-void CoverageTally::add(size_t pixel, uint32_t object) {
-  if (object == Coverage::kNoId) return;
-  std::vector<Count>& counts = counts_[pixel];
-  const auto same = std::ranges::find(counts, object, &Count::id);
-  if (same != counts.end()) {
-    ++same->samples;
-  } else {
-    counts.push_back({object, 1});
+void CoverageTally::Counts::add(uint32_t id, uint32_t samples) {
+  for (uint32_t i = 0; i < size_; ++i) {
+    if (at(i).id != id) continue;
+    at(i).samples += samples;
+    return;
   }
+  if (size_ >= kFew) more_.emplace_back();
+  at(size_++) = {id, samples};
 }
 
-CoverageRanks CoverageTally::rank(std::vector<Count> counts, uint32_t samples) {
-  std::ranges::sort(counts, [](const Count& a, const Count& b) {
-    return a.samples != b.samples ? a.samples > b.samples : a.id < b.id;
-  });
+void CoverageTally::add(size_t pixel, uint32_t object) {
+  if (object != Coverage::kNoId) counts_[pixel].add(object, 1);
+}
+
+CoverageRanks CoverageTally::rank(const Counts& counts, uint32_t samples) {
   CoverageRanks ranks;
-  for (size_t i = 0; i < std::min(counts.size(), ranks.size()); ++i) {
-    ranks[i] = {counts[i].id, static_cast<float>(counts[i].samples) / static_cast<float>(samples)};
+  // Each goes behind those that cover more, of as much the lower number first; what falls off the end is not told.
+  std::array<Count, kCoverageRanks> ranked;
+  const auto is_before = [](const Count& a, const Count& b) {
+    return a.samples != b.samples ? a.samples > b.samples : a.id < b.id;
+  };
+  for (uint32_t i = 0; i < counts.size(); ++i) {
+    Count moving = counts[i];
+    for (Count& place : ranked) {
+      if (is_before(moving, place)) std::swap(moving, place);
+    }
+  }
+  for (size_t i = 0; i < ranks.size() && ranked[i].samples > 0; ++i) {
+    ranks[i] = {ranked[i].id, static_cast<float>(ranked[i].samples) / static_cast<float>(samples)};
   }
   return ranks;
 }
 
 void CoverageTally::put(size_t tallied, uint32_t samples, size_t pixel, Aovs& aovs) const {
-  const std::vector<Count>& objects = counts_[tallied];
-  std::vector<Count> materials;
-  for (const Count& object : objects) {
-    const uint32_t material = material_of_object_[object.id];
-    const auto same = std::ranges::find(materials, material, &Count::id);
-    if (same != materials.end()) {
-      same->samples += object.samples;
-    } else {
-      materials.push_back({material, object.samples});
-    }
+  const Counts& objects = counts_[tallied];
+  Counts materials;
+  for (uint32_t i = 0; i < objects.size(); ++i) {
+    materials.add(material_of_object_[objects[i].id], objects[i].samples);
   }
   aovs.object_coverage[pixel] = rank(objects, samples);
-  aovs.material_coverage[pixel] = rank(std::move(materials), samples);
+  aovs.material_coverage[pixel] = rank(materials, samples);
 }
 
 }  // namespace promin

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,8 +40,8 @@ struct ReadFilm {
   ColorRange range(size_t pixel) const;
 };
 
-/// Reads the AOVs that surfaces tell, and those that only steps do, into those that are there. The film's first pixel is
-/// pixel `first` of theirs.
+/// Reads the AOVs that surfaces tell, and those that only steps do, into those that are there. The film's first pixel
+/// is pixel `first` of theirs.
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
                    Aovs& aovs);
 void read_steps(const ReadFilm& film, size_t first, Aovs& aovs);
@@ -65,19 +66,34 @@ class CoverageTally {
   CoverageTally(size_t pixel_count, std::span<const uint32_t> material_of_object)
       : material_of_object_(material_of_object), counts_(pixel_count) {}
 
-  /// Takes note of a sample; `object` may be Coverage::kNoId.
+  /// Takes note of a sample; `object` may be Coverage::kNoId. Several threads may, each of other pixels.
   void add(size_t pixel, uint32_t object);
   void put(size_t tallied, uint32_t samples, size_t pixel, Aovs& aovs) const;
 
  private:
   struct Count {
-    uint32_t id;
-    uint32_t samples;
+    uint32_t id = Coverage::kNoId;
+    uint32_t samples = 0;
   };
-  static CoverageRanks rank(std::vector<Count> counts, uint32_t samples);
+  /// By id. Most pixels show few objects, for which they take no memory of their own.
+  class Counts {
+   public:
+    void add(uint32_t id, uint32_t samples);
+    uint32_t size() const { return size_; }
+    const Count& operator[](uint32_t i) const { return i < kFew ? few_[i] : more_[i - kFew]; }
+
+   private:
+    static constexpr uint32_t kFew = 3;
+    Count& at(uint32_t i) { return i < kFew ? few_[i] : more_[i - kFew]; }
+
+    std::array<Count, kFew> few_;
+    uint32_t size_ = 0;
+    std::vector<Count> more_;
+  };
+  static CoverageRanks rank(const Counts& counts, uint32_t samples);
 
   std::span<const uint32_t> material_of_object_;
-  std::vector<std::vector<Count>> counts_;
+  std::vector<Counts> counts_;
 };
 
 }  // namespace promin

@@ -22,8 +22,8 @@ struct ListedSample {
   vec2 place{0.5F};
 };
 
-/// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the root
-/// of 2. `error` is more than the target's.
+/// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the
+/// root of 2. `error` is more than the target's.
 float first_error(const ErrorTarget& target);
 float next_error(const ErrorTarget& target, float error);
 

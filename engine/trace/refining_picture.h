@@ -13,8 +13,8 @@
 namespace promin {
 
 /// A whole picture with an error target, refined within frames of a window as Renderer::render_within does: to an error
-/// of 1/8, then to each that is less by the root of 2, until it has the view's own. Samples are traced a list at a time,
-/// and what a list has seen says what the next one holds.
+/// of 1/8, then to each that is less by the root of 2, until it has the view's own. Samples are traced a list at a
+/// time, and what a list has seen says what the next one holds.
 class RefiningPicture {
  public:
   /// `film` has FEATURE_LISTED_SAMPLES, is used by nothing else and lives longer. The view has no crop.
