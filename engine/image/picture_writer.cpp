@@ -161,7 +161,8 @@ class PictureWriter::Impl {
     }
     std::vector<ProminPicturesAttribute> attributes;
     for (const auto& [name, value] : header.metadata) attributes.push_back({name.c_str(), value.c_str()});
-    const std::string name = file.filename().string();
+    // What OpenImageIO's explanations name, unless it writes to the file itself.
+    const std::string name = header.exr.is_multipart ? output_.temporary().string() : file.filename().string();
     ProminPicturesSource source{};
     source.format = format_of(file);
     source.file_name = name.c_str();

@@ -177,11 +177,12 @@ struct ProminPicturesWriter {
       samples.push_back(channel.sample);
     }
     check(output != nullptr);
-    check(output->set_ioproxy(&proxy));
     if (parts.size() == 1) {
+      check(output->set_ioproxy(&proxy));
       check(output->open(file_name, parts.front().spec));
       return;
     }
+    // OpenImageIO 2.4 writes files of several parts by their names, whatever proxy there is.
     std::vector<OIIO::ImageSpec> specs;
     for (const Part& part : parts) specs.push_back(part.spec);
     check(output->open(file_name, static_cast<int>(specs.size()), specs.data()));

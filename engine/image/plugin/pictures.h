@@ -53,7 +53,8 @@ struct ProminPicturesAttribute {
 struct ProminPicturesSource {
   /// OpenImageIO's name of the format: "openexr" or "png".
   const char* format;
-  /// The file's name without a folder, for messages.
+  /// The file's name without a folder, for messages. Of an EXR of several parts the path that it is to be written to:
+  /// OpenImageIO writes there itself, and not to the sink.
   const char* file_name;
   /// Of an EXR, OpenImageIO's name.
   const char* compression;
@@ -69,8 +70,8 @@ struct ProminPicturesSource {
   size_t attribute_count;
 };
 
-/// Takes bytes of the encoded file and their place in it; they belong to the plugin and are gone after the call. Returns
-/// 0 where they cannot be kept; the picture fails then. Must not throw.
+/// Takes bytes of the encoded file and their place in it; they belong to the plugin and are gone after the call.
+/// Returns 0 where they cannot be kept; the picture fails then. Must not throw.
 struct ProminPicturesSink {
   void* context;
   int (*write)(void* context, uint64_t place, const void* bytes, size_t byte_count);

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// What EXRs of `promin render` hold, as OpenImageIO reads them.
+#include <OpenImageIO/imageio.h>
+
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "cli_fixture.h"
+
+namespace promin {
+namespace {
+
+/// All channels of an EXR, of all its parts, by name.
+struct ReadExr {
+  std::map<std::string, std::vector<float>> channels;
+  std::map<std::string, OIIO::TypeDesc> types;
+  std::vector<std::string> order;
+  int part_count = 0;
+  std::string compression;
+  std::map<std::string, std::string> metadata;
+};
+
+class ExrCliTest : public CliTest {
+ protected:
+  ReadExr read_exr(const std::string& file) const {
+    ReadExr exr;
+    const auto input = OIIO::ImageInput::open((folder() / file).string());
+    EXPECT_TRUE(input) << OIIO::geterror();
+    if (!input) return exr;
+    for (; input->seek_subimage(exr.part_count, 0); ++exr.part_count) {
+      const OIIO::ImageSpec spec = input->spec();
+      exr.compression = spec.get_string_attribute("compression");
+      for (const auto& attribute : spec.extra_attribs) {
+        exr.metadata[attribute.name().string()] = attribute.get_string();
+      }
+      for (int i = 0; i < spec.nchannels; ++i) {
+        const std::string& name = spec.channelnames[static_cast<size_t>(i)];
+        std::vector<float>& values = exr.channels[name];
+        values.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height));
+        EXPECT_TRUE(input->read_image(exr.part_count, 0, i, i + 1, OIIO::TypeDesc::FLOAT, values.data()));
+        exr.types[name] = spec.channelformat(i);
+        exr.order.push_back(name);
+      }
+    }
+    return exr;
+  }
+
+  ReadExr render_exr(OptionValues options) const {
+    options.insert(options.begin(), {"render", "square.gltf", "-o", "a.exr", "--size", "40", "30", "--quiet"});
+    const ProcessResult result = run(options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return read_exr("a.exr");
+  }
+};
+
+TEST_F(ExrCliTest, HalvesAreColoursAloneAndOffByTheirRounding) {
+  const OptionValues aovs = {"--spp", "4", "--aov", "depth,normal,object,cryptomatte,position,error"};
+  const ReadExr full = render_exr(aovs);
+  OptionValues options = aovs;
+  options.push_back("--half");
+  const ReadExr half = render_exr(options);
+  ASSERT_EQ(half.order, full.order);
+  for (const char* name : {"R", "G", "B", "N.X"}) EXPECT_EQ(half.types.at(name), OIIO::TypeDesc::HALF) << name;
+  for (const char* name : {"Z", "P.X", "CryptoObject00.R", "error.R"}) {
+    EXPECT_EQ(half.types.at(name), OIIO::TypeDesc::FLOAT) << name;
+    EXPECT_EQ(half.channels.at(name), full.channels.at(name)) << name;
+  }
+  EXPECT_EQ(half.types.at("object"), OIIO::TypeDesc::UINT32);
+  bool is_rounded = false;
+  for (size_t i = 0; i < full.channels.at("R").size(); ++i) {
+    const float exact = full.channels.at("R")[i];
+    ASSERT_LE(std::abs(half.channels.at("R")[i] - exact), 0x1p-11F * exact);
+    is_rounded = is_rounded || half.channels.at("R")[i] != exact;
+  }
+  EXPECT_TRUE(is_rounded);
+}
+
+TEST_F(ExrCliTest, EveryCompressionHoldsTheSameNumbers) {
+  const ReadExr none = render_exr({"--aov", "depth,uv", "--compression", "none"});
+  EXPECT_EQ(none.compression, "none");
+  for (const char* name : {"rle", "zips", "zip", "piz"}) {
+    const ReadExr exr = render_exr({"--aov", "depth,uv", "--compression", name});
+    EXPECT_EQ(exr.compression, name);
+    EXPECT_EQ(exr.channels, none.channels) << name;
+  }
+  EXPECT_EQ(run({"render", "square.gltf", "-o", "b.exr", "--compression", "dwaa"}).exit_code, 2);
+}
+
+TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
+  const OptionValues aovs = {"--spp", "4", "--aov", "depth,normal,direct,object,cryptomatte"};
+  const ReadExr one = render_exr(aovs);
+  EXPECT_EQ(one.part_count, 1);
+  OptionValues options = aovs;
+  options.push_back("--multipart");
+  const ReadExr parts = render_exr(options);
+  EXPECT_GE(parts.part_count, 5);
+  EXPECT_EQ(parts.channels, one.channels);
+  EXPECT_EQ(parts.types, one.types);
+}
+
+// OpenImageIO writes these itself.
+TEST_F(ExrCliTest, AFullDiskLeavesTheOldFileOfParts) {
+  const OptionValues render = {"render", "square.gltf", "-o",    "a.exr",        "--size",     "200",
+                               "150",    "--quiet",     "--aov", "depth,normal", "--multipart"};
+  ASSERT_EQ(run(render).exit_code, 0);
+  const std::string before = read("a.exr");
+  fill_disk(before.size() / 2);
+  expect_failure(run(render), 1, "a.exr");
+  EXPECT_EQ(read("a.exr"), before);
+  EXPECT_EQ(files(), std::set<std::string>{"a.exr"});
+}
+
+TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
+  const OptionValues background = {"--background", "0.5", "0.25", "1", "--spp", "16"};
+  const ReadExr with = render_exr(background);
+  OptionValues options = background;
+  options.push_back("--alpha");
+  const ReadExr without = render_exr(options);
+  const std::vector<float>& alpha = without.channels.at("A");
+  size_t between = 0;
+  for (size_t i = 0; i < alpha.size(); ++i) {
+    between += alpha[i] > 0.0F && alpha[i] < 1.0F ? 1 : 0;
+    EXPECT_NEAR(without.channels.at("R")[i] + (1.0F - alpha[i]) * 0.5F, with.channels.at("R")[i], 1e-6F);
+    EXPECT_NEAR(without.channels.at("B")[i] + (1.0F - alpha[i]) * 1.0F, with.channels.at("B")[i], 1e-6F);
+  }
+  EXPECT_GT(between, 10U);
+  EXPECT_EQ(alpha.front(), 0.0F);
+  EXPECT_EQ(alpha[15 * 40 + 20], 1.0F);
+}
+
+// The square lies across the view, so its depth along that is one number.
+TEST_F(ExrCliTest, DepthIsOfTheRayOrOfThePlane) {
+  const ReadExr of_ray = render_exr({"--aov", "depth"});
+  const ReadExr of_plane = render_exr({"--aov", "depth", "--depth", "plane"});
+  EXPECT_EQ(of_ray.metadata.at("promin:depth"), "ray");
+  EXPECT_EQ(of_plane.metadata.at("promin:depth"), "plane");
+  float farthest = 0.0F;
+  for (size_t i = 0; i < of_ray.channels.at("Z").size(); ++i) {
+    const float along = of_plane.channels.at("Z")[i];
+    const float away = of_ray.channels.at("Z")[i];
+    ASSERT_EQ(std::isinf(along), std::isinf(away));
+    if (std::isinf(away)) continue;
+    ASSERT_NEAR(along, 4.0F, 1e-6F);
+    farthest = std::max(farthest, away);
+  }
+  EXPECT_GT(farthest, 4.1F);
+}
+
+// 24 MiB a band: a picture with many channels is written in several, which the file does not show.
+TEST_F(ExrCliTest, BandsLeaveNoTrace) {
+  const OptionValues options = {"--size", "1200", "600", "--aov", "position,normal,shading_normal,albedo,error,direct"};
+  OptionValues whole = {"render", "square.gltf", "-o", "whole.exr", "--quiet"};
+  whole.insert(whole.end(), options.begin(), options.end());
+  ASSERT_EQ(run(whole).exit_code, 0);
+  // An average exposure needs the whole picture at once, and an EXR does not show it.
+  OptionValues at_once = {"render", "square.gltf", "-o", "once.exr", "--quiet", "--exposure", "average"};
+  at_once.insert(at_once.end(), options.begin(), options.end());
+  ASSERT_EQ(run(at_once).exit_code, 0);
+  EXPECT_EQ(read_exr("whole.exr").channels, read_exr("once.exr").channels);
+}
+
+// What beauty is the sum of, in the file.
+TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
+  const ReadExr exr = render_exr({"--spp", "16", "--background", "0.5", "0.25", "1", "--aov",
+                                  "emission,direct,indirect,reflection,transmission,background"});
+  for (const char* letter : {"R", "G", "B"}) {
+    for (size_t i = 0; i < exr.channels.at("R").size(); ++i) {
+      float sum = 0.0F;
+      for (const char* part : {"emission.", "direct.", "indirect.", "reflection.", "transmission.", "background."}) {
+        sum += exr.channels.at(part + std::string(letter))[i];
+      }
+      ASSERT_NEAR(sum, exr.channels.at(letter)[i], 1e-6F) << letter << " " << i;
+    }
+  }
+}
+
+TEST_F(ExrCliTest, OptionsOfExrsWantOne) {
+  for (const OptionValues& option :
+       {OptionValues{"--half"}, {"--multipart"}, {"--compression", "piz"}, {"--depth", "plane"}, {"--aov", "depth"}}) {
+    OptionValues arguments = {"render", "square.gltf", "-o", "a.png"};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    expect_failure(run(arguments), 2, option.front());
+  }
+  EXPECT_EQ(files(), std::set<std::string>{});
+}
+
+}  // namespace
+}  // namespace promin
