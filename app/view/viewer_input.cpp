@@ -83,16 +83,17 @@ DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   LookOptions look = start_.look;
   if (look.averages_exposure) look.exposure_ev = scene_->display.exposure_ev;
-  const std::optional<size_t> camera = find_half_height(*scene_->scene, view.camera);
-  return {.file = start_.file,
-          .has_shadows = mode_.has_shadows,
-          .lights_off = on.lights_off,
-          .look = look,
-          .environment = start_.environment,
-          .variant = start_.variant,
-          .camera_index = camera,
-          .builder = on.builder,
-          .bvh = on.bvh};
+  DescribedScene described;
+  described.file = start_.file;
+  described.has_shadows = mode_.has_shadows;
+  described.lights_off = on.lights_off;
+  described.look = look;
+  described.environment = start_.environment;
+  described.variant = start_.variant;
+  described.camera_index = find_half_height(*scene_->scene, view.camera);
+  described.builder = on.builder;
+  described.bvh = on.bvh;
+  return described;
 }
 
 }  // namespace promin::app

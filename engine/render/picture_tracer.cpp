@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "render/picture_tracer.h"
+
+#include "core/parallel.h"
+#include "core/shared_progress.h"
+#include "core/stopwatch.h"
+#include "device/device.h"
+#include "layout.h"
+#include "trace/cut_loops.h"
+#include "trace/explain_pixel.h"
+#include "trace/progressive_picture.h"
+
+namespace promin {
+namespace {
+
+/// Recording this many pieces takes no time.
+constexpr size_t kMostPiecesAtOnce = 64;
+
+/// A lane's counters have 32 bits, so they are read before they can have overflowed.
+constexpr double kMaxRaysALane = 2e9;
+
+size_t area_of(const PixelWindow& window) {
+  const uvec2 size = window.hi - window.lo;
+  return static_cast<size_t>(size.x) * size.y;
+}
+
+/// Takes a window's pixels out of those of a larger one.
+template <typename Value>
+void cut_out(std::vector<Value>& values, const PixelWindow& from, const PixelWindow& window) {
+  if (values.size() == area_of(window) || values.empty()) return;
+  const uvec2 size = window.hi - window.lo;
+  const size_t from_width = from.hi.x - from.lo.x;
+  const uvec2 corner = window.lo - from.lo;
+  std::vector<Value> kept(area_of(window));
+  for (size_t y = 0; y < size.y; ++y) {
+    std::copy_n(&values[(corner.y + y) * from_width + corner.x], size.x, &kept[y * size.x]);
+  }
+  values = std::move(kept);
+}
+
+}  // namespace
+
+ProgressCallback keep_going(const ProgressCallback& progress) {
+  if (!progress) return {};
+  return [&progress](double) { return progress(0.0); };
+}
+
+PixelWindow picture_window(const View& view) {
+  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
+}
+
+PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options)
+    : device_(device),
+      options_(options),
+      wanted_(options_.with_aovs ? options_.aovs | AovSet::of_surfaces() : options_.aovs),
+      pipelines_before_(device_.compiled_pipelines().size()),
+      pacer_(options_.target_dispatch_ms.value_or(device_.profile().target_dispatch_ms), TileScheduler::kMinBlocks),
+      scene_(device_, scene, options_, stats_) {
+  // The callback belonged to the constructor's caller.
+  options_.progress = {};
+  const Stopwatch compiling;
+  if (options_.has_error_target) {
+    prepare_refining_film(options_.mode);
+  } else {
+    prepare_film(options_.mode);
+  }
+  stats_.pipeline_ms = compiling.ms();
+  stats_.features = feature_names(film_features_);
+}
+
+void PictureTracer::prepare_film(const RenderMode& mode) {
+  FeatureMask features = scene_.features(mode) | features_of_samples(mode);
+  if (wanted_.has_any(AovSource::kSurface)) features |= layout::FEATURE_AOVS;
+  if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
+  prepare_film(features);
+}
+
+FeatureMask PictureTracer::features_of_samples(const RenderMode& mode) const {
+  FeatureMask features;
+  if (has_parts(mode)) features |= layout::FEATURE_LIGHT_AOVS;
+  if (wanted_.cryptomatte) features |= layout::FEATURE_SAMPLE_IDS;
+  return features;
+}
+
+void PictureTracer::prepare_refining_film(const RenderMode& mode) {
+  prepare_film(scene_.features(mode) | features_of_samples(mode) | layout::FEATURE_LISTED_SAMPLES);
+}
+
+void PictureTracer::prepare_film(FeatureMask features) {
+  if (film_ && features == film_features_) return;
+  film_.emplace(device_, scene_.device_scene(), features, film_options());
+  film_->warm_up();
+  film_features_ = features;
+}
+
+FilmOptions PictureTracer::film_options() const {
+  return {.packet_size = options_.packet_size,
+          .expected_samples = options_.expected_samples,
+          .avoids_texels = options_.avoids_texels,
+          .shaders = options_.shaders};
+}
+
+void PictureTracer::take_change() {
+  step_film_.reset();
+  if (!film_) return;
+  try {
+    film_->bind_scene();
+  } catch (...) {
+    film_.reset();
+    throw;
+  }
+}
+
+void PictureTracer::trace_window(Film& onto, const PixelWindow& window, const View& view, const SampleRange& samples,
+                                 RenderResult& result, const ProgressCallback& on_progress) {
+  TileOptions cut = onto.piece_options(view.max_depth);
+  cut.blocks_per_piece = options_.blocks_per_dispatch;
+  cut.first_sample = samples.first;
+  cut.end_sample = samples.end;
+  if (cut.refracted_rays > 0) cut.least_blocks = TileOptions::kLeastBlocksOfTrees;
+  const auto collect = [&] {
+    const FilmCounts taken = onto.take_counts();
+    refuse_cut_loops(taken.has_cut_loops);
+    result.rays += taken.rays;
+  };
+  TileScheduler picture = onto.cut(view, window, cut);
+  onto.begin(picture);
+  double uncollected = 0.0;
+  std::vector<TileSample> pieces;
+  while (!picture.is_done()) {
+    // The pieces of a small picture are smaller than what is asked for, so several run at once.
+    pieces.clear();
+    double units = 0.0;
+    do {
+      pieces.push_back(picture.next(pacer_.units() - units));
+      units += pieces.back().units;
+      uncollected += pieces.back().most_rays_a_lane;
+    } while (units < pacer_.units() && pieces.size() < kMostPiecesAtOnce && !picture.is_done());
+    const double time_ms = onto.run(pieces);
+    result.trace_ms += time_ms;
+    pacer_.learn(units, time_ms);
+    if (uncollected > kMaxRaysALane) {
+      collect();
+      uncollected = 0.0;
+    }
+    tell_progress(on_progress, picture.fraction_done());
+  }
+  collect();
+}
+
+void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
+                               const ProgressCallback& on_progress) {
+  const uvec2 size = band.hi - band.lo;
+  const size_t count = static_cast<size_t>(size.x) * size.y;
+  const uint32_t samples = view.samples_per_pixel;
+  const uint32_t samples_at_once = wanted_.cryptomatte ? layout::SAMPLE_IDS : samples;
+  film_->reserve(size.x * size.y);
+  CoverageTally tally(wanted_.cryptomatte ? count : 0, scene_.object_materials());
+  ReadFilm read{{}, 0, film_->records()};
+  for (SampleRange range{0, 0}; range.end < samples;) {
+    range = {range.end, std::min(samples, range.end + samples_at_once)};
+    trace_window(*film_, band, view, range, result, [&](double fraction) {
+      return !on_progress || on_progress((range.first + fraction * (range.end - range.first)) / samples);
+    });
+    // What is told of all samples together is read once.
+    if (!wanted_.cryptomatte && range.end < samples) continue;
+    read = read_film(*film_, size);
+    if (wanted_.cryptomatte) tally_samples(read, range.end - range.first, tally);
+  }
+  average_samples(film_records_, samples, std::span(result.image.pixels).subspan(first, count));
+  if (wanted_.has_any(AovSource::kSurface)) {
+    read_surfaces(read, scene_.numbers(), view.depth_kind, first, result.aovs);
+  }
+  for_each_pixel(count, [&](size_t i) {
+    if (!result.aovs.samples.empty()) result.aovs.samples[first + i] = samples;
+    if (estimates_errors(view.mode)) ranges_[first + i] = read.range(i);
+    if (wanted_.cryptomatte) tally.put(i, samples, first + i, result.aovs);
+    if (!has_parts(view.mode)) return;
+    LightParts parts;
+    parts.add(read, i);
+    parts.put(samples, first + i, result.aovs, result.image.pixels[first + i]);
+  });
+}
+
+void PictureTracer::tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const {
+  for_each_pixel(read.pixel_count, [&](size_t i) {
+    // Samples of a pixel mostly show the same.
+    uint32_t order = layout::NO_ORDER;
+    uint32_t object = Aovs::kNoId;
+    for (uint32_t sample = 0; sample < samples; ++sample) {
+      const uint32_t shown = read.record(read.layout.first_ids + sample / 4, i)[static_cast<int>(sample % 4)];
+      if (shown != order) object = object_of(shown);
+      order = shown;
+      tally.add(i, object);
+    }
+  });
+}
+
+uint32_t PictureTracer::object_of(uint32_t order) const {
+  return order == layout::NO_ORDER ? Aovs::kNoId : primitive_of_order(scene_.numbers(), order).object;
+}
+
+void PictureTracer::trace_surfaces(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
+                                   const ProgressCallback& on_progress) {
+  const uvec2 size = band.hi - band.lo;
+  film_->reserve(size.x * size.y);
+  trace_window(*film_, band, view, {0, 1}, result, on_progress);
+  read_surfaces(read_film(*film_, size), scene_.numbers(), view.depth_kind, first, result.aovs);
+}
+
+ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
+  const size_t count = static_cast<size_t>(size.x) * size.y;
+  film_records_.resize(count * from.records().count);
+  from.buffer().read(std::as_writable_bytes(std::span(film_records_)), Film::kPixelsOffset);
+  return {film_records_, count, from.records()};
+}
+
+void PictureTracer::trace_steps(const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+  View step_view = view;
+  step_view.max_depth = 0;
+  step_view.mode.debug_view = DebugView::kSteps;
+  FeatureMask features = scene_.features(step_view.mode) | layout::FEATURE_AOVS;
+  features = features.without(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
+  if (!step_film_) {
+    FilmOptions film_of_steps = film_options();
+    film_of_steps.packet_size = 1;
+    step_film_.emplace(device_, scene_.device_scene(), features, film_of_steps);
+    step_film_->warm_up();
+  }
+  const SampleRange middle{view.samples_per_pixel / 2, view.samples_per_pixel / 2 + 1};
+  for_each_band(view, step_film_->records().count, [&](const PixelWindow& band, size_t first) {
+    const uvec2 size = band.hi - band.lo;
+    step_film_->reserve(size.x * size.y);
+    // Its rays are the picture's, counted there.
+    RenderResult of_steps;
+    trace_window(*step_film_, band, step_view, middle, of_steps, on_progress);
+    result.trace_ms += of_steps.trace_ms;
+    read_steps(read_film(*step_film_, size), first, result.aovs);
+  });
+}
+
+RenderResult PictureTracer::make_result(const View& view) const {
+  const PixelWindow window = picture_window(view);
+  RenderResult result;
+  result.image.size = window.hi - window.lo;
+  result.image.pixels.resize(static_cast<size_t>(result.image.size.x) * result.image.size.y);
+  result.aovs.resize(result.image.pixels.size(), wanted_);
+  return result;
+}
+
+RenderResult PictureTracer::render(const View& view, const ProgressCallback& progress) {
+  if (view.error_target) return render_to_error(view, progress);
+  if (!estimates_errors(view.mode)) return render_samples(view, progress);
+  // Pixels tell of the errors of those around them.
+  const PixelWindow window = picture_window(view);
+  View wider = view;
+  wider.crop = with_neighbors(window, view.size);
+  ranges_.resize(area_of(*wider.crop));
+  RenderResult result = render_samples(wider, progress);
+  for_each_pixel(ranges_.size(), [&](size_t i) {
+    result.aovs.error[i] = estimate_error(range_around(ranges_, result.image.size, i), view.samples_per_pixel);
+  });
+  cut_out(result.image.pixels, *wider.crop, window);
+  result.image.size = window.hi - window.lo;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) cut_out(result.aovs.FIELD, *wider.crop, window);
+#include "promin/kinds/aovs.def"
+  cut_out(result.aovs.object_coverage, *wider.crop, window);
+  cut_out(result.aovs.material_coverage, *wider.crop, window);
+  return result;
+}
+
+RenderResult PictureTracer::render_samples(const View& view, const ProgressCallback& progress) {
+  RenderResult result = make_result(view);
+  prepare_film(view.mode);
+  const double steps_share = wanted_.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
+  const auto pixel_count = static_cast<double>(result.image.pixels.size());
+  if (wanted_.steps) trace_steps(view, result, keep_going(progress));
+  for_each_band(view, film_->records().count, [&](const PixelWindow& band, size_t first) {
+    const uvec2 size = band.hi - band.lo;
+    trace_band(band, view, first, result, [&](double fraction) {
+      const double done = (static_cast<double>(first) + fraction * size.x * size.y) / pixel_count;
+      return !progress || progress(steps_share + (1.0 - steps_share) * done);
+    });
+  });
+  return result;
+}
+
+void PictureTracer::render_progressively(const View& view, double budget_ms,
+                                         const std::function<bool(const Image&, const View&)>& on_picture) {
+  ProgressivePicture picture(device_, scene_.device_scene(), scene_.features(view.mode), budget_ms);
+  picture.resize(view.size);
+  picture.want(view);
+  uint64_t shown_count = 0;
+  while (!picture.is_settled()) {
+    picture.trace();
+    if (picture.shown_count() == shown_count) continue;
+    shown_count = picture.shown_count();
+    const View shown = picture.shown()->view_of(view);
+    if (!on_picture(picture.read(), shown)) return;
+    if (view.error_target) continue;
+    if (picture.is_complete() && shown.samples_per_pixel >= view.samples_per_pixel) return;
+  }
+}
+
+WorkDone PictureTracer::work_done() const {
+  const DeviceScene::Uploads& uploads = scene_.device_scene()->uploads();
+  return {.trees_built = options_.bvh ? 0U : 1U,
+          .geometry_bytes_uploaded = uploads.geometry,
+          .shading_bytes_uploaded = uploads.shading,
+          .pipelines_compiled = device_.compiled_pipelines().size() - pipelines_before_};
+}
+
+Explanation PictureTracer::explain(const View& view, const uvec2& pixel) const {
+  const FeatureMask features = scene_.features({.has_shadows = view.mode.has_shadows});
+  return explain_pixel(device_, scene_.device_scene(), scene_.numbers(), features, view, pixel);
+}
+
+}  // namespace promin

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/stopwatch.h"
+#include "render/picture_tracer.h"
+
+// Pictures with an error target.
+namespace promin {
+namespace {
+
+/// Samples that are traced between two looks at what they bring.
+constexpr size_t kMostListed = 1U << 19;
+/// The side of the parts of a picture that are refined one after the other.
+constexpr uint32_t kTileSide = 256;
+
+/// It takes so much more time for an error than is foretold.
+constexpr double kCaution = 1.2;
+
+}  // namespace
+
+PictureTracer::RefinedAovs PictureTracer::begin_refined_aovs(const PixelWindow& window, const View& view) const {
+  const uvec2 size = window.hi - window.lo;
+  const size_t count = static_cast<size_t>(size.x) * size.y;
+  return {window, std::vector<LightParts>(has_parts(view.mode) ? count : 0),
+          CoverageTally(wanted_.cryptomatte ? count : 0, scene_.object_materials())};
+}
+
+void PictureTracer::take_aovs(std::span<const ListedSample> list, const ReadFilm& read, RefinedAovs& aovs) const {
+  if (aovs.parts.empty() && !wanted_.cryptomatte) return;
+  const uint32_t width = aovs.window.hi.x - aovs.window.lo.x;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const uvec2& pixel = list[i].pixel;
+    // The samples of pixels around the window are theirs.
+    if (glm::any(glm::lessThan(pixel, aovs.window.lo)) || glm::any(glm::greaterThanEqual(pixel, aovs.window.hi))) {
+      continue;
+    }
+    const uvec2 place = pixel - aovs.window.lo;
+    const size_t at = static_cast<size_t>(place.y) * width + place.x;
+    if (!aovs.parts.empty()) aovs.parts[at].add(read, i);
+    if (wanted_.cryptomatte) aovs.tally.add(at, object_of(read.record(0, i).w));
+  }
+}
+
+void PictureTracer::refine(Refinement& refinement, const View& view, RefinedAovs& aovs, RenderResult& result,
+                           const ProgressCallback& on_samples) {
+  const size_t most_listed = std::min<size_t>(kMostListed, kMaxFilmRecords / film_->records().count);
+  std::vector<vec3> radiance;
+  for (auto list = refinement.next(most_listed); !list.empty(); list = refinement.next(most_listed)) {
+    film_->put_list(list);
+    const auto taken = static_cast<double>(refinement.sample_count());
+    trace_window(*film_, list_window(list.size()), view, {0, 1}, result, [&](double fraction) {
+      return !on_samples || on_samples(taken + fraction * static_cast<double>(list.size()));
+    });
+    const ReadFilm read = film_->read_list();
+    radiance.resize(list.size());
+    average_samples(read.records, 1, radiance);
+    take_aovs(list, read, aovs);
+    refinement.take(radiance);
+  }
+}
+
+void PictureTracer::take_refined(const Refinement& refinement, const RefinedAovs& aovs, const View& view,
+                                 RenderResult& result) const {
+  const PixelWindow& window = aovs.window;
+  const PixelWindow whole = picture_window(view);
+  const uvec2 size = window.hi - window.lo;
+  refinement.add_to(*result.error);
+  for (size_t i = 0; i < refinement.pixel_count(); ++i) {
+    const uvec2 place = window.lo - whole.lo + uvec2(i % size.x, i / size.x);
+    const size_t at = static_cast<size_t>(place.y) * result.image.size.x + place.x;
+    const PixelEstimate& estimate = refinement.estimate(i);
+    result.image.pixels[at] = estimate.mean();
+    if (!result.aovs.samples.empty()) result.aovs.samples[at] = estimate.count();
+    if (!result.aovs.error.empty()) result.aovs.error[at] = refinement.claim(i);
+    if (!aovs.parts.empty()) aovs.parts[i].put(estimate.count(), at, result.aovs, result.image.pixels[at]);
+    if (wanted_.cryptomatte) aovs.tally.put(i, estimate.count(), at, result.aovs);
+  }
+}
+
+RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallback& progress) {
+  RenderResult result = make_result(view);
+  View centers = view;
+  centers.error_target.reset();
+  centers.samples_per_pixel = 1;
+  centers.max_depth = 0;
+  const ProgressCallback goes_on = keep_going(progress);
+  if (wanted_.has_any(AovSource::kSurface)) {
+    prepare_film(scene_.features(view.mode) | layout::FEATURE_AOVS);
+    for_each_band(centers, film_->records().count, [&](const PixelWindow& band, size_t first) {
+      trace_surfaces(band, centers, first, result, goes_on);
+    });
+  }
+  if (wanted_.steps) trace_steps(centers, result, goes_on);
+  result.error.emplace(PictureError{.target = view.error_target->error});
+  prepare_refining_film(view.mode);
+  return result;
+}
+
+RenderResult PictureTracer::render_to_error(const View& view, const ProgressCallback& progress) {
+  RenderResult result = begin_refined(view, progress);
+  const PixelWindow window = picture_window(view);
+  const uvec2 tiles = (result.image.size + kTileSide - 1U) / kTileSide;
+  // All tiles take what those before have taken, as far as is known.
+  double taken = 0.0;
+  double pixels_done = 0.0;
+  const auto pixels = static_cast<double>(result.image.pixels.size());
+  for (uint32_t tile = 0; tile < tiles.x * tiles.y; ++tile) {
+    const uvec2 lo = window.lo + kTileSide * uvec2(tile % tiles.x, tile / tiles.x);
+    const PixelWindow part{lo, glm::min(window.hi, lo + kTileSide)};
+    Refinement refinement(view, part);
+    RefinedAovs aovs = begin_refined_aovs(part, view);
+    const auto part_pixels = static_cast<double>(refinement.pixel_count());
+    refine(refinement, view, aovs, result, [&](double of_part) {
+      if (!progress) return true;
+      const double left_of_part = std::max(refinement.foretell_total() - of_part, 0.0);
+      const double a_pixel = (taken + of_part + left_of_part) / (pixels_done + part_pixels);
+      const double left = left_of_part + a_pixel * (pixels - pixels_done - part_pixels);
+      return progress((taken + of_part) / (taken + of_part + left));
+    });
+    taken += static_cast<double>(refinement.sample_count());
+    pixels_done += part_pixels;
+    take_refined(refinement, aovs, view, result);
+  }
+  return result;
+}
+
+RenderResult PictureTracer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
+  const Stopwatch elapsed;
+  View step = view;
+  step.error_target->error = first_error(*view.error_target);
+  RenderResult result = begin_refined(step, progress);
+  const PixelWindow window = picture_window(view);
+  Refinement refinement(step, window);
+  RefinedAovs aovs = begin_refined_aovs(window, step);
+  const auto on_progress = [&](double) { return !progress || progress(std::min(1.0, 1e-3 * elapsed.ms() / seconds)); };
+  const Stopwatch tracing;
+  float& error = step.error_target->error;
+  for (refine(refinement, step, aovs, result, on_progress); error > view.error_target->error;) {
+    const float less = next_error(*view.error_target, error);
+    const double ms_a_sample = tracing.ms() / static_cast<double>(refinement.sample_count());
+    const double ms_ahead = kCaution * ms_a_sample * refinement.foretell_samples(less);
+    if (elapsed.ms() + ms_ahead > 1e3 * seconds) break;
+    error = less;
+    refinement.aim(error);
+    refine(refinement, step, aovs, result, on_progress);
+  }
+  result.error->target = error;
+  take_refined(refinement, aovs, step, result);
+  return result;
+}
+
+}  // namespace promin
