@@ -13,6 +13,7 @@
 #include "primitives.glsl"
 #include "packet.glsl"
 #include "no_cutouts.glsl"
+#include "packet_shapes.glsl"
 #include "packet_triangles.glsl"
 #include "family.glsl"
 #include "node_boxes.glsl"

@@ -81,6 +81,7 @@ LAYOUT_CONSTANT CONSTANT_MORE_FEATURES = 5u;  // the second word
 LAYOUT_CONSTANT CONSTANT_STEPS_TOGETHER = 6u;
 LAYOUT_CONSTANT CONSTANT_WAITS_WITH_SOLIDS = 7u;
 LAYOUT_CONSTANT CONSTANT_FETCHES_FILM_TEXELS = 8u;
+LAYOUT_CONSTANT CONSTANT_LISTS_CROSSINGS = 9u;
 
 // A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
@@ -298,6 +299,9 @@ struct HitRecord {
   uvec4 b;  // bits of the geometric normal; w = node steps + primitive tests * 2^16
 };
 LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
+// Crossings (crossings.comp): a record for each ray, then those of all rays. Of a ray: a.x = how many it has; with
+// LISTS_CROSSINGS a.y = the record of the first and a.z = for how many there is room, before the dispatch. Of a
+// crossing: as of a hit, but b.w = 1 where the ray leaves a solid, else 0.
 
 // With FEATURE_LISTED_SAMPLES each pixel of the film is a sample of a pixel of the picture: before it is traced x, y =
 // bits of its place in that pixel, z = that pixel, its row above 16 bits, or this; then xyz = its radiance.

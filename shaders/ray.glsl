@@ -61,13 +61,18 @@ Approach approach(Ray ray, vec3 center) {
 }
 
 // The t between which a ray is inside a convex shape, with the part of the surface at either end; nowhere unless
-// entry <= exit.
+// entry <= exit. As the ends of a shape (ends_of_*), where it is not closed, one that lies in what is missing is infinite.
 struct Inside {
   float entry;
   uint entry_part;
   float exit;
   uint exit_part;
 };
+// Kernels that ask for all crossings say true (crossings.comp). For them what a ray only touches is not met.
+#ifndef ASKS_FOR_ALL
+#define ASKS_FOR_ALL false
+#endif
+bool is_interval(float begin, float end) { return ASKS_FOR_ALL ? begin < end : begin <= end; }
 #define NOWHERE Inside(INFINITY, PART_SIDE, -INFINITY, PART_SIDE)
 
 // The nearest end that is valid, of the interval in which a ray is inside.

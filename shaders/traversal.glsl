@@ -66,16 +66,6 @@ uint step_together(uint current) {
   return steps ? child : current;
 }
 
-// All of the packet's rays against a primitive, a function for each kind but triangles (packet_triangles.glsl).
-#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                      \
-  void intersect_packet_with_##PREFIX(Primitive p, uint index, bool asks_for_any) {       \
-    [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {                         \
-      Crossing crossing = not_skipped(slot, intersect_##PREFIX(ray_past(slot, p), p), p); \
-      keep_nearest(slot, crossing, index, order_of(p), asks_for_any);                     \
-    }                                                                                     \
-  }
-#include "promin/kinds/primitives.def"
-
 void enter_leaf(uint child) {
   leaf.next = first_of_leaf(child);
   leaf.end = leaf.next + count_of_leaf(child);

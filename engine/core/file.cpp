@@ -98,16 +98,64 @@ AtomicFile::~AtomicFile() {
   fs::remove(temporary_, error);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::fail() const {
+  throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
+                  "check the disk and permissions"});
+}
+
+void AtomicFile::flush() const {
   // rename() alone may reach the disk before the data does; a crash would leave an empty file.
   const int descriptor = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
   const bool is_flushed = descriptor >= 0 && fsync(descriptor) == 0;
   if (descriptor >= 0) close(descriptor);
-  if (!is_flushed || rename(temporary_.c_str(), target_.c_str()) != 0) {
-    throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
-                    "check the disk and permissions"});
-  }
+  if (!is_flushed) fail();
+}
+
+void AtomicFile::rename_to_target() {
+  if (rename(temporary_.c_str(), target_.c_str()) != 0) fail();
   committed_ = true;
+}
+
+void AtomicFile::commit() {
+  flush();
+  rename_to_target();
+}
+
+void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
+  for (const AtomicFile* file : files) file->flush();
+  // Another name of each old file, which the renaming leaves alone; empty where there is none. Its form is that of a
+  // temporary file, so that what a kill leaves is cleared.
+  std::vector<fs::path> old_files;
+  const auto remove_names = [&] {
+    std::error_code error;
+    for (const fs::path& old_file : old_files) {
+      if (!old_file.empty()) fs::remove(old_file, error);
+    }
+  };
+  size_t renamed = 0;
+  try {
+    for (AtomicFile* file : files) {
+      fs::path old_file = file->temporary_.parent_path() / "old-";
+      old_file += file->temporary_.filename();
+      std::error_code error;
+      fs::create_hard_link(file->target_, old_file, error);
+      old_files.push_back(error ? fs::path() : old_file);
+      file->rename_to_target();
+      ++renamed;
+    }
+  } catch (...) {
+    for (size_t i = 0; i < renamed; ++i) {
+      std::error_code error;
+      if (old_files[i].empty()) {
+        fs::remove(files[i]->target_, error);
+      } else {
+        fs::rename(old_files[i], files[i]->target_, error);
+      }
+    }
+    remove_names();
+    throw;
+  }
+  remove_names();
 }
 
 void clear_leftovers(const fs::path& folder) {

@@ -57,8 +57,15 @@ class AtomicFile {
 
   /// Flushes the temporary file to disk and renames it. Throws RunError.
   void commit();
+  /// Commits all or none: flushes all before it renames any, and where one cannot be renamed puts the others' old files
+  /// back. Throws RunError.
+  static void commit_together(std::span<AtomicFile* const> files);
 
  private:
+  void flush() const;
+  void rename_to_target();
+  [[noreturn]] void fail() const;
+
   std::filesystem::path target_;
   std::filesystem::path temporary_;
   bool committed_ = false;

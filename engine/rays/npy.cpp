@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -118,15 +119,16 @@ uint64_t parse_header(std::string_view header, const fs::path& file) {
   return *count;
 }
 
-/// All that comes before the data of an array of so many rows. `type` as numpy.dtype.descr is written, `columns` as
-/// what follows the number of rows in its shape.
-std::string make_header(std::string_view type, uint64_t rows, std::string_view columns) {
+/// All that comes before the data of an array of so many rows, at least so many bytes. `type` as numpy.dtype.descr is
+/// written, `columns` as what follows the number of rows in its shape.
+std::string make_header(std::string_view type, uint64_t rows, std::string_view columns, size_t least_bytes = 0) {
   std::string dictionary("{'descr': ");
   dictionary.append(type).append(", 'fortran_order': False, 'shape': (");
   dictionary.append(std::to_string(rows)).append(columns).append("), }");
   // Magic, version and length take 10 bytes; the data begins at a multiple of 64.
   const size_t padding = 64 - (10 + dictionary.size() + 1) % 64;
   dictionary.append(padding, ' ');
+  if (10 + dictionary.size() + 1 < least_bytes) dictionary.append(least_bytes - (10 + dictionary.size() + 1), ' ');
   dictionary += '\n';
   std::string header(kMagic);
   header += '\x01';
@@ -134,6 +136,11 @@ std::string make_header(std::string_view type, uint64_t rows, std::string_view c
   header += static_cast<char>(dictionary.size() & 0xFF);
   header += static_cast<char>(dictionary.size() >> 8);
   return header + dictionary;
+}
+
+/// Room for the header of an array whose number of rows is not known yet.
+size_t largest_header(std::string_view type) {
+  return make_header(type, std::numeric_limits<uint64_t>::max(), ",").size();
 }
 
 constexpr std::string_view kHitType =
@@ -185,31 +192,56 @@ void write_rays(const fs::path& file, std::span<const Ray> rays) {
   write_file(file, {std::as_bytes(std::span(header)), std::as_bytes(rays)});
 }
 
-HitWriter::HitWriter(const fs::path& file, uint64_t count)
-    : target_(file), output_(file), stream_(output_.temporary(), std::ios::binary), missing_(count) {
-  const std::string header = make_header(kHitType, count, ",");
+ArrayWriter::ArrayWriter(const fs::path& file, std::string_view type, std::optional<uint64_t> count)
+    : target_(file), output_(file), stream_(output_.temporary(), std::ios::binary), type_(type), count_(count) {
+  const std::string header =
+      count ? make_header(type_, *count, ",") : make_header(type_, 0, ",", largest_header(type_));
   stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
   check();
 }
 
-void HitWriter::write(std::span<const Hit> hits) {
-  assert(hits.size() <= missing_);
-  missing_ -= hits.size();
-  stream_.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size_bytes()));
+void ArrayWriter::write(std::span<const std::byte> bytes, uint64_t count) {
+  written_ += count;
+  assert(!count_ || written_ <= *count_);
+  stream_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   check();
 }
 
-void HitWriter::commit() {
-  assert(missing_ == 0);
+void ArrayWriter::finish() {
+  assert(!count_ || written_ == *count_);
+  if (!count_) {
+    const std::string header = make_header(type_, written_, ",", largest_header(type_));
+    stream_.seekp(0);
+    stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
+  }
   stream_.close();
   check();
+}
+
+void ArrayWriter::commit() {
+  finish();
   output_.commit();
 }
 
-void HitWriter::check() const {
+void ArrayWriter::commit_together(std::initializer_list<ArrayWriter*> writers) {
+  std::vector<AtomicFile*> files;
+  for (ArrayWriter* writer : writers) {
+    writer->finish();
+    files.push_back(&writer->output_);
+  }
+  AtomicFile::commit_together(files);
+}
+
+void ArrayWriter::check() const {
   if (stream_) return;
   throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
                   "check the disk and permissions"});
 }
+
+HitWriter::HitWriter(const fs::path& file, std::optional<uint64_t> count) : ArrayWriter(file, kHitType, count) {}
+
+CountWriter::CountWriter(const fs::path& file, uint64_t count) : ArrayWriter(file, "'<i4'", count) {}
+
+OffsetWriter::OffsetWriter(const fs::path& file, uint64_t count) : ArrayWriter(file, "'<u8'", count) {}
 
 }  // namespace promin

@@ -5,7 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "core/file.h"
 #include "promin/ray.h"
@@ -33,23 +37,52 @@ class RayReader {
 /// Writes rays as a file that RayReader reads, whole or not at all. Throws RunError.
 void write_rays(const std::filesystem::path& file, std::span<const Ray> rays);
 
-/// Writes hits to a NumPy file piece by piece: a structured array of 32 packed bytes a hit with the fields t, object,
-/// primitive, u, v, normal. The file appears whole on commit() or not at all. Throws RunError.
-class HitWriter {
+/// Writes an array of one axis to a NumPy file piece by piece. The file appears whole on commit() or not at all. Throws
+/// RunError.
+class ArrayWriter {
  public:
-  HitWriter(const std::filesystem::path& file, uint64_t count);
-
-  void write(std::span<const Hit> hits);
-  /// Is called after `count` hits.
+  /// Ends the file: after all elements.
   void commit();
+  /// Does so with several files: all of them appear or none.
+  static void commit_together(std::initializer_list<ArrayWriter*> writers);
+
+ protected:
+  /// `type` as numpy.dtype.descr is written. Where `count`, the number of elements, is not known yet it is what has
+  /// been written at the end.
+  ArrayWriter(const std::filesystem::path& file, std::string_view type, std::optional<uint64_t> count);
+  void write(std::span<const std::byte> bytes, uint64_t count);
 
  private:
+  void finish();
   void check() const;
 
   std::filesystem::path target_;
   AtomicFile output_;
   std::ofstream stream_;
-  uint64_t missing_;
+  std::string type_;
+  std::optional<uint64_t> count_;
+  uint64_t written_ = 0;
+};
+
+/// Hits, as a structured array of 32 packed bytes a hit with the fields t, object, primitive, u, v, normal.
+class HitWriter : public ArrayWriter {
+ public:
+  explicit HitWriter(const std::filesystem::path& file, std::optional<uint64_t> count = std::nullopt);
+  void write(std::span<const Hit> hits) { ArrayWriter::write(std::as_bytes(hits), hits.size()); }
+};
+
+/// Numbers of crossings, as little-endian int32.
+class CountWriter : public ArrayWriter {
+ public:
+  CountWriter(const std::filesystem::path& file, uint64_t count);
+  void write(std::span<const int32_t> counts) { ArrayWriter::write(std::as_bytes(counts), counts.size()); }
+};
+
+/// Where the hits of each ray begin, and where the last one's end, as little-endian uint64.
+class OffsetWriter : public ArrayWriter {
+ public:
+  OffsetWriter(const std::filesystem::path& file, uint64_t count);
+  void write(std::span<const uint64_t> offsets) { ArrayWriter::write(std::as_bytes(offsets), offsets.size()); }
 };
 
 }  // namespace promin

@@ -8,8 +8,10 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <vector>
 
+#include "core/parallel.h"
 #include "core/shared_progress.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
@@ -42,16 +44,9 @@ RayRecord record_of(const Ray& ray) {
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
 }
 
-Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const PrimitiveNumbers& numbers) {
-  Hit hit;
-  if (record.a.y == layout::NO_ORDER) return hit;
-  if (query == HitQuery::kAny) {
-    hit.t = 0.0F;
-    return hit;
-  }
-  const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
-  if (!(t > ray.tmin && t < ray.tmax)) return hit;
+Hit hit_at(float t, const HitRecord& record, const PrimitiveNumbers& numbers) {
   const PrimitiveId id = primitive_of_order(numbers, record.a.y);
+  Hit hit;
   hit.t = t;
   hit.object = static_cast<int32_t>(id.object);
   hit.primitive = static_cast<int32_t>(id.primitive);
@@ -61,6 +56,39 @@ Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const Primit
   hit.v = of_triangle.y;
   hit.normal = {std::bit_cast<float>(record.b.x), std::bit_cast<float>(record.b.y), std::bit_cast<float>(record.b.z)};
   return hit;
+}
+
+Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const PrimitiveNumbers& numbers) {
+  Hit hit;
+  if (record.a.y == layout::NO_ORDER) return hit;
+  if (query == HitQuery::kAny) {
+    hit.t = 0.0F;
+    return hit;
+  }
+  const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
+  if (!(t > ray.tmin && t < ray.tmax)) return hit;
+  return hit_at(t, record, numbers);
+}
+
+/// Brings a ray's crossings, as they come from the device, into the order of hits. Returns how many are left, at the
+/// beginning: a primitive that the tree refers to twice is there twice, and some have no t in the given units.
+size_t put_in_order(std::span<HitRecord> crossings, const Ray& ray) {
+  const float scale = scale_of(ray.direction);
+  const auto t_of = [](const HitRecord& crossing) { return std::bit_cast<float>(crossing.a.x); };
+  size_t count = crossings.size();
+  if (scale != 1.0F) {
+    for (HitRecord& crossing : crossings) crossing.a.x = std::bit_cast<uint32_t>(t_of(crossing) * scale);
+    const auto end = std::remove_if(crossings.begin(), crossings.end(), [&](const HitRecord& crossing) {
+      return !(t_of(crossing) > ray.tmin && t_of(crossing) < ray.tmax);
+    });
+    count = static_cast<size_t>(end - crossings.begin());
+  }
+  // Of the ends of the way through a solid, which may have the same t, the first is where it is entered.
+  const auto key_of = [&](const HitRecord& crossing) { return std::tuple(t_of(crossing), crossing.a.y, crossing.b.w); };
+  const auto end = crossings.begin() + static_cast<ptrdiff_t>(count);
+  std::sort(crossings.begin(), end, [&](const HitRecord& a, const HitRecord& b) { return key_of(a) < key_of(b); });
+  const auto is_same = [&](const HitRecord& a, const HitRecord& b) { return key_of(a) == key_of(b); };
+  return static_cast<size_t>(std::unique(crossings.begin(), end, is_same) - crossings.begin());
 }
 
 }  // namespace
@@ -82,6 +110,8 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     stats.features = feature_names(features);
     numbers = std::move(packed.numbers);
     cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
+    // Each is referred to at least once.
+    repeats_primitives = packed.references.size() > packed.bounded_count;
   }
 
   enum class Order { kAsGiven, kInPackets, kSorted };
@@ -93,6 +123,13 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     return sorts_rays ? Order::kSorted : Order::kAsGiven;
   }
 
+  /// Where a tree refers to a primitive twice a packet meets it as often as any of its rays does: of rays alone each
+  /// has the same number of crossings in any company, so that a list has what was counted.
+  Order order_of_crossings(std::span<const Ray> rays) const {
+    const Order order = order_of(rays);
+    return repeats_primitives && order == Order::kInPackets ? Order::kAsGiven : order;
+  }
+
   /// Empty where the rays are traced as they come.
   std::span<const uint32_t> permutation_of(std::span<const Ray> rays, Order order) {
     if (order == Order::kInPackets) return tiler.tile(rays, cube);
@@ -102,13 +139,14 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
 
   RayKernel& kernel_for(HitQuery query, Order order) {
     const bool is_packet = order == Order::kInPackets;
-    std::optional<RayKernel>& kernel = kernels[query == HitQuery::kAny ? 1 : 0][is_packet ? 1 : 0];
+    std::optional<RayKernel>& kernel = kernels[static_cast<size_t>(query)][is_packet ? 1 : 0];
     if (!kernel) {
       RayKernelOptions options;
       options.features = features;
       options.query = query;
       options.packet_size = is_packet ? device.profile().ray_packet_size : 1;
-      if (!spirv.empty()) options.spirv = spirv;
+      const bool asks_for_crossings = query == HitQuery::kCount || query == HitQuery::kAll;
+      if (!asks_for_crossings) options.spirv = spirv;
       kernel.emplace(device, scene, options);
       stats.pipeline_ms += kernel->pipeline_ms();
     }
@@ -134,6 +172,82 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     return time_ms;
   }
 
+  /// Whether counts are told by lists alone: where the device counts crossings that put_in_order drops.
+  bool counts_by_lists(std::span<const Ray> rays) const {
+    return repeats_primitives ||
+           std::ranges::any_of(rays, [](const Ray& ray) { return scale_of(ray.direction) != 1.0F; });
+  }
+
+  /// What the device counts for at most RayKernel::kMaxRays rays.
+  double count(std::span<const Ray> rays, std::span<uint32_t> counts, Order order) {
+    const Stopwatch ordering;
+    const std::span<const uint32_t> permutation = permutation_of(rays, order);
+    double time_ms = ordering.ms();
+    RayKernel& kernel = kernel_for(HitQuery::kCount, order);
+    const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
+    requests.resize(rays.size());
+    records.resize(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
+    time_ms += kernel.run(requests, records);
+    for (size_t i = 0; i < rays.size(); ++i) counts[place_of(i)] = records[i].a.x;
+    return time_ms;
+  }
+
+  /// Fills list_offsets and list_hits for rays with these counts, all of which fit.
+  double list(std::span<const Ray> rays, std::span<const uint32_t> counts, Order order) {
+    const Stopwatch ordering;
+    // Those that cross nothing are not asked again.
+    asked_rays.clear();
+    asked_places.clear();
+    uint64_t total = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      if (counts[i] == 0) continue;
+      asked_rays.push_back(rays[i]);
+      asked_places.push_back(static_cast<uint32_t>(i));
+      total += counts[i];
+    }
+    const std::span<const uint32_t> permutation = permutation_of(asked_rays, order);
+    double time_ms = ordering.ms();
+    const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
+    requests.resize(asked_rays.size());
+    asked_counts.resize(asked_rays.size());
+    first_records.resize(asked_rays.size());
+    records.resize(total);
+    for (size_t i = 0, first = 0; i < asked_rays.size(); ++i) {
+      requests[i] = record_of(asked_rays[place_of(i)]);
+      asked_counts[i] = counts[asked_places[place_of(i)]];
+      first_records[place_of(i)] = first;
+      first += asked_counts[i];
+    }
+    if (!asked_rays.empty()) time_ms += kernel_for(HitQuery::kAll, order).list(requests, asked_counts, records);
+
+    const Stopwatch finishing;
+    const auto crossings_of = [&](size_t i) {
+      return std::span(records).subspan(first_records[i], counts[asked_places[i]]);
+    };
+    constexpr size_t kChunkSize = 4096;
+    kept_counts.resize(asked_rays.size());
+    for_each_chunk(asked_rays.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        kept_counts[i] = static_cast<uint32_t>(put_in_order(crossings_of(i), asked_rays[i]));
+      }
+    });
+    list_offsets.assign(rays.size() + 1, 0);
+    for (size_t i = 0; i < asked_rays.size(); ++i) list_offsets[asked_places[i] + 1] = kept_counts[i];
+    for (size_t i = 0; i < rays.size(); ++i) list_offsets[i + 1] += list_offsets[i];
+    list_hits.resize(list_offsets.back());
+    for_each_chunk(asked_rays.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const std::span<const HitRecord> crossings = crossings_of(i).first(kept_counts[i]);
+        const auto first = static_cast<size_t>(list_offsets[asked_places[i]]);
+        for (size_t k = 0; k < crossings.size(); ++k) {
+          list_hits[first + k] = hit_at(std::bit_cast<float>(crossings[k].a.x), crossings[k], numbers);
+        }
+      }
+    });
+    return time_ms + finishing.ms();
+  }
+
   const gpu::Device& device;
   /// This is a copy, because kernels are compiled as they are needed.
   std::vector<uint32_t> spirv;
@@ -142,12 +256,26 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   FeatureMask features;
   SetupStats stats;
   SceneCube cube;
-  std::array<std::array<std::optional<RayKernel>, 2>, 2> kernels;
+  /// Whether a crossing may be met twice.
+  bool repeats_primitives = false;
+  /// By HitQuery, and whether for packets.
+  std::array<std::array<std::optional<RayKernel>, 2>, 4> kernels;
   RaySorter sorter;
   RayTiler tiler;
   /// What is asked and answered for the rays at hand, in the order in which they are traced.
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;
+  /// Of lists: what the device counts for a chunk of rays; of the part at hand the rays that cross something, their
+  /// places in it, how many crossings they have, in the order in which they are traced, where in `records` these begin
+  /// and how many of them are kept; what the sink gets.
+  std::vector<uint32_t> chunk_counts;
+  std::vector<Ray> asked_rays;
+  std::vector<uint32_t> asked_places;
+  std::vector<uint32_t> asked_counts;
+  std::vector<size_t> first_records;
+  std::vector<uint32_t> kept_counts;
+  std::vector<uint64_t> list_offsets;
+  UnsetVector<Hit> list_hits;
 };
 
 Caster::Caster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -160,7 +288,14 @@ Caster::Caster(Caster&&) noexcept = default;
 Caster& Caster::operator=(Caster&&) noexcept = default;
 
 void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
-  impl_->kernel_for(query, impl_->order_of(rays));
+  if (query == HitQuery::kNearest || query == HitQuery::kAny) {
+    impl_->kernel_for(query, impl_->order_of(rays));
+    return;
+  }
+  // Lists are made by counts, and some counts by lists.
+  const Impl::Order order = impl_->order_of_crossings(rays);
+  impl_->kernel_for(HitQuery::kCount, order);
+  if (query == HitQuery::kAll || impl_->counts_by_lists(rays)) impl_->kernel_for(HitQuery::kAll, order);
 }
 
 double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, const ProgressCallback& progress) {
@@ -168,11 +303,72 @@ double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery que
     throw UsageError({"there are " + std::to_string(hits.size()) + " hits for " + std::to_string(rays.size()) + " rays",
                       "in Caster::cast", "give as many hits as rays"});
   }
+  if (query != HitQuery::kNearest && query != HitQuery::kAny) {
+    throw UsageError(
+        {"a count or a list is asked of a ray's one hit", "in Caster::cast", "call Caster::count or Caster::list"});
+  }
   double time_ms = 0.0;
   for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
     const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
     time_ms += impl_->cast(rays.subspan(first, count), hits.subspan(first, count), query);
     tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
+  }
+  return time_ms;
+}
+
+double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const ProgressCallback& progress) {
+  if (rays.size() != counts.size()) {
+    throw UsageError(
+        {"there are " + std::to_string(counts.size()) + " counts for " + std::to_string(rays.size()) + " rays",
+         "in Caster::count", "give as many counts as rays"});
+  }
+  if (impl_->counts_by_lists(rays)) {
+    const auto take = [&](const HitList& list) {
+      for (size_t i = 0; i + 1 < list.offsets.size(); ++i) {
+        counts[list.first_ray + i] = static_cast<int32_t>(list.offsets[i + 1] - list.offsets[i]);
+      }
+    };
+    return list(rays, take, kListBytes, progress);
+  }
+  double time_ms = 0.0;
+  for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
+    const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
+    impl_->chunk_counts.resize(count);
+    const std::span<const Ray> chunk = rays.subspan(first, count);
+    time_ms += impl_->count(chunk, impl_->chunk_counts, impl_->order_of_crossings(chunk));
+    // No ray has 2^31 crossings: there are fewer than 2^27 primitives.
+    std::ranges::copy(impl_->chunk_counts, counts.begin() + static_cast<ptrdiff_t>(first));
+    tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
+  }
+  return time_ms;
+}
+
+double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t budget_bytes,
+                    const ProgressCallback& progress) {
+  double time_ms = 0.0;
+  for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
+    const std::span<const Ray> chunk = rays.subspan(first, std::min(RayKernel::kMaxRays, rays.size() - first));
+    std::vector<uint32_t>& counts = impl_->chunk_counts;
+    counts.resize(chunk.size());
+    const Impl::Order order = impl_->order_of_crossings(chunk);
+    time_ms += impl_->count(chunk, counts, order);
+    // How many are listed together, whole rays, hangs on the device too.
+    const uint64_t most_listed = impl_->kernel_for(HitQuery::kAll, order).most_listed(chunk.size());
+    const uint64_t most = std::min(budget_bytes / sizeof(Hit), most_listed);
+    for (size_t begin = 0; begin < chunk.size();) {
+      uint64_t total = counts[begin];
+      size_t end = begin + 1;
+      while (end < chunk.size() && total + counts[end] <= most) total += counts[end++];
+      if (total > most_listed) {
+        throw RunError({"the ray has " + std::to_string(total) + " hits, of which a buffer of the device holds " +
+                            std::to_string(most_listed),
+                        "ray " + std::to_string(first + begin), "list parts of it by tmin and tmax"});
+      }
+      time_ms += impl_->list(chunk.subspan(begin, end - begin), std::span(counts).subspan(begin, end - begin), order);
+      sink({first + begin, impl_->list_offsets, impl_->list_hits});
+      tell_progress(progress, static_cast<double>(first + end) / static_cast<double>(rays.size()));
+      begin = end;
+    }
   }
   return time_ms;
 }

@@ -9,7 +9,8 @@
 namespace promin {
 
 struct TunedCasterOptions : CasterOptions {
-  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl; empty for promin's own.
+  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, for cast() alone; empty for promin's
+  /// own.
   std::span<const uint32_t> spirv = {};
 };
 

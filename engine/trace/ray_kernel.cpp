@@ -6,10 +6,12 @@
 #include <array>
 #include <cassert>
 #include <optional>
+#include <vector>
 
 #include "cast.spv.h"
 #include "core/divide_up.h"
 #include "core/stopwatch.h"
+#include "crossings.spv.h"
 #include "device/device.h"
 #include "device_scene/device_scene.h"
 #include "trace/cut_loops.h"
@@ -24,14 +26,29 @@ constexpr uint32_t kGroupLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 constexpr double kFirstRays = 64.0 * kGroupLanes;
 static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
 
-vk::DeviceSize hits_size(size_t ray_count) {
-  return sizeof(layout::Dispatch) + ray_count * sizeof(layout::HitRecord);
+constexpr auto kRecordsUsage = vk::BufferUsageFlagBits::eStorageBuffer;
+
+vk::DeviceSize hits_size(size_t record_count) {
+  return sizeof(layout::Dispatch) + record_count * sizeof(layout::HitRecord);
+}
+
+bool asks_for_crossings(HitQuery query) {
+  return query == HitQuery::kCount || query == HitQuery::kAll;
+}
+
+std::span<const uint32_t> spirv_of(const RayKernelOptions& options) {
+  if (!options.spirv.empty()) return options.spirv;
+  return asks_for_crossings(options.query) ? crossings_spirv() : cast_spirv();
 }
 
 }  // namespace
 
 std::span<const uint32_t> cast_spirv() {
   return k_cast_spirv;
+}
+
+std::span<const uint32_t> crossings_spirv() {
+  return k_crossings_spirv;
 }
 
 struct RayKernel::Impl {
@@ -44,16 +61,19 @@ struct RayKernel::Impl {
     const layout::ViewConstants values = make_cast_constants(scene->constants());
     view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
     view_constants->write(std::as_bytes(std::span(&values, 1)));
-    make_buffers(1);
+    make_buffers(1, 1);
     std::vector<gpu::SpecializationConstant> constants =
         traversal_constants(options.traversal.value_or(traversal_form(device.profile(), options.packet_size)),
                             options.features, scene->stack_size(), fetches_texels());
     constants.push_back({layout::CONSTANT_PACKET_SIZE, options.packet_size});
-    constants.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, options.query == HitQuery::kAny ? 1U : 0U});
+    constants.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, options.query == HitQuery::kNearest ? 0U : 1U});
+    if (asks_for_crossings(options.query)) {
+      constants.push_back({layout::CONSTANT_LISTS_CROSSINGS, options.query == HitQuery::kAll ? 1U : 0U});
+    }
     std::vector<gpu::BoundBuffer> buffers = scene->geometry();
     buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &*view_constants});
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
-    kernel.emplace(device, options.spirv, constants, buffers);
+    kernel.emplace(device, spirv_of(options), constants, buffers);
     // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
     const layout::Dispatch no_rays = make_cast_dispatch(scene->constants(), 0, 0);
     kernel->run(no_rays, *hits, uvec2(1));
@@ -71,18 +91,20 @@ struct RayKernel::Impl {
            RayKernel::kMaxRays * sizeof(layout::RayRecord) <= device.profile().most_texel_bytes;
   }
 
-  void make_buffers(size_t ray_count) {
-    if (ray_count <= capacity) return;
+  void make_buffers(size_t ray_count, size_t record_count) {
+    if (ray_count <= ray_capacity && record_count <= record_capacity) return;
+    ray_count = std::max(ray_count, ray_capacity);
+    record_count = std::max(record_count, record_capacity);
     // Both are there before either is replaced: the pipeline stays bound to buffers that live.
-    constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
     gpu::Buffer new_rays(device, ray_count * sizeof(layout::RayRecord),
-                         kStorage | vk::BufferUsageFlagBits::eUniformTexelBuffer);
+                         kRecordsUsage | vk::BufferUsageFlagBits::eUniformTexelBuffer);
     vk::raii::BufferView new_ray_texels = new_rays.make_texel_view();
-    gpu::Buffer new_hits(device, hits_size(ray_count), kStorage);
+    gpu::Buffer new_hits(device, hits_size(record_count), kRecordsUsage);
     ray_texels = std::move(new_ray_texels);
     rays.emplace(std::move(new_rays));
     hits.emplace(std::move(new_hits));
-    capacity = ray_count;
+    ray_capacity = ray_count;
+    record_capacity = record_count;
     if (!kernel) return;
     for (const gpu::BoundBuffer& buffer : ray_buffers()) kernel->bind(buffer);
   }
@@ -95,7 +117,36 @@ struct RayKernel::Impl {
   }
 
   double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
-    make_buffers(input.size());
+    make_buffers(input.size(), input.size());
+    const double time_ms = trace(input);
+    hits->read(std::as_writable_bytes(records), sizeof(layout::Dispatch));
+    return time_ms;
+  }
+
+  double list(std::span<const layout::RayRecord> input, std::span<const uint32_t> counts,
+              std::span<layout::HitRecord> crossings) {
+    make_buffers(input.size(), input.size() + crossings.size());
+    heads.resize(input.size());
+    auto place = static_cast<uint32_t>(input.size());
+    for (size_t i = 0; i < input.size(); ++i) {
+      heads[i] = {uvec4(0, place, counts[i], 0), uvec4(0)};
+      place += counts[i];
+    }
+    const std::span<std::byte> head_bytes = std::as_writable_bytes(std::span(heads));
+    hits->write(head_bytes, sizeof(layout::Dispatch));
+    const double time_ms = trace(input);
+    hits->read(head_bytes, sizeof(layout::Dispatch));
+    for (size_t i = 0; i < input.size(); ++i) {
+      if (heads[i].a.x != counts[i]) {
+        throw RunError({"the device lists other crossings of a ray than it counts", "on this device",
+                        "take another device", Setting::kDevice});
+      }
+    }
+    hits->read(std::as_writable_bytes(crossings), hits_size(input.size()));
+    return time_ms;
+  }
+
+  double trace(std::span<const layout::RayRecord> input) {
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
     const uint32_t most_group_rows = device.profile().most_group_rows;
@@ -115,7 +166,6 @@ struct RayKernel::Impl {
       total_ms += time_ms;
       first += count;
     }
-    hits->read(std::as_writable_bytes(records), sizeof(layout::Dispatch));
     return total_ms;
   }
 
@@ -127,7 +177,10 @@ struct RayKernel::Impl {
   std::optional<gpu::Buffer> rays;
   vk::raii::BufferView ray_texels{nullptr};
   std::optional<gpu::Buffer> hits;
-  size_t capacity = 0;
+  size_t ray_capacity = 0;
+  size_t record_capacity = 0;
+  /// Of lists: each ray's own record.
+  std::vector<layout::HitRecord> heads;
   std::optional<TracingKernel> kernel;
   double pipeline_ms = 0.0;
 };
@@ -146,6 +199,22 @@ double RayKernel::run(std::span<const layout::RayRecord> rays, std::span<layout:
   double time_ms = 0.0;
   gpu::translate_vulkan_errors([&] { time_ms = impl_->run(rays, records); });
   return time_ms;
+}
+
+double RayKernel::list(std::span<const layout::RayRecord> rays, std::span<const uint32_t> counts,
+                       std::span<layout::HitRecord> crossings) {
+  assert(rays.size() <= kMaxRays && rays.size() == counts.size() && crossings.size() <= most_listed(rays.size()));
+  if (rays.empty()) return 0.0;
+  double time_ms = 0.0;
+  gpu::translate_vulkan_errors([&] { time_ms = impl_->list(rays, counts, crossings); });
+  return time_ms;
+}
+
+uint64_t RayKernel::most_listed(size_t ray_count) const {
+  const uint64_t bytes = gpu::Buffer::most_bytes(impl_->device, kRecordsUsage);
+  const uint64_t most_records = (bytes - sizeof(layout::Dispatch)) / sizeof(layout::HitRecord);
+  // Places are numbers of 32 bits.
+  return std::min<uint64_t>(most_records, UINT32_MAX) - std::min<uint64_t>(ray_count, most_records);
 }
 
 double RayKernel::pipeline_ms() const {

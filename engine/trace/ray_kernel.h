@@ -19,13 +19,15 @@ namespace gpu {
 class Device;
 }
 
-/// SPIR-V of shaders/cast.comp.
+/// SPIR-V of shaders/cast.comp, for the nearest hit and any.
 std::span<const uint32_t> cast_spirv();
+/// SPIR-V of shaders/crossings.comp, for counts and lists.
+std::span<const uint32_t> crossings_spirv();
 
 struct RayKernelOptions {
   /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; its workgroups take
-  /// the work that shaders/group_rows.glsl gives them.
-  std::span<const uint32_t> spirv = cast_spirv();
+  /// the work that shaders/group_rows.glsl gives them. Empty: promin's own for the query.
+  std::span<const uint32_t> spirv = {};
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;
   /// Rays in a row that a lane traces together. It changes no answer, but step counts are then of the packet.
@@ -53,8 +55,17 @@ class RayKernel {
   static constexpr size_t kMaxRays = size_t{1} << 20;
 
   /// Fills as many records as there are rays, at most kMaxRays; what layout.h says is not told of any hit stays as it
-  /// was before. Returns device milliseconds.
+  /// was before. Of kCount a.x of each record is the ray's number of crossings. Returns device milliseconds. Not for
+  /// kAll.
   double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records);
+
+  /// For kAll: fills the crossings of the rays, of which each has `counts` at the same place, as kCount told; ray by
+  /// ray, a ray's in whatever order the tree has them. At most most_listed(rays.size()) of them. Throws RunError where
+  /// a ray has another number.
+  double list(std::span<const layout::RayRecord> rays, std::span<const uint32_t> counts,
+              std::span<layout::HitRecord> crossings);
+  /// How many crossings of so many rays a buffer of the device can hold.
+  uint64_t most_listed(size_t ray_count) const;
 
   /// Time that compiling took.
   double pipeline_ms() const;

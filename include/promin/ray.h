@@ -49,6 +49,10 @@ enum class HitQuery {
   kNearest,
   /// Whether there is any hit (occlusion), which is answered faster.
   kAny,
+  /// How many crossings the ray has with all primitives (Caster::count).
+  kCount,
+  /// All of these crossings (Caster::list).
+  kAll,
 };
 
 }  // namespace promin

@@ -28,7 +28,7 @@ uint face_of(uint axis, bool is_positive) { return 2u * axis + (is_positive ? 1u
 // Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986, from the closest approach to the centre, where rounding
 // is small beside the box. The rotation is the same for the origin and all three slabs: what it rounds turns and moves
 // the box as a whole.
-Crossing intersect_box(Ray ray, Primitive p) {
+Inside ends_of_box(Ray ray, Primitive p) {
   vec3 given_size = box_half_size(p);
   float largest = max_abs(given_size);
   Approach near = approach(ray, box_center(p));
@@ -49,13 +49,15 @@ Crossing intersect_box(Ray ray, Primitive p) {
   uint exit_axis = exits.x <= exits.y ? (exits.x <= exits.z ? 0u : 2u) : (exits.y <= exits.z ? 1u : 2u);
   float entry = component(entries, entry_axis);
   float exit = component(exits, exit_axis);
-  if (!(entry <= exit)) return NO_CROSSING;
+  if (!is_interval(entry, exit)) return NOWHERE;
   float unscale = 1.0 / scale;
   precise float t_entry = near.t_far + (near.t_near + entry * unscale);
   precise float t_exit = near.t_far + (near.t_near + exit * unscale);
-  return nearest_crossing(ray, Inside(t_entry, face_of(entry_axis, component(signs, entry_axis) < 0.0), t_exit,
-                                      face_of(exit_axis, component(signs, exit_axis) > 0.0)));
+  return Inside(t_entry, face_of(entry_axis, component(signs, entry_axis) < 0.0), t_exit,
+                face_of(exit_axis, component(signs, exit_axis) > 0.0));
 }
+
+Crossing intersect_box(Ray ray, Primitive p) { return nearest_crossing(ray, ends_of_box(ray, p)); }
 
 SurfacePoint box_surface(Ray ray, Primitive p, Hit hit) {
   vec3 half_size = box_half_size(p);

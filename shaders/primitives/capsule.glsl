@@ -60,7 +60,7 @@ Inside inside_end(Ray ray, vec3 from_center, float radius, uint part) {
   Approach near = approach_from(ray, from_center);
   float scale = power_of_two_inverse(radius);
   float chord2 = chord_square(ray, near, radius, scale);
-  if (!(chord2 >= 0.0)) return NOWHERE;
+  if (!is_interval(0.0, chord2)) return NOWHERE;
   precise float half_chord = sqrt(chord2) * (1.0 / scale);
   precise float entry = near.t_far + (near.t_near - half_chord);
   precise float exit = near.t_far + (near.t_near + half_chord);
@@ -69,7 +69,7 @@ Inside inside_end(Ray ray, vec3 from_center, float radius, uint part) {
 
 // The centres of the parts are never rounded in the world, but seen from the ray's origin: a capsule far from the
 // world's origin is as exact as one near it.
-Crossing intersect_capsule(Ray ray, Primitive p) {
+Inside ends_of_capsule(Ray ray, Primitive p) {
   Capsule c = capsule_of(p);
   precise vec3 from_center = ray.origin - c.center;
   precise vec3 up = c.half_height * c.axis;
@@ -81,8 +81,10 @@ Crossing intersect_capsule(Ray ray, Primitive p) {
     precise vec3 from_middle = from_center - c.side_middle * c.axis;
     inside = hull_of(inside, inside_frustum(ray, approach_from(ray, from_middle), side_of(c, vec3(0.0))));
   }
-  return nearest_crossing(ray, inside);
+  return inside;
 }
+
+Crossing intersect_capsule(Ray ray, Primitive p) { return nearest_crossing(ray, ends_of_capsule(ray, p)); }
 
 // Which part a point of the surface belongs to. Not the one that the ray met: where two parts meet they touch, rounding
 // picks either in a strip as wide as the root of it, and their normals part faster than their surfaces. The sphere of

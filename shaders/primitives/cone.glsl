@@ -14,5 +14,6 @@ Frustum cone_of(Primitive p) {
 // See intersect_frustum. o + t d lies within 4.1 u (|o - c| + size) of the surface, measured for half angles of 0.1 to
 // 89.9 degrees.
 Crossing intersect_cone(Ray ray, Primitive p) { return intersect_frustum(ray, cone_of(p)); }
+Inside ends_of_cone(Ray ray, Primitive p) { return ends_of_frustum(ray, cone_of(p)); }
 
 SurfacePoint cone_surface(Ray ray, Primitive p, Hit hit) { return frustum_surface(ray, cone_of(p), hit); }

@@ -40,8 +40,9 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   precise float slab_exit = (-entry_z - z) * inverse_dz;
   uint entry_cap = dz < 0.0 ? PART_TOP : PART_BOTTOM;
   uint exit_cap = dz < 0.0 ? PART_BOTTOM : PART_TOP;
-  if (has(FEATURE_OPEN_SHAPES) && f.is_open) {
-    // A ray across the axis, just beyond a rim, is in the slab far from here alone, where the side drowns in rounding.
+  if (ASKS_FOR_ALL || (has(FEATURE_OPEN_SHAPES) && f.is_open)) {
+    // A ray across the axis, just beyond a rim, is in the slab far from here alone, where the side drowns in rounding:
+    // one end may seem to lie there, the other one behind the ray.
     precise float reach = half_height + radius + abs(f.slope) * half_height;
     if (slab_entry > reach || slab_exit < -reach) return NOWHERE;
   }
@@ -69,7 +70,7 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   float side_entry = -INFINITY;
   float side_exit = INFINITY;
   if (spread2 > 0.0) {
-    if (a > 0.0 && !(discriminant >= 0.0)) return NOWHERE;
+    if (a > 0.0 && !is_interval(0.0, discriminant)) return NOWHERE;
     precise float root = sqrt(max(discriminant, 0.0));
     precise float q = b < 0.0 ? root - b : -(b + root);
     precise float t0 = c / q;
@@ -111,7 +112,7 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   }
   float entry = enters_side ? side_entry : cap_entry;
   float exit = exits_side ? side_exit : cap_exit;
-  if (!(entry <= exit)) return NOWHERE;
+  if (!is_interval(entry, exit)) return NOWHERE;
   float unscale = 1.0 / scale;
   precise float t_entry = near.t_far + (near.t_near + (t_base + entry) * unscale);
   precise float t_exit = near.t_far + (near.t_near + (t_base + exit) * unscale);
@@ -128,6 +129,15 @@ Crossing intersect_frustum(Ray ray, Frustum f) {
     return NO_CROSSING;
   }
   return nearest_crossing(ray, inside);
+}
+
+Inside ends_of_frustum(Ray ray, Frustum f) {
+  Inside inside = inside_frustum(ray, approach(ray, f.center), f);
+  if (has(FEATURE_OPEN_SHAPES) && f.is_open) {
+    if (inside.entry_part != PART_SIDE) inside.entry = -INFINITY;
+    if (inside.exit_part != PART_SIDE) inside.exit = INFINITY;
+  }
+  return inside;
 }
 
 // A point of the surface, seen from the centre, with its normal.

@@ -16,16 +16,18 @@ float chord_square(Ray ray, Approach near, float given_radius, float scale) {
   return chord2;
 }
 
-Crossing intersect_sphere(Ray ray, Primitive p) {
+Inside ends_of_sphere(Ray ray, Primitive p) {
   Approach near = approach(ray, sphere_center(p));
   float scale = power_of_two_inverse(sphere_radius(p));
   float chord2 = chord_square(ray, near, sphere_radius(p), scale);
-  if (!(chord2 >= 0.0)) return NO_CROSSING;
+  if (!is_interval(0.0, chord2)) return NOWHERE;
   precise float half_chord = sqrt(chord2) * (1.0 / scale);
   precise float entry = near.t_far + (near.t_near - half_chord);
   precise float exit = near.t_far + (near.t_near + half_chord);
-  return nearest_crossing(ray, entry, PART_SIDE, exit, PART_SIDE);
+  return Inside(entry, PART_SIDE, exit, PART_SIDE);
 }
+
+Crossing intersect_sphere(Ray ray, Primitive p) { return nearest_crossing(ray, ends_of_sphere(ray, p)); }
 
 SurfacePoint sphere_surface(Ray ray, Primitive p, Hit hit) {
   precise vec3 from_center = (ray.origin - sphere_center(p)) + hit.t * ray.direction;

@@ -49,12 +49,17 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
 
+// The sign of the area over the edge between two corners, where a ray meets the edge: as if all rays were moved aside by
+// an infinitely small step, to the right and by its square down (Edelsbrunner and Muecke, "Simulation of Simplicity",
+// ACM TOG 1990). The other way along the edge it is the opposite.
+bool leads_up(vec2 from, vec2 to) { return to.y > from.y || (to.y == from.y && to.x > from.x); }
+
 // Whether the ray meets an edge from whose triangle it is taken, so that of the triangles that share it on both sides
-// one alone is met, and of those around a corner too: as if all rays were moved aside by an infinitely small step.
+// one alone is met, and of those around a corner too.
 bool is_left_open(float area, vec2 from, vec2 to, float determinant) {
   vec2 way = determinant < 0.0 ? from : to;
   vec2 start = determinant < 0.0 ? to : from;
-  return area == 0.0 && !(way.y > start.y || (way.y == start.y && way.x > start.x));
+  return area == 0.0 && !leads_up(start, way);
 }
 bool is_on_open_edge(ShearedTriangle sheared) {
   return is_left_open(sheared.areas.x, sheared.b, sheared.c, sheared.determinant) ||

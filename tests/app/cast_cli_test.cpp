@@ -32,6 +32,14 @@ class CastTest : public CliTest {
     std::memcpy(hits.data(), bytes.data() + header, hits.size() * sizeof(Hit));
     return hits;
   }
+  template <typename T>
+  std::vector<T> read_array(const std::string& file) const {
+    const std::string bytes = read(file);
+    const size_t header = bytes.find('\n') + 1;
+    std::vector<T> numbers((bytes.size() - header) / sizeof(T));
+    std::memcpy(numbers.data(), bytes.data() + header, numbers.size() * sizeof(T));
+    return numbers;
+  }
 };
 
 /// Of the square at z = 0 seen from z = 4: a hit, a miss beside it, one cut off by tmax.
@@ -91,6 +99,89 @@ TEST_F(CastTest, AnyTellsOnlyWhether) {
   }
 }
 
+/// Those of kRays and one along the other diagonal of the square, through both triangles' common edge.
+std::vector<Ray> rays_to_count() {
+  std::vector<Ray> rays = kRays;
+  rays.push_back({vec3(0, 0, 4), 0, vec3(0, 0, -2), kInfinity});
+  return rays;
+}
+
+TEST_F(CastTest, CountTellsHowOften) {
+  write_rays("rays.npy", rays_to_count());
+  const ProcessResult result =
+      run({"cast", "square.gltf", "rays.npy", "-o", "counts.npy", "--count", "--stats", "s.json", "--repeat", "2"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, testing::MatchesRegex("4 rays in .* counts.npy\n"));
+  EXPECT_THAT(read("counts.npy"), HasSubstr("'<i4', 'fortran_order': False, 'shape': (4,)"));
+  EXPECT_THAT(read_array<int32_t>("counts.npy"), ElementsAre(1, 0, 0, 1));
+  const json stats = json::parse(read("s.json"));
+  EXPECT_EQ(stats.at("rays").at("primary"), 4);
+  EXPECT_EQ(stats.at("trace_runs_ms").size(), 2U);
+}
+
+TEST_F(CastTest, AllTellsEveryHit) {
+  // As in ObjectsHaveTheFilesNumbers; a ray through all three spheres, one beside them, one through the last.
+  write("three.nff", "f 1 1 1 1 0 0 0 0 s 0 0 0 1 s 5 0 0 1 f 1 0 0 1 0 0 0 0 f 1 0 0 1 0 0 0 0 s 10 0 0 1");
+  write_rays("rays.npy", {{vec3(-4, 0, 0), 0, vec3(2, 0, 0), kInfinity},
+                          {vec3(-4, 3, 0), 0, vec3(1, 0, 0), kInfinity},
+                          {vec3(10, 0, 4), 0, vec3(0, 0, -1), kInfinity}});
+  const ProcessResult result = run({"cast", "three.nff", "rays.npy", "-o", "hits.npy", "--all", "--offsets", "o.npy",
+                                    "--repeat", "2", "--stats", "s.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, testing::MatchesRegex("3 rays, 8 hits in .* hits.npy, o.npy\n"));
+  EXPECT_THAT(read_array<uint64_t>("o.npy"), ElementsAre(0, 6, 6, 8));
+  std::vector<float> ts;
+  std::vector<int32_t> objects;
+  for (const Hit& hit : read_hits("hits.npy")) {
+    ts.push_back(hit.t);
+    objects.push_back(hit.object);
+  }
+  EXPECT_THAT(ts, ElementsAre(1.5F, 2.5F, 4, 5, 6.5F, 7.5F, 3, 5));
+  EXPECT_THAT(objects, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1));
+  EXPECT_EQ(json::parse(read("s.json")).at("rays").at("primary"), 3);
+  EXPECT_THAT(files(), ElementsAre("hits.npy", "o.npy", "rays.npy", "s.json", "three.nff"));
+}
+
+TEST_F(CastTest, NoRaysHaveNoCountsAndOneOffset) {
+  write_rays("rays.npy", {});
+  ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "c.npy", "--count", "--quiet"}).exit_code, 0);
+  EXPECT_THAT(read_array<int32_t>("c.npy"), IsEmpty());
+  ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "h.npy", "--all", "--offsets", "o.npy"}).exit_code, 0);
+  EXPECT_THAT(read_hits("h.npy"), IsEmpty());
+  EXPECT_THAT(read_array<uint64_t>("o.npy"), ElementsAre(0));
+}
+
+// Rays beyond a chunk, hits beyond a list, and any number of the driver's threads.
+TEST_F(CastTest, CountsAndListsOfManyRays) {
+  std::vector<Ray> rays((size_t{1} << 20) + 1000, kRays[0]);
+  for (size_t i = 0; i < rays.size(); ++i) rays[i].origin.x = i % 3 == 0 ? 2.0F : 0.25F;
+  write_rays("rays.npy", rays);
+  // The triangle five times.
+  std::string obj = kTriangleObj;
+  for (int i = 0; i < 4; ++i) obj += "f 1 2 3\n";
+  write("five.obj", obj);
+  ASSERT_EQ(run({"cast", "five.obj", "rays.npy", "-o", "c.npy", "--count", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(run({"cast", "five.obj", "rays.npy", "-o", "h.npy", "--all", "--offsets", "o.npy", "--quiet"}).exit_code,
+            0);
+  const std::vector<int32_t> counts = read_array<int32_t>("c.npy");
+  const std::vector<uint64_t> offsets = read_array<uint64_t>("o.npy");
+  const std::vector<Hit> hits = read_hits("h.npy");
+  ASSERT_EQ(offsets.size(), rays.size() + 1);
+  ASSERT_EQ(offsets.back(), hits.size());
+  size_t wrong = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    wrong += counts[i] != (i % 3 == 0 ? 0 : 5) || offsets[i + 1] - offsets[i] != static_cast<uint64_t>(counts[i]);
+    for (uint64_t k = offsets[i]; k < offsets[i + 1]; ++k)
+      wrong += hits[k].primitive != static_cast<int>(k - offsets[i]);
+  }
+  EXPECT_EQ(wrong, 0U);
+  options_.environment["LP_NUM_THREADS"] = "1";
+  ASSERT_EQ(run({"cast", "five.obj", "rays.npy", "-o", "h1.npy", "--all", "--offsets", "o1.npy", "--quiet"}).exit_code,
+            0);
+  EXPECT_EQ(read("h1.npy"), read("h.npy"));
+  EXPECT_EQ(read("o1.npy"), read("o.npy"));
+}
+
 TEST_F(CastTest, NoRaysAreNoHits) {
   write_rays("rays.npy", {});
   const ProcessResult result = run({"cast", "triangle.obj", "rays.npy", "-o", "hits.npy", "--stats", "s.json"});
@@ -138,6 +229,21 @@ TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
   expect_failure(run({"cast", "none.obj", "rays.npy", "-o", "hits.npy"}), 3, "none.obj");
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "none/hits.npy"}), 1, "folder");
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--device", "none"}), 4, "none");
+  const auto refused = [&](const OptionValues& options, const std::string& part, int exit_code = 2) {
+    OptionValues arguments = {"cast", "square.gltf", "rays.npy", "-o", "hits.npy"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    expect_failure(run(arguments), exit_code, part);
+  };
+  refused({"--any", "--count"}, "--any and --count");
+  refused({"--any", "--all", "--offsets", "o.npy"}, "--any and --all");
+  refused({"--count", "--all", "--offsets", "o.npy"}, "--count and --all");
+  refused({"--all"}, "--offsets");
+  refused({"--offsets", "o.npy"}, "--all");
+  refused({"--count", "--offsets", "o.npy"}, "--all");
+  refused({"--all", "--offsets", "o.csv"}, "use .npy");
+  refused({"--all", "--offsets", "hits.npy"}, "named twice");
+  refused({"--all", "--offsets", "rays.npy"}, "overwrite an input");
+  refused({"--all", "--offsets", "none/o.npy"}, "folder", 1);
   EXPECT_THAT(files(), ElementsAre("rays.npy"));
 }
 
@@ -148,6 +254,36 @@ TEST_F(CastTest, AFullDiskLeavesTheOldFile) {
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"}), 1, "cannot write the output file");
   EXPECT_EQ(read("hits.npy"), "old");
   EXPECT_THAT(files(), ElementsAre("hits.npy", "rays.npy"));
+}
+
+TEST_F(CastTest, AFullDiskLeavesBothOldFiles) {
+  write_rays("rays.npy", std::vector<Ray>(4000, kRays[0]));
+  write("hits.npy", "old hits");
+  write("o.npy", "old offsets");
+  // There is room for the offsets, and not for the hits.
+  fill_disk(100'000);
+  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--all", "--offsets", "o.npy"}), 1,
+                 "cannot write the output file");
+  EXPECT_EQ(read("hits.npy"), "old hits");
+  EXPECT_EQ(read("o.npy"), "old offsets");
+  EXPECT_THAT(files(), ElementsAre("hits.npy", "o.npy", "rays.npy"));
+}
+
+TEST_F(CastTest, AnInterruptLeavesNeitherOfTwoFiles) {
+  write_rays("rays.npy", std::vector<Ray>(1000, kRays[0]));
+  write("o.npy", "old");
+  for (const int delay_ms : {100, 1000}) {
+    Process program(PROMIN_EXECUTABLE,
+                    {"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--all", "--offsets", "o.npy", "--repeat",
+                     "10000", "--quiet"},
+                    options_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    program.send(SIGINT);
+    const ProcessResult result = program.wait();
+    EXPECT_EQ(result.signal, SIGINT) << result.err;
+    EXPECT_EQ(read("o.npy"), "old");
+    EXPECT_THAT(files(), ElementsAre("o.npy", "rays.npy"));
+  }
 }
 
 TEST_F(CastTest, AnInterruptLeavesNoPartialFile) {

@@ -43,6 +43,11 @@ int main(int argument_count, char** arguments) {
   const std::vector<promin::Ray> rays = {{{0, 5, 0}, 0, {0, -1, 0}}};
   std::vector<promin::Hit> hits(rays.size());
   caster.cast(rays, hits);
+  // Through the ball and the edge that the floor's triangles share.
+  std::vector<int32_t> counts(rays.size());
+  caster.count(rays, counts);
+  size_t listed = 0;
+  caster.list(rays, [&](const promin::HitList& list) { listed += list.hits.size(); });
 
   // Pictures are the plugin's, which is to be found wherever this program lies.
   if (argument_count > 1) promin::write_image(arguments[1], after.image);
@@ -58,7 +63,7 @@ int main(int argument_count, char** arguments) {
   }
 
   const bool is_right = !is_rebuilt && is_written && is_caught && before.image.pixels != after.image.pixels &&
-                        hits[0].object == 1 && hits[0].t == 3.0F;
+                        hits[0].object == 1 && hits[0].t == 3.0F && counts[0] == 3 && listed == 3;
   std::puts(is_right ? "the library works" : "the library does not do what it says");
   return is_right ? 0 : 1;
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 
 #include "promin/error.h"
 #include "support/temp_folder.h"
@@ -42,6 +43,36 @@ TEST_F(FileTest, WithoutCommitTheOldFileStays) {
   }
   EXPECT_EQ(text_of(folder_ / "a.txt"), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "the temporary file was left behind";
+}
+
+TEST_F(FileTest, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
+  const auto commit = [&](const std::function<void()>& before) {
+    AtomicFile a(folder_ / "a.txt");
+    AtomicFile b(folder_ / "b.txt");
+    AtomicFile c(folder_ / "c.txt");
+    AtomicFile* const files[] = {&a, &b, &c};
+    for (const AtomicFile* file : files) std::ofstream(file->temporary()) << "new";
+    before();
+    AtomicFile::commit_together(files);
+  };
+  write_text_file(folder_ / "a.txt", "old");
+  // The last cannot be renamed: a folder has its name by now.
+  EXPECT_THROW(commit([&] { fs::create_directory(folder_ / "c.txt"); }), RunError);
+  EXPECT_EQ(text_of(folder_ / "a.txt"), "old");
+  EXPECT_FALSE(fs::exists(folder_ / "b.txt"));
+  fs::remove(folder_ / "c.txt");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "something was left behind";
+  // Nor is any renamed where one cannot be read back.
+  EXPECT_THROW(commit([&] {
+                 for (const auto& entry : fs::directory_iterator(folder_)) {
+                   if (entry.path().string().find("c.tmp") != std::string::npos) fs::remove(entry.path());
+                 }
+               }),
+               RunError);
+  EXPECT_EQ(text_of(folder_ / "a.txt"), "old");
+  commit([] {});
+  for (const char* name : {"a.txt", "b.txt", "c.txt"}) EXPECT_EQ(text_of(folder_ / name), "new") << name;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "something was left behind";
 }
 
 // Of processes of this machine that are gone; others may still write, and a user's files are none of ours.

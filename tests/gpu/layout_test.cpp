@@ -12,6 +12,7 @@
 
 #include "camera_stage.spv.h"
 #include "cast.spv.h"
+#include "crossings.spv.h"
 #include "device/spirv.h"
 #include "follow_paths.spv.h"
 #include "gpu/spirv_module.h"
@@ -84,6 +85,7 @@ struct Shader {
 };
 
 const Shader kShaders[] = {{"Cast", k_cast_spirv, 180},
+                           {"Crossings", k_crossings_spirv, 180},
                            {"CameraStage", k_camera_stage_spirv, 270},
                            {"TraceShadowRays", k_trace_shadow_rays_spirv, 180},
                            {"FollowPaths", k_follow_paths_spirv, 270},
@@ -124,6 +126,9 @@ TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
                                                     {"WAITS_WITH_SOLIDS", layout::CONSTANT_WAITS_WITH_SOLIDS}};
   EXPECT_EQ(test::SpirvModule(k_camera_stage_spirv).spec_ids, expected);
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
+  std::map<std::string, uint32_t> of_crossings = expected;
+  of_crossings["LISTS_CROSSINGS"] = layout::CONSTANT_LISTS_CROSSINGS;
+  EXPECT_EQ(test::SpirvModule(k_crossings_spirv).spec_ids, of_crossings);
 }
 
 class ShaderTest : public testing::TestWithParam<Shader> {};

@@ -19,6 +19,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "primitives.glsl"
 #include "packet.glsl"
 #include "no_cutouts.glsl"
+#include "packet_shapes.glsl"
 #include "packet_triangles.glsl"
 #include "family.glsl"
 #include "node_boxes.glsl"

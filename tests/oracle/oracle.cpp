@@ -25,7 +25,7 @@ std::array<Real, 2> solve_quadratic(Real a, Real b, Real c) {
   return {q / a, c / q};
 }
 
-/// Collects what one ray meets and keeps the nearest.
+/// Collects what one ray meets and keeps the nearest, or all.
 class Search {
  public:
   Search(const world::Scene& scene, const Ray& ray, const Sight& sight) : scene_(scene), ray_(ray), sight_(sight) {
@@ -37,11 +37,16 @@ class Search {
     std::visit([this](const auto& solid) { intersect(solid); }, shape);
   }
   const Hit& nearest() const { return nearest_; }
+  void keep_all(std::vector<Hit>& hits) { all_ = &hits; }
 
  private:
   void offer(Real t, int32_t primitive, Real u, Real v, const Vector& normal) {
     if (!(t > ray_.tmin && t < ray_.tmax && t < nearest_.t)) return;
     const Hit hit{t, object_, primitive, u, v, glm::normalize(normal)};
+    if (all_ != nullptr) {
+      all_->push_back(hit);
+      return;
+    }
     if (!is_passed(hit)) nearest_ = hit;
   }
   bool is_passed(const Hit& hit) const {
@@ -216,6 +221,7 @@ class Search {
   Sight sight_;
   int32_t object_ = 0;
   Hit nearest_;
+  std::vector<Hit>* all_ = nullptr;
 };
 
 }  // namespace
@@ -239,6 +245,18 @@ Hit find_nearest_hit(const world::Scene& scene, const Ray& ray, const Sight& sig
   Search search(scene, ray, sight);
   for (size_t i = 0; i < scene.objects.size(); ++i) search.visit(static_cast<int32_t>(i), scene.objects[i].shape);
   return search.nearest();
+}
+
+std::vector<Hit> find_all_hits(const world::Scene& scene, const Ray& ray) {
+  std::vector<Hit> hits;
+  if (!can_hit(ray)) return hits;
+  Search search(scene, ray, {});
+  search.keep_all(hits);
+  for (size_t i = 0; i < scene.objects.size(); ++i) search.visit(static_cast<int32_t>(i), scene.objects[i].shape);
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
+  });
+  return hits;
 }
 
 const Material& material_of(const world::Scene& scene, const Hit& hit) {

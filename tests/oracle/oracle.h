@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <vector>
 
 #include "scene/world_scene.h"
 
@@ -64,6 +65,10 @@ struct Sight {
 
 /// The nearest hit; of hits at the same t the one with the lower (object, primitive).
 Hit find_nearest_hit(const world::Scene& scene, const Ray& ray, const Sight& sight = {});
+
+/// All crossings, by t, then by (object, primitive); both of a solid. Where a triangle's edge or a solid's rim is met,
+/// each of the faces that have it has a crossing.
+std::vector<Hit> find_all_hits(const world::Scene& scene, const Ray& ray);
 
 /// The material of what was hit.
 const Material& material_of(const world::Scene& scene, const Hit& hit);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <fstream>
 
@@ -156,6 +157,40 @@ TEST_F(NpyTest, RaysThatAreWrittenAreReadBack) {
   ASSERT_EQ(read.size(), rays.size());
   reader.read(read);
   EXPECT_EQ(std::memcmp(read.data(), rays.data(), std::span(rays).size_bytes()), 0);
+}
+
+// Whatever the number that is known at the end.
+TEST_F(NpyTest, WritesAnArrayOfUnknownLength) {
+  for (const size_t count : {0U, 3U, 123456U}) {
+    const fs::path file = folder_ / "hits.npy";
+    std::vector<Hit> hits(count);
+    for (size_t i = 0; i < count; ++i) hits[i].object = static_cast<int32_t>(i);
+    HitWriter writer(file);
+    writer.write(hits);
+    writer.commit();
+    const std::string bytes = read(file);
+    const size_t header = 10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
+    EXPECT_EQ(header % 64, 0U);
+    EXPECT_EQ(bytes[header - 1], '\n');
+    EXPECT_THAT(bytes.substr(0, header), HasSubstr("'shape': (" + std::to_string(count) + ",), }"));
+    ASSERT_EQ(bytes.size(), header + 32 * count);
+    EXPECT_EQ(std::memcmp(bytes.data() + header, hits.data(), 32 * count), 0);
+  }
+}
+
+TEST_F(NpyTest, WritesCountsAndOffsets) {
+  CountWriter counts(folder_ / "counts.npy", 2);
+  counts.write(std::array{7, -1});
+  counts.commit();
+  const std::string count_bytes = read(folder_ / "counts.npy");
+  EXPECT_THAT(count_bytes, HasSubstr("'descr': '<i4', 'fortran_order': False, 'shape': (2,), }"));
+  EXPECT_EQ(count_bytes.substr(count_bytes.size() - 8), std::string("\7\0\0\0\xFF\xFF\xFF\xFF", 8));
+  OffsetWriter offsets(folder_ / "offsets.npy", 1);
+  offsets.write(std::array{uint64_t{1} << 40});
+  offsets.commit();
+  const std::string offset_bytes = read(folder_ / "offsets.npy");
+  EXPECT_THAT(offset_bytes, HasSubstr("'descr': '<u8', 'fortran_order': False, 'shape': (1,), }"));
+  EXPECT_EQ(offset_bytes.substr(offset_bytes.size() - 8), std::string("\0\0\0\0\0\1\0\0", 8));
 }
 
 TEST_F(NpyTest, WithoutACommitTheOldFileStays) {

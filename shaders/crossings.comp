@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// Counts each ray's crossings with all primitives, or where LISTS_CROSSINGS lists them (layout.h, HitRecord); a lane
+// takes PACKET_SIZE rays in a row. Both visit all that a ray meets, so ALL_ASK_FOR_ANY suits them: in any order.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#define ASKS_FOR_ALL true
+#include "layout.h"
+#include "bindings.glsl"
+#include "cast_bindings.glsl"
+#include "math.glsl"
+#include "ray.glsl"
+#include "make_ray.glsl"
+#include "primitives.glsl"
+#include "packet.glsl"
+#include "no_cutouts.glsl"
+#include "packet_crossings.glsl"
+#include "family.glsl"
+#include "node_boxes.glsl"
+#include "traversal.glsl"
+#include "group_rows.glsl"
+#include "loop_check.glsl"
+
+const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
+layout(local_size_x = LANES) in;
+
+// What was put in a list, as the host reads it.
+void finish(uint place, Ray ray, float unit) {
+  HitRecord record = hits[place];
+  vec2 weights = uintBitsToFloat(record.a.zw);
+  Hit hit = Hit(uintBitsToFloat(record.a.x), weights.x, weights.y, record.b.y, record.b.x, record.a.y);
+  vec3 normal = surface_point(ray, load_primitive(hit.primitive), hit).normal;
+  precise float t = hit.t * unit;
+  hits[place] = HitRecord(uvec4(floatBitsToUint(t), record.a.yzw), uvec4(floatBitsToUint(normal), record.b.z));
+}
+
+void main() {
+  uint first = first_ray() + PACKET_SIZE * (group_number() * LANES + gl_LocalInvocationIndex);
+  if (first >= end_ray()) return;
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    // A lane whose rays end before the packet does takes the last ray again, which then takes no part.
+    bool is_ray = first + i < end_ray();
+    uint index = is_ray ? first + i : end_ray() - 1u;
+    RayRecord request = load_ray(index);
+    packet[i] = make_ray(request.origin_tmin.xyz, request.direction_tmax.xyz, request.origin_tmin.w,
+                         request.direction_tmax.w);
+    units[i] = power_of_two_inverse(max_abs(request.direction_tmax.xyz));
+    given_tmins[i] = max(request.origin_tmin.w, 0.0);
+    given_tmaxs[i] = request.direction_tmax.w;
+    // Beyond this distance t has no finite value in the given units.
+    precise float farthest = LARGEST_FLOAT * power_of_two_inverse(units[i]);
+    packet[i].tmax = is_ray ? (packet[i].tmax < farthest ? packet[i].tmax : farthest) : -1.0;
+    crossing_counts[i] = 0u;
+    first_places[i] = LISTS_CROSSINGS != 0u ? hits[index].a.y : 0u;
+    rooms[i] = LISTS_CROSSINGS != 0u ? hits[index].a.z : 0u;
+  }
+  step_counts = uvec2(0u);
+  trace_packet(true);
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    if (LISTS_CROSSINGS != 0u) {
+      uint end = first_places[i] + min(crossing_counts[i], rooms[i]);
+      for (uint place = first_places[i]; place < end; ++place) finish(place, packet[i], units[i]);
+    }
+    if (first + i < end_ray()) hits[first + i].a.x = crossing_counts[i];
+  }
+  if (were_loops_cut()) dispatch.outcome.x = 1u;
+}

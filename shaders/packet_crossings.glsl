@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// In place of packet_shapes.glsl and packet_triangles.glsl in kernels that ask for all crossings: those of a packet's rays
+// are counted, or where LISTS_CROSSINGS put in a list, in whatever order the tree has them. No limit is ever lowered.
+// A primitive that the tree refers to twice is met twice, with the same bits; the host drops the second one.
+
+layout(constant_id = CONSTANT_LISTS_CROSSINGS) const uint LISTS_CROSSINGS = 0u;
+
+// By the entry point, which empties the counts too: of each ray how many crossings it has so far; its list's first record
+// and for how many there is room; t in units of the given direction over t here, and between which such t they count.
+uint crossing_counts[PACKET_SIZE];
+uint first_places[PACKET_SIZE];
+uint rooms[PACKET_SIZE];
+float units[PACKET_SIZE];
+float given_tmins[PACKET_SIZE];
+float given_tmaxs[PACKET_SIZE];
+
+// In units within this factor of the given ones nothing overflows or underflows that a glance is sure of.
+const float PLAIN_UNITS = 1048576.0;  // 2^20
+
+void take_crossing(uint slot, Crossing crossing, uint primitive, uint order, uint leaves) {
+  precise float t = crossing.t + shifts[slot];
+  precise float given_t = t * units[slot];
+  bool counts = crossing.t > packet[slot].tmin && t < limits[slot] && given_t > given_tmins[slot] &&
+                given_t < given_tmaxs[slot];
+  if (LISTS_CROSSINGS != 0u && counts && crossing_counts[slot] < rooms[slot]) {
+    hits[first_places[slot] + crossing_counts[slot]] =
+        HitRecord(uvec4(floatBitsToUint(t), order, floatBitsToUint(vec2(crossing.u, crossing.v))),
+                  uvec4(primitive, crossing.part, leaves, 0u));
+  }
+  crossing_counts[slot] += counts ? 1u : 0u;
+}
+
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                                        \
+  void intersect_packet_with_##PREFIX(Primitive p, uint index, bool asks_for_any) {                         \
+    [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {                                           \
+      Inside ends = ends_of_##PREFIX(packet[slot], p);                                                      \
+      take_crossing(slot, Crossing(ends.entry, 0.0, 0.0, ends.entry_part), index, order_of(p), 0u);         \
+      take_crossing(slot, Crossing(ends.exit, 0.0, 0.0, ends.exit_part), index, order_of(p), 1u);           \
+    }                                                                                                       \
+  }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                          \
+  void intersect_packet_with_##PREFIX(Primitive p, uint index, bool asks_for_any) {               \
+    [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {                                 \
+      take_crossing(slot, intersect_##PREFIX(packet[slot], p), index, order_of(p), 0u);           \
+    }                                                                                             \
+  }
+#include "promin/kinds/primitives.def"
+
+// What rounding takes from a product of numbers up to 2, exact where it is no smaller than 2^-100 (Dekker, "A
+// Floating-Point Technique for Extending the Available Precision", 1971).
+float product_error(float a, float b, float product) {
+  precise float split_a = 4097.0 * a;
+  precise float a_high = split_a - (split_a - a);
+  precise float a_low = a - a_high;
+  precise float split_b = 4097.0 * b;
+  precise float b_high = split_b - (split_b - b);
+  precise float b_low = b - b_high;
+  precise float error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+  return error;
+}
+
+// Whether the area over an edge is positive, of to.x * from.y - to.y * from.x, which is exact: where its two products
+// round to the same number, what was rounded off tells, and where the ray meets the edge, leads_up. So all triangles see
+// the corners of the mesh in the same places of the plane, and a ray that moves across an edge leaves one of its
+// triangles as it enters the other: without exactness a corner between slivers may be crossed by one too many.
+bool has_positive_area(vec2 from, vec2 to) {
+  // A power of two takes nothing from a number, nor from the sign.
+  precise vec2 a = from * power_of_two_inverse(max(abs(from.x), abs(from.y)));
+  precise vec2 b = to * power_of_two_inverse(max(abs(to.x), abs(to.y)));
+  precise float added = b.x * a.y;
+  precise float taken = b.y * a.x;
+  float added_error = product_error(b.x, a.y, added);
+  float taken_error = product_error(b.y, a.x, taken);
+  bool is_tie = added == taken && added_error == taken_error;
+  bool is_more = added > taken || (added == taken && added_error > taken_error);
+  return is_tie ? leads_up(from, to) : is_more;
+}
+
+bool is_crossed(ShearedTriangle sheared) {
+  bool side = has_positive_area(sheared.b, sheared.c);
+  // In one place all three corners have the same side of each other.
+  bool is_point = sheared.a == sheared.b && sheared.b == sheared.c;
+  return has_positive_area(sheared.c, sheared.a) == side && has_positive_area(sheared.a, sheared.b) == side && !is_point;
+}
+
+// The triangle as cross_triangle takes it. Of one that is seen edge-on the areas may be too small for weights: there any
+// weights do, as the point is brought back to the ray along the longest side.
+ShearedTriangle with_weights(ShearedTriangle sheared) {
+  bool has_area = abs(sheared.determinant) >= SMALLEST_NORMAL;
+  sheared.areas = has_area ? sheared.areas : vec3(1.0);
+  sheared.determinant = has_area ? sheared.determinant : 3.0;
+  sheared.may_be_met = true;
+  return sheared;
+}
+
+// Few of a packet's rays meet a triangle whose box they meet: first whether they may, then where, one after the other.
+void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
+  ShearedTriangle sheared[PACKET_SIZE];
+  bool may_be_crossed[PACKET_SIZE];
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    sheared[slot] = shear_triangle(packet[slot], p);
+    may_be_crossed[slot] = sheared[slot].least >= 0.0 && limits[slot] >= 0.0;
+  }
+  bool may_another_be_crossed;
+  do {
+    uint next = 0u;
+    bool is_found = may_be_crossed[0];
+    ShearedTriangle of_next = sheared[0];
+    float shear_z = packet[0].shear.z;
+    float tmin = packet[0].tmin;
+    [[unroll]] for (uint slot = 1u; slot < PACKET_SIZE; ++slot) {
+      if (is_found || !may_be_crossed[slot]) continue;
+      next = slot;
+      is_found = true;
+      of_next = sheared[slot];
+      shear_z = packet[slot].shear.z;
+      tmin = packet[slot].tmin;
+    }
+    Crossing crossing = cross_triangle(with_weights(of_next), shear_z, tmin);
+    if (!is_found || !is_crossed(of_next)) crossing = NO_CROSSING;
+    may_another_be_crossed = false;
+    [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+      if (slot == next) {
+        take_crossing(slot, crossing, index, order_of(p), 0u);
+        may_be_crossed[slot] = false;
+      }
+      may_another_be_crossed = may_another_be_crossed || may_be_crossed[slot];
+    }
+  } while (may_another_be_crossed);
+}
+
+// Where a glance tells of each of the rays whether it crosses the triangle it counts. Whether it does not, and the
+// triangle needs a second look, by intersect_packet_with_triangle. A glance has no place for a list.
+bool glance_at_triangle(Primitive p, uint index) {
+  bool needs_second_look = false;
+  bool is_sure[PACKET_SIZE];
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    ShearedTriangle sheared = shear_triangle(packet[slot], p);
+    Glance glance = glance_at(sheared, packet[slot].shear.z, packet[slot].tmin, limits[slot]);
+    bool may_be_crossed = sheared.least >= 0.0 && limits[slot] >= 0.0;
+    precise float inverse_limit = 1.0 / PLAIN_UNITS;
+    bool is_plain = shifts[slot] == 0.0 && units[slot] <= PLAIN_UNITS && units[slot] >= inverse_limit;
+    is_sure[slot] = LISTS_CROSSINGS == 0u && may_be_crossed && glance.is_met && is_plain;
+    needs_second_look = needs_second_look || (may_be_crossed && !is_sure[slot] && !(glance.is_missed && is_plain));
+  }
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    crossing_counts[slot] += is_sure[slot] && !needs_second_look ? 1u : 0u;
+  }
+  return needs_second_look;
+}

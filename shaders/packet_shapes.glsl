@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// A packet against shapes, a function for each kind but triangles (packet_triangles.glsl). Kernels that ask for all
+// crossings have packet_crossings.glsl in place of both.
+
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                      \
+  void intersect_packet_with_##PREFIX(Primitive p, uint index, bool asks_for_any) {       \
+    [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {                         \
+      Crossing crossing = not_skipped(slot, intersect_##PREFIX(ray_past(slot, p), p), p); \
+      keep_nearest(slot, crossing, index, order_of(p), asks_for_any);                     \
+    }                                                                                     \
+  }
+#include "promin/kinds/primitives.def"
