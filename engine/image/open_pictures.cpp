@@ -63,8 +63,9 @@ std::vector<fs::path> list_folders() {
     // libraries.
     add(folder / "../lib/promin");
     add(folder / PROMIN_PLUGIN_FOLDER);
-    // This one lies beside a library.
+    // This one lies beside a library, and in Python's package the plugin lies beside the module itself.
     add(folder / "promin");
+    if (folder.filename() == "promin") add(folder);
   }
   // A program elsewhere that holds this code: the package of the static library links the folder into it, and where
   // that did not happen the library knows where it was to be installed.

@@ -28,6 +28,14 @@ namespace {
 using layout::HitRecord;
 using layout::RayRecord;
 
+/// What tells of `count` rays from the first on as of a part of all.
+ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t count, size_t all) {
+  if (!progress) return {};
+  return [&progress, first, count, all](double fraction) {
+    return progress((static_cast<double>(first) + fraction * static_cast<double>(count)) / static_cast<double>(all));
+  };
+}
+
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
   // max_abs_component is not used, because its calls of std::fmax took a seventh of the time of `promin cast`.
@@ -154,7 +162,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   }
 
   /// Casts at most RayKernel::kMaxRays rays.
-  double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
+  double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, const ProgressCallback& progress) {
     const Stopwatch ordering;
     const Order order = order_of(rays);
     const std::span<const uint32_t> permutation = permutation_of(rays, order);
@@ -164,7 +172,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     requests.resize(rays.size());
     records.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
-    time_ms += kernel.run(requests, records);
+    time_ms += kernel.run(requests, records, progress);
     for (size_t i = 0; i < rays.size(); ++i) {
       const size_t place = place_of(i);
       hits[place] = hit_of(records[i], rays[place], query, numbers);
@@ -179,7 +187,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   }
 
   /// What the device counts for at most RayKernel::kMaxRays rays.
-  double count(std::span<const Ray> rays, std::span<uint32_t> counts, Order order) {
+  double count(std::span<const Ray> rays, std::span<uint32_t> counts, Order order, const ProgressCallback& progress) {
     const Stopwatch ordering;
     const std::span<const uint32_t> permutation = permutation_of(rays, order);
     double time_ms = ordering.ms();
@@ -188,13 +196,14 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     requests.resize(rays.size());
     records.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
-    time_ms += kernel.run(requests, records);
+    time_ms += kernel.run(requests, records, progress);
     for (size_t i = 0; i < rays.size(); ++i) counts[place_of(i)] = records[i].a.x;
     return time_ms;
   }
 
   /// Fills list_offsets and list_hits for rays with these counts, all of which fit.
-  double list(std::span<const Ray> rays, std::span<const uint32_t> counts, Order order) {
+  double list(std::span<const Ray> rays, std::span<const uint32_t> counts, Order order,
+              const ProgressCallback& progress) {
     const Stopwatch ordering;
     // Those that cross nothing are not asked again.
     asked_rays.clear();
@@ -219,7 +228,9 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
       first_records[place_of(i)] = first;
       first += asked_counts[i];
     }
-    if (!asked_rays.empty()) time_ms += kernel_for(HitQuery::kAll, order).list(requests, asked_counts, records);
+    if (!asked_rays.empty()) {
+      time_ms += kernel_for(HitQuery::kAll, order).list(requests, asked_counts, records, progress);
+    }
 
     const Stopwatch finishing;
     const auto crossings_of = [&](size_t i) {
@@ -310,7 +321,8 @@ double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery que
   double time_ms = 0.0;
   for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
     const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
-    time_ms += impl_->cast(rays.subspan(first, count), hits.subspan(first, count), query);
+    time_ms += impl_->cast(rays.subspan(first, count), hits.subspan(first, count), query,
+                           part_of(progress, first, count, rays.size()));
     tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
   }
   return time_ms;
@@ -335,7 +347,8 @@ double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const
     const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
     impl_->chunk_counts.resize(count);
     const std::span<const Ray> chunk = rays.subspan(first, count);
-    time_ms += impl_->count(chunk, impl_->chunk_counts, impl_->order_of_crossings(chunk));
+    time_ms += impl_->count(chunk, impl_->chunk_counts, impl_->order_of_crossings(chunk),
+                            part_of(progress, first, count, rays.size()));
     // No ray has 2^31 crossings: there are fewer than 2^27 primitives.
     std::ranges::copy(impl_->chunk_counts, counts.begin() + static_cast<ptrdiff_t>(first));
     tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
@@ -351,7 +364,8 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
     std::vector<uint32_t>& counts = impl_->chunk_counts;
     counts.resize(chunk.size());
     const Impl::Order order = impl_->order_of_crossings(chunk);
-    time_ms += impl_->count(chunk, counts, order);
+    // Between dispatches nothing new is told: only whether to go on is asked.
+    time_ms += impl_->count(chunk, counts, order, part_of(progress, first, 0, rays.size()));
     // How many are listed together, whole rays, hangs on the device too.
     const uint64_t most_listed = impl_->kernel_for(HitQuery::kAll, order).most_listed(chunk.size());
     const uint64_t most = std::min(budget_bytes / sizeof(Hit), most_listed);
@@ -364,7 +378,8 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
                             std::to_string(most_listed),
                         "ray " + std::to_string(first + begin), "list parts of it by tmin and tmax"});
       }
-      time_ms += impl_->list(chunk.subspan(begin, end - begin), std::span(counts).subspan(begin, end - begin), order);
+      time_ms += impl_->list(chunk.subspan(begin, end - begin), std::span(counts).subspan(begin, end - begin), order,
+                             part_of(progress, first + begin, 0, rays.size()));
       sink({first + begin, impl_->list_offsets, impl_->list_hits});
       tell_progress(progress, static_cast<double>(first + end) / static_cast<double>(rays.size()));
       begin = end;

@@ -10,6 +10,7 @@
 
 #include "cast.spv.h"
 #include "core/divide_up.h"
+#include "core/shared_progress.h"
 #include "core/stopwatch.h"
 #include "crossings.spv.h"
 #include "device/device.h"
@@ -116,15 +117,16 @@ struct RayKernel::Impl {
     return head.outcome.x != 0;
   }
 
-  double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records) {
+  double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records,
+             const ProgressCallback& progress) {
     make_buffers(input.size(), input.size());
-    const double time_ms = trace(input);
+    const double time_ms = trace(input, progress);
     hits->read(std::as_writable_bytes(records), sizeof(layout::Dispatch));
     return time_ms;
   }
 
   double list(std::span<const layout::RayRecord> input, std::span<const uint32_t> counts,
-              std::span<layout::HitRecord> crossings) {
+              std::span<layout::HitRecord> crossings, const ProgressCallback& progress) {
     make_buffers(input.size(), input.size() + crossings.size());
     heads.resize(input.size());
     auto place = static_cast<uint32_t>(input.size());
@@ -134,7 +136,7 @@ struct RayKernel::Impl {
     }
     const std::span<std::byte> head_bytes = std::as_writable_bytes(std::span(heads));
     hits->write(head_bytes, sizeof(layout::Dispatch));
-    const double time_ms = trace(input);
+    const double time_ms = trace(input, progress);
     hits->read(head_bytes, sizeof(layout::Dispatch));
     for (size_t i = 0; i < input.size(); ++i) {
       if (heads[i].a.x != counts[i]) {
@@ -146,7 +148,7 @@ struct RayKernel::Impl {
     return time_ms;
   }
 
-  double trace(std::span<const layout::RayRecord> input) {
+  double trace(std::span<const layout::RayRecord> input, const ProgressCallback& progress) {
     rays->write(std::as_bytes(input));
     double total_ms = 0.0;
     const uint32_t most_group_rows = device.profile().most_group_rows;
@@ -165,6 +167,7 @@ struct RayKernel::Impl {
       pacer.learn(count, time_ms);
       total_ms += time_ms;
       first += count;
+      if (first < end) tell_progress(progress, static_cast<double>(first) / static_cast<double>(end));
     }
     return total_ms;
   }
@@ -193,20 +196,21 @@ RayKernel::~RayKernel() = default;
 RayKernel::RayKernel(RayKernel&&) noexcept = default;
 RayKernel& RayKernel::operator=(RayKernel&&) noexcept = default;
 
-double RayKernel::run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records) {
+double RayKernel::run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records,
+                      const ProgressCallback& progress) {
   assert(rays.size() <= kMaxRays && rays.size() == records.size());
   if (rays.empty()) return 0.0;
   double time_ms = 0.0;
-  gpu::translate_vulkan_errors([&] { time_ms = impl_->run(rays, records); });
+  gpu::translate_vulkan_errors([&] { time_ms = impl_->run(rays, records, progress); });
   return time_ms;
 }
 
 double RayKernel::list(std::span<const layout::RayRecord> rays, std::span<const uint32_t> counts,
-                       std::span<layout::HitRecord> crossings) {
+                       std::span<layout::HitRecord> crossings, const ProgressCallback& progress) {
   assert(rays.size() <= kMaxRays && rays.size() == counts.size() && crossings.size() <= most_listed(rays.size()));
   if (rays.empty()) return 0.0;
   double time_ms = 0.0;
-  gpu::translate_vulkan_errors([&] { time_ms = impl_->list(rays, counts, crossings); });
+  gpu::translate_vulkan_errors([&] { time_ms = impl_->list(rays, counts, crossings, progress); });
   return time_ms;
 }
 

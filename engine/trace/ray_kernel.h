@@ -10,6 +10,7 @@
 #include "device/profile.h"
 #include "device_scene/device_scene.h"
 #include "layout.h"
+#include "promin/progress.h"
 #include "promin/ray.h"
 #include "scene/features.h"
 
@@ -56,14 +57,15 @@ class RayKernel {
 
   /// Fills as many records as there are rays, at most kMaxRays; what layout.h says is not told of any hit stays as it
   /// was before. Of kCount a.x of each record is the ray's number of crossings. Returns device milliseconds. Not for
-  /// kAll.
-  double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records);
+  /// kAll. `progress` is called between dispatches; throws Cancelled, and then no record is filled.
+  double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records,
+             const ProgressCallback& progress = {});
 
   /// For kAll: fills the crossings of the rays, of which each has `counts` at the same place, as kCount told; ray by
   /// ray, a ray's in whatever order the tree has them. At most most_listed(rays.size()) of them. Throws RunError where
-  /// a ray has another number.
+  /// a ray has another number. `progress` as in run().
   double list(std::span<const layout::RayRecord> rays, std::span<const uint32_t> counts,
-              std::span<layout::HitRecord> crossings);
+              std::span<layout::HitRecord> crossings, const ProgressCallback& progress = {});
   /// How many crossings of so many rays a buffer of the device can hold.
   uint64_t most_listed(size_t ray_count) const;
 

@@ -72,8 +72,8 @@ class PROMIN_EXPORT Caster {
   /// Answers each ray in the hit at the same place; as many hits as rays, any number. The answers do not depend on how
   /// many rays are cast together, nor on their order: where that is faster they are traced in packets or sorted first.
   /// Returns milliseconds of the traversal dispatches, by the device's clock, and of ordering the rays; not of copying
-  /// rays and hits. Throws UsageError where there are not as many hits as rays and for HitQuery::kCount and kAll,
-  /// RunError, Cancelled: then hits are filled as far as it came.
+  /// rays and hits. `progress` is called between dispatches. Throws UsageError where there are not as many hits as rays
+  /// and for HitQuery::kCount and kAll, RunError, Cancelled: then hits are filled as far as it came, by parts of 2^20.
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
               const ProgressCallback& progress = {});
 

@@ -254,10 +254,18 @@ TEST_F(LibraryTest, ABrokenOffCastStopsAtTheNextDispatchAndTheCasterStays) {
   std::vector<Ray> rays(RayKernel::kMaxRays + 1, Ray{{0, 5, 0}, 0, {0, -1, 0}});
   std::vector<Hit> hits(rays.size());
   int calls = 0;
-  EXPECT_THROW(caster.cast(rays, hits, HitQuery::kNearest, [&](double) { return ++calls < 1; }), Cancelled);
+  double told = 0.0;
+  const auto stops_at_once = [&](double fraction) {
+    told = fraction;
+    return ++calls < 1;
+  };
+  EXPECT_THROW(caster.cast(rays, hits, HitQuery::kNearest, stops_at_once), Cancelled);
   EXPECT_EQ(calls, 1);
+  EXPECT_LT(told, 0.9) << "no dispatch but the last was told";
+  const auto stops_late = [&](double fraction) { return fraction < 0.99999; };
+  EXPECT_THROW(caster.cast(rays, hits, HitQuery::kNearest, stops_late), Cancelled);
   EXPECT_EQ(hits.front().object, 1);
-  EXPECT_EQ(hits.back().object, -1) << "the second dispatch ran";
+  EXPECT_EQ(hits.back().object, -1) << "the dispatch of the second part ran";
   EXPECT_THROW(caster.cast(rays, std::span(hits).first(1)), UsageError);
   caster.cast(std::span(rays).first(2), std::span(hits).last(2));
   EXPECT_EQ(hits.back().object, 1);

@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+
+# Whoever builds by `pip install` has not run tools/setup: all that the system lacks is told at once, in one line, by
+# the names that packages have in Debian and Ubuntu.
+set(PROMIN_LACKING)
+find_package(PkgConfig QUIET)
+if(NOT PkgConfig_FOUND)
+  list(APPEND PROMIN_LACKING pkg-config)
+endif()
+foreach(ROW libpng:libpng-dev libturbojpeg:libturbojpeg0-dev libwebp:libwebp-dev OpenImageIO:libopenimageio-dev)
+  string(REPLACE ":" ";" ROW ${ROW})
+  list(GET ROW 0 MODULE)
+  list(GET ROW 1 PACKAGE)
+  if(PkgConfig_FOUND)
+    pkg_check_modules(PROMIN_CHECKED_${MODULE} QUIET ${MODULE})
+  endif()
+  if(NOT PROMIN_CHECKED_${MODULE}_FOUND)
+    list(APPEND PROMIN_LACKING ${PACKAGE})
+  endif()
+endforeach()
+foreach(ROW glm:libglm-dev SPIRV-Headers:spirv-headers nlohmann_json:nlohmann-json3-dev draco:libdraco-dev
+            meshoptimizer:libmeshoptimizer-dev Vulkan:libvulkan-dev)
+  string(REPLACE ":" ";" ROW ${ROW})
+  list(GET ROW 0 MODULE)
+  list(GET ROW 1 PACKAGE)
+  find_package(${MODULE} QUIET)
+  if(NOT ${MODULE}_FOUND)
+    list(APPEND PROMIN_LACKING ${PACKAGE})
+  endif()
+endforeach()
+find_program(PROMIN_CHECKED_GLSLANG NAMES glslangValidator glslang)
+if(NOT PROMIN_CHECKED_GLSLANG)
+  list(APPEND PROMIN_LACKING glslang-tools)
+endif()
+if(PROMIN_LACKING)
+  list(JOIN PROMIN_LACKING " " PROMIN_LACKING)
+  # CMake breaks no line that is indented.
+  message(FATAL_ERROR "promin needs system packages that are missing; as root run:\n  apt install ${PROMIN_LACKING}")
+endif()

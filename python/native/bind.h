@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace promin::python {
+
+// The parts of the module, each a class or two with what belongs to them. It is private to the package promin, which
+// checks and converts what it passes on: arrays have the right type, shape and order here, records are dicts
+// (records.h).
+
+/// Adds Scene and what a scene is loaded, filled, lit and framed by.
+void bind_scene(nanobind::module_& module);
+/// Adds Caster.
+void bind_caster(nanobind::module_& module);
+/// Adds Renderer.
+void bind_renderer(nanobind::module_& module);
+/// Adds functions on picture files, their comparison and their display.
+void bind_pictures(nanobind::module_& module);
+
+}  // namespace promin::python

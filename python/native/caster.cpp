@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "promin/caster.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "bind.h"
+#include "device.h"
+#include "in_process.h"
+#include "scene.h"
+#include "setup_stats.h"
+#include "watched.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+/// N rays as they lie in RAYS.npy.
+using RayArray = nb::ndarray<const float, nb::shape<-1, 8>, nb::c_contig, nb::device::cpu>;
+/// A count for each ray.
+using CountArray = nb::ndarray<int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+/// N hits as they lie in HITS.npy, as bytes: nanobind takes no structured arrays.
+using HitArray = nb::ndarray<uint8_t, nb::shape<-1, sizeof(Hit)>, nb::c_contig, nb::device::cpu>;
+
+std::span<const Ray> view(const RayArray& rays) {
+  return {reinterpret_cast<const Ray*>(rays.data()), rays.shape(0)};
+}
+
+/// The values as an array of bytes or numbers of NumPy's that owns them, N x `width` or N.
+template <typename Component, typename Value>
+nb::object give(std::vector<Value> values, size_t width) {
+  auto* owned = new std::vector<Value>(std::move(values));
+  const nb::capsule owner(owned, [](void* data) noexcept { delete static_cast<std::vector<Value>*>(data); });
+  const size_t shape[2] = {owned->size(), width};
+  return nb::cast(nb::ndarray<nb::numpy, Component>(owned->data(), width == 1 ? 1 : 2, shape, owner));
+}
+
+class SharedCaster {
+ public:
+  SharedCaster(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::string& builder,
+               const std::optional<std::string>& bvh, const nb::object& progress)
+      : device_(std::move(device)) {
+    const gpu::Device& open = device_->get();
+    std::unique_ptr<Caster> caster;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      CasterOptions options;
+      options.builder = builder;
+      if (bvh) options.bvh = *bvh;
+      options.progress = tell;
+      caster = std::make_unique<Caster>(open, scene, options);
+    });
+    caster_.emplace(std::move(caster));
+  }
+
+  double cast(const RayArray& rays, const HitArray& hits, bool is_any, const nb::object& progress) {
+    Caster& caster = caster_->get();
+    double trace_ms = 0.0;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      trace_ms = caster.cast(view(rays), {reinterpret_cast<Hit*>(hits.data()), hits.shape(0)},
+                             is_any ? HitQuery::kAny : HitQuery::kNearest, tell);
+    });
+    return trace_ms;
+  }
+
+  void count(const RayArray& rays, const CountArray& counts, const nb::object& progress) {
+    Caster& caster = caster_->get();
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      caster.count(view(rays), {counts.data(), counts.shape(0)}, tell);
+    });
+  }
+
+  /// Where each ray's hits begin and the last one's end, and the hits as bytes.
+  nb::tuple list(const RayArray& rays, const nb::object& progress) {
+    Caster& caster = caster_->get();
+    std::vector<int64_t> splits{0};
+    std::vector<Hit> hits;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      splits.reserve(rays.shape(0) + 1);
+      const auto take = [&](const HitList& part) {
+        const auto before = static_cast<int64_t>(hits.size());
+        for (const uint64_t end : part.offsets.subspan(1)) splits.push_back(before + static_cast<int64_t>(end));
+        hits.insert(hits.end(), part.hits.begin(), part.hits.end());
+      };
+      caster.list(view(rays), take, Caster::kListBytes, tell);
+    });
+    return nb::make_tuple(give<int64_t>(std::move(splits), 1), give<uint8_t>(std::move(hits), sizeof(Hit)));
+  }
+
+  nb::dict setup() const { return describe(caster_->get().setup_stats()); }
+
+ private:
+  // Before the caster, which must end first.
+  std::shared_ptr<OpenDevice> device_;
+  std::optional<InProcess<std::unique_ptr<Caster>>> caster_;
+  std::timed_mutex mutex_;
+};
+
+}  // namespace
+
+void bind_caster(nb::module_& module) {
+  nb::class_<SharedCaster>(module, "Caster")
+      .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::string&, const std::optional<std::string>&,
+                    const nb::object&>(),
+           nb::arg("device"), nb::arg("scene"), nb::arg("builder"), nb::arg("bvh").none(), nb::arg("progress").none())
+      .def("cast", &SharedCaster::cast, nb::arg("rays").noconvert(), nb::arg("hits").noconvert(), nb::arg("is_any"),
+           nb::arg("progress").none())
+      .def("count", &SharedCaster::count, nb::arg("rays").noconvert(), nb::arg("counts").noconvert(),
+           nb::arg("progress").none())
+      .def("list", &SharedCaster::list, nb::arg("rays").noconvert(), nb::arg("progress").none())
+      .def("setup", &SharedCaster::setup);
+}
+
+}  // namespace promin::python

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "errors.h"
+
+#include <nanobind/nanobind.h>
+
+#include <exception>
+
+#include "promin/error.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+void raise(const char* name, const Error& error) {
+  nb::list problems;
+  for (const Problem& problem : error.problems()) problems.append(nb::str(problem.sentence().c_str()));
+  const nb::object type = nb::module_::import_("promin._errors").attr(name);
+  PyErr_SetObject(type.ptr(), type(nb::str(error.what()), problems).ptr());
+}
+
+void translate(const std::exception_ptr& thrown, void* /*unused*/) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const UsageError& error) {
+    raise("UsageError", error);
+  } catch (const InputError& error) {
+    raise("InputError", error);
+  } catch (const DeviceError& error) {
+    raise("DeviceError", error);
+  } catch (const DifferenceError& error) {
+    raise("DifferenceError", error);
+  } catch (const Cancelled& error) {
+    raise("Cancelled", error);
+  } catch (const RunError& error) {
+    raise("RunError", error);
+  } catch (const Error& error) {
+    raise("Error", error);
+  }
+}
+
+}  // namespace
+
+ForkError::ForkError() : std::runtime_error("opened before a fork; open it in the child or start with spawn") {}
+
+void register_errors() {
+  nb::register_exception_translator(translate);
+}
+
+}  // namespace promin::python

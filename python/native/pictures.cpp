@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#include "bind.h"
+#include "picture_arrays.h"
+#include "promin/compare.h"
+#include "promin/display.h"
+#include "promin/error.h"
+#include "promin/image.h"
+#include "records.h"
+#include "watched.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+/// Values of a channel: floats or integers of 32 bits.
+using ChannelArray = nb::ndarray<const uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+/// x, y, width and height of the whole picture.
+using Placement = std::pair<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>>;
+
+void save(const std::string& file, const PictureArray& pixels, const Metadata& metadata,
+          const std::optional<Placement>& placement, const nb::list& channels, const nb::dict& display) {
+  const Image image = read_image_array(pixels);
+  std::vector<Channel> copies;
+  for (const nb::handle row : channels) {
+    const auto [name, is_integer, values] = nb::cast<std::tuple<std::string, bool, ChannelArray>>(row);
+    copies.push_back({name, is_integer, {values.data(), values.data() + values.size()}});
+  }
+  std::optional<CropPlacement> crop;
+  if (placement) {
+    crop = CropPlacement{{placement->first.first, placement->first.second},
+                         {placement->second.first, placement->second.second}};
+  }
+  const DisplayTransform transform = read_display(display);
+  run_watched(nb::none(),
+              [&](const ProgressCallback&) { write_image(file, image, metadata, crop, copies, transform); });
+}
+
+nb::object load(const std::string& file) {
+  Image image;
+  run_watched(nb::none(), [&](const ProgressCallback&) { image = read_image(file); });
+  return write_image_array(std::move(image));
+}
+
+nb::object show(const PictureArray& pixels, const nb::dict& record) {
+  Image image = read_image_array(pixels);
+  const DisplayTransform display = read_display(record);
+  run_watched(nb::none(), [&](const ProgressCallback&) {
+    for (vec3& pixel : image.pixels) {
+      const vec3 shown = apply(display, pixel);
+      pixel = vec3(encode_srgb(shown.x), encode_srgb(shown.y), encode_srgb(shown.z));
+    }
+  });
+  return write_image_array(std::move(image));
+}
+
+nb::dict compare(const PictureArray& first, const PictureArray& second, bool is_linear, double fail) {
+  const Image reference = read_image_array(first);
+  const Image test = read_image_array(second);
+  const CompareChoice choice{.encoding = is_linear ? PictureEncoding::kLinear : PictureEncoding::kSrgb, .fail = fail};
+  PictureDifference difference;
+  run_watched(nb::none(), [&](const ProgressCallback&) { difference = compare_pictures(reference, test, choice); });
+  nb::dict record;
+  record["pixel_count"] = difference.pixel_count;
+  record["mean"] = difference.mean;
+  record["rmse"] = difference.rmse;
+  record["psnr_db"] = difference.psnr_db;
+  record["largest"] = difference.largest;
+  record["largest_at"] = nb::make_tuple(difference.largest_at.x, difference.largest_at.y);
+  record["different_count"] = difference.different_count;
+  record["non_finite_count"] = difference.non_finite_count;
+  record["flip"] = difference.flip;
+  record["flip_map"] = write_array<float>(std::move(difference.flip_map), reference.size);
+  return record;
+}
+
+}  // namespace
+
+Image read_image_array(const PictureArray& pixels) {
+  Image image;
+  // Sizes beyond what a picture may have become one that is refused by its size.
+  image.size = {static_cast<uint32_t>(pixels.shape(1)), static_cast<uint32_t>(pixels.shape(0))};
+  image.pixels.resize(pixels.shape(0) * pixels.shape(1));
+  if (!image.pixels.empty()) std::memcpy(image.pixels.data(), pixels.data(), image.pixels.size() * sizeof(vec3));
+  return image;
+}
+
+nb::object write_image_array(Image image) {
+  return write_array<float>(std::move(image.pixels), image.size);
+}
+
+void bind_pictures(nb::module_& module) {
+  module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
+             nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"));
+  module.def("read_image", &load, nb::arg("file"));
+  module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"));
+  module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),
+             nb::arg("fail"));
+  module.def("has_named_channels", [](const std::string& file) { return has_named_channels(file); });
+  module.def("encoding_is_linear",
+             [](const std::string& file) { return encoding_of(file) == PictureEncoding::kLinear; });
+}
+
+}  // namespace promin::python

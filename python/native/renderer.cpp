@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "promin/renderer.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "bind.h"
+#include "device.h"
+#include "in_process.h"
+#include "picture_arrays.h"
+#include "promin/error.h"
+#include "records.h"
+#include "scene.h"
+#include "setup_stats.h"
+#include "watched.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+AovSet read_aovs(const std::vector<std::string>& names) {
+  AovSet set;
+  for (const std::string& name : names) {
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  if (name == #FIELD) {                                            \
+    set.FIELD = true;                                              \
+    continue;                                                      \
+  }
+#include "promin/kinds/aovs.def"
+    std::string all;
+    for (const std::string_view one : aov_names()) all += (all.empty() ? "" : ", ") + std::string(one);
+    throw UsageError({"no AOV \"" + name + "\"", "", "choose of: " + all});
+  }
+  return set;
+}
+
+// The arrays of AOVs, by the type of a value.
+nb::object write_aov(std::vector<float> values, const uvec2& size) {
+  return write_array<float>(std::move(values), size);
+}
+nb::object write_aov(std::vector<uint32_t> values, const uvec2& size) {
+  return write_array<uint32_t>(std::move(values), size);
+}
+template <typename Vector>
+nb::object write_aov(std::vector<Vector> values, const uvec2& size) {
+  return write_array<float>(std::move(values), size);
+}
+
+nb::dict write_aovs(Aovs aovs, const AovSet& choice, const uvec2& size) {
+  nb::dict arrays;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  if (choice.FIELD) arrays[#FIELD] = write_aov(std::move(aovs.FIELD), size);
+#include "promin/kinds/aovs.def"
+  return arrays;
+}
+
+nb::object write_error(const std::optional<PictureError>& error) {
+  if (!error) return nb::none();
+  nb::dict record;
+  record["target"] = error->target;
+  record["largest_claim"] = error->largest_claim;
+  record["unmet_pixels"] = error->unmet_pixels;
+  record["samples"] = error->samples;
+  return record;
+}
+
+nb::dict write_rays(const RayCounts& rays) {
+  nb::dict record;
+  record["primary"] = rays.primary;
+  record["shadow"] = rays.shadow;
+  record["reflection"] = rays.reflection;
+  record["refraction"] = rays.refraction;
+  record["pass_through"] = rays.passed;
+  record["primary_hits"] = rays.primary_hits;
+  return record;
+}
+
+class SharedRenderer {
+ public:
+  SharedRenderer(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::vector<std::string>& aovs,
+                 const std::string& builder, const std::optional<std::string>& bvh, bool has_error_target,
+                 uint64_t texture_bytes, const nb::object& progress)
+      : device_(std::move(device)), aovs_(read_aovs(aovs)) {
+    const gpu::Device& open = device_->get();
+    std::unique_ptr<Renderer> renderer;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      RendererOptions options;
+      options.builder = builder;
+      if (bvh) options.bvh = *bvh;
+      options.aovs = aovs_;
+      options.has_error_target = has_error_target;
+      options.texture_bytes = texture_bytes;
+      options.progress = tell;
+      renderer = std::make_unique<Renderer>(open, scene, options);
+    });
+    renderer_.emplace(std::move(renderer));
+  }
+
+  nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::object& progress) {
+    const View view = read_view(record);
+    Renderer& renderer = renderer_->get();
+    RenderResult result;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
+    });
+    nb::dict frame;
+    const uvec2 size = result.image.size;
+    frame["aovs"] = write_aovs(std::move(result.aovs), aovs_, size);
+    frame["rgb"] = write_image_array(std::move(result.image));
+    frame["error"] = write_error(result.error);
+    frame["rays"] = write_rays(result.rays);
+    frame["trace_ms"] = result.trace_ms;
+    return frame;
+  }
+
+  void set_lights(const nb::list& records) {
+    std::vector<Light> lights;
+    for (const nb::handle record : records) lights.push_back(read_light(nb::cast<nb::dict>(record)));
+    change([&](Renderer& renderer) { renderer.set_lights(lights); });
+  }
+
+  void set_materials(const nb::list& records) {
+    std::vector<Material> materials;
+    for (const nb::handle record : records) materials.push_back(read_material(nb::cast<nb::dict>(record)));
+    change([&](Renderer& renderer) { renderer.set_materials(materials); });
+  }
+
+  void set_environment(const nb::dict& record) {
+    const Environment environment = read_environment(record);
+    change([&](Renderer& renderer) { renderer.set_environment(environment); });
+  }
+
+  nb::dict setup() const { return describe(renderer_->get().setup_stats()); }
+
+ private:
+  template <typename Change>
+  void change(const Change& make) {
+    Renderer& renderer = renderer_->get();
+    run_watched(nb::none(), [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      make(renderer);
+    });
+  }
+
+  // Before the renderer, which must end first.
+  std::shared_ptr<OpenDevice> device_;
+  AovSet aovs_;
+  std::optional<InProcess<std::unique_ptr<Renderer>>> renderer_;
+  std::timed_mutex mutex_;
+};
+
+/// Name, channel of an EXR and letters of its components of each AOV.
+nb::list list_aovs() {
+  nb::list rows;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  rows.append(nb::make_tuple(#FIELD, CHANNEL, COMPONENTS));
+#include "promin/kinds/aovs.def"
+  return rows;
+}
+
+}  // namespace
+
+void bind_renderer(nb::module_& module) {
+  nb::class_<SharedRenderer>(module, "Renderer")
+      .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::vector<std::string>&, const std::string&,
+                    const std::optional<std::string>&, bool, uint64_t, const nb::object&>(),
+           nb::arg("device"), nb::arg("scene"), nb::arg("aovs"), nb::arg("builder"), nb::arg("bvh").none(),
+           nb::arg("has_error_target"), nb::arg("texture_bytes"), nb::arg("progress").none())
+      .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("progress").none())
+      .def("set_lights", &SharedRenderer::set_lights)
+      .def("set_materials", &SharedRenderer::set_materials)
+      .def("set_environment", &SharedRenderer::set_environment)
+      .def("setup", &SharedRenderer::setup);
+  module.def("list_aovs", &list_aovs);
+  module.def("default_width", [](const std::string& filter) {
+    const auto names = pixel_filter_names();
+    const auto found = std::ranges::find(names, filter);
+    // An unknown one is refused with the view.
+    return found == names.end() ? 1.0F : default_width(static_cast<PixelFilter>(found - names.begin()));
+  });
+}
+
+}  // namespace promin::python

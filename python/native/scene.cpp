@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "scene.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "bind.h"
+#include "promin/error.h"
+#include "promin/lighting.h"
+#include "promin/load_scene.h"
+#include "promin/validate.h"
+#include "records.h"
+#include "watched.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+template <typename T, int Columns>
+using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;
+using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+
+/// Of no array none. The array's shape says that its rows are Rows.
+template <typename Row, typename Array>
+std::vector<Row> copy_rows(const std::optional<Array>& rows) {
+  std::vector<Row> result;
+  if (!rows || rows->shape(0) == 0) return result;
+  result.resize(rows->shape(0));
+  std::memcpy(result.data(), rows->data(), result.size() * sizeof(Row));
+  return result;
+}
+
+/// Python's matrices lie by rows, GLM's by columns.
+dmat4 read_matrix(const Matrix& matrix) {
+  dmat4 result;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) result[column][row] = matrix.data()[4 * row + column];
+  }
+  return result;
+}
+
+Scene load(const std::string& file, bool is_strict, const std::string& variant) {
+  Scene scene;
+  run_watched(nb::none(), [&](const ProgressCallback&) {
+    scene = load_scene(file, {.is_strict = is_strict, .material_variant = variant});
+  });
+  return scene;
+}
+
+void add_mesh(Scene& scene, const std::string& name, const std::optional<Rows<float, 3>>& positions,
+              const std::optional<Rows<uint32_t, 3>>& triangles, const std::optional<Rows<float, 3>>& normals,
+              const std::optional<Rows<float, 4>>& colors, uint32_t material, const Matrix& matrix) {
+  Mesh mesh;
+  mesh.positions = copy_rows<vec3>(positions);
+  mesh.triangles = copy_rows<uvec3>(triangles);
+  mesh.normals = copy_rows<vec3>(normals);
+  mesh.colors = copy_rows<vec4>(colors);
+  scene.add(name, std::move(mesh), material, read_matrix(matrix));
+}
+
+void add_shape(Scene& scene, const std::string& name, const std::string& kind, const nb::dict& record,
+               uint32_t material, const Matrix& matrix) {
+  scene.add(name, read_shape(kind, record), material, read_matrix(matrix));
+}
+
+template <typename T>
+nb::list write_all(const std::vector<T>& values) {
+  nb::list records;
+  for (const T& value : values) records.append(write(value));
+  return records;
+}
+
+LightChoice read_choice(const std::string& name) {
+  const auto names = light_choice_names();
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    throw UsageError({"no light \"" + name + "\"", "", "choose one of: auto, studio, headlight, none"});
+  }
+  return static_cast<LightChoice>(found - names.begin());
+}
+
+/// A copy with the light that the choice adds.
+Scene light(const Scene& scene, const std::string& choice) {
+  Scene lit = scene;
+  light_scene(lit, read_choice(choice));
+  return lit;
+}
+
+nb::dict frame(const Scene& scene, float aspect_ratio, const std::string& name) {
+  if (name.empty()) return write(frame_scene(scene, aspect_ratio, framing_of(scene)));
+  const auto names = framing_names();
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    throw UsageError({"no framing \"" + name + "\"", "", "choose one of: three-quarter, front"});
+  }
+  return write(frame_scene(scene, aspect_ratio, static_cast<Framing>(found - names.begin())));
+}
+
+nb::object bounds(const Scene& scene) {
+  const Bounds box = bounds_of(scene);
+  if (box.is_empty()) return nb::none();
+  return nb::make_tuple(nb::make_tuple(box.lo.x, box.lo.y, box.lo.z), nb::make_tuple(box.hi.x, box.hi.y, box.hi.z));
+}
+
+nb::list describe_objects(const Scene& scene) {
+  nb::list objects;
+  for (const Object& object : scene.objects) {
+    const bool is_drawn = object.geometry != Object::kNoGeometry;
+    objects.append(nb::make_tuple(object.name, is_drawn ? primitive_count(scene, object) : 0U, object.material));
+  }
+  return objects;
+}
+
+nb::list find_problems(const Scene& scene) {
+  nb::list sentences;
+  for (const Problem& problem : validate(scene)) sentences.append(problem.sentence());
+  return sentences;
+}
+
+}  // namespace
+
+void bind_scene(nb::module_& module) {
+  nb::class_<Scene>(module, "Scene")
+      .def(nb::init<>())
+      .def_static("load", &load, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"))
+      .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions").noconvert(), nb::arg("triangles").noconvert(),
+           nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("material"),
+           nb::arg("matrix").noconvert())
+      .def("add_shape", &add_shape, nb::arg("name"), nb::arg("kind"), nb::arg("record"), nb::arg("material"),
+           nb::arg("matrix").noconvert())
+      .def("add_material", [](Scene& s, const nb::dict& record) { s.materials.push_back(read_material(record)); })
+      .def("add_light", [](Scene& s, const nb::dict& record) { s.lights.push_back(read_light(record)); })
+      .def("add_camera", [](Scene& s, const nb::dict& record) { s.cameras.push_back(read_camera(record)); })
+      .def("set_environment", [](Scene& s, const nb::dict& record) { s.environment = read_environment(record); })
+      .def("materials", [](const Scene& s) { return write_all(s.materials); })
+      .def("lights", [](const Scene& s) { return write_all(s.lights); })
+      .def("cameras", [](const Scene& s) { return write_all(s.cameras); })
+      .def("environment", [](const Scene& s) { return write(s.environment); })
+      .def("objects", &describe_objects)
+      .def("object_numbers", [](const Scene& s) { return s.object_numbers; })
+      .def("warnings", [](const Scene& s) { return s.warnings; })
+      .def("variants", [](const Scene& s) { return s.variants; })
+      .def("bounds", &bounds)
+      .def("problems", &find_problems)
+      .def("copy", [](const Scene& s) { return Scene(s); })
+      .def("lit", &light, nb::arg("choice"))
+      .def("frame", &frame, nb::arg("aspect_ratio"), nb::arg("framing"))
+      .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })
+      .def(
+          "display",
+          [](const Scene& s, const std::string& choice) { return write(display_of(s, read_choice(choice))); },
+          nb::arg("choice"));
+}
+
+}  // namespace promin::python

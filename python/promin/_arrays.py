@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays as the device takes them: rays rounded to float32 once, hits as they lie in HITS.npy."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from promin._errors import UsageError
+
+Float32s: TypeAlias = NDArray[np.float32]
+Float64s: TypeAlias = NDArray[np.float64]
+
+HIT_DTYPE = np.dtype(
+    [("t", "<f4"), ("object", "<i4"), ("primitive", "<i4"), ("u", "<f4"), ("v", "<f4"), ("normal", "<f4", (3,))]
+)
+"""A hit, as `promin cast` writes it: see `Caster.cast`."""
+
+RaysLike: TypeAlias = Union[ArrayLike, "tuple[ArrayLike, ...]"]
+"""Rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (..., 3))
+or (origins, directions, tmin, tmax), whose leading shapes are broadcast, with tmin 0 and tmax infinite by default."""
+
+
+def to_numbers(value: object, what: str) -> NDArray[Any]:
+    """An array of real numbers; float32 and float64 stay what they are, all else becomes float64."""
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind in "biuf":
+            return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"{what} are no array of numbers ({error})") from None
+    raise UsageError(f"{what} are of {array.dtype}, not real numbers")
+
+
+def to_vectors(value: object, what: str, width: int = 3) -> NDArray[Any]:
+    """Numbers whose last axis has this width."""
+    array = to_numbers(value, what)
+    if array.ndim == 0 or array.shape[-1] != width:
+        raise UsageError(f"{what} have the shape {array.shape}; give (..., {width})")
+    return array
+
+
+def round_once(array: NDArray[Any]) -> Float32s:
+    """To float32, silently: what is beyond it becomes infinite."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.ascontiguousarray(array, dtype=np.float32)
+
+
+def split_rays(rays: object) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Origins, tmin, directions and tmax of rays in either form; the leading shapes may differ."""
+    if isinstance(rays, tuple) and 2 <= len(rays) <= 4:
+        origins = to_vectors(rays[0], "origins")
+        directions = to_vectors(rays[1], "directions")
+        tmin = to_numbers(rays[2] if len(rays) > 2 else 0.0, "tmin")
+        tmax = to_numbers(rays[3] if len(rays) > 3 else np.inf, "tmax")
+        return origins, tmin, directions, tmax
+    array = to_vectors(rays, "rays", 8)
+    return array[..., 0:3], array[..., 3], array[..., 4:7], array[..., 7]
+
+
+def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]]:
+    """Rays as (n, 8) float32 in C order, with the center taken off their origins in float64 before all is rounded; and
+    their leading shape. An array that is so already is not copied."""
+    is_moved = bool(center.any())
+    if isinstance(rays, np.ndarray) and rays.dtype == np.float32 and not is_moved:
+        array = to_vectors(rays, "rays", 8)
+        return np.ascontiguousarray(array).reshape(-1, 8), array.shape[:-1]
+    origins, tmin, directions, tmax = split_rays(rays)
+    try:
+        shape = np.broadcast_shapes(origins.shape[:-1], directions.shape[:-1], tmin.shape, tmax.shape)
+    except ValueError:
+        raise UsageError(
+            f"origins {origins.shape}, directions {directions.shape}, tmin {tmin.shape} and tmax {tmax.shape} do not "
+            "go together; their leading shapes must broadcast"
+        ) from None
+    packed = np.empty((*shape, 8), np.float32)
+    with np.errstate(over="ignore", invalid="ignore"):
+        packed[..., 0:3] = np.subtract(origins, center, dtype=np.float64) if is_moved else origins
+        packed[..., 3] = tmin
+        packed[..., 4:7] = directions
+        packed[..., 7] = tmax
+    return packed.reshape(-1, 8), shape
+
+
+def positions(rays: RaysLike, hits: NDArray[Any]) -> Float64s:
+    """Where rays hit, in float64: origin + t * direction of the rays as they were given.
+
+    rays: as `Caster.cast` took them. hits: (...) what it answered. Returns (..., 3), NaN on a miss. The hit's t is a
+    float32, so a position is off by up to 2^-24 of the way along the ray and the bound on hits (docs/accuracy.md);
+    `promin.compat.trimesh` and `Scene.positions` set it on the plane of the triangle. Raises UsageError where the
+    shapes do not suit."""
+    origins, _, directions, _ = split_rays(rays)
+    hits = check_hits(hits)
+    t = np.where(hits["object"] >= 0, hits["t"].astype(np.float64), np.nan)
+    try:
+        return np.asarray(origins + t[..., None] * directions, np.float64)
+    except ValueError:
+        raise UsageError(f"hits of the shape {hits.shape} do not suit the rays") from None
+
+
+def check_hits(hits: object) -> NDArray[Any]:
+    """An array of HIT_DTYPE."""
+    if not isinstance(hits, np.ndarray) or hits.dtype != HIT_DTYPE:
+        raise UsageError("hits are no array of promin.HIT_DTYPE; give what Caster.cast answered")
+    return hits

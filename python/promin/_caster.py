@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Rays in, hits out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from promin import _promin
+from promin._arrays import HIT_DTYPE, RaysLike, pack_rays
+from promin._device import Device, DeviceLike, find_device
+from promin._errors import UsageError
+from promin._scene import Scene
+
+Progress = Union[Callable[[float], object], None]
+"""Is told the fraction that is done about twenty times a second, on the caller's thread; where it returns False the
+call ends with `promin.Cancelled`, and where it raises with that."""
+
+
+class Caster:
+    """A scene on a device that answers rays.
+
+    Making one builds a bounding volume hierarchy. The scene may change afterwards: the Caster keeps what it was. Any
+    threads may use it, one at a time; without Python's lock, so others run meanwhile. Ctrl-C ends a call before its
+    next dispatch and leaves the Caster usable. It is pickled as scene, options and choice of device, and opens these at
+    its first use. After a fork, use raises RuntimeError in the child."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        device: DeviceLike = None,
+        *,
+        bvh: str | os.PathLike[str] | None = None,
+        builder: str = "sah",
+        progress: Progress = None,
+    ) -> None:
+        """device: a Device, a part of a name, an index, or None for the default one. bvh: a file of `promin-bvh build`
+        to take the tree from. builder: "sah", "median" or "spatial"; hits are the same. Raises UsageError, InputError
+        for a scene that is not valid, DeviceError, RunError, Cancelled."""
+        if not isinstance(scene, Scene):
+            raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
+        self._scene = scene.snapshot()
+        self._options = (str(builder), None if bvh is None else os.fsdecode(bvh))
+        self._chosen = device
+        self._opened: tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]] | None = None
+        self._open(progress)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it was when the Caster was made; change another."""
+        return self._scene
+
+    @property
+    def device(self) -> Device:
+        """What it runs on."""
+        return self._open()[0]
+
+    @property
+    def setup(self) -> dict[str, Any]:
+        """What making it has cost, by the names of include/promin/setup_stats.h: milliseconds, bytes, nodes,
+        warnings."""
+        return self._open()[1].setup()
+
+    def cast(self, rays: RaysLike, *, progress: Progress = None) -> NDArray[Any]:
+        """The nearest hit of each ray.
+
+        rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (...,
+        3)) or (origins, directions, tmin, tmax), broadcast together. Any strides and real types; all is rounded to
+        float32 once, and C-contiguous float32 of the first form is not copied. Directions have any length but 0, t is
+        in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses everything.
+
+        Returns an array (...) of `promin.HIT_DTYPE`, what `promin cast` writes: t (infinite on a miss), object and
+        primitive (-1 on a miss), u and v (weights of a triangle's second and third corner), normal (geometric, unit, as
+        wound or outward, never flipped to the ray; 0 on a miss). At equal t the lower (object, primitive) wins; a
+        triangle's edges belong to it. Raises UsageError, RunError, Cancelled."""
+        return self._cast(rays, False, progress)
+
+    def occluded(self, rays: RaysLike, *, progress: Progress = None) -> NDArray[np.bool_]:
+        """Whether each ray hits anything, which is answered faster. rays as for `cast`; returns bool (...)."""
+        hits = self._cast(rays, True, progress)
+        result: NDArray[np.bool_] = np.asarray(np.isfinite(hits["t"]))
+        return result
+
+    def count(self, rays: RaysLike, *, progress: Progress = None) -> NDArray[np.int32]:
+        """How often each ray crosses the scene: int32 (...). rays as for `cast`.
+
+        A ray that meets an edge or a corner of a closed mesh crosses one of the triangles there, and a ray along a
+        silhouette none or two, so the count is odd exactly where the ray begins inside (include/promin/caster.h has the
+        rule). `cast` takes edges as the triangle's instead. Raises UsageError, RunError, Cancelled."""
+        _, native, center, _ = self._open()
+        packed, shape = pack_rays(rays, center)
+        counts = np.empty(len(packed), np.int32)
+        native.count(packed, counts, progress)
+        return counts.reshape(shape)
+
+    def list(self, rays: RaysLike, *, progress: Progress = None) -> tuple[NDArray[np.int64], NDArray[Any]]:
+        """All crossings of each ray, by the rule of `count`: splits, int64 (n + 1) for the n rays in C order, and hits
+        of `promin.HIT_DTYPE`, where those of ray i are hits[splits[i]:splits[i + 1]], by t, then by (object,
+        primitive). Memory is needed for all of them: cast many rays part by part. rays as for `cast`; raises as it
+        does."""
+        _, native, center, numbers = self._open()
+        packed, _ = pack_rays(rays, center)
+        splits, rows = native.list(packed, progress)
+        hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1)
+        if len(numbers):
+            number_as_in_file(hits, numbers)
+        return splits, hits
+
+    def _cast(self, rays: RaysLike, is_any: bool, progress: Progress) -> NDArray[Any]:
+        _, native, center, numbers = self._open()
+        packed, shape = pack_rays(rays, center)
+        hits = np.empty(len(packed), HIT_DTYPE)
+        native.cast(packed, as_bytes(hits), is_any, progress)
+        if len(numbers) and not is_any:
+            number_as_in_file(hits, numbers)
+        return hits.reshape(shape)
+
+    def _open(self, progress: Progress = None) -> tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]]:
+        if self._opened is None:
+            device = find_device(self._chosen)
+            scene = self._scene.native()
+            native = _promin.Caster(device._native, scene, *self._options, progress)
+            numbers = np.array(scene.object_numbers(), np.int32)
+            self._opened = device, native, self._scene.native_center, numbers
+        return self._opened
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_opened": None}
+
+
+def as_bytes(hits: NDArray[Any]) -> NDArray[np.uint8]:
+    """The same memory as (n, 32) bytes."""
+    return hits.view(np.uint8).reshape(len(hits), HIT_DTYPE.itemsize)
+
+
+def number_as_in_file(hits: NDArray[Any], numbers: NDArray[np.int32]) -> None:
+    """Gives hits the numbers that the scene's file has for its objects."""
+    is_hit = hits["object"] >= 0
+    hits["object"][is_hit] = numbers[hits["object"][is_hit]]

@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from promin import _promin
+from promin._arrays import round_once, to_numbers
+from promin._errors import UsageError
+from promin._records import Display, to_dict
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A picture, with all that is known of it."""
+
+    rgb: NDArray[np.float32] = field(repr=False)
+    """Linear light, (rows, columns, 3); row 0 is the top."""
+    aovs: Mapping[str, NDArray[Any]] = field(repr=False)
+    """Arrays by the names of include/promin/aovs.h, (rows, columns) or (rows, columns, components)."""
+    metadata: Mapping[str, str]
+    """What an EXR of it carries in its header: scene, device, size and choices."""
+    display: Display = Display()
+    """How it is shown in 8 bits, as `promin render` shows it."""
+    error: Mapping[str, float] | None = None
+    """With an error target: `target`, `largest_claim`, `unmet_pixels` and `samples` of the whole picture."""
+    rays: Mapping[str, int] = field(default_factory=dict)
+    """How many rays it took, by kind."""
+    trace_ms: float = 0.0
+    """Device time."""
+    placement: tuple[tuple[int, int], tuple[int, int]] | None = None
+    """Of a crop its upper left pixel in the whole picture, and the size of that."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+        return self.rgb.shape[1], self.rgb.shape[0]
+
+    def save(self, path: str | os.PathLike[str], display: Display | None = None) -> None:
+        """Writes an .exr with all AOVs, linear, or a .png as `display` shows it, None being the picture's own; whole or
+        not at all. Raises UsageError for another ending, RunError where it cannot be written."""
+        file = os.fsdecode(path)
+        channels = list_channels(self.aovs) if _promin.has_named_channels(file) else []
+        if "alpha" in self.aovs and not channels:
+            channels = list_channels({"alpha": self.aovs["alpha"]})
+        _promin.write_image(
+            file, self.rgb, list(self.metadata.items()), self.placement, channels, to_dict(display or self.display)
+        )
+
+    def srgb(self, display: Display | None = None) -> NDArray[np.uint8]:
+        """What a screen shows, (rows, columns, 3) of 8 bits in sRGB, without noise."""
+        shown = _promin.show(self.rgb, to_dict(display or self.display))
+        return np.asarray(np.floor(shown * 255.0 + 0.5), np.uint8)
+
+    def _repr_png_(self) -> bytes:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "frame.png"
+            self.save(file)
+            return file.read_bytes()
+
+
+def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDArray[np.uint32]]]:
+    """The channels of an EXR: name, whether they are integers, the bits of their values; in the order of the table."""
+    channels = []
+    for name, channel, letters in _promin.list_aovs():
+        if name not in aovs:
+            continue
+        values = np.asarray(aovs[name])
+        is_integer = values.dtype == np.uint32
+        if values.dtype.kind == "f":
+            values = round_once(values)
+        planes = [values] if values.ndim == 2 else [values[..., i] for i in range(values.shape[2])]
+        names = [channel] if values.ndim == 2 else [f"{channel}.{letter}" for letter in letters]
+        channels += [(n, is_integer, np.ascontiguousarray(p).view(np.uint32)) for n, p in zip(names, planes)]
+    return channels
+
+
+def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
+    """R, G and B of a picture file of any format that OpenImageIO knows, (rows, columns, 3) float32, without
+    conversion: EXR and Radiance files hold linear light, others codes of sRGB as 0...1. Raises InputError, RunError."""
+    return _promin.read_image(os.fsdecode(path))
+
+
+def write_image(path: str | os.PathLike[str], rgb: ArrayLike, display: Display = Display()) -> None:
+    """Writes linear light (rows, columns, 3) as .exr, or as .png as `display` shows it. Raises UsageError, RunError."""
+    _promin.write_image(os.fsdecode(path), to_picture(rgb), [], None, [], to_dict(display))
+
+
+def to_picture(rgb: object) -> NDArray[np.float32]:
+    """A picture as the native module takes it; of a Frame its light."""
+    if isinstance(rgb, Frame):
+        return rgb.rgb
+    array = to_numbers(rgb, "the pixels")
+    if array.ndim != 3 or array.shape[2] != 3 or not 0 < array.size < 3 * 2**28:
+        raise UsageError(
+            f"the pixels have the shape {array.shape}; give (rows, columns, 3), neither none nor over 2^28"
+        )
+    return round_once(array)

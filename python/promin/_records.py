@@ -1,0 +1,326 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Lights, materials, cameras and surroundings: the structs of include/promin, whose comments say more, as dataclasses.
+
+Colours are linear RGB, angles radians, lengths in units of the world. Ranges are checked where a record is used."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, TypeVar, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vec3 = tuple[float, float, float]
+"""Three numbers; an array of three will do as well."""
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light (promin/lights.h). By default a classic point light of power 1 at the origin."""
+
+    kind: str = "point"
+    """"point", "directional", "spot" or "headlight", which shines along the view."""
+    position: Vec3 = (0.0, 0.0, 0.0)
+    """Of point and spot lights."""
+    direction: Vec3 = (0.0, 0.0, -1.0)
+    """Of directional and spot lights: the unit vector in which the light travels."""
+    diffuse: Vec3 = (1.0, 1.0, 1.0)
+    """Power in the diffuse term; candela where the light falls off."""
+    specular: Vec3 = (1.0, 1.0, 1.0)
+    """Power in the specular term."""
+    attenuation: str = "none"
+    """"none" or "inverse_square"."""
+    range: float = inf
+    """Beyond it a light that falls off brings nothing."""
+    inner_cone_angle: float = 0.0
+    """Half angle in which a spot has its whole power."""
+    outer_cone_angle: float = 0.785398163
+    """Half angle beyond which it brings nothing, at most pi / 2."""
+    is_on: bool = True
+    """A light that is off keeps its number."""
+    name: str = ""
+    """For people."""
+
+
+@dataclass(frozen=True)
+class TextureSlot:
+    """A texture of the scene's file in its place in a material (promin/textures.h)."""
+
+    texture: int
+    """Which of the scene's."""
+    uv_set: int = 0
+    """Which of the mesh's texture coordinates, 0 or 1."""
+    to_u: Vec3 = (1.0, 0.0, 0.0)
+    """u = to_u . (s, t, 1)."""
+    to_v: Vec3 = (0.0, 1.0, 0.0)
+    """v = to_v . (s, t, 1)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """What materials of all models have (promin/materials.h). Use Phong, MetallicRoughness or Unlit."""
+
+    name: str = ""
+    """For people."""
+    emissive: Vec3 = (0.0, 0.0, 0.0)
+    """Light that the surface sends by itself."""
+    emissive_texture: TextureSlot | None = None
+    """Factors of it."""
+    alpha_mode: str = "opaque"
+    """"opaque", "mask" or "blend". Casts see geometry whatever its alpha."""
+    alpha: float = 1.0
+    """How much of what is behind it the surface covers."""
+    alpha_cutoff: float = 0.5
+    """From which alpha on a masked surface is there."""
+    is_double_sided: bool = True
+    """Whether pictures show both sides of triangles."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Phong(Material):
+    """Phong's model (docs/model.md, "Phong"). The default is a matt light grey."""
+
+    ambient: Vec3 = (0.8, 0.8, 0.8)
+    """Weight of ambient light."""
+    diffuse: Vec3 = (0.8, 0.8, 0.8)
+    """Weight of N.L times a light's diffuse power."""
+    specular: Vec3 = (0.0, 0.0, 0.0)
+    """Weight of the highlight."""
+    shininess: float = 0.0
+    """Phong's exponent; 0 or less: no highlight."""
+    reflection: Vec3 = (0.0, 0.0, 0.0)
+    """Weight of what the mirror ray brings."""
+    transmission: Vec3 = (0.0, 0.0, 0.0)
+    """Weight of what the refracted ray brings."""
+    ior: float = 1.0
+    """Index of refraction."""
+    fresnel: bool = False
+    """Whether Fresnel's reflectance weighs both."""
+    diffuse_texture: TextureSlot | None = None
+    """Factors of ambient and diffuse."""
+    specular_texture: TextureSlot | None = None
+    """Factors of specular and reflection."""
+    normal_texture: TextureSlot | None = None
+    """Normals in the mesh's tangent space."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MetallicRoughness(Material):
+    """glTF's metallic-roughness model (docs/model.md, "Metallic-roughness"). The default is a rough white metal."""
+
+    base_color: Vec3 = (1.0, 1.0, 1.0)
+    """Albedo of the dielectric and reflectance of the metal, 0...1."""
+    metallic: float = 1.0
+    """The share of metal, 0...1."""
+    roughness: float = 1.0
+    """Perceptual roughness, 0...1."""
+    ior: float = 1.5
+    """Of the dielectric."""
+    specular: float = 1.0
+    """Strength of the dielectric's reflection, 0...1."""
+    specular_color: Vec3 = (1.0, 1.0, 1.0)
+    """Its colour."""
+    transmission: float = 0.0
+    """The share of light that goes through, 0...1."""
+    thickness: float = 0.0
+    """0: a thin wall; else the surface bounds a volume."""
+    attenuation_color: Vec3 = (1.0, 1.0, 1.0)
+    """What of white light is left after attenuation_distance."""
+    attenuation_distance: float = inf
+    """See attenuation_color."""
+    dispersion: float = 0.0
+    """20 over the Abbe number."""
+    normal_scale: float = 1.0
+    """Factor of x and y of the texture's normals."""
+    occlusion_strength: float = 1.0
+    """0...1."""
+    clearcoat: float = 0.0
+    """How much of a clear coat there is, 0...1."""
+    clearcoat_roughness: float = 0.0
+    """0...1."""
+    clearcoat_normal_scale: float = 1.0
+    """Factor of x and y of the coat's normals."""
+    sheen_color: Vec3 = (0.0, 0.0, 0.0)
+    """Of cloth; 0: there is none."""
+    sheen_roughness: float = 0.0
+    """0...1."""
+    base_color_texture: TextureSlot | None = None
+    metallic_roughness_texture: TextureSlot | None = None
+    normal_texture: TextureSlot | None = None
+    occlusion_texture: TextureSlot | None = None
+    specular_texture: TextureSlot | None = None
+    specular_color_texture: TextureSlot | None = None
+    transmission_texture: TextureSlot | None = None
+    clearcoat_texture: TextureSlot | None = None
+    clearcoat_roughness_texture: TextureSlot | None = None
+    clearcoat_normal_texture: TextureSlot | None = None
+    sheen_color_texture: TextureSlot | None = None
+    sheen_roughness_texture: TextureSlot | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unlit(Material):
+    """A colour that no light changes."""
+
+    color: Vec3 = (1.0, 1.0, 1.0)
+    """What is seen."""
+    color_texture: TextureSlot | None = None
+    """Factors of it."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pose and a projection (promin/camera.h). By default it looks down -Z from the origin."""
+
+    eye: Vec3 = (0.0, 0.0, 0.0)
+    """Where it is."""
+    look: Vec3 = (0.0, 0.0, -1.0)
+    """Unit vector along the view."""
+    up: Vec3 = (0.0, 1.0, 0.0)
+    """Unit vector to the top of the picture, at a right angle to `look`."""
+    yfov: float = 0.7
+    """Vertical field of view of a perspective camera, in (0, pi)."""
+    projection: str = "perspective"
+    """"perspective" or "orthographic"."""
+    ymag: float = 1.0
+    """Half height of what an orthographic camera sees."""
+    near: float = 0.0
+    """Nothing nearer is drawn."""
+    aspect_ratio: float = 0.0
+    """Width over height that the scene's file asks for; 0: it does not."""
+    resolution: tuple[int, int] = (0, 0)
+    """The size in pixels that it asks for; 0: it does not."""
+    name: str = ""
+    """For people."""
+
+    @staticmethod
+    def look_at(
+        eye: Iterable[float], target: Iterable[float], up: Iterable[float] = (0.0, 1.0, 0.0), **other: Any
+    ) -> Camera:
+        """The camera at `eye` that has `target` in its middle, with `up` upwards; `other` are its further fields. Where
+        `up` is along the view, another direction takes its place."""
+        start = np.array(tuple(eye), np.float64)
+        look = np.array(tuple(target), np.float64) - start
+        look /= np.linalg.norm(look)
+        right = np.cross(look, np.array(tuple(up), np.float64))
+        if np.linalg.norm(right) < 1e-9:
+            right = np.cross(look, (0.0, 0.0, 1.0) if abs(look[2]) < 0.9 else (1.0, 0.0, 0.0))
+        right /= np.linalg.norm(right)
+        return Camera(eye=_vec3(start), look=_vec3(look), up=_vec3(np.cross(right, look)), **other)
+
+
+@dataclass(frozen=True)
+class Studio:
+    """The built-in surroundings for scenes without light."""
+
+    front: float = 0.0
+    """The azimuth from which the scene is looked at, about +Y from +Z."""
+
+
+@dataclass(frozen=True)
+class GradientSky:
+    """A gradient over the elevation (promin/environment.h)."""
+
+    top: Vec3 = (0.3, 0.5, 1.0)
+    horizon: Vec3 = (0.8, 0.8, 0.9)
+    bottom: Vec3 = (0.2, 0.2, 0.2)
+    top_curve: float = 0.15
+    bottom_curve: float = 0.02
+
+
+@dataclass(frozen=True)
+class Panorama:
+    """An equirectangular picture of all directions, its middle at -Z; see `promin.read_image`."""
+
+    image: NDArray[np.float32] = field(repr=False, compare=False)
+    """Linear RGB, (rows, columns, 3) float32."""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """What there is beside objects and lights (promin/environment.h)."""
+
+    ambient: Vec3 = (0.0, 0.0, 0.0)
+    """Radiance of all directions, where there is no sky."""
+    background: Vec3 = (0.0, 0.0, 0.0)
+    """What a ray brings that leaves the scene."""
+    sky: Union[Studio, GradientSky, Panorama, None] = None
+    """What surrounds the scene instead of ambient light."""
+    shows_sky: bool = False
+    """Whether the camera sees the sky in place of the background."""
+    rotation: float = 0.0
+    """How far the sky is turned about +Y."""
+    intensity: float = 1.0
+    """A factor of the sky's radiance."""
+
+
+@dataclass(frozen=True)
+class Display:
+    """How linear light is shown in 8 bits (promin/display.h)."""
+
+    exposure_ev: float = 0.0
+    """Stops."""
+    tone_mapping: str = "none"
+    """"none", "neutral", "aces", "reinhard" or "agx"."""
+    dithers: bool = False
+    """Whether the 8 bits get noise."""
+
+
+_MODELS: dict[str, type[Material]] = {"phong": Phong, "metallic_roughness": MetallicRoughness, "unlit": Unlit}
+_SKIES: dict[str, type[Any]] = {"studio": Studio, "gradient": GradientSky, "panorama": Panorama}
+_NAMES = {kind: name for name, kind in (*_MODELS.items(), *_SKIES.items())}
+_KEYS = {
+    Phong: "model",
+    MetallicRoughness: "model",
+    Unlit: "model",
+    Studio: "kind",
+    GradientSky: "kind",
+    Panorama: "kind",
+}
+
+Record = TypeVar("Record")
+
+
+def to_dict(record: object) -> dict[str, Any]:
+    """A record as the native module takes it."""
+    assert dataclasses.is_dataclass(record)
+    result = {f.name: _plain(getattr(record, f.name)) for f in dataclasses.fields(record)}
+    kind = type(record)
+    if kind in _KEYS:
+        result[_KEYS[kind]] = _NAMES[kind]
+    return result
+
+
+def from_dict(kind: type[Record], values: Mapping[str, Any]) -> Record:
+    """A record of what the native module gives; of a Material the class of its model."""
+    fields = dict(values)
+    if kind is Material:
+        kind = _MODELS[fields.pop("model")]  # type: ignore[assignment]
+    for name, value in fields.items():
+        if name == "sky" and value is not None:
+            sky = dict(value)
+            fields[name] = _SKIES[sky.pop("kind")](**sky)
+        elif name.endswith("_texture") and value is not None:
+            fields[name] = TextureSlot(**value)
+    return kind(**fields)
+
+
+def _plain(value: object) -> Any:
+    if dataclasses.is_dataclass(value):
+        return to_dict(value)
+    if isinstance(value, np.ndarray):
+        return np.ascontiguousarray(value, np.float32) if value.ndim == 3 else tuple(value.tolist())
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, (list, tuple)):
+        return tuple(_plain(one) for one in value)
+    return value
+
+
+def _vec3(values: NDArray[np.float64]) -> Vec3:
+    return float(values[0]), float(values[1]), float(values[2])

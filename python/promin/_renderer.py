@@ -1,0 +1,393 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a scene."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import floor
+from operator import index
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from promin import _promin
+from promin._caster import Progress
+from promin._device import Device, DeviceLike, find_device
+from promin._errors import UsageError
+from promin._frame import Frame
+from promin._records import Camera, Display, Environment, Light, Material, from_dict, to_dict
+from promin._scene import Scene, move_camera, move_light
+
+CameraLike = Union[Camera, str, int, None]
+"""A camera, or the name or number of one of the scene's; None: its first, or one that frames the scene."""
+
+_ASPECT_RATIO = 16 / 9
+_HEIGHT = 720
+
+
+_Opened = tuple[Device, _promin.Renderer, _promin.Scene]
+"""The device, the renderer on it, and the scene with its light."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What of a scene is shown, and how well; the defaults are those of `promin render`."""
+
+    camera: CameraLike = None
+    """From where."""
+    size: tuple[int, int] | None = None
+    """Width and height in pixels; None: what the camera asks for, else a height of 720. The vertical field of view
+    holds."""
+    crop: tuple[int, int, int, int] | None = None
+    """x0, y0, x1, y1: the pixels to trace, half-open."""
+    spp: int = 1
+    """Samples a pixel; 1 samples the centre."""
+    max_depth: int | None = None
+    """Bounces; None: 5, or 8 with glass."""
+    target_error: float | None = None
+    """Each pixel takes samples until it claims to be this near (docs/model.md, "Error of a pixel"), in place of
+    `spp`."""
+    time_limit: float | None = None
+    """Seconds: the most exact picture that is complete by about then."""
+    min_spp: int | None = None
+    """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
+    max_spp: int | None = None
+    """The samples at which a pixel stops with an error target, a power of two; None: 256."""
+    filter: str = "box"
+    """"box", "tent", "gauss" or "blackman-harris"."""
+    filter_width: float | None = None
+    """In pixels; None: the filter's own."""
+    depth: str = "ray"
+    """How the AOV `depth` is measured: "ray" from the eye, or "plane" along the view."""
+    debug_view: str = "full"
+    """"full" is light; or "normals", "uv", "object", "primitive", "depth", "steps"."""
+    shadows: bool = True
+    """Whether lights cast shadows."""
+
+
+class Renderer:
+    """A scene on a device that pictures are taken of.
+
+    Making one lights the scene, builds a tree and compiles. The scene may change afterwards: the Renderer keeps what it
+    was. Threads, Ctrl-C, pickle and forks: as Caster."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        device: DeviceLike = None,
+        *,
+        aovs: Iterable[str] = (),
+        light: str = "auto",
+        framing: str = "auto",
+        builder: str = "sah",
+        bvh: str | os.PathLike[str] | None = None,
+        texture_memory: int = 512 << 20,
+        progress: Progress = None,
+    ) -> None:
+        """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
+        "object", ...; `render` may ask for others, for which the tree is built anew. light: what stands in for light
+        that the scene lacks: "auto", "studio", "headlight" or "none". framing: from where a scene without cameras is
+        seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that textures take. The rest as Caster.
+        Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
+        if not isinstance(scene, Scene):
+            raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
+        self._scene = scene.snapshot()
+        self._chosen = device
+        self._light = str(light)
+        self._framing = "" if framing == "auto" else str(framing)
+        self._builder = str(builder)
+        self._bvh = None if bvh is None else os.fsdecode(bvh)
+        self._texture_memory = texture_memory
+        self._aovs = _names(aovs)
+        self._changes: dict[str, Any] = {}
+        self._opened: _Opened | None = None
+        self._open(progress)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it was when the Renderer was made."""
+        return self._scene
+
+    @property
+    def device(self) -> Device:
+        """What it runs on."""
+        return self._open()[0]
+
+    @property
+    def setup(self) -> dict[str, Any]:
+        """What making it has cost, by the names of include/promin/setup_stats.h."""
+        return self._open()[1].setup()
+
+    @property
+    def lights(self) -> list[Light]:
+        """The lights, with those that stand in for missing ones."""
+        lights = self._changes.get("lights")
+        return lights if lights is not None else [self._back(from_dict(Light, r)) for r in self._lit().lights()]
+
+    @property
+    def materials(self) -> list[Material]:
+        """The materials as they are lit."""
+        materials = self._changes.get("materials")
+        return materials if materials is not None else [from_dict(Material, r) for r in self._lit().materials()]
+
+    @property
+    def environment(self) -> Environment:
+        """Ambient light, background and sky, with those that stand in for missing ones."""
+        environment: Environment | None = self._changes.get("environment")
+        return environment if environment is not None else from_dict(Environment, self._lit().environment())
+
+    @property
+    def display(self) -> Display:
+        """How pictures of the scene are shown in 8 bits."""
+        return from_dict(Display, self._lit().display(self._light))
+
+    def camera(self, camera: CameraLike = None, aspect_ratio: float = _ASPECT_RATIO) -> Camera:
+        """The camera that a view with this one has, to change with dataclasses.replace. Raises UsageError where the
+        scene has none of this name or number."""
+        if isinstance(camera, Camera):
+            return camera
+        cameras = self._scene.cameras
+        if camera is None and not cameras:
+            framed: Camera = self._back(from_dict(Camera, self._lit().frame(float(aspect_ratio), self._framing)))
+            return framed
+        if camera is None:
+            return cameras[0]
+        for one in cameras:
+            if one.name == camera:
+                return one
+        number = int(camera) if str(camera).isdecimal() else len(cameras)
+        if number >= len(cameras):
+            names = ", ".join(f"{i} ({one.name})" if one.name else str(i) for i, one in enumerate(cameras))
+            raise UsageError(f"no camera {camera!r}; " + (f"choose one of: {names}" if names else "the scene has none"))
+        return cameras[number]
+
+    def render(
+        self,
+        view: View | None = None,
+        *,
+        aovs: Iterable[str] | None = None,
+        progress: Progress = None,
+        camera: CameraLike = None,
+        size: tuple[int, int] | None = None,
+        crop: tuple[int, int, int, int] | None = None,
+        spp: int | None = None,
+        max_depth: int | None = None,
+        target_error: float | None = None,
+        time_limit: float | None = None,
+        filter: str | None = None,
+        debug_view: str | None = None,
+    ) -> Frame:
+        """Traces one picture. What is given beside the view takes the place of the view's. aovs: None are those of the
+        Renderer. Of a scene file the picture has the bits of `promin render` with the same options. Raises UsageError
+        for what breaks the rules of include/promin/view.h, RunError, Cancelled."""
+        given: dict[str, Any] = {
+            "camera": camera,
+            "size": size,
+            "crop": crop,
+            "spp": spp,
+            "max_depth": max_depth,
+            "target_error": target_error,
+            "time_limit": time_limit,
+            "filter": filter,
+            "debug_view": debug_view,
+        }
+        changes = {key: value for key, value in given.items() if value is not None}
+        if view is not None and not isinstance(view, View):
+            raise UsageError(f"{view!r:.80} is no promin.View")
+        whole = dataclasses.replace(view or View(), **changes)
+        if aovs is not None and _names(aovs) != self._aovs:
+            self._opened = self._make(_names(aovs), progress)
+            self._aovs = _names(aovs)
+        device, native, _ = self._open(progress)
+        record, shown = self._describe_view(whole)
+        result = native.render(record, None if whole.time_limit is None else _seconds(whole.time_limit), progress)
+        placement = None
+        if record["crop"] is not None:
+            placement = (record["crop"]["lo"], record["size"])
+        return Frame(
+            rgb=result["rgb"],
+            aovs=self._finish(result["aovs"]),
+            metadata=self._describe(device, record, shown, result["error"]),
+            display=shown,
+            error=result["error"],
+            rays=result["rays"],
+            trace_ms=result["trace_ms"],
+            placement=placement,
+        )
+
+    def update(
+        self,
+        *,
+        lights: Iterable[Light] | None = None,
+        materials: Iterable[Material] | None = None,
+        environment: Environment | None = None,
+    ) -> None:
+        """Replaces all lights, all materials (as many as there are), or the surroundings, without building a tree.
+        Raises InputError for what is not valid, and changes nothing then."""
+        new: dict[str, Any] = {}
+        if lights is not None:
+            new["lights"] = _all_of(lights, Light)
+        if materials is not None:
+            new["materials"] = _all_of(materials, Material)
+        if environment is not None:
+            new["environment"] = _all_of([environment], Environment)[0]
+        native = self._open()[1]
+        for name, value in new.items():
+            self._apply(native, name, value)
+            self._changes[name] = value
+
+    # What a view becomes.
+
+    def _describe_view(self, view: View) -> tuple[dict[str, Any], Display]:
+        size = None if view.size is None else _integers(view.size, 2, "size")
+        aspect = size[0] / size[1] if size and size[1] > 0 and size[0] > 0 else _ASPECT_RATIO
+        camera = self.camera(view.camera, aspect)
+        if size is None:
+            size = _integers(camera.resolution, 2, "resolution")
+            if size == (0, 0):
+                size = floor(_HEIGHT * (camera.aspect_ratio or _ASPECT_RATIO) + 0.5), _HEIGHT
+        shown = self.display if view.debug_view == "full" else Display()
+        crop = None if view.crop is None else _integers(view.crop, 4, "crop")
+        depth = self._lit().default_max_depth() if view.max_depth is None else view.max_depth
+        width = _promin.default_width(str(view.filter)) if view.filter_width is None else view.filter_width
+        record: dict[str, Any] = {
+            "camera": move_camera(camera, self._scene.native_center),
+            "size": size,
+            "crop": None if crop is None else {"lo": crop[:2], "hi": crop[2:]},
+            "samples_per_pixel": view.spp,
+            "error_target": None,
+            "depth_kind": view.depth,
+            "filter": view.filter,
+            "filter_width": width,
+            "max_depth": depth,
+            "debug_view": view.debug_view,
+            "has_shadows": bool(view.shadows),
+        }
+        if view.target_error is not None or view.time_limit is not None:
+            record["error_target"] = _error_target(view, shown)
+        return record, shown
+
+    def _describe(
+        self, device: Device, record: dict[str, Any], shown: Display, error: dict[str, float] | None
+    ) -> dict[str, str]:
+        info = device.info
+        described = {
+            "promin:version": _promin.__version__,
+            "promin:scene": "" if self._scene.path is None else Path(self._scene.path).name,
+            "promin:device": info.name,
+            "promin:driver": info.driver,
+            "promin:size": "{}x{}".format(*record["size"]),
+            "promin:spp": str(record["samples_per_pixel"]),
+            "promin:filter": f"{record['filter']} {record['filter_width']:g}",
+            "promin:max_depth": str(record["max_depth"]),
+            "promin:exposure_ev": f"{shown.exposure_ev:g}",
+            "promin:tone_mapping": shown.tone_mapping,
+        }
+        if error is not None:
+            target = record["error_target"]
+            described["promin:min_spp"] = str(target["min_samples"])
+            described["promin:max_spp"] = str(target["max_samples"])
+            described["promin:target_error"] = f"{error['target']:.9g}"
+        if "depth" in self._aovs:
+            described["promin:depth"] = record["depth_kind"]
+        return described
+
+    def _finish(self, aovs: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+        """The AOVs in the world and by the file's numbers."""
+        center = self._scene.native_center
+        if "position" in aovs and center.any():
+            is_hit = aovs["position"].any(axis=2, keepdims=True)
+            aovs["position"] = np.where(is_hit, aovs["position"] + center, 0.0)
+        numbers = np.array(self._scene.native().object_numbers(), np.uint32)
+        if "object" in aovs and len(numbers):
+            is_hit = aovs["object"] < len(numbers)
+            aovs["object"][is_hit] = numbers[aovs["object"][is_hit]]
+        return aovs
+
+    # The native renderer, made when it is first needed.
+
+    def _open(self, progress: Progress = None) -> _Opened:
+        if self._opened is None:
+            self._opened = self._make(self._aovs, progress)
+        return self._opened
+
+    def _make(self, aovs: tuple[str, ...], progress: Progress) -> _Opened:
+        device = find_device(self._chosen)
+        lit = self._scene.native().lit(self._light)
+        native = _promin.Renderer(
+            device._native, lit, list(aovs), self._builder, self._bvh, False, self._texture_memory, progress
+        )
+        for name, value in self._changes.items():
+            self._apply(native, name, value)
+        return device, native, lit
+
+    def _lit(self) -> _promin.Scene:
+        return self._open()[2]
+
+    def _apply(self, native: _promin.Renderer, name: str, value: Any) -> None:
+        if name == "lights":
+            native.set_lights([move_light(light, self._scene.native_center) for light in value])
+        elif name == "materials":
+            native.set_materials([to_dict(material) for material in value])
+        else:
+            native.set_environment(to_dict(value))
+
+    def _back(self, record: Any) -> Any:
+        """A camera or light of the native scene in the world."""
+        center = self._scene.native_center
+        if not center.any():
+            return record
+        name = "eye" if isinstance(record, Camera) else "position"
+        moved = tuple(float(x) for x in np.asarray(getattr(record, name)) + center)
+        return dataclasses.replace(record, **{name: moved})
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_opened": None}
+
+
+def _error_target(view: View, shown: Display) -> dict[str, Any]:
+    """As promin's options --target-error, --time-limit, --min-spp and --max-spp are taken."""
+    error = 2.0**-16 if view.target_error is None else view.target_error
+    least = 4 if view.time_limit is None and isinstance(error, (int, float)) and error >= 1 / 32 else 8
+    if view.min_spp is not None:
+        least = view.min_spp
+    elif view.max_spp is not None:
+        least = min(least, view.max_spp)
+    most = max(256, least) if view.max_spp is None else view.max_spp
+    return {"error": error, "min_samples": least, "max_samples": most, "white": 2.0**-shown.exposure_ev}
+
+
+def _names(aovs: Iterable[str]) -> tuple[str, ...]:
+    if isinstance(aovs, str):
+        raise UsageError(f"aovs is {aovs!r}; give a tuple of names")
+    return tuple(sorted({str(name) for name in aovs}))
+
+
+def _all_of(records: Iterable[Any], kind: type[Any]) -> list[Any]:
+    result = list(records)
+    for record in result:
+        if not isinstance(record, kind):
+            raise UsageError(f"{record!r:.80} is no promin.{kind.__name__}")
+    return result
+
+
+def _integers(values: Any, count: int, what: str) -> tuple[int, ...]:
+    try:
+        result = tuple(index(value) for value in values)
+    except TypeError:
+        result = ()
+    if len(result) != count or any(not 0 <= value < 2**32 for value in result):
+        raise UsageError(f"{what} is {values!r:.80}; give {count} whole numbers of pixels")
+    return result
+
+
+def _seconds(value: object) -> float:
+    if isinstance(value, (int, float)) and 0 < value < float("inf"):
+        return float(value)
+    raise UsageError(f"time_limit is {value!r:.80}; give a positive number of seconds")

@@ -1,0 +1,583 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: a file, or arrays and shapes, or a file and what is added to it."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import os
+import threading
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from promin import _promin
+from promin._arrays import RaysLike, check_hits, positions, round_once, split_rays, to_numbers, to_vectors
+from promin._errors import InputError, UsageError
+from promin._records import Camera, Environment, Light, Material, Phong, from_dict, to_dict
+
+IDENTITY = np.eye(4)
+
+
+class ObjectInfo(NamedTuple):
+    """What an object is."""
+
+    name: str
+    """For people; may be empty."""
+    primitive_count: int
+    """Triangles, or 1 for an analytic shape; 0 where nothing is drawn."""
+    material: int
+    """Which of the scene's materials."""
+
+
+@dataclass(frozen=True)
+class _File:
+    """A scene's file, as it was when it was read."""
+
+    path: str
+    sha256: str
+    is_strict: bool
+    variant: str
+
+
+@dataclass(frozen=True)
+class _Mesh:
+    name: str
+    vertices: NDArray[Any]
+    faces: NDArray[np.uint32]
+    normals: NDArray[np.float32] | None
+    colors: NDArray[np.float32] | None
+    material: int
+    transform: NDArray[np.float64]
+
+    def corners(self) -> NDArray[np.float64]:
+        """The vertices in the world, in float64."""
+        return self.vertices @ self.transform[:3, :3].T + self.transform[:3, 3]
+
+    def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> None:
+        vertices, transform = self.vertices, self.transform
+        if transform is IDENTITY:
+            vertices = vertices - center if center.any() else vertices
+        elif vertices.dtype == np.float64 and len(vertices):
+            # What is rounded are vertices around the mesh's own middle; the transform stays in double.
+            middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+            vertices = vertices - middle
+            transform = _translation(-center) @ transform @ _translation(middle)
+        else:
+            transform = _translation(-center) @ transform
+        scene.add_mesh(self.name, round_once(vertices), self.faces, self.normals, self.colors, self.material, transform)
+
+
+@dataclass(frozen=True)
+class _Shape:
+    name: str
+    kind: str
+    record: dict[str, Any]
+    material: int
+    transform: NDArray[np.float64]
+
+    def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> None:
+        transform = _translation(-center) @ self.transform
+        scene.add_shape(self.name, self.kind, self.record, self.material, np.ascontiguousarray(transform))
+
+
+class Scene:
+    """What is to be traced: objects, materials, lights, cameras and surroundings.
+
+    Objects are numbered in the order in which they are added, those of a file first. A scene is a plain value: Caster
+    and Renderer take what it is when they are made, and it is pickled as its arrays and its file's path and SHA-256.
+
+    Precision: devices compute in float32. A scene with vertices of float64 keeps a `center`, which vertices, shapes,
+    lights and cameras lose in float64 before they are rounded, and the origins of rays too; hits and pictures are told
+    in the world as it was given. Scenes of float32 vertices or of a file are not moved."""
+
+    _base: _promin.Scene | None
+    _native: _promin.Scene | None
+    _native_center: NDArray[np.float64]
+
+    def __init__(self, *, center: ArrayLike | None = None) -> None:
+        """An empty scene. center: what coordinates lose before they are rounded, (3,); None: the middle of the bounds
+        of all vertices if some are float64, rounded to eighths of their size and less, so that a scene around the
+        origin is not moved; else the origin."""
+        self._file: _File | None = None
+        self._parts: list[_Mesh | _Shape] = []
+        self._materials: list[Material] = []
+        self._lights: list[Light] = []
+        self._cameras: list[Camera] = []
+        self._environment: Environment | None = None
+        self._center: NDArray[np.float64] | None = None
+        if center is not None:
+            self._center = to_vectors(center, "center").astype(np.float64)
+            if self._center.shape != (3,) or not np.isfinite(self._center).all():
+                raise UsageError("center is no point of three finite numbers")
+        self._make_private()
+
+    @staticmethod
+    def load(path: str | os.PathLike[str], *, strict: bool = False, variant: str = "") -> Scene:
+        """Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a glTF file that requires
+        an extension which is not known. variant: of the file's `variants` the one that is shown. Raises InputError with
+        every problem of the file, UsageError where it has no such variant. See `warnings` too."""
+        scene = Scene(center=(0.0, 0.0, 0.0))
+        file = Path(os.fsdecode(path))
+        base = _promin.Scene.load(str(file), bool(strict), str(variant))
+        scene._file = _File(os.path.abspath(file), _hash(file), bool(strict), str(variant))
+        scene._base = base
+        return scene
+
+    # What is added.
+
+    def add_triangles(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        transform: ArrayLike | None = None,
+        material: int | None = None,
+        normals: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
+        name: str = "",
+    ) -> int:
+        """Adds a mesh and returns its object number.
+
+        vertices: (n, 3), in units of the world; float32 are taken as they are, all else is float64. faces: (m, 3)
+        integers from 0 to n - 1, counter-clockwise seen from outside; hits number them in this order. transform: (4, 4)
+        that multiplies columns, affine and not singular. material: a number of add_material; None: a light grey.
+        normals: (n, 3) for smooth shading, of any length but 0. colors: (n, 3) or (n, 4) linear factors of the
+        material's. Raises UsageError; `validate` finds the rest."""
+        points = to_vectors(vertices, "vertices")
+        triangles = _to_faces(faces)
+        if points.ndim != 2:
+            raise UsageError(f"vertices have the shape {points.shape}; give (n, 3)")
+        mesh = _Mesh(
+            str(name),
+            _frozen(points),
+            triangles,
+            None if normals is None else _per_vertex(normals, "normals", len(points), (3,)),
+            None if colors is None else _with_alpha(_per_vertex(colors, "colors", len(points), (3, 4))),
+            self._material_number(material),
+            _to_matrix(transform),
+        )
+        return self._add(mesh)
+
+    def add_sphere(self, center: ArrayLike = (0, 0, 0), radius: float = 0.5, **place: Any) -> int:
+        """Adds a ball and returns its object number. `place`, of all shapes: transform=None, material=None, name=""."""
+        return self._add_shape("sphere", place, center=_vec(center), radius=_real(radius))
+
+    def add_plane(self, point: ArrayLike = (0, 0, 0), normal: ArrayLike = (0, 1, 0), **place: Any) -> int:
+        """Adds an infinite plane through the point, at right angles to the normal of any length."""
+        return self._add_shape("plane", place, point=_vec(point), normal=_vec(normal))
+
+    def add_box(self, center: ArrayLike = (0, 0, 0), half_size: ArrayLike = (0.5, 0.5, 0.5), **place: Any) -> int:
+        """Adds a solid box along the axes; half_size is the distance of its faces from the middle."""
+        return self._add_shape("box", place, center=_vec(center), half_size=_vec(half_size))
+
+    def add_cylinder(
+        self,
+        center: ArrayLike = (0, 0, 0),
+        axis: ArrayLike = (0, 1, 0),
+        half_height: float = 0.25,
+        radius: float = 0.25,
+        *,
+        is_open: bool = False,
+        **place: Any,
+    ) -> int:
+        """Adds a cylinder: center is the middle of its axis, half_height the way from there to its disks, which it has
+        unless it is open."""
+        return self._add_shape(
+            "cylinder",
+            place,
+            center=_vec(center),
+            axis=_vec(axis),
+            half_height=_real(half_height),
+            radius=_real(radius),
+            is_open=bool(is_open),
+        )
+
+    def add_cone(
+        self,
+        center: ArrayLike = (0, 0, 0),
+        axis: ArrayLike = (0, 1, 0),
+        half_height: float = 0.25,
+        radius_bottom: float = 0.25,
+        radius_top: float = 0.0,
+        *,
+        is_open: bool = False,
+        **place: Any,
+    ) -> int:
+        """Adds a cone or frustum as add_cylinder does; the axis goes from the bottom to the top."""
+        return self._add_shape(
+            "cone",
+            place,
+            center=_vec(center),
+            axis=_vec(axis),
+            half_height=_real(half_height),
+            radius_bottom=_real(radius_bottom),
+            radius_top=_real(radius_top),
+            is_open=bool(is_open),
+        )
+
+    def add_capsule(
+        self,
+        center: ArrayLike = (0, 0, 0),
+        axis: ArrayLike = (0, 1, 0),
+        half_height: float = 0.25,
+        radius_bottom: float = 0.25,
+        radius_top: float = 0.25,
+        **place: Any,
+    ) -> int:
+        """Adds the convex hull of two spheres, whose centers are half_height from the middle."""
+        return self._add_shape(
+            "capsule",
+            place,
+            center=_vec(center),
+            axis=_vec(axis),
+            half_height=_real(half_height),
+            radius_bottom=_real(radius_bottom),
+            radius_top=_real(radius_top),
+        )
+
+    def add_material(self, material: Material) -> int:
+        """Adds a material and returns its number, those of a file being the first."""
+        self._materials.append(_of(material, Material))
+        self._forget_native()
+        return self._base_material_count() + len(self._materials) - 1
+
+    def add_light(self, light: Light) -> int:
+        """Adds a light and returns its number. A scene without lights and sky is lit by `Renderer(light=...)`."""
+        self._lights.append(_of(light, Light))
+        self._forget_native()
+        return len(self.lights) - 1
+
+    def add_camera(self, camera: Camera) -> int:
+        """Adds a camera and returns its number; the first is the default."""
+        self._cameras.append(_of(camera, Camera))
+        self._forget_native()
+        return len(self.cameras) - 1
+
+    # What there is.
+
+    @property
+    def path(self) -> Path | None:
+        """The file that it was read from."""
+        return None if self._file is None else Path(self._file.path)
+
+    @property
+    def center(self) -> NDArray[np.float64]:
+        """What coordinates lose before they are rounded to float32, (3,) float64."""
+        if self._center is not None:
+            return self._center.copy()
+        meshes = [part for part in self._parts if isinstance(part, _Mesh) and len(part.vertices)]
+        if not any(mesh.vertices.dtype == np.float64 for mesh in meshes):
+            return np.zeros(3)
+        corners = [mesh.corners() for mesh in meshes]
+        low = np.min([c.min(axis=0) for c in corners], axis=0)
+        high = np.max([c.max(axis=0) for c in corners], axis=0)
+        return _middle(low, high)
+
+    @property
+    def objects(self) -> list[ObjectInfo]:
+        """Its objects, by the numbers that hits give; but of an NFF file these are of its surfaces."""
+        return [ObjectInfo(*row) for row in self.native().objects()]
+
+    @property
+    def materials(self) -> list[Material]:
+        """Copies of its materials."""
+        return [from_dict(Material, record) for record in self.native().materials()]
+
+    @property
+    def lights(self) -> list[Light]:
+        """Copies of its lights, without those that a Renderer adds."""
+        base = [] if self._file is None else [from_dict(Light, record) for record in self._load_base().lights()]
+        return base + list(self._lights)
+
+    @property
+    def cameras(self) -> list[Camera]:
+        """Copies of its cameras; empty where a Renderer frames the scene."""
+        base = [] if self._file is None else [from_dict(Camera, record) for record in self._load_base().cameras()]
+        return base + list(self._cameras)
+
+    @property
+    def environment(self) -> Environment:
+        """Ambient light, background and sky. Assigning replaces it."""
+        if self._environment is not None:
+            return self._environment
+        return Environment() if self._file is None else from_dict(Environment, self._load_base().environment())
+
+    @environment.setter
+    def environment(self, environment: Environment) -> None:
+        self._environment = _of(environment, Environment)
+        self._forget_native()
+
+    @property
+    def bounds(self) -> NDArray[np.float64] | None:
+        """The box of everything finite, (2, 3): least and greatest corner, of the rounded numbers; None where there is
+        nothing."""
+        box = self.native().bounds()
+        return None if box is None else np.array(box, np.float64) + self._native_center
+
+    @property
+    def warnings(self) -> list[str]:
+        """What of its file is not modelled or was assumed, a sentence each."""
+        return list(self.native().warnings())
+
+    @property
+    def variants(self) -> list[str]:
+        """Variants of materials that its file has."""
+        return list(self.native().variants())
+
+    def validate(self) -> None:
+        """Raises InputError with all that is wrong with it, each with its place; Caster and Renderer do so too."""
+        problems = self.native().problems()
+        if problems:
+            first = problems[0] if len(problems) == 1 else f"{problems[0]} (and {len(problems) - 1} more)"
+            raise InputError("\n  ".join([first, *problems[1:]]), problems)
+
+    def positions(self, rays: RaysLike, hits: NDArray[Any]) -> NDArray[np.float64]:
+        """Where rays hit, (..., 3) float64, NaN on a miss: on meshes of `add_triangles` where the ray meets the plane
+        of the triangle in float64, of the vertices as they were given; elsewhere as `promin.positions`."""
+        points = positions(rays, hits)
+        hits = check_hits(hits)
+        origins, _, directions, _ = split_rays(rays)
+        origins = np.broadcast_to(origins, points.shape)
+        directions = np.broadcast_to(directions, points.shape)
+        first = len(self._load_base().objects()) if self._file is not None else 0
+        for number, part in enumerate(self._parts, first):
+            if not isinstance(part, _Mesh):
+                continue
+            chosen = hits["object"] == number
+            triangles = part.corners()[part.faces[hits["primitive"][chosen]]]
+            points[chosen] = meet_planes(origins[chosen], directions[chosen], triangles, points[chosen])
+        return points
+
+    def __repr__(self) -> str:
+        name = "" if self._file is None else f" {self._file.path}"
+        return f"<promin.Scene{name}, {len(self.objects)} objects>"
+
+    # Native parts, made when they are first asked for.
+
+    def native(self) -> _promin.Scene:
+        """The scene as the library has it, without its center; nobody changes it. For promin's own modules."""
+        with self._lock:
+            if self._native is None:
+                center = self.center
+                self._native = self._make_native(center)
+                self._native_center = center
+            return self._native
+
+    def snapshot(self) -> Scene:
+        """A scene that does not change with this one, but shares its arrays and what is made of them."""
+        self.native()
+        twin = copy.copy(self)
+        twin._lock = threading.RLock()
+        twin._parts, twin._materials = list(self._parts), list(self._materials)
+        twin._lights, twin._cameras = list(self._lights), list(self._cameras)
+        return twin
+
+    @property
+    def native_center(self) -> NDArray[np.float64]:
+        """The center that `native` has lost."""
+        self.native()
+        return self._native_center
+
+    def _make_native(self, center: NDArray[np.float64]) -> _promin.Scene:
+        if self._file is not None and not self._has_additions():
+            return self._load_base()
+        scene = _promin.Scene() if self._file is None else self._load_base().copy()
+        is_bare = not self._materials and self._base_material_count() == 0
+        for material in [Phong()] if is_bare and self._parts else self._materials:
+            scene.add_material(to_dict(material))
+        for part in self._parts:
+            part.add_to(scene, center)
+        for light in self._lights:
+            scene.add_light(move_light(light, center))
+        for camera in self._cameras:
+            scene.add_camera(move_camera(camera, center))
+        if self._environment is not None:
+            scene.set_environment(to_dict(self._environment))
+        return scene
+
+    def _has_additions(self) -> bool:
+        added = (self._parts, self._materials, self._lights, self._cameras)
+        return any(added) or self._environment is not None
+
+    def _load_base(self) -> _promin.Scene:
+        assert self._file is not None
+        with self._lock:
+            if self._base is None:
+                file = Path(self._file.path)
+                if _hash(file) != self._file.sha256:
+                    raise InputError(f"the scene is not what it was when it was pickled, {file}; load it anew")
+                self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant)
+            return self._base
+
+    def _base_material_count(self) -> int:
+        return 0 if self._file is None else len(self._load_base().materials())
+
+    def _add(self, part: _Mesh | _Shape) -> int:
+        self._parts.append(part)
+        self._forget_native()
+        return (0 if self._file is None else len(self._load_base().objects())) + len(self._parts) - 1
+
+    def _add_shape(self, kind: str, place: dict[str, Any], **record: Any) -> int:
+        transform, material, name = (place.pop(key, None) for key in ("transform", "material", "name"))
+        if place:
+            raise TypeError(f"add_{kind}() got an unexpected keyword argument '{next(iter(place))}'")
+        return self._add(_Shape(str(name or ""), kind, record, self._material_number(material), _to_matrix(transform)))
+
+    def _material_number(self, material: object) -> int:
+        if material is None:
+            return 0
+        if not isinstance(material, (int, np.integer)) or not 0 <= material < 2**32:
+            raise UsageError(f"material is {material!r}; give a number of add_material")
+        return int(material)
+
+    def _make_private(self) -> None:
+        """What is not pickled: the file's scene and the whole as the library has them, when they are asked for."""
+        self._lock = threading.RLock()
+        self._base = None
+        self._native = None
+        self._native_center = np.zeros(3)
+
+    def _forget_native(self) -> None:
+        self._native = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        private = ("_base", "_lock", "_native", "_native_center")
+        return {key: value for key, value in self.__dict__.items() if key not in private}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._make_private()
+
+
+def meet_planes(
+    origins: NDArray[Any], directions: NDArray[Any], triangles: NDArray[Any], otherwise: NDArray[Any]
+) -> NDArray[np.float64]:
+    """Where rays (n, 3) meet the planes of triangles (n, 3, 3), in float64; `otherwise` where they are parallel."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        t = np.einsum("ij,ij->i", normals, triangles[:, 0] - origins) / np.einsum("ij,ij->i", normals, directions)
+        points = origins + t[:, None] * directions
+    return np.where(np.isfinite(points), points, otherwise)
+
+
+def move_light(light: Light, center: NDArray[np.float64]) -> dict[str, Any]:
+    """The light's record, without the center."""
+    record = to_dict(light)
+    record["position"] = _without(record["position"], center)
+    return record
+
+
+def move_camera(camera: Camera, center: NDArray[np.float64]) -> dict[str, Any]:
+    """The camera's record, without the center."""
+    record = to_dict(camera)
+    record["eye"] = _without(record["eye"], center)
+    return record
+
+
+def _without(point: Any, center: NDArray[np.float64]) -> Any:
+    if not center.any():
+        return point
+    try:
+        return tuple(float(x) for x in np.asarray(point, np.float64) - center)
+    except (TypeError, ValueError):
+        # The native module says what is wrong with it.
+        return point
+
+
+def _middle(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Near the middle, with few bits, so that small whole numbers stay exact without it."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        middle = low / 2 + high / 2
+        size = float(np.max(high - low))
+    if not np.isfinite(middle).all() or not np.isfinite(size):
+        # What is not finite is refused by its place.
+        return np.zeros(3)
+    if size == 0.0:
+        return middle
+    step = 2.0 ** np.floor(np.log2(size) - 2)
+    return np.asarray(np.round(middle / step) * step) + 0.0
+
+
+def _hash(file: Path) -> str:
+    digest = hashlib.sha256()
+    try:
+        with open(file, "rb") as stream:
+            while block := stream.read(1 << 20):
+                digest.update(block)
+    except OSError as error:
+        raise InputError(f"cannot read the scene ({error.strerror}), {file}") from None
+    return digest.hexdigest()
+
+
+def _frozen(array: NDArray[Any]) -> NDArray[Any]:
+    """A copy that nobody changes."""
+    own = np.array(array, order="C")
+    own.setflags(write=False)
+    return own
+
+
+def _to_faces(faces: ArrayLike) -> NDArray[np.uint32]:
+    array = to_vectors(faces, "faces")
+    if array.ndim != 2:
+        raise UsageError(f"faces have the shape {array.shape}; give (m, 3)")
+    with np.errstate(invalid="ignore"):
+        if not ((array >= 0) & (array < 2**32) & (array == np.floor(array))).all():
+            raise UsageError("faces are no indices of vertices; give whole numbers from 0 on")
+    own: NDArray[np.uint32] = _frozen(array.astype(np.uint32))
+    return own
+
+
+def _per_vertex(values: ArrayLike, what: str, count: int, widths: Iterable[int]) -> NDArray[np.float32]:
+    array = to_numbers(values, what)
+    if array.ndim != 2 or len(array) != count or array.shape[1] not in widths:
+        raise UsageError(f"{what} have the shape {array.shape}; give one for each of {count} vertices")
+    own: NDArray[np.float32] = _frozen(round_once(array))
+    return own
+
+
+def _with_alpha(colors: NDArray[np.float32]) -> NDArray[np.float32]:
+    if colors.shape[1] == 4:
+        return colors
+    return np.ascontiguousarray(np.concatenate([colors, np.ones((len(colors), 1), np.float32)], axis=1))
+
+
+def _to_matrix(transform: object) -> NDArray[np.float64]:
+    if transform is None:
+        return IDENTITY
+    array = to_numbers(transform, "transform")
+    if array.shape != (4, 4):
+        raise UsageError(f"transform has the shape {array.shape}; give (4, 4)")
+    own: NDArray[np.float64] = _frozen(array.astype(np.float64))
+    return own
+
+
+def _translation(offset: NDArray[np.float64]) -> NDArray[np.float64]:
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset
+    return matrix
+
+
+def _vec(value: ArrayLike) -> tuple[float, ...]:
+    array = to_vectors(value, "the numbers")
+    if array.shape != (3,):
+        raise UsageError(f"three numbers are needed, not an array of the shape {array.shape}")
+    return tuple(float(x) for x in array)
+
+
+def _real(value: object) -> float:
+    array = to_numbers(value, "the number")
+    if array.shape != ():
+        raise UsageError(f"one number is needed, not an array of the shape {array.shape}")
+    return float(array)
+
+
+def _of(record: Any, kind: type[Any]) -> Any:
+    if not isinstance(record, kind):
+        raise UsageError(f"{record!r:.80} is no promin.{kind.__name__}")
+    return record

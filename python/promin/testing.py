@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures in tests: a picture must be that of a baseline file, by the verdict of `promin compare`.
+
+    def test_part():
+        frame = promin.Renderer(scene).render(size=(320, 240))
+        promin.testing.assert_same_picture(frame, "tests/baselines/part.exr")
+
+PROMIN_UPDATE_BASELINES=1 in the environment writes baselines in place of comparing."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from promin import _promin
+from promin._device import Device
+from promin._errors import DifferenceError, InputError, UsageError
+from promin._frame import Frame, read_image, to_picture, write_image
+from promin._records import Display, to_dict
+
+PictureLike = Union[Frame, ArrayLike, "os.PathLike[str]", str]
+"""A Frame, linear light (rows, columns, 3), or a picture file."""
+
+UPDATE_VARIABLE = "PROMIN_UPDATE_BASELINES"
+
+_HEAT = np.array([[0, 0, 4], [81, 18, 124], [183, 55, 121], [252, 137, 97], [252, 253, 191]]) / 255.0
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far apart two pictures are (include/promin/compare.h), in the units of their numbers."""
+
+    pixel_count: int
+    mean: float
+    """Of the absolute differences of all channels."""
+    rmse: float
+    psnr_db: float
+    """Infinite where the pictures are equal."""
+    largest: float
+    largest_at: tuple[int, int]
+    """Column and row of the pixel that differs most."""
+    different_count: int
+    """Pixels of which a channel differs by more than `fail`."""
+    non_finite_count: int
+    flip: float
+    """The mean of FLIP, 0...1."""
+    flip_map: NDArray[np.float32]
+    """FLIP of each pixel, (rows, columns)."""
+
+    @property
+    def percent(self) -> float:
+        """Of all pixels those that differ by more than `fail`."""
+        return 100.0 * self.different_count / self.pixel_count
+
+
+def compare(reference: PictureLike, picture: PictureLike, *, fail: float = 0.0, linear: bool = True) -> Difference:
+    """The figures of `promin compare`. fail: a pixel of which a channel differs by more is different. linear: whether
+    the numbers are linear light, else codes of sRGB as 0...1; only FLIP needs to know. Raises InputError where the
+    sizes differ."""
+    first, second = _pixels(reference), _pixels(picture)
+    return Difference(**_promin.compare(first, second, bool(linear), float(fail)))
+
+
+def fingerprint(device: Device | None = None) -> str:
+    """Eight letters for name and driver of a device, by which baselines are told apart: pictures have the same bits on
+    the same device."""
+    return hashlib.sha256((device or Device()).fingerprint.encode()).hexdigest()[:8]
+
+
+def assert_same_picture(
+    picture: Union[Frame, ArrayLike],
+    baseline: str | os.PathLike[str],
+    *,
+    fail: float = 0.0,
+    fail_percent: float = 0.0,
+    device: Device | None = None,
+    update: bool | None = None,
+    display: Display = Display(),
+) -> None:
+    """Raises DifferenceError, an AssertionError, where more than fail_percent of a hundred pixels differ by more than
+    `fail` from the baseline.
+
+    picture: a Frame or linear light (rows, columns, 3). baseline: an .exr, which holds all numbers, or a .png, which
+    holds 8 bits of what `display` (or the Frame's own) shows; then both are compared as codes 0...1 of 8 bits. device:
+    with one, a baseline NAME.FINGERPRINT.exr beside it counts in its place where it is there, and is what `update`
+    writes: one for each driver whose bits differ. update: write the baseline; None: whether PROMIN_UPDATE_BASELINES is
+    set and not "0".
+
+    Where they differ, NAME.actual.exr and NAME.difference.png (FLIP from black to white) are written beside the
+    baseline, or into PROMIN_TEST_OUTPUT. Raises InputError where there is no baseline."""
+    shared = Path(os.fsdecode(baseline))
+    if shared.suffix not in (".exr", ".png"):
+        raise UsageError(f"a baseline is an .exr or a .png, not {shared}")
+    own = shared if device is None else shared.with_name(f"{shared.stem}.{fingerprint(device)}{shared.suffix}")
+    shown = picture.display if isinstance(picture, Frame) else display
+    pixels = to_picture(picture)
+    if update if update is not None else os.environ.get(UPDATE_VARIABLE, "0") not in ("", "0"):
+        own.parent.mkdir(parents=True, exist_ok=True)
+        write_image(own, pixels, shown)
+        return
+    file = own if own.exists() else shared
+    if not file.exists():
+        raise InputError(f"there is no baseline, {own}; set {UPDATE_VARIABLE}=1 to write it")
+    reference = read_image(file)
+    is_linear = _promin.encoding_is_linear(str(file))
+    if not is_linear:
+        reference = _to_codes(reference)
+        pixels = _to_codes(_promin.show(pixels, to_dict(shown)))
+    found = compare(reference, pixels, fail=fail, linear=is_linear)
+    if found.percent <= fail_percent:
+        return
+    folder = Path(os.environ.get("PROMIN_TEST_OUTPUT", file.parent))
+    folder.mkdir(parents=True, exist_ok=True)
+    actual, shows = folder / f"{file.stem}.actual.exr", folder / f"{file.stem}.difference.png"
+    write_image(actual, pixels)
+    write_image(shows, heat(found.flip_map))
+    raise DifferenceError(
+        f"{found.different_count} pixels differ by more than {fail:g}, the most at pixel {found.largest_at[0]} "
+        f"{found.largest_at[1]} by {found.largest:.6g}, {actual} against {file}; {shows} shows where"
+    )
+
+
+def heat(flip_map: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Errors 0...1 (rows, columns) as linear colours from black over red to white."""
+    places = np.clip(np.nan_to_num(flip_map, nan=1.0), 0.0, 1.0) * (len(_HEAT) - 1)
+    codes = np.stack([np.interp(places, np.arange(len(_HEAT)), _HEAT[:, i]) for i in range(3)], axis=-1)
+    linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+    return np.ascontiguousarray(linear, np.float32)
+
+
+def _to_codes(srgb: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Rounded to 8 bits, and equal where these are."""
+    return np.asarray(np.floor(srgb * 255.0 + 0.5) / 255.0, np.float32)
+
+
+def _pixels(picture: PictureLike) -> NDArray[np.float32]:
+    if isinstance(picture, (str, os.PathLike)):
+        return read_image(picture)
+    return to_picture(picture)

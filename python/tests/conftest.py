@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests share: scenes of the repository, the program to compare with, a box."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import promin
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session")
+def scenes() -> Path:
+    return REPOSITORY / "scenes"
+
+
+@pytest.fixture(scope="session")
+def run_promin() -> Callable[..., None]:
+    """Runs the program promin, which PROMIN_PROGRAM names or the release build holds."""
+    program = Path(os.environ.get("PROMIN_PROGRAM", REPOSITORY / "build/release/bin/promin"))
+    if not program.exists():
+        pytest.skip(f"{program} is not built")
+
+    def run(*words: object) -> None:
+        subprocess.run([str(program), *map(str, words), "--quiet"], check=True, timeout=300)
+
+    return run
+
+
+def make_box(center: object = (0, 0, 0), size: float = 2.0) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Corners and faces of a cube, its corners counter-clockwise from outside."""
+    bits = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)], np.float64)
+    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    return (bits - 0.5) * size + np.asarray(center, np.float64), np.array(faces)
+
+
+@pytest.fixture
+def box() -> promin.Scene:
+    """A cube of edge 2 around the origin."""
+    scene = promin.Scene()
+    scene.add_triangles(*make_box())
+    return scene
+
+
+@pytest.fixture(scope="session")
+def box_caster() -> promin.Caster:
+    scene = promin.Scene()
+    scene.add_triangles(*make_box())
+    return promin.Caster(scene)
+
+
+def make_rays(count: int, seed: int = 1, spread: float = 3.0) -> NDArray[np.float32]:
+    """Rays from around the origin towards it."""
+    random = np.random.default_rng(seed)
+    rays = np.zeros((count, 8), np.float32)
+    rays[:, 0:3] = spread * random.normal(size=(count, 3))
+    rays[:, 4:7] = random.normal(size=(count, 3)) - rays[:, 0:3]
+    rays[:, 7] = np.inf
+    return rays

@@ -1,0 +1,73 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a venv with promin, what its tests need, and trimesh's own tests; where all is there, brings promin up to date.
+
+    make_venv.py VENV --build FOLDER [--library PREFIX] [--compiler CXX]
+
+With --library the module is built over the library that is installed there, else the library is built too. It takes
+python3-venv, python3-dev and PyPI."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tarfile
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+NEEDED = ["numpy", "nanobind>=2.4", "scikit-build-core>=0.11"]
+TESTS_WITH = ["pytest", "hypothesis", "mypy", "scipy", "rtree", "networkx", "shapely", "manifold3d", "trimesh"]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("venv", type=Path)
+    parser.add_argument("--build", type=Path, required=True)
+    parser.add_argument("--library", type=Path)
+    parser.add_argument("--compiler")
+    options = parser.parse_args()
+    python = options.venv / "bin/python"
+    if not python.exists():
+        made = subprocess.run([sys.executable, "-m", "venv", options.venv], capture_output=True, text=True)
+        if made.returncode != 0:
+            sys.exit(f"no venv can be made; run: apt install python3-venv python3-dev\n{made.stdout}{made.stderr}")
+    pip = [str(python), "-m", "pip", "--disable-pip-version-check", "--quiet"]
+    run([*pip, "install", *NEEDED, *([] if options.library is None else TESTS_WITH)])
+    settings = [f"build-dir={options.build}"]
+    if options.library is not None:
+        settings += ["cmake.source-dir=python", f"cmake.define.CMAKE_PREFIX_PATH={options.library}"]
+    words = [f"--config-settings={setting}" for setting in settings]
+    # Named as in the project's own build, so that ccache knows what it has compiled.
+    environment = {**os.environ, **({"CXX": options.compiler} if options.compiler else {})}
+    run([*pip, "install", "--no-build-isolation", "--no-deps", *words, str(REPOSITORY)], environment)
+    run([str(python), "-c", "import promin; print('promin', promin.__version__)"])
+    if options.library is not None and not (options.venv / "trimesh").exists():
+        fetch_trimesh_tests(pip, options.venv)
+
+
+def fetch_trimesh_tests(pip: list[str], venv: Path) -> None:
+    """Into VENV/trimesh/tests, as they are in trimesh's source distribution."""
+    downloads = venv / "downloads"
+    run([*pip, "download", "--no-deps", "--no-binary", ":all:", "-d", str(downloads), "trimesh"])
+    (archive,) = downloads.glob("trimesh-*.tar.gz")
+    folder = venv / "trimesh/tests"
+    folder.mkdir(parents=True)
+    with tarfile.open(archive) as tar:
+        for member in tar.getmembers():
+            name = Path(member.name)
+            if member.isfile() and name.parent.name == "tests" and name.name.startswith("test_ray"):
+                stream = tar.extractfile(member)
+                assert stream is not None
+                (folder / name.name).write_bytes(stream.read())
+
+
+def run(words: list[str], environment: dict[str, str] | None = None) -> None:
+    done = subprocess.run(words, env=environment)
+    if done.returncode != 0:
+        sys.exit(f"failed: {' '.join(words)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,192 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+from conftest import make_box, make_rays
+
+import promin
+
+
+@pytest.mark.parametrize("name", ["showcase.gltf", "obj_materials.obj", "all_primitives.gltf"])
+def test_hits_of_a_file_are_those_of_promin_cast(
+    name: str, scenes: Path, tmp_path: Path, run_promin: Callable[..., None]
+) -> None:
+    rays = make_rays(2000)
+    np.save(tmp_path / "rays.npy", rays)
+    caster = promin.Caster(promin.Scene.load(scenes / name))
+    for words, is_any in (((), False), (("--any",), True)):
+        run_promin("cast", scenes / name, tmp_path / "rays.npy", "-o", tmp_path / "hits.npy", *words)
+        expected = np.load(tmp_path / "hits.npy")
+        assert expected.dtype == promin.HIT_DTYPE
+        assert caster._cast(rays, is_any, None).tobytes() == expected.tobytes()
+
+
+def test_objects_of_an_nff_file_have_its_numbers(tmp_path: Path, run_promin: Callable[..., None]) -> None:
+    scene = tmp_path / "two.nff"
+    scene.write_text(
+        "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 32 32\nf 1 0 0 1 0 0 0 1\n"
+        "s 0 0 0 1\ns 3 0 0 1\nf 0 1 0 1 0 0 0 1\ns 0 3 0 1\n"
+    )
+    rays = make_rays(500)
+    np.save(tmp_path / "rays.npy", rays)
+    run_promin("cast", scene, tmp_path / "rays.npy", "-o", tmp_path / "hits.npy")
+    hits = promin.Caster(promin.Scene.load(scene)).cast(rays)
+    assert set(hits["object"]) == {-1, 0, 1}
+    assert hits.tobytes() == np.load(tmp_path / "hits.npy").tobytes()
+
+
+def test_all_forms_of_rays_give_the_same_hits(box_caster: promin.Caster) -> None:
+    rays = make_rays(24)
+    expected = box_caster.cast(rays)
+    origins, directions = rays[:, 0:3], rays[:, 4:7]
+    assert 0 < (expected["object"] >= 0).sum() < 24
+    forms = [
+        rays.astype(np.float64),
+        rays.tolist(),
+        np.asfortranarray(rays),
+        np.repeat(rays, 2, axis=0)[::2],
+        rays[::-1][::-1],
+        (origins, directions),
+        (origins, directions, 0, np.inf),
+        (origins.tolist(), directions.astype(np.float64), np.zeros(24)),
+    ]
+    for form in forms:
+        assert box_caster.cast(form).tobytes() == expected.tobytes()
+    grid = box_caster.cast(rays.reshape(2, 3, 4, 8))
+    assert grid.shape == (2, 3, 4) and grid.tobytes() == expected.tobytes()
+    one = box_caster.cast(rays[3])
+    assert one.shape == () and one.tobytes() == expected[3].tobytes()
+    assert box_caster.cast(np.empty((0, 8))).shape == (0,)
+    fan = box_caster.cast((np.zeros(3), rays[:, 4:7].reshape(4, 6, 3)))
+    assert fan.shape == (4, 6) and (fan["object"] == 0).all()
+
+
+def test_tmin_and_tmax_bound_hits(box_caster: promin.Caster) -> None:
+    origin, direction = (0, 0, 5), (0, 0, -2)
+    assert box_caster.cast((origin, direction))["t"] == 2.0
+    assert box_caster.cast((origin, direction, 2.0))["t"] == 3.0
+    assert np.isinf(box_caster.cast((origin, direction, 0, 2.0))["t"])
+    assert box_caster.occluded((origin, direction, [0.0, 3.0], np.inf)).tolist() == [True, False]
+
+
+def test_a_centre_keeps_what_float32_would_lose() -> None:
+    center = np.array([6.4e6, -1.2e6, 3.3e6])
+    vertices, faces = make_box(center, 1e-3)
+    scene = promin.Scene()
+    scene.add_triangles(vertices, faces)
+    assert np.abs(scene.center - center).max() < 1e-3
+    caster = promin.Caster(scene)
+    rays = (center + [2e-4, 1e-4, 1.0], (0.0, 0.0, -1.0))
+    hit = caster.cast(rays)
+    assert hit["t"] == pytest.approx(1.0 - 5e-4, abs=1e-7)
+    assert np.abs(scene.positions(rays, hit) - (center + [2e-4, 1e-4, 5e-4])).max() < 2e-9
+    unmoved = promin.Scene(center=(0, 0, 0))
+    unmoved.add_triangles(vertices, faces)
+    assert promin.Caster(unmoved).cast(rays)["object"] == -1
+
+
+def test_scenes_of_float32_and_around_the_origin_are_not_moved() -> None:
+    far = promin.Scene()
+    far.add_triangles(make_box((1e4, 0, 0))[0].astype(np.float32), make_box()[1])
+    near = promin.Scene()
+    near.add_triangles(*make_box((0.1, 0, 0)))
+    assert not far.center.any() and not near.center.any()
+
+
+def test_a_transform_places_a_mesh_and_its_shapes() -> None:
+    place = np.eye(4)
+    place[:3, :3] = [[0, 0, 2], [2, 0, 0], [0, 2, 0]]
+    place[:3, 3] = 1e5, 0, 7
+    scene = promin.Scene()
+    mesh = scene.add_triangles(*make_box((1, 0, 0)), transform=place)
+    ball = scene.add_sphere((1e5, 0, 20), 1.5)
+    hits = promin.Caster(scene).cast(([(1e5, 3, 0), (1e5, 0, 30)], [(0, 0, 1), (0, 0, -1)]))
+    assert hits["object"].tolist() == [mesh, ball]
+    assert hits["t"].tolist() == [5.0, 8.5]
+
+
+def test_counts_and_lists_agree(box_caster: promin.Caster) -> None:
+    rays = make_rays(300)
+    rays[0] = 5, 5, 5, 0, -1, -1, -1, np.inf  # through two corners
+    rays[1] = 0, 0, 0, 0, 1, 1, 0, np.inf  # out through an edge
+    rays[2] = 0.5, 0.5, 5, 0, 0, 0, -1, np.inf  # through two diagonals
+    counts = box_caster.count(rays)
+    assert counts.dtype == np.int32 and counts[:3].tolist() == [2, 1, 2]
+    inside = (np.abs(rays[:, 0:3]) < 1).all(axis=1)
+    assert (counts % 2 == inside).all() and counts.max() == 2
+    splits, hits = box_caster.list(rays.reshape(3, 100, 8))
+    assert splits.dtype == np.int64 and (np.diff(splits) == counts).all() and hits.dtype == promin.HIT_DTYPE
+    nearest = box_caster.cast(rays)
+    for i in np.flatnonzero(counts)[3:]:
+        assert hits[splits[i]]["t"] == nearest[i]["t"]
+        assert (np.diff(hits["t"][splits[i] : splits[i + 1]]) > 0).all()
+    splits, hits = box_caster.list(np.empty((0, 8)))
+    assert splits.tolist() == [0] and len(hits) == 0
+
+
+def test_casters_and_scenes_are_pickled(box: promin.Scene, scenes: Path) -> None:
+    box.add_light(promin.Light(position=(1, 2, 3)))
+    rays = make_rays(100)
+    caster = promin.Caster(box, builder="median")
+    again = pickle.loads(pickle.dumps(caster))
+    assert again._opened is None
+    assert again.cast(rays).tobytes() == caster.cast(rays).tobytes()
+    assert again.setup["builder"] == "median"
+    assert again.scene.lights == box.lights
+    file = pickle.loads(pickle.dumps(promin.Scene.load(scenes / "box.gltf")))
+    assert file.objects == promin.Scene.load(scenes / "box.gltf").objects
+
+
+def test_a_pickled_scene_refuses_another_file(tmp_path: Path, scenes: Path) -> None:
+    file = tmp_path / "scene.ply"
+    text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    file.write_text(text)
+    data = pickle.dumps(promin.Scene.load(file))
+    file.write_text(text.replace("1 0 0", "2 0 0"))
+    with pytest.raises(promin.InputError, match="not what it was when it was pickled"):
+        pickle.loads(data).objects
+
+
+def test_a_scene_keeps_its_arrays() -> None:
+    vertices, faces = make_box()
+    scene = promin.Scene()
+    scene.add_triangles(vertices, faces)
+    vertices += 100
+    faces[:] = 0
+    assert promin.Caster(scene).cast(((0, 0, 9), (0, 0, -1)))["t"] == 8
+
+
+def test_a_caster_keeps_its_scene(box: promin.Scene) -> None:
+    caster = promin.Caster(box)
+    box.add_sphere((0, 0, 5), 1)
+    hit = caster.cast(((0, 0, 9), (0, 0, -1)))
+    assert hit["object"] == 0 and len(caster.scene.objects) == 1 and len(box.objects) == 2
+    assert pickle.loads(pickle.dumps(caster)).cast(((0, 0, 9), (0, 0, -1)))["object"] == 0
+    assert promin.Caster(box).cast(((0, 0, 9), (0, 0, -1)))["object"] == 1
+
+
+def test_builders_and_bvh_files(box: promin.Scene, scenes: Path, tmp_path: Path) -> None:
+    rays = make_rays(500)
+    hits = {b: promin.Caster(box, builder=b).cast(rays).tobytes() for b in ("sah", "median", "spatial")}
+    assert len(set(hits.values())) == 1
+    with pytest.raises(promin.UsageError, match="unknown BVH builder"):
+        promin.Caster(box, builder="best")
+    (tmp_path / "bad.pbvh").write_bytes(b"nothing")
+    with pytest.raises(promin.InputError):
+        promin.Caster(box, bvh=tmp_path / "bad.pbvh")
+
+
+def test_positions() -> None:
+    hits = np.zeros(2, promin.HIT_DTYPE)
+    hits["t"], hits["object"] = (0.5, np.inf), (0, -1)
+    points = promin.positions(((1, 2, 3), [(2, 0, 0), (1, 0, 0)]), hits)
+    assert points[0].tolist() == [2, 2, 3] and np.isnan(points[1]).all()
+    with pytest.raises(promin.UsageError, match="hits"):
+        promin.positions(((1, 2, 3), (1, 0, 0)), np.zeros(2))

@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What README.md and docs/python.md say can be pasted, and the examples run."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import REPOSITORY
+
+import promin
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
+def test_code_in_documents_works(document: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (REPOSITORY / document).read_text(), re.DOTALL)
+    assert blocks
+    (tmp_path / "scenes").symlink_to(REPOSITORY / "scenes")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, document, "exec"), names)
+    assert (tmp_path / "showcase.png").exists()
+
+
+def run_example(name: str, monkeypatch: pytest.MonkeyPatch, *words: object) -> None:
+    monkeypatch.setattr(sys, "argv", [name, *map(str, words)])
+    runpy.run_path(str(REPOSITORY / "python/examples" / name), run_name="__main__")
+
+
+def test_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cloud, thickness, sheet = tmp_path / "cloud.ply", tmp_path / "thickness.npy", tmp_path / "sheet.png"
+    run_example(
+        "lidar.py", monkeypatch, REPOSITORY / "scenes/showcase.gltf", "-o", cloud, "--picture", tmp_path / "c.png"
+    )
+    assert cloud.stat().st_size > 10000 and (tmp_path / "c.png").exists()
+    scene = REPOSITORY / "scenes/sphere.gltf"
+    run_example("thickness.py", monkeypatch, scene, "-o", thickness, "--picture", tmp_path / "t.png", "--columns", 65)
+    assert np.load(thickness).max() == pytest.approx(2.0, rel=1e-3)  # its one ball has a radius of 1
+    run_example("turntable.py", monkeypatch, REPOSITORY / "scenes/box.gltf", "-o", sheet, "--views", 3)
+    assert promin.read_image(sheet).shape == (400, 400, 3)

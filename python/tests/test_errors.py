@@ -1,0 +1,175 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong calls end in exceptions with the library's sentences, never in a crash."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+import promin
+
+ERRORS = (promin.Error, TypeError, ValueError)
+
+
+def test_errors_mirror_the_library() -> None:
+    for kind in (promin.UsageError, promin.InputError, promin.DeviceError, promin.RunError, promin.Cancelled):
+        assert issubclass(kind, promin.Error)
+    assert issubclass(promin.UsageError, ValueError)
+    with pytest.raises(promin.InputError, match="file not found, /none/scene.obj; check the path") as caught:
+        promin.Scene.load("/none/scene.obj")
+    assert caught.value.problems == ("file not found, /none/scene.obj; check the path",)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert type(again) is promin.InputError and str(again) == str(caught.value)
+
+
+def test_all_problems_of_a_scene_are_told() -> None:
+    scene = promin.Scene()
+    scene.add_triangles([[0, 0, 0], [1, 0, 0], [0, np.nan, 0]], [[0, 1, 2]])
+    scene.add_triangles(np.zeros((3, 3)), [[0, 1, 3]], material=7)
+    scene.add_sphere(radius=-1)
+    for attempt in (scene.validate, lambda: promin.Caster(scene)):
+        with pytest.raises(promin.InputError) as caught:
+            attempt()
+        text = " ".join(caught.value.problems)
+        assert len(caught.value.problems) >= 4
+        assert all(place in text for place in ("objects[1].material", "positions", "triangles", "radius"))
+
+
+def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, **environment}, capture_output=True, text=True, timeout=120
+    )
+
+
+def test_importing_needs_no_driver_and_opening_names_the_package() -> None:
+    code = "import promin\nassert promin.Device.list() == []\ns = promin.Scene()\ns.add_sphere()\npromin.Caster(s)"
+    done = run(code, VK_DRIVER_FILES="/nonexistent", VK_ICD_FILENAMES="/nonexistent")
+    assert done.returncode == 1
+    assert "DeviceError" in done.stderr and "mesa-vulkan-drivers" in done.stderr
+    # Neither Vulkan's loader nor OpenImageIO is loaded before it is needed.
+    code = "import promin\nmaps = open('/proc/self/maps').read()\n"
+    code += "assert 'libvulkan' not in maps and 'OpenImageIO' not in maps"
+    assert run(code).returncode == 0
+
+
+def test_devices_are_named() -> None:
+    infos = promin.Device.list()
+    first = infos[0]
+    device = promin.Device(first.index)
+    assert device.info == first and first.name in device.fingerprint and device.choice
+    assert pickle.loads(pickle.dumps(device)).info == first
+    with pytest.raises(promin.DeviceError, match="no Vulkan device matches"):
+        promin.Device("no such device")
+    with pytest.raises(promin.UsageError, match="device is"):
+        promin.Caster(promin.Scene(), device=1.5)  # type: ignore[arg-type]
+
+
+ANYTHING: st.SearchStrategy[Any] = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text(max_size=5)
+    | st.binary(max_size=5)
+    | st.just(object()),
+    lambda inner: st.lists(inner, max_size=4)
+    | st.tuples(inner, inner)
+    | st.dictionaries(st.text(max_size=3), inner, max_size=2),
+    max_leaves=8,
+)
+DTYPES = st.sampled_from(["f2", "f4", ">f4", "f8", "i4", "u8", "c8", "?", "O", "U3", "M8[s]", promin.HIT_DTYPE])
+ARRAYS = st.builds(
+    lambda shape, dtype, step: np.zeros(shape, dtype)[::step],
+    st.lists(st.integers(0, 9), min_size=1, max_size=4).map(tuple),
+    DTYPES,
+    st.sampled_from([1, 2, -1]),
+)
+VALUES = ANYTHING | ARRAYS
+ADDERS = ["add_sphere", "add_plane", "add_box", "add_cylinder", "add_cone", "add_capsule", "add_triangles"]
+RECORDS = [promin.Light, promin.Camera, promin.Environment, promin.Display, promin.View]
+
+
+@settings(max_examples=700, deadline=None, suppress_health_check=list(HealthCheck))
+@given(rays=VALUES, query=st.sampled_from(["cast", "occluded", "count", "list"]))
+@example(rays=(np.zeros(3), np.zeros((2, 3)), np.zeros(3)), query="cast")
+@example(rays=np.full((4, 8), np.nan), query="list")
+@example(rays=np.full((4, 8), 1e300), query="count")
+def test_random_rays(box_caster: promin.Caster, rays: Any, query: str) -> None:
+    try:
+        answer = getattr(box_caster, query)(rays)
+    except ERRORS as error:
+        assert str(error)
+    else:
+        assert isinstance(answer, (np.ndarray, tuple))
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_random_scenes(data: st.DataObject) -> None:
+    scene = promin.Scene()
+    try:
+        for _ in range(data.draw(st.integers(1, 3))):
+            values = data.draw(st.lists(VALUES, max_size=4))
+            getattr(scene, data.draw(st.sampled_from(ADDERS)))(*values)
+        scene.add_light(promin.Light(position=data.draw(VALUES), range=data.draw(VALUES), kind=data.draw(VALUES)))
+        scene.add_camera(promin.Camera(eye=data.draw(VALUES), yfov=data.draw(VALUES)))
+        scene.add_material(promin.Phong(diffuse=data.draw(VALUES), fresnel=data.draw(VALUES)))
+        scene.environment = promin.Environment(ambient=data.draw(VALUES), sky=data.draw(VALUES))
+        scene.validate()
+    except ERRORS as error:
+        assert str(error)
+
+
+@pytest.fixture(scope="module")
+def renderer() -> promin.Renderer:
+    scene = promin.Scene()
+    scene.add_sphere()
+    return promin.Renderer(scene)
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_random_views(renderer: promin.Renderer, data: st.DataObject) -> None:
+    names = [
+        "camera",
+        "crop",
+        "spp",
+        "max_depth",
+        "target_error",
+        "time_limit",
+        "filter",
+        "filter_width",
+        "depth",
+        "debug_view",
+    ]
+    values = {name: data.draw(VALUES) for name in data.draw(st.lists(st.sampled_from(names), min_size=1, max_size=3))}
+    if isinstance(values.get("spp"), int) or isinstance(values.get("time_limit"), (int, float)):
+        return  # these may be right, and take long
+    try:
+        renderer.render(promin.View(size=(4, 3), **values))
+    except ERRORS as error:
+        assert str(error)
+    try:
+        renderer.update(lights=data.draw(VALUES))
+    except ERRORS as error:
+        assert str(error)
+
+
+def test_sizes_that_no_picture_has() -> None:
+    with pytest.raises(promin.UsageError):
+        promin.write_image("/tmp/none.png", np.zeros((0, 4, 3)))
+    with pytest.raises(promin.UsageError):
+        promin.write_image("/tmp/none.gif", np.zeros((2, 4, 3)))
+    with pytest.raises(promin.RunError):
+        promin.write_image("/nonexistent/none.png", np.zeros((2, 4, 3)))
+    with pytest.raises(promin.InputError):
+        promin.read_image("/nonexistent.png")

@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import dataclasses
+import pickle
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+from conftest import make_box
+
+import promin
+
+
+@pytest.mark.parametrize(
+    "name, options, words",
+    [
+        ("showcase.gltf", {"size": (96, 64)}, ["--size", 96, 64]),
+        ("metallic_roughness.gltf", {"size": (64, 48), "spp": 2}, ["--size", 64, 48, "--spp", 2]),
+        ("glass.gltf", {"crop": (600, 300, 640, 330)}, ["--crop", 600, 300, 640, 330]),
+        ("obj_materials.obj", {"size": (40, 30), "target_error": 0.05}, ["--size", 40, 30, "--target-error", 0.05]),
+        ("cameras.gltf", {"camera": 1, "filter": "gauss"}, ["--camera", 1, "--filter", "gauss"]),
+    ],
+)
+def test_a_file_has_the_bits_of_promin_render(
+    name: str,
+    options: dict[str, object],
+    words: list[object],
+    scenes: Path,
+    tmp_path: Path,
+    run_promin: Callable[..., None],
+) -> None:
+    aovs = ("depth", "normal", "object", "albedo", "samples")
+    frame = promin.Renderer(promin.Scene.load(scenes / name), aovs=aovs).render(**options)  # type: ignore[arg-type]
+    frame.save(tmp_path / "ours.png")
+    frame.save(tmp_path / "ours.exr")
+    outputs = ["-o", tmp_path / "theirs.png", "-o", tmp_path / "theirs.exr"]
+    run_promin("render", scenes / name, *words, *outputs, "--aov", ",".join(aovs))
+    assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
+    if "target_error" in options:
+        assert (promin.read_image(tmp_path / "theirs.exr") == frame.rgb).all()
+    else:
+        assert (tmp_path / "ours.exr").read_bytes() == (tmp_path / "theirs.exr").read_bytes()
+
+
+def test_frames_tell_what_they_show(box: promin.Scene, tmp_path: Path) -> None:
+    renderer = promin.Renderer(box, aovs=("depth", "object", "normal"))
+    frame = renderer.render(size=(48, 32))
+    assert frame.rgb.shape == (32, 48, 3) and frame.rgb.dtype == np.float32 and frame.size == (48, 32)
+    assert frame.aovs["object"].dtype == np.uint32 and frame.aovs["normal"].shape == (32, 48, 3)
+    hit = frame.aovs["object"] == 0
+    assert (
+        0.05 < hit.mean() < 0.9
+        and np.isfinite(frame.aovs["depth"][hit]).all()
+        and np.isinf(frame.aovs["depth"][~hit]).all()
+    )
+    assert frame._repr_png_().startswith(b"\x89PNG")
+    assert frame.srgb().shape == (32, 48, 3) and frame.metadata["promin:size"] == "48x32"
+    frame.save(tmp_path / "a.png")
+    shown = promin.read_image(tmp_path / "a.png")
+    assert np.abs(shown * 255 - frame.srgb()).max() < 1.01
+    other = renderer.render(size=(48, 32), aovs=("albedo",))
+    assert set(other.aovs) == {"albedo"} and (other.rgb == frame.rgb).all()
+
+
+def test_a_centre_moves_camera_light_and_positions() -> None:
+    frames = []
+    for offset in (0.0, 1e6):
+        scene = promin.Scene()
+        scene.add_triangles(*make_box((offset, 0, 0)))
+        scene.add_light(promin.Light(position=(offset + 3, 4, 5)))
+        camera = promin.Camera.look_at((offset + 2, 2, 6), (offset, 0, 0))
+        renderer = promin.Renderer(scene, aovs=("position",))
+        frame = renderer.render(camera=camera, size=(24, 24))
+        frame.aovs["position"][..., 0][frame.aovs["position"].any(axis=2)] -= offset
+        frames.append(frame)
+        assert renderer.lights[0].position == (offset + 3, 4, 5)
+        assert abs(renderer.camera().eye[0] - offset) < 20
+    assert (frames[0].rgb == frames[1].rgb).all() and frames[0].rgb.max() > 0.2
+    assert np.abs(frames[0].aovs["position"] - frames[1].aovs["position"]).max() < 1e-6
+
+
+def test_updates_change_pictures_and_are_kept(box: promin.Scene) -> None:
+    renderer = promin.Renderer(box)
+    view = promin.View(size=(32, 32))
+    first = renderer.render(view)
+    nodes = renderer.setup["nodes"]
+    renderer.update(
+        lights=[promin.Light(position=(0, 9, 9), diffuse=(1, 0, 0))],
+        environment=promin.Environment(background=(0, 0, 1)),
+    )
+    red = renderer.render(view)
+    assert (red.rgb[0, 0] == (0, 0, 1)).all() and red.rgb[16, 16, 1] == 0 < red.rgb[16, 16, 0]
+    renderer.update(materials=[promin.Unlit(color=(0.25, 0.5, 0.75))])
+    flat = renderer.render(view)
+    assert flat.rgb[16, 16].tolist() == [0.25, 0.5, 0.75]
+    assert renderer.setup["nodes"] == nodes and (first.rgb != red.rgb).any()
+    again = pickle.loads(pickle.dumps(renderer))
+    assert (again.render(view).rgb == flat.rgb).all()
+    with pytest.raises(promin.InputError):
+        renderer.update(materials=[promin.Phong(), promin.Phong()])
+    with pytest.raises(promin.InputError):
+        renderer.update(lights=[promin.Light(kind="spot", inner_cone_angle=2.0)])
+    assert (renderer.render(view).rgb == flat.rgb).all()
+
+
+def test_skies_and_light_choices(box: promin.Scene) -> None:
+    view = promin.View(size=(16, 16))
+    pictures = {light: promin.Renderer(box, light=light).render(view).rgb for light in ("studio", "headlight", "none")}
+    assert pictures["none"][8, 8].max() == 0 < pictures["headlight"][8, 8].max()
+    assert (pictures["studio"] != pictures["headlight"]).any()
+    with pytest.raises(promin.UsageError, match="no light"):
+        promin.Renderer(box, light="sun")
+    for sky in (
+        promin.GradientSky(top=(0, 1, 0)),
+        promin.Panorama(np.full((4, 8, 3), 0.5, np.float32)),
+        promin.Studio(),
+    ):
+        box.environment = promin.Environment(sky=sky, shows_sky=True)
+        renderer = promin.Renderer(box)
+        assert renderer.render(view).rgb[0, 0].max() > 0
+        assert type(renderer.environment.sky) is type(sky)
+
+
+def test_records_have_the_fields_of_the_library(scenes: Path) -> None:
+    scene = promin.Scene.load(scenes / "showcase.gltf")
+    for records in (scene.lights, scene.materials, scene.cameras, [scene.environment]):
+        assert records
+        for record in records:
+            assert dataclasses.is_dataclass(record)
+    twin = promin.Renderer(scene)
+    view = promin.View(size=(32, 18))
+    first = twin.render(view)
+    twin.update(lights=twin.lights, materials=twin.materials, environment=twin.environment)
+    assert (twin.render(view).rgb == first.rgb).all()
+
+
+def test_unknown_names_are_refused(box: promin.Scene) -> None:
+    renderer = promin.Renderer(box)
+    for options in (
+        {"aovs": ("deep",)},
+        {"filter": "sinc"},
+        {"camera": "none"},
+        {"size": (0, 4)},
+        {"crop": (1, 2, 3)},
+        {"spp": 0},
+    ):
+        with pytest.raises(promin.UsageError):
+            renderer.render(**{"size": (8, 8), **options})  # type: ignore[arg-type]
+    assert renderer.render(size=(8, 8)).rgb.shape == (8, 8, 3)
