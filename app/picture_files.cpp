@@ -12,7 +12,7 @@ namespace promin::app {
 namespace {
 
 /// What a band's numbers take at most: of them there are a few copies at a time.
-constexpr size_t kBandBytes = size_t{24} << 20;
+constexpr size_t kBandBytes = size_t{12} << 20;
 /// EXRs are compressed by so many rows.
 constexpr uint32_t kRowsOfBlock = 16;
 

@@ -149,7 +149,7 @@ TEST_F(ExrCliTest, DepthIsOfTheRayOrOfThePlane) {
   EXPECT_GT(farthest, 4.1F);
 }
 
-// 24 MiB a band: a picture with many channels is written in several, which the file does not show.
+// 12 MiB a band: a picture with many channels is written in several, which the file does not show.
 TEST_F(ExrCliTest, BandsLeaveNoTrace) {
   const OptionValues options = {"--size", "1200", "600", "--aov", "position,normal,shading_normal,albedo,error,direct"};
   OptionValues whole = {"render", "square.gltf", "-o", "whole.exr", "--quiet"};
