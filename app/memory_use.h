@@ -6,8 +6,8 @@
 
 namespace promin::app {
 
-/// How much memory the process holds now, for a stage's line of -v: "holds 123 MB". It counts what is resident, which on
-/// a CPU device is the device's memory too.
+/// How much memory the process holds now, for a stage's line of -v: "holds 123 MB". It counts what is resident, which
+/// on a CPU device is the device's memory too.
 std::string describe_memory();
 
 /// The most that it has held so far, in MB.

@@ -93,9 +93,9 @@ std::vector<ProminPicturesChannel> list_channels(std::span<const Channel> channe
   const uint32_t color = exr.is_half ? PROMIN_PICTURES_HALF : PROMIN_PICTURES_FLOAT;
   std::vector<ProminPicturesChannel> result = {{"R", color}, {"G", color}, {"B", color}};
   for (const Channel& channel : channels) {
-    const uint32_t sample = channel.is_integer                     ? PROMIN_PICTURES_UINT32
+    const uint32_t sample = channel.is_integer                   ? PROMIN_PICTURES_UINT32
                             : exr.is_half && takes_half(channel) ? PROMIN_PICTURES_HALF
-                                                                   : PROMIN_PICTURES_FLOAT;
+                                                                 : PROMIN_PICTURES_FLOAT;
     result.push_back({channel.name.c_str(), sample});
   }
   return result;

@@ -33,8 +33,8 @@ inline constexpr size_t kCoverageRanks = 6;
 /// See kCoverageRanks.
 using CoverageRanks = std::array<Coverage, kCoverageRanks>;
 
-/// Where AOVs come from, which is what they cost: a surface is of the middle sample and costs little; parts of light are
-/// summed over samples; steps take a pass of their own; what tells of sampling costs nothing.
+/// Where AOVs come from, which is what they cost: a surface is of the middle sample and costs little; parts of light
+/// are summed over samples; steps take a pass of their own; what tells of sampling costs nothing.
 enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling };
 
 /// A choice of AOVs; each member is named as that of Aovs.

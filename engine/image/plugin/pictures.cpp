@@ -137,9 +137,8 @@ std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
   for (size_t i = 0; i < source.channel_count; ++i) {
     const ProminPicturesChannel& channel = source.channels[i];
     const std::string name = source.is_multipart != 0 ? part_name(channel.name) : "";
-    auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {
-      return p.spec.get_string_attribute("oiio:subimagename") == name;
-    });
+    auto part = std::find_if(parts.begin(), parts.end(),
+                             [&](const Part& p) { return p.spec.get_string_attribute("oiio:subimagename") == name; });
     if (part == parts.end()) {
       parts.push_back({make_exr_spec(source), {}, {}});
       part = parts.end() - 1;
