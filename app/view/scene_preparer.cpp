@@ -21,8 +21,8 @@ constexpr double kLookInterval = 0.1;
 /// The longest side of the picture that an average exposure goes by, in pixels.
 constexpr float kMeteredSide = 320.0F;
 
-float meter_exposure(Renderer& renderer, View view) {
-  view.mode = {};
+float meter_exposure(Renderer& renderer, View view, bool has_shadows) {
+  view.mode = {.has_shadows = has_shadows};
   view.samples_per_pixel = 1;
   const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
   view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
@@ -36,12 +36,17 @@ std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scen
   return lights;
 }
 
+/// All of a scene's lights, of which those are on that the choice leaves.
+std::vector<Light> lights_on(const Scene& scene, const SceneChoice& choice) {
+  std::vector<Light> lights = scene.lights;
+  switch_lights(lights, choice.lights_off);
+  return lights;
+}
+
 }  // namespace
 
 void ReadyPicture::take_lights() {
-  std::vector<Light> lights = scene->scene->lights;
-  switch_lights(lights, scene->choice.lights_off);
-  scene->renderer->set_lights(lights);
+  scene->renderer->set_lights(lights_on(*scene->scene, scene->choice));
   picture.take_scene_change();
 }
 
@@ -154,14 +159,16 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
     return !is_given_up_;
   };
   shown.renderer = std::make_shared<Renderer>(*device_, *scene, options);
-  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(*shown.renderer, first_view_);
+  if (look_.averages_exposure) {
+    shown.renderer->set_lights(lights_on(*scene, shown.choice));
+    shown.display.exposure_ev = meter_exposure(*shown.renderer, first_view_, request.mode.has_shadows);
+  }
   return std::make_shared<const ShownScene>(std::move(shown));
 }
 
 ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, const PictureRequest& request) {
   enter(Step::kCompiling);
-  std::vector<Light> lights = scene->scene->lights;
-  switch_lights(lights, scene->choice.lights_off);
+  const std::vector<Light> lights = lights_on(*scene->scene, scene->choice);
   std::optional<ProgressivePicture> picture;
   gpu::translate_vulkan_errors([&] {
     const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene->renderer));

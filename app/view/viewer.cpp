@@ -155,9 +155,9 @@ void Viewer::update_screenshot() {
 }
 
 void Viewer::update_picture() {
-  // Both must be idle: a frame in flight traces the picture that would go, and a question uses the lights that would
-  // change.
-  if (preparer_.is_ready() && frames_.is_idle() && !query_.is_busy()) {
+  // All must be idle: a frame in flight traces the picture that would go, and a question and what is compiled for the
+  // picture use the lights that would change.
+  if (preparer_.is_ready() && frames_.is_idle() && !query_.is_busy() && !picture_->is_compiling()) {
     try {
       show_picture(std::move(*preparer_.take()));
     } catch (const std::exception& error) {

@@ -121,6 +121,23 @@ void AtomicFile::commit() {
   rename_to_target();
 }
 
+namespace {
+
+/// Gives an old file another name, or a copy of that name where the file system has no names to spare. False where
+/// there is no old file. Throws RunError.
+bool keep_old(const fs::path& file, const fs::path& name) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return false;
+  fs::create_hard_link(file, name, error);
+  if (!error) return true;
+  fs::copy_file(file, name, fs::copy_options::overwrite_existing, error);
+  if (!error) return true;
+  throw RunError({"cannot keep the old file until the new ones are there (" + error.message() + ")", file.string(),
+                  "move it elsewhere, or check the disk and permissions"});
+}
+
+}  // namespace
+
 void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
   for (const AtomicFile* file : files) file->flush();
   // Another name of each old file, which the renaming leaves alone; empty where there is none. Its form is that of a
@@ -137,9 +154,7 @@ void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
     for (AtomicFile* file : files) {
       fs::path old_file = file->temporary_.parent_path() / "old-";
       old_file += file->temporary_.filename();
-      std::error_code error;
-      fs::create_hard_link(file->target_, old_file, error);
-      old_files.push_back(error ? fs::path() : old_file);
+      old_files.push_back(keep_old(file->target_, old_file) ? old_file : fs::path());
       file->rename_to_target();
       ++renamed;
     }

@@ -9,8 +9,6 @@
 namespace promin {
 namespace {
 
-/// Samples that are traced between two looks at what they bring.
-constexpr size_t kMostListed = 1U << 19;
 /// The side of the parts of a picture that are refined one after the other.
 constexpr uint32_t kTileSide = 256;
 
@@ -44,7 +42,7 @@ void PictureTracer::take_aovs(std::span<const ListedSample> list, const ReadFilm
 
 void PictureTracer::refine(Refinement& refinement, const View& view, RefinedAovs& aovs, RenderResult& result,
                            const ProgressCallback& on_samples) {
-  const size_t most_listed = std::min<size_t>(kMostListed, kMaxFilmRecords / film_->records().count);
+  const size_t most_listed = std::min<size_t>(kMostListedSamples, kMaxFilmRecords / film_->records().count);
   std::vector<vec3> radiance;
   for (auto list = refinement.next(most_listed); !list.empty(); list = refinement.next(most_listed)) {
     film_->put_list(list);

@@ -81,7 +81,15 @@ vec3 PixelEstimate::claim(const ColorRange& around) const {
 vec3 estimate_error(const ColorRange& around, uint32_t samples) {
   // N^(3/4) by square roots, which are the same everywhere.
   const double root = std::sqrt(std::sqrt(static_cast<double>(samples)));
-  return vec3(kEdgeError / (root * root * root) * (dvec3(around.hi) - dvec3(around.lo)));
+  const double edge = kEdgeError / (root * root * root);
+  vec3 estimate(0.0F);
+  for (int channel = 0; channel < 3; ++channel) {
+    // Where all are infinite their difference is no number.
+    if (!(around.hi[channel] > around.lo[channel])) continue;
+    estimate[channel] =
+        static_cast<float>(edge * (static_cast<double>(around.hi[channel]) - static_cast<double>(around.lo[channel])));
+  }
+  return estimate;
 }
 
 float relative_claim(const vec3& claim, const vec3& mean, float white) {

@@ -92,10 +92,13 @@ bool ProgressivePicture::is_refining() const {
   return is_refinable() && !(refined_ && refined_version_ == wanted_version_ && refined_->is_done());
 }
 
+bool ProgressivePicture::is_compiling() const {
+  return list_film_to_come_.valid() && !is_ready(list_film_to_come_);
+}
+
 bool ProgressivePicture::awaits_samples() const {
   if (picture_ || next_view() || !is_refining()) return false;
-  if (list_film_to_come_.valid()) return !is_ready(list_film_to_come_);
-  return refined_ && refined_->is_under_way();
+  return is_compiling() || (refined_ && refined_->is_under_way());
 }
 
 double ProgressivePicture::fraction_done() const {
@@ -183,7 +186,7 @@ double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& comm
 }
 
 void ProgressivePicture::show_refined() {
-  // Frames that used the film which is not shown ended before the samples that have just been taken were traced.
+  // Frames that used the film which is not shown ended before the samples of this picture were traced.
   const size_t film = 1 - shown_->film;
   films_[film].put_pixels(refined_->pixels());
   picture_when_done_ = {film, full_size_, 1, refined_->error()};

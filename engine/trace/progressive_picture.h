@@ -64,7 +64,7 @@ class ProgressivePicture {
   /// The fraction of the current picture that is traced; 1 where there is none.
   double fraction_done() const;
   /// Whether the pipeline that refines pictures to an error is being compiled.
-  bool is_compiling() const { return list_film_to_come_.valid(); }
+  bool is_compiling() const;
 
   /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace, or
   /// nothing yet: see awaits_samples().

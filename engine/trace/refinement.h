@@ -22,6 +22,9 @@ struct ListedSample {
   vec2 place{0.5F};
 };
 
+/// Samples that are traced between two looks at what they bring.
+inline constexpr size_t kMostListedSamples = size_t{1} << 19;
+
 /// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the
 /// root of 2. `error` is more than the target's.
 float first_error(const ErrorTarget& target);

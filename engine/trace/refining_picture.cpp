@@ -27,16 +27,20 @@ RefiningPicture::RefiningPicture(Film& film, const View& view)
 double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double units, double most_units) {
   assert(!is_under_way());
   if (is_done()) return 0.0;
-  if (done_ && done_->target == error_) {
-    error_ = next_error(*view_.error_target, error_);
-    refinement_.aim(error_);
-  }
-  list_ = refinement_.next(static_cast<size_t>(units) * kSamplesOfUnit);
-  if (list_.empty()) {
+  const uint64_t most = std::min<uint64_t>(kMostListedSamples, film_->max_capacity() / kSamplesOfUnit * kSamplesOfUnit);
+  for (;;) {
+    const bool is_as_shown = done_ && done_->target == error_;
+    if (is_as_shown) {
+      error_ = next_error(*view_.error_target, error_);
+      refinement_.aim(error_);
+    }
+    list_ = refinement_.next(std::min<uint64_t>(static_cast<uint64_t>(units) * kSamplesOfUnit, most));
+    if (!list_.empty()) break;
     done_ = PictureError{.target = error_};
     refinement_.add_to(*done_);
     samples_when_done_ = refinement_.sample_count();
-    return 0.0;
+    // A picture that no sample was missing for is shown only where it is the last.
+    if (!is_as_shown || is_done()) return 0.0;
   }
   film_->put_list(list_);
   TileScheduler pieces = film_->cut(view_, list_window(list_.size()), film_->piece_options(view_.max_depth));

@@ -47,7 +47,7 @@ struct RenderResult {
   Aovs aovs;
   /// Of pictures with an error target.
   std::optional<PictureError> error;
-  /// Rays of the whole picture.
+  /// Rays of the whole picture, and where Aovs::error is told of the pixels around it, which are traced for it.
   RayCounts rays;
   /// Device time of the traversal and shading dispatches alone (timestamps where the device has them, else waiting
   /// time on the host).

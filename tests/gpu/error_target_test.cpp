@@ -113,10 +113,10 @@ TEST_F(ErrorTargetTest, EstimatesOfFixedSamplesHoldOf90In100Pixels) {
     Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / (std::string(name) + ".gltf"));
     light_scene(scene, LightChoice::kAuto);
     Renderer renderer = make_renderer(device(), scene, options);
-    View view = view_of(scene, uvec2(48, 36));
-    view.samples_per_pixel = 512;
+    View view = view_of(scene, uvec2(40, 30));
+    view.samples_per_pixel = 256;
     const Image truth = renderer.render(view).image;
-    for (const uint32_t samples : {4U, 15U, 64U}) {
+    for (const uint32_t samples : {4U, 15U}) {
       view.samples_per_pixel = samples;
       const RenderResult result = renderer.render(view);
       size_t uneven = 0;

@@ -152,6 +152,26 @@ TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
   EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
 }
 
+// Where nothing is seen but the background, the first samples are exact: only the last error is shown after them.
+TEST_F(ProgressivePictureTest, WhatIsExactIsShownOnceMore) {
+  ProgressivePicture picture = make_picture();
+  View view = with_target(test::make_view(kSize), 1.0F / 4096.0F);
+  view.camera.look = vec3(0, 1, 0);
+  view.camera.up = vec3(0, 0, 1);
+  picture.want(view);
+  std::vector<float> errors;
+  uint64_t shown_count = 0;
+  while (!picture.is_settled()) {
+    picture.trace();
+    if (picture.shown_count() == shown_count) continue;
+    shown_count = picture.shown_count();
+    if (picture.shown()->error) errors.push_back(picture.shown()->error->target);
+  }
+  ASSERT_TRUE(picture.shown()->error);
+  ASSERT_EQ(picture.shown()->error->samples, 4U * kSize.x * kSize.y) << "something else is seen";
+  EXPECT_EQ(errors, (std::vector<float>{0.125F, 1.0F / 4096.0F}));
+}
+
 TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
   ProgressivePicture picture = make_picture();
   View view = test::make_view(kSize);

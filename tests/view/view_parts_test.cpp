@@ -67,10 +67,12 @@ TEST(DescribeCommand, NamesTheErrorThatAPictureHas) {
 }
 
 TEST(DescribeCommand, NamesTheSurroundingsAndTheVariant) {
-  EXPECT_THAT(describe_command({.file = "s",
-                                .environment = {.panorama = "a sky.hdr", .rotation_deg = 12.5, .intensity = 0.3},
-                                .variant = "red one"},
-                               View()),
+  DescribedScene scene{.file = "s"};
+  scene.environment.panorama = "a sky.hdr";
+  scene.environment.rotation_deg = 12.5;
+  scene.environment.intensity = 0.3;
+  scene.variant = "red one";
+  EXPECT_THAT(describe_command(scene, View()),
               testing::HasSubstr(" --environment 'a sky.hdr' --environment-rotation 12.5 --environment-intensity 0.3 "
                                  "--variant 'red one' --eye"));
 }
