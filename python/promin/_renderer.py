@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import threading
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import floor
@@ -29,10 +30,20 @@ CameraLike = Union[Camera, str, int, None]
 
 _ASPECT_RATIO = 16 / 9
 _HEIGHT = 720
+_NO_ID = np.uint32(2**32 - 1)
+"""What the AOV `object` is on a miss."""
 
 
-_Opened = tuple[Device, _promin.Renderer, _promin.Scene]
-"""The device, the renderer on it, and the scene with its light."""
+@dataclass(frozen=True)
+class _Opened:
+    """A renderer on its device."""
+
+    device: Device
+    native: _promin.Renderer
+    lit: _promin.Scene
+    """The scene with its light."""
+    aovs: tuple[str, ...]
+    """What its pictures tell."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +88,8 @@ class Renderer:
     Making one lights the scene, builds a tree and compiles. The scene may change afterwards: the Renderer keeps what it
     was. Threads, Ctrl-C, pickle and forks: as Caster."""
 
+    _opened: _Opened | None
+
     def __init__(
         self,
         scene: Scene,
@@ -91,10 +104,10 @@ class Renderer:
         progress: Progress = None,
     ) -> None:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
-        "object", ...; `render` may ask for others, for which the tree is built anew. light: what stands in for light
-        that the scene lacks: "auto", "studio", "headlight" or "none". framing: from where a scene without cameras is
-        seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that textures take. The rest as Caster.
-        Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
+        "object", ..., but "cryptomatte"; `render` may ask for others, and where they change the tree is built anew.
+        light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from
+        where a scene without cameras is seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that
+        textures take. The rest as Caster. Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
         if not isinstance(scene, Scene):
             raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
         self._scene = scene.snapshot()
@@ -106,8 +119,8 @@ class Renderer:
         self._texture_memory = texture_memory
         self._aovs = _names(aovs)
         self._changes: dict[str, Any] = {}
-        self._opened: _Opened | None = None
-        self._open(progress)
+        self._make_private()
+        self._open(progress=progress)
 
     @property
     def scene(self) -> Scene:
@@ -117,24 +130,24 @@ class Renderer:
     @property
     def device(self) -> Device:
         """What it runs on."""
-        return self._open()[0]
+        return self._open().device
 
     @property
     def setup(self) -> dict[str, Any]:
         """What making it has cost, by the names of include/promin/setup_stats.h."""
-        return self._open()[1].setup()
+        return self._open().native.setup()
 
     @property
     def lights(self) -> list[Light]:
-        """The lights, with those that stand in for missing ones."""
+        """Copies of the lights, with those that stand in for missing ones."""
         lights = self._changes.get("lights")
-        return lights if lights is not None else [self._back(from_dict(Light, r)) for r in self._lit().lights()]
+        return list(lights) if lights is not None else [self._back(from_dict(Light, r)) for r in self._lit().lights()]
 
     @property
     def materials(self) -> list[Material]:
-        """The materials as they are lit."""
+        """Copies of the materials as they are lit."""
         materials = self._changes.get("materials")
-        return materials if materials is not None else [from_dict(Material, r) for r in self._lit().materials()]
+        return list(materials) if materials is not None else [from_dict(Material, r) for r in self._lit().materials()]
 
     @property
     def environment(self) -> Environment:
@@ -183,9 +196,10 @@ class Renderer:
         filter: str | None = None,
         debug_view: str | None = None,
     ) -> Frame:
-        """Traces one picture. What is given beside the view takes the place of the view's. aovs: None are those of the
-        Renderer. Of a scene file the picture has the bits of `promin render` with the same options. Raises UsageError
-        for what breaks the rules of include/promin/view.h, RunError, Cancelled."""
+        """Traces one picture. What is given beside the view takes the place of the view's. aovs: None are those that
+        the Renderer was made with. Of a scene file the picture has the bits of `promin render` with the same options.
+        Raises UsageError for what breaks the rules of include/promin/view.h or contradicts itself, RunError,
+        Cancelled."""
         given: dict[str, Any] = {
             "camera": camera,
             "size": size,
@@ -201,19 +215,18 @@ class Renderer:
         if view is not None and not isinstance(view, View):
             raise UsageError(f"{view!r:.80} is no promin.View")
         whole = dataclasses.replace(view or View(), **changes)
-        if aovs is not None and _names(aovs) != self._aovs:
-            self._opened = self._make(_names(aovs), progress)
-            self._aovs = _names(aovs)
-        device, native, _ = self._open(progress)
+        names = self._aovs if aovs is None else _names(aovs)
+        opened = self._open(names, _has_target(whole), progress)
         record, shown = self._describe_view(whole)
-        result = native.render(record, None if whole.time_limit is None else _seconds(whole.time_limit), progress)
+        limit_s = None if whole.time_limit is None else _seconds(whole.time_limit)
+        result = opened.native.render(record, limit_s, progress)
         placement = None
         if record["crop"] is not None:
             placement = (record["crop"]["lo"], record["size"])
         return Frame(
             rgb=result["rgb"],
-            aovs=self._finish(result["aovs"]),
-            metadata=self._describe(device, record, shown, result["error"]),
+            aovs=self._finish(result["aovs"], names),
+            metadata=self._describe(opened, record, shown, result),
             display=shown,
             error=result["error"],
             rays=result["rays"],
@@ -237,10 +250,17 @@ class Renderer:
             new["materials"] = _all_of(materials, Material)
         if environment is not None:
             new["environment"] = _all_of([environment], Environment)[0]
-        native = self._open()[1]
-        for name, value in new.items():
-            self._apply(native, name, value)
-            self._changes[name] = value
+        with self._lock:
+            native = self._open().native
+            applied: list[str] = []
+            try:
+                for name, value in new.items():
+                    applied.append(name)
+                    self._apply(native, name, value)
+            except BaseException:
+                self._take_back(native, applied)
+                raise
+            self._changes.update(new)
 
     # What a view becomes.
 
@@ -269,14 +289,16 @@ class Renderer:
             "debug_view": view.debug_view,
             "has_shadows": bool(view.shadows),
         }
-        if view.target_error is not None or view.time_limit is not None:
+        _check_samples(view)
+        if _has_target(view):
             record["error_target"] = _error_target(view, shown)
         return record, shown
 
     def _describe(
-        self, device: Device, record: dict[str, Any], shown: Display, error: dict[str, float] | None
+        self, opened: _Opened, record: dict[str, Any], shown: Display, result: dict[str, Any]
     ) -> dict[str, str]:
-        info = device.info
+        """The metadata that `promin render` gives an EXR."""
+        info = opened.device.info
         described = {
             "promin:version": _promin.__version__,
             "promin:scene": "" if self._scene.path is None else Path(self._scene.path).name,
@@ -289,21 +311,26 @@ class Renderer:
             "promin:exposure_ev": f"{shown.exposure_ev:g}",
             "promin:tone_mapping": shown.tone_mapping,
         }
+        error = result["error"]
         if error is not None:
             target = record["error_target"]
+            rows, columns, _ = result["rgb"].shape
+            described["promin:spp"] = f"{error['samples'] / (rows * columns):.9g}"
             described["promin:min_spp"] = str(target["min_samples"])
             described["promin:max_spp"] = str(target["max_samples"])
-            described["promin:target_error"] = f"{error['target']:.9g}"
-        if "depth" in self._aovs:
+            described["promin:error_target"] = f"{error['target']:.9g}"
+            described["promin:error_max"] = f"{error['largest_claim']:.9g}"
+            described["promin:error_unmet"] = str(error["unmet_pixels"])
+        if "depth" in opened.aovs:
             described["promin:depth"] = record["depth_kind"]
         return described
 
-    def _finish(self, aovs: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-        """The AOVs in the world and by the file's numbers."""
-        center = self._scene.native_center
-        if "position" in aovs and center.any():
-            is_hit = aovs["position"].any(axis=2, keepdims=True)
-            aovs["position"] = np.where(is_hit, aovs["position"] + center, 0.0)
+    def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+        """The AOVs of these names in the world and by the file's numbers."""
+        if self._moves(names):
+            is_hit = (aovs["object"] != _NO_ID)[..., np.newaxis]
+            aovs["position"] = np.where(is_hit, aovs["position"] + self._scene.native_center, 0.0)
+        aovs = {name: values for name, values in aovs.items() if name in names}
         numbers = np.array(self._scene.native().object_numbers(), np.uint32)
         if "object" in aovs and len(numbers):
             is_hit = aovs["object"] < len(numbers)
@@ -312,23 +339,40 @@ class Renderer:
 
     # The native renderer, made when it is first needed.
 
-    def _open(self, progress: Progress = None) -> _Opened:
-        if self._opened is None:
-            self._opened = self._make(self._aovs, progress)
-        return self._opened
+    def _open(
+        self, aovs: tuple[str, ...] | None = None, has_error_target: bool = False, progress: Progress = None
+    ) -> _Opened:
+        """One whose pictures tell these AOVs; None: whatever they tell. has_error_target: whether the picture that it
+        is wanted for has one."""
+        opened = self._opened
+        if opened is None or aovs not in (None, opened.aovs):
+            with self._lock:
+                opened = self._opened
+                if opened is None or aovs not in (None, opened.aovs):
+                    opened = self._make(self._aovs if aovs is None else aovs, has_error_target, progress)
+                    self._opened = opened
+        # Without the lock where all is there: whoever changes the scene holds it while a picture is traced, of which
+        # the function for progress may ask for the lights.
+        return opened
 
-    def _make(self, aovs: tuple[str, ...], progress: Progress) -> _Opened:
+    def _make(self, aovs: tuple[str, ...], has_error_target: bool, progress: Progress) -> _Opened:
         device = find_device(self._chosen)
         lit = self._scene.native().lit(self._light)
+        asked = sorted({*aovs, "object"}) if self._moves(aovs) else list(aovs)
         native = _promin.Renderer(
-            device._native, lit, list(aovs), self._builder, self._bvh, False, self._texture_memory, progress
+            device._native, lit, asked, self._builder, self._bvh, has_error_target, self._texture_memory, progress
         )
         for name, value in self._changes.items():
             self._apply(native, name, value)
-        return device, native, lit
+        return _Opened(device, native, lit, aovs)
+
+    def _moves(self, aovs: tuple[str, ...]) -> bool:
+        """Whether positions are moved by the scene's center. Then the objects are needed too: they tell what was hit,
+        which positions do not, as a hit at the center is at 0 too."""
+        return "position" in aovs and bool(self._scene.native_center.any())
 
     def _lit(self) -> _promin.Scene:
-        return self._open()[2]
+        return self._open().lit
 
     def _apply(self, native: _promin.Renderer, name: str, value: Any) -> None:
         if name == "lights":
@@ -337,6 +381,24 @@ class Renderer:
             native.set_materials([to_dict(material) for material in value])
         else:
             native.set_environment(to_dict(value))
+
+    def _take_back(self, native: _promin.Renderer, names: Iterable[str]) -> None:
+        """Gives the renderer what it had by these names; where that fails, the next use makes another."""
+        lit = self._lit()
+        try:
+            for name in names:
+                if name in self._changes:
+                    self._apply(native, name, self._changes[name])
+                elif name == "lights":
+                    # Without their way to the world and back, which would round them.
+                    native.set_lights([to_dict(from_dict(Light, record)) for record in lit.lights()])
+                elif name == "materials":
+                    native.set_materials([to_dict(from_dict(Material, record)) for record in lit.materials()])
+                else:
+                    native.set_environment(to_dict(from_dict(Environment, lit.environment())))
+        except BaseException:
+            self._opened = None
+            raise
 
     def _back(self, record: Any) -> Any:
         """A camera or light of the native scene in the world."""
@@ -347,8 +409,35 @@ class Renderer:
         moved = tuple(float(x) for x in np.asarray(getattr(record, name)) + center)
         return dataclasses.replace(record, **{name: moved})
 
+    def _make_private(self) -> None:
+        """What is not pickled: what is open, and what guards it and the changes."""
+        self._lock = threading.RLock()
+        self._opened = None
+
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_opened": None}
+        state = {key: value for key, value in self.__dict__.items() if key not in ("_lock", "_opened")}
+        return {**state, "_changes": dict(self._changes)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._make_private()
+
+
+def _has_target(view: View) -> bool:
+    return view.target_error is not None or view.time_limit is not None
+
+
+def _check_samples(view: View) -> None:
+    """The rules of promin's options about samples."""
+    if _has_target(view):
+        name = "time_limit" if view.target_error is None else "target_error"
+        if isinstance(view.spp, (int, np.integer)) and view.spp > 1:
+            raise UsageError(
+                f"{name} and spp={view.spp} contradict each other; leave one out; min_spp and max_spp limit the samples"
+            )
+    elif view.min_spp is not None or view.max_spp is not None:
+        name = "max_spp" if view.min_spp is None else "min_spp"
+        raise UsageError(f"{name} needs an error to aim at; give target_error as well")
 
 
 def _error_target(view: View, shown: Display) -> dict[str, Any]:

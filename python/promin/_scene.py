@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import copy
 import hashlib
 import os
 import threading
@@ -371,8 +370,11 @@ class Scene:
 
     def snapshot(self) -> Scene:
         """A scene that does not change with this one, but shares its arrays and what is made of them."""
-        self.native()
-        twin = copy.copy(self)
+        twin = object.__new__(type(self))
+        with self._lock:
+            self.native()
+            # Not copy.copy, which pickles and so would read the file anew.
+            twin.__dict__.update(self.__dict__)
         twin._lock = threading.RLock()
         twin._parts, twin._materials = list(self._parts), list(self._materials)
         twin._lights, twin._cameras = list(self._lights), list(self._cameras)

@@ -93,17 +93,17 @@ def assert_same_picture(
     writes: one for each driver whose bits differ. update: write the baseline; None: whether PROMIN_UPDATE_BASELINES is
     set and not "0".
 
-    Where they differ, NAME.actual.exr and NAME.difference.png (FLIP from black to white) are written beside the
-    baseline, or into PROMIN_TEST_OUTPUT. Raises InputError where there is no baseline."""
+    Where they differ, NAME.actual.exr (linear light) and NAME.difference.png (FLIP from black to white) are written
+    beside the baseline, or into PROMIN_TEST_OUTPUT. Raises InputError where there is no baseline."""
     shared = Path(os.fsdecode(baseline))
     if shared.suffix not in (".exr", ".png"):
         raise UsageError(f"a baseline is an .exr or a .png, not {shared}")
     own = shared if device is None else shared.with_name(f"{shared.stem}.{fingerprint(device)}{shared.suffix}")
     shown = picture.display if isinstance(picture, Frame) else display
-    pixels = to_picture(picture)
+    linear = pixels = to_picture(picture)
     if update if update is not None else os.environ.get(UPDATE_VARIABLE, "0") not in ("", "0"):
         own.parent.mkdir(parents=True, exist_ok=True)
-        write_image(own, pixels, shown)
+        write_image(own, linear, shown)
         return
     file = own if own.exists() else shared
     if not file.exists():
@@ -112,14 +112,14 @@ def assert_same_picture(
     is_linear = _promin.encoding_is_linear(str(file))
     if not is_linear:
         reference = _to_codes(reference)
-        pixels = _to_codes(_promin.show(pixels, to_dict(shown)))
+        pixels = _to_codes(_promin.show(linear, to_dict(shown)))
     found = compare(reference, pixels, fail=fail, linear=is_linear)
     if found.percent <= fail_percent:
         return
     folder = Path(os.environ.get("PROMIN_TEST_OUTPUT", file.parent))
     folder.mkdir(parents=True, exist_ok=True)
     actual, shows = folder / f"{file.stem}.actual.exr", folder / f"{file.stem}.difference.png"
-    write_image(actual, pixels)
+    write_image(actual, linear)
     write_image(shows, heat(found.flip_map))
     raise DifferenceError(
         f"{found.different_count} pixels differ by more than {fail:g}, the most at pixel {found.largest_at[0]} "

@@ -172,6 +172,19 @@ def test_a_caster_keeps_its_scene(box: promin.Scene) -> None:
     assert promin.Caster(box).cast(((0, 0, 9), (0, 0, -1)))["object"] == 1
 
 
+def test_a_scene_keeps_what_was_loaded(scenes: Path, tmp_path: Path) -> None:
+    file = tmp_path / "box.gltf"
+    file.write_bytes((scenes / "box.gltf").read_bytes())
+    scene = promin.Scene.load(file)
+    rays = make_rays(64)
+    hits = promin.Caster(scene).cast(rays)
+    file.unlink()
+    assert (promin.Caster(scene).cast(rays) == hits).all()
+    scene.add_sphere((0, 0, 50))
+    with_ball = promin.Caster(scene).cast(((0, 0, 100), (0, 0, -1)))
+    assert with_ball["t"] == 49.5 and promin.Renderer(scene).render(size=(4, 4)).size == (4, 4)
+
+
 def test_builders_and_bvh_files(box: promin.Scene, scenes: Path, tmp_path: Path) -> None:
     rays = make_rays(500)
     hits = {b: promin.Caster(box, builder=b).cast(rays).tobytes() for b in ("sah", "median", "spatial")}

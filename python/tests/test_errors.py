@@ -8,6 +8,7 @@ import os
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -164,12 +165,12 @@ def test_random_views(renderer: promin.Renderer, data: st.DataObject) -> None:
         assert str(error)
 
 
-def test_sizes_that_no_picture_has() -> None:
+def test_sizes_that_no_picture_has(tmp_path: Path) -> None:
     with pytest.raises(promin.UsageError):
-        promin.write_image("/tmp/none.png", np.zeros((0, 4, 3)))
+        promin.write_image(tmp_path / "none.png", np.zeros((0, 4, 3)))
     with pytest.raises(promin.UsageError):
-        promin.write_image("/tmp/none.gif", np.zeros((2, 4, 3)))
+        promin.write_image(tmp_path / "none.gif", np.zeros((2, 4, 3)))
     with pytest.raises(promin.RunError):
-        promin.write_image("/nonexistent/none.png", np.zeros((2, 4, 3)))
+        promin.write_image(tmp_path / "nonexistent/none.png", np.zeros((2, 4, 3)))
     with pytest.raises(promin.InputError):
-        promin.read_image("/nonexistent.png")
+        promin.read_image(tmp_path / "nonexistent.png")

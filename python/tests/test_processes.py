@@ -111,6 +111,32 @@ def test_progress_ends_work_and_hears_of_it() -> None:
     assert len(caster.cast(make_rays(10))) == 10
 
 
+def test_progress_may_ask_for_lights_while_they_are_replaced() -> None:
+    renderer = promin.Renderer(make_scene(1))
+    update = threading.Thread(target=lambda: renderer.update(lights=[promin.Light()]), daemon=True)
+    was_cancelled = threading.Event()
+
+    def ask(_: float) -> bool:
+        if not update.is_alive():
+            update.start()
+            time.sleep(0.3)
+        return not renderer.lights
+
+    def render() -> None:
+        try:
+            renderer.render(size=(2000, 2000), spp=64, progress=ask)
+        except promin.Cancelled:
+            was_cancelled.set()
+
+    picture = threading.Thread(target=render, daemon=True)
+    picture.start()
+    picture.join(60)
+    update.join(60)
+    # Else each has waited for the other, until the picture was done.
+    assert was_cancelled.is_set()
+    assert renderer.lights == [promin.Light()]
+
+
 def _use(caster: promin.Caster, pipe: Any) -> None:
     try:
         caster.cast(make_rays(4))

@@ -41,7 +41,8 @@ def test_a_picture_is_held_against_its_baseline(
     ) as caught:
         testing.assert_same_picture(promin.Frame(other, {}, {}, frame.display), baseline, fail=0.01)
     assert isinstance(caught.value, AssertionError)
-    assert (tmp_path / "ball.actual.exr").exists() and (tmp_path / "ball.difference.png").exists()
+    assert (promin.read_image(tmp_path / "ball.actual.exr") == other).all()
+    assert (tmp_path / "ball.difference.png").exists()
     testing.assert_same_picture(promin.Frame(other, {}, {}, frame.display), baseline, fail=0.01, fail_percent=1.0)
 
 
