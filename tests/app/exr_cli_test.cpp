@@ -101,18 +101,6 @@ TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
   EXPECT_EQ(parts.types, one.types);
 }
 
-// OpenImageIO writes these itself.
-TEST_F(ExrCliTest, AFullDiskLeavesTheOldFileOfParts) {
-  const OptionValues render = {"render", "square.gltf", "-o",    "a.exr",        "--size",     "200",
-                               "150",    "--quiet",     "--aov", "depth,normal", "--multipart"};
-  ASSERT_EQ(run(render).exit_code, 0);
-  const std::string before = read("a.exr");
-  fill_disk(before.size() / 2);
-  expect_failure(run(render), 1, "a.exr");
-  EXPECT_EQ(read("a.exr"), before);
-  EXPECT_EQ(files(), std::set<std::string>{"a.exr"});
-}
-
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
   const OptionValues background = {"--background", "0.5", "0.25", "1", "--spp", "16"};
   const ReadExr with = render_exr(background);

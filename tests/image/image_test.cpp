@@ -11,6 +11,7 @@
 #include <csignal>
 #include <fstream>
 #include <limits>
+#include <tuple>
 
 #include "core/file.h"
 #include "promin/error.h"
@@ -111,7 +112,13 @@ TEST_F(ImageTest, PngIsSrgbOf8Bits) {
 }
 
 TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
-  for (const char* name : {"a.exr", "a.png"}) {
+  // OpenImageIO writes files of several parts itself.
+  const Channel depth{"Z", false, std::vector<uint32_t>(40000, 0x3F800000U)};
+  const std::tuple<const char*, std::vector<Channel>, ExrOptions> kinds[] = {
+      {"a.exr", {}, {}},
+      {"a.png", {}, {}},
+      {"parts.exr", {depth}, {.compression = ExrCompression::kNone, .is_multipart = true}}};
+  for (const auto& [name, channels, exr] : kinds) {
     const fs::path file = folder_ / name;
     write_image(file, make_ramp(4, 4));
     const std::vector<std::byte> old = read_file(file);
@@ -122,7 +129,7 @@ TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
     getrlimit(RLIMIT_FSIZE, &limit);
     const rlimit small{100, limit.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
-    EXPECT_THROW(write_image(file, make_ramp(200, 200)), RunError) << name;
+    EXPECT_THROW(write_image(file, make_ramp(200, 200), {}, {}, channels, {}, exr), RunError) << name;
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, old_handler);
 
