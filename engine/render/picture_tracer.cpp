@@ -20,11 +20,6 @@ constexpr size_t kMostPiecesAtOnce = 64;
 /// A lane's counters have 32 bits, so they are read before they can have overflowed.
 constexpr double kMaxRaysALane = 2e9;
 
-size_t area_of(const PixelWindow& window) {
-  const uvec2 size = window.hi - window.lo;
-  return static_cast<size_t>(size.x) * size.y;
-}
-
 /// Takes a window's pixels out of those of a larger one.
 template <typename Value>
 void cut_out(std::vector<Value>& values, const PixelWindow& from, const PixelWindow& window) {

@@ -21,11 +21,6 @@ constexpr float kErrorStep = 1.41421356F;
 /// Before anything is known, all samples over the first ones.
 constexpr double kMoreThanFirst = 1.5;
 
-size_t area(const PixelWindow& window) {
-  const uvec2 size = window.hi - window.lo;
-  return static_cast<size_t>(size.x) * size.y;
-}
-
 }  // namespace
 
 float first_error(const ErrorTarget& target) {
@@ -34,6 +29,11 @@ float first_error(const ErrorTarget& target) {
 
 float next_error(const ErrorTarget& target, float error) {
   return std::max(target.error, error / kErrorStep);
+}
+
+size_t area_of(const PixelWindow& window) {
+  const uvec2 size = window.hi - window.lo;
+  return static_cast<size_t>(size.x) * size.y;
 }
 
 PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size) {
@@ -48,12 +48,12 @@ Refinement::Refinement(const View& view, const PixelWindow& window)
       window_(window),
       apron_(with_neighbors(window, view.size)),
       filter_(view),
-      estimates_(area(apron_)),
-      first_ranges_(area(apron_)),
-      claims_(area(window)),
-      pixels_(area(apron_)),
+      estimates_(area_of(apron_)),
+      first_ranges_(area_of(apron_)),
+      claims_(area_of(window)),
+      pixels_(area_of(apron_)),
       end_sample_(least_samples_),
-      total_(kMoreThanFirst * least_samples_ * static_cast<double>(area(apron_))) {
+      total_(kMoreThanFirst * least_samples_ * static_cast<double>(area_of(apron_))) {
   std::iota(pixels_.begin(), pixels_.end(), 0U);
 }
 

@@ -30,6 +30,9 @@ inline constexpr size_t kMostListedSamples = size_t{1} << 19;
 float first_error(const ErrorTarget& target);
 float next_error(const ErrorTarget& target, float error);
 
+/// How many pixels a window has.
+size_t area_of(const PixelWindow& window);
+
 /// A window and the pixels around it that are in a picture of this size.
 PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size);
 
