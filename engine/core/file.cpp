@@ -142,29 +142,33 @@ void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
   for (const AtomicFile* file : files) file->flush();
   // Another name of each old file, which the renaming leaves alone; empty where there is none. Its form is that of a
   // temporary file, so that what a kill leaves is cleared.
-  std::vector<fs::path> old_files;
+  std::vector<fs::path> old_files(files.size());
+  const auto name_old = [&](size_t i) {
+    fs::path name = files[i]->temporary_.parent_path() / "old-";
+    name += files[i]->temporary_.filename();
+    if (keep_old(files[i]->target_, name)) old_files[i] = name;
+  };
   const auto remove_names = [&] {
     std::error_code error;
     for (const fs::path& old_file : old_files) {
       if (!old_file.empty()) fs::remove(old_file, error);
     }
   };
-  size_t renamed = 0;
   try {
-    for (AtomicFile* file : files) {
-      fs::path old_file = file->temporary_.parent_path() / "old-";
-      old_file += file->temporary_.filename();
-      old_files.push_back(keep_old(file->target_, old_file) ? old_file : fs::path());
-      file->rename_to_target();
-      ++renamed;
+    // Of all but the first nothing is there while files are renamed: whoever is killed meanwhile leaves no new file
+    // beside an old one.
+    for (size_t i = files.size(); i-- > 0;) {
+      name_old(i);
+      if (i > 0 && !old_files[i].empty() && unlink(files[i]->target_.c_str()) != 0) files[i]->fail();
     }
+    for (AtomicFile* file : files) file->rename_to_target();
   } catch (...) {
-    for (size_t i = 0; i < renamed; ++i) {
+    for (size_t i = 0; i < files.size(); ++i) {
       std::error_code error;
-      if (old_files[i].empty()) {
-        fs::remove(files[i]->target_, error);
-      } else {
+      if (!old_files[i].empty()) {
         fs::rename(old_files[i], files[i]->target_, error);
+      } else if (files[i]->committed_) {
+        fs::remove(files[i]->target_, error);
       }
     }
     remove_names();

@@ -58,7 +58,8 @@ class AtomicFile {
   /// Flushes the temporary file to disk and renames it. Throws RunError.
   void commit();
   /// Commits all or none: flushes all before it renames any, and where one cannot be renamed puts the others' old files
-  /// back. Throws RunError.
+  /// back. A process that is killed on the way leaves old files alone or new files alone, perhaps without those that
+  /// come later in the list, but never a new file beside an old one. Throws RunError.
   static void commit_together(std::span<AtomicFile* const> files);
 
  private:

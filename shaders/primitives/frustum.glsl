@@ -40,12 +40,6 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   precise float slab_exit = (-entry_z - z) * inverse_dz;
   uint entry_cap = dz < 0.0 ? PART_TOP : PART_BOTTOM;
   uint exit_cap = dz < 0.0 ? PART_BOTTOM : PART_TOP;
-  if (ASKS_FOR_ALL || (has(FEATURE_OPEN_SHAPES) && f.is_open)) {
-    // A ray across the axis, just beyond a rim, is in the slab far from here alone, where the side drowns in rounding:
-    // one end may seem to lie there, the other one behind the ray.
-    precise float reach = half_height + radius + abs(f.slope) * half_height;
-    if (slab_entry > reach || slab_exit < -reach) return NOWHERE;
-  }
 
   // Solve from the point inside the slab that is nearest to axis and apex, where distance^2 + radius^2 is least. There
   // the rounding of these two is small beside that at the hit, which divides them. Elsewhere the hit of a ray along a
@@ -56,6 +50,14 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   precise float inward = -(dot3(radial_offset, radial_direction) + (radius + f.slope * z) * widening);
   precise float t_nearest = spread2 > 0.0 ? inward / spread2 : 0.0;
   precise float t_base = min(max(t_nearest, slab_entry), slab_exit);
+  // In the solid distance^2 + radius^2 is at most twice the largest radius^2, and since t_nearest it has grown by
+  // spread2 t^2; as much again is for rounding. A ray that comes into the slab farther on, as just beyond a rim in its
+  // plane, is not in the solid; solved from there, where the side drowns in rounding, it may seem to be, at any t.
+  precise float way = t_base - t_nearest;
+  precise float growth = spread2 * way * way;
+  precise float widest = radius + abs(f.slope) * half_height;
+  precise float most_growth = 4.0 * widest * widest;
+  if (growth > most_growth) return NOWHERE;
   precise vec3 base = offset + t_base * ray.direction;
   precise float base_z = dot3(base, f.axis);
   precise vec3 base_radial = base - base_z * f.axis;

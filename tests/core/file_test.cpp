@@ -2,14 +2,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
 #include <functional>
 
 #include "promin/error.h"
 #include "support/temp_folder.h"
+
+namespace {
+/// How many files are renamed before the process ends as if it were killed; below 0 it does not.
+int renames_to_the_end = -1;
+constexpr int kKilled = 99;
+}  // namespace
+
+/// In place of the C library's.
+extern "C" int rename(const char* from, const char* to) noexcept {
+  if (renames_to_the_end >= 0 && renames_to_the_end-- == 0) _exit(kKilled);
+  return renameat(AT_FDCWD, from, AT_FDCWD, to);
+}
 
 namespace promin {
 namespace {
@@ -73,6 +89,46 @@ TEST_F(FileTest, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
   commit([] {});
   for (const char* name : {"a.txt", "b.txt", "c.txt"}) EXPECT_EQ(text_of(folder_ / name), "new") << name;
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "something was left behind";
+}
+
+// Nor are old files gone where the first of the new ones cannot be renamed.
+TEST_F(FileTest, OldFilesOfACommitThatFailsAreBack) {
+  for (const char* name : {"b.txt", "c.txt"}) write_text_file(folder_ / name, "old");
+  {
+    AtomicFile a(folder_ / "a.txt");
+    AtomicFile b(folder_ / "b.txt");
+    AtomicFile c(folder_ / "c.txt");
+    AtomicFile* const files[] = {&a, &b, &c};
+    for (const AtomicFile* file : files) std::ofstream(file->temporary()) << "new";
+    fs::create_directory(folder_ / "a.txt");
+    EXPECT_THROW(AtomicFile::commit_together(files), RunError);
+  }
+  for (const char* name : {"b.txt", "c.txt"}) EXPECT_EQ(text_of(folder_ / name), "old") << name;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "something was left behind";
+}
+
+// A new file is never beside an old one, whenever the process is killed.
+TEST_F(FileTest, AKillLeavesNoFilesThatDoNotBelongTogether) {
+  const std::string states[] = {"old, ", "new, ", "new, new"};
+  for (int renames = 0; renames < 3; ++renames) {
+    for (const char* name : {"a.txt", "b.txt"}) write_text_file(folder_ / name, "old");
+    const pid_t child = fork();
+    if (child == 0) {
+      AtomicFile a(folder_ / "a.txt");
+      AtomicFile b(folder_ / "b.txt");
+      AtomicFile* const files[] = {&a, &b};
+      for (const AtomicFile* file : files) std::ofstream(file->temporary()) << "new";
+      renames_to_the_end = renames;
+      AtomicFile::commit_together(files);
+      _exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(WEXITSTATUS(status), renames < 2 ? kKilled : 0);
+    EXPECT_EQ(text_of(folder_ / "a.txt") + ", " + text_of(folder_ / "b.txt"), states[renames]);
+    clear_leftovers(folder_);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), renames < 2 ? 1 : 2) << "something was left behind";
+  }
 }
 
 // Of processes of this machine that are gone; others may still write, and a user's files are none of ours.

@@ -514,6 +514,45 @@ void run_mirror_nappe(Lab& lab) {
   }
 }
 
+/// In the plane of a disk and a few roundings beside it, across the disk and past its rim, level or tilted by so little
+/// that the plane is met far beyond the solid or nowhere.
+std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < kRayCount; ++i) {
+    const double end = i % 2 == 0 ? -1.0 : 1.0;
+    const double radius = solid.radius_at(end * solid.half_height);
+    const dvec3 along = random.perpendicular(solid.axis);
+    const dvec3 aside = glm::cross(solid.axis, along);
+    // Of all rays a third pass just beyond the rim.
+    const double impact = i % 3 == 0 ? 1.0 + std::pow(10.0, random.uniform(-7.0, 0.0)) : random.uniform(0.0, 2.0);
+    const dvec3 nearest = solid.at(end * solid.half_height, impact * radius * aside);
+    const double distance = solid.size() * std::pow(10.0, random.uniform(-1.0, 3.0));
+    const double beside = static_cast<double>(kUnitRoundoff) * solid.size() * std::round(random.uniform(-8.0, 8.0));
+    const double tilt = i % 5 == 0 ? 0.0 : (i % 7 < 4 ? 1.0 : -1.0) * std::exp2(-random.uniform(8.0, 90.0));
+    const vec3 origin(nearest - distance * along + beside * solid.axis);
+    // Not of unit length: where the axis is one of the world's, the tilt is kept however small it is.
+    rays.push_back({origin, 0.0F, vec3(along + tilt * solid.axis), std::numeric_limits<float>::infinity()});
+  }
+  return rays;
+}
+
+void run_cap_planes(Lab& lab) {
+  Random random(54);
+  const Form forms[] = {{"cylinder", unit_cylinder},
+                        {"flat cylinder", disk},
+                        {"needle", needle},
+                        {"frustum", frustum},
+                        {"flat frustum", flat_frustum}};
+  for (const Form& form : forms) {
+    Tally tally;
+    for (const dvec3& axis : axes()) {
+      const Solid solid = form.make(kOrigin, axis);
+      tally.add(cast_at_edge(lab, solid, rays_in_cap_planes(solid, random)));
+    }
+    expect_bk_b2(lab, form.name, tally);
+  }
+}
+
 constexpr std::array kCases{HardCase{12, "CylinderFarAway", run_cylinder_distances},
                             HardCase{13, "AlmostAlongTheAxis", run_along_axis},
                             HardCase{14, "ParallelToTheAxis", run_parallel},
@@ -521,7 +560,8 @@ constexpr std::array kCases{HardCase{12, "CylinderFarAway", run_cylinder_distanc
                             HardCase{16, "SolidFromInside", run_inside},
                             HardCase{18, "ConeFarAway", run_cones},
                             HardCase{19, "GeneratorsAndApex", run_generators_and_apex},
-                            HardCase{20, "MirrorNappe", run_mirror_nappe}};
+                            HardCase{20, "MirrorNappe", run_mirror_nappe},
+                            HardCase{54, "PlanesOfDisks", run_cap_planes}};
 
 }  // namespace
 
