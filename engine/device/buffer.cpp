@@ -116,36 +116,48 @@ vk::raii::BufferView Buffer::make_word_view(vk::DeviceSize offset_bytes, vk::Dev
 }
 
 void Buffer::write(std::span<const std::byte> data, vk::DeviceSize offset_bytes) {
-  assert(offset_bytes + data.size() <= size_bytes_);
   if (data.empty()) return;
-  if (mapped_ != nullptr) {
-    std::memcpy(mapped_ + offset_bytes, data.data(), data.size());
-    return;
-  }
-  const Buffer staging(*device_, data.size(), vk::BufferUsageFlagBits::eTransferSrc, kStagingPreferences);
-  std::memcpy(staging.mapped_, data.data(), data.size());
-  device_->run([&](const vk::raii::CommandBuffer& commands) {
-    commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, offset_bytes, data.size()));
-  });
+  const auto fill = [&](std::span<std::byte> bytes) { std::memcpy(bytes.data(), data.data(), data.size()); };
+  write_by(fill, data.size(), offset_bytes);
 }
 
 void Buffer::read(std::span<std::byte> data, vk::DeviceSize offset_bytes) const {
-  assert(offset_bytes + data.size() <= size_bytes_);
   if (data.empty()) return;
+  const auto take = [&](std::span<const std::byte> bytes) { std::memcpy(data.data(), bytes.data(), data.size()); };
+  read_by(take, data.size(), offset_bytes);
+}
+
+void Buffer::write_by(const std::function<void(std::span<std::byte>)>& fill, vk::DeviceSize byte_count,
+                      vk::DeviceSize offset_bytes) {
+  assert(byte_count > 0 && offset_bytes + byte_count <= size_bytes_);
   if (mapped_ != nullptr) {
-    std::memcpy(data.data(), mapped_ + offset_bytes, data.size());
+    fill({mapped_ + offset_bytes, byte_count});
     return;
   }
-  const Buffer staging = make_readback(*device_, data.size());
+  const Buffer staging(*device_, byte_count, vk::BufferUsageFlagBits::eTransferSrc, kStagingPreferences);
+  fill({staging.mapped_, byte_count});
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, offset_bytes, byte_count));
+  });
+}
+
+void Buffer::read_by(const std::function<void(std::span<const std::byte>)>& take, vk::DeviceSize byte_count,
+                     vk::DeviceSize offset_bytes) const {
+  assert(byte_count > 0 && offset_bytes + byte_count <= size_bytes_);
+  if (mapped_ != nullptr) {
+    take({mapped_ + offset_bytes, byte_count});
+    return;
+  }
+  const Buffer staging = make_readback(*device_, byte_count);
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     const vk::MemoryBarrier before(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eTransferRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eTransfer, {},
                              before, {}, {});
-    commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(offset_bytes, 0, data.size()));
+    commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(offset_bytes, 0, byte_count));
     const vk::MemoryBarrier after(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, after, {}, {});
   });
-  std::memcpy(data.data(), staging.mapped_, data.size());
+  take({staging.mapped_, byte_count});
 }
 
 void Buffer::copy_from(const Buffer& other, vk::DeviceSize byte_count) {

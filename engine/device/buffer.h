@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -43,6 +44,12 @@ class Buffer {
   /// and after.
   void write(std::span<const std::byte> data, vk::DeviceSize offset_bytes = 0);
   void read(std::span<std::byte> data, vk::DeviceSize offset_bytes = 0) const;
+  /// The same without the caller's copy: `fill` writes all of `byte_count` bytes and `take` reads them, in place where
+  /// the host can map the buffer. `byte_count` > 0.
+  void write_by(const std::function<void(std::span<std::byte>)>& fill, vk::DeviceSize byte_count,
+                vk::DeviceSize offset_bytes = 0);
+  void read_by(const std::function<void(std::span<const std::byte>)>& take, vk::DeviceSize byte_count,
+               vk::DeviceSize offset_bytes = 0) const;
   /// Copies the first bytes of another buffer to the start of this one; the device is idle with respect to both.
   void copy_from(const Buffer& other, vk::DeviceSize byte_count);
 

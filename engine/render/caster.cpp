@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -28,6 +29,31 @@ namespace {
 using layout::HitRecord;
 using layout::RayRecord;
 
+/// A thread is worth its cost from so many rays on.
+constexpr size_t kRaysOfThread = 16384;
+/// How many rays ahead what is needed of one that lies anywhere is fetched: in scattered order waiting for memory takes
+/// longer than all else.
+constexpr size_t kFetchedAhead = 32;
+
+/// Rays in the order in which they are traced.
+struct OrderedRays {
+  std::span<const Ray> rays;
+  /// Empty where they are traced as they come.
+  std::span<const uint32_t> permutation;
+
+  /// Which of the rays is the i-th that is traced.
+  size_t place_of(size_t i) const { return permutation.empty() ? i : permutation[i]; }
+  /// Calls fetch(place) for what comes some rays after the i-th.
+  template <typename Fetch>
+  void fetch_ahead(size_t i, const Fetch& fetch) const {
+    if (i + kFetchedAhead < permutation.size()) fetch(permutation[i + kFetchedAhead]);
+  }
+};
+
+bool asks_for_crossings(HitQuery query) {
+  return query == HitQuery::kCount || query == HitQuery::kAll;
+}
+
 /// What tells of `count` rays from the first on as of a part of all.
 ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t count, size_t all) {
   if (!progress) return {};
@@ -38,18 +64,34 @@ ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t 
 
 /// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
-  // max_abs_component is not used, because its calls of std::fmax took a seventh of the time of `promin cast`.
-  const vec3 sizes = glm::abs(direction);
-  const float size = std::max(std::max(sizes.x, sizes.y), sizes.z);
+  // Neither max_abs_component nor glm::abs is used: the calls of std::fmax in the one took a seventh of the time of
+  // `promin cast`, and the other is compiled to a branch for each sign, which nothing foretells.
+  const float size = std::max(std::max(std::fabs(direction.x), std::fabs(direction.y)), std::fabs(direction.z));
   if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;
   if (size >= 0x1p127F && std::isfinite(size)) return 0x1p-64F;
   return 1.0F;
 }
 
-RayRecord record_of(const Ray& ray) {
-  const float scale = scale_of(ray.direction);
+RayRecord record_of(const Ray& ray, float scale) {
   // tmin * direction is kept. The scaled tmin may round to 0 here; hit_of decides.
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
+}
+
+/// Fills what is asked, in the order of tracing, on all cores. Returns whether the direction of any ray is scaled.
+bool fill_requests(const OrderedRays& ordered, std::span<RayRecord> requests) {
+  std::atomic<bool> is_any_scaled = false;
+  for_each_chunk(requests.size(), kRaysOfThread, 0, [&](size_t begin, size_t end) {
+    bool is_scaled = false;
+    for (size_t i = begin; i < end; ++i) {
+      ordered.fetch_ahead(i, [&](size_t place) { __builtin_prefetch(&ordered.rays[place]); });
+      const Ray& ray = ordered.rays[ordered.place_of(i)];
+      const float scale = scale_of(ray.direction);
+      is_scaled = is_scaled || scale != 1.0F;
+      requests[i] = record_of(ray, scale);
+    }
+    if (is_scaled) is_any_scaled = true;
+  });
+  return is_any_scaled;
 }
 
 Hit hit_at(float t, const HitRecord& record, const PrimitiveNumbers& numbers) {
@@ -66,21 +108,26 @@ Hit hit_at(float t, const HitRecord& record, const PrimitiveNumbers& numbers) {
   return hit;
 }
 
-Hit hit_of(const HitRecord& record, const Ray& ray, HitQuery query, const PrimitiveNumbers& numbers) {
+/// `scaled` is the ray, or null where its direction is not scaled: then the device has compared t with the given tmin
+/// and tmax.
+Hit hit_of(const HitRecord& record, const Ray* scaled, HitQuery query, const PrimitiveNumbers& numbers) {
   Hit hit;
   if (record.a.y == layout::NO_ORDER) return hit;
   if (query == HitQuery::kAny) {
     hit.t = 0.0F;
     return hit;
   }
-  const float t = std::bit_cast<float>(record.a.x) * scale_of(ray.direction);
-  if (!(t > ray.tmin && t < ray.tmax)) return hit;
+  auto t = std::bit_cast<float>(record.a.x);
+  if (scaled != nullptr) {
+    t *= scale_of(scaled->direction);
+    if (!(t > scaled->tmin && t < scaled->tmax)) return hit;
+  }
   return hit_at(t, record, numbers);
 }
 
 /// Brings a ray's crossings, as they come from the device, into the order of hits. Returns how many are left, at the
 /// beginning: a primitive that the tree refers to twice is there twice, and some have no t in the given units.
-size_t put_in_order(std::span<HitRecord> crossings, const Ray& ray) {
+size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
   const float scale = scale_of(ray.direction);
   const auto t_of = [](const HitRecord& crossing) { return std::bit_cast<float>(crossing.a.x); };
   size_t count = crossings.size();
@@ -123,26 +170,21 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   }
 
   enum class Order { kAsGiven, kInPackets, kSorted };
-  Order order_of(std::span<const Ray> rays) const {
+  /// Where a tree refers to a primitive twice a packet meets it as often as any of its rays does: of rays alone each
+  /// has the same number of crossings in any company, so that a list has what was counted.
+  Order order_for(HitQuery query, std::span<const Ray> rays) const {
     const bool takes_packets = device.profile().ray_packet_size > 1;
     const bool sorts_rays = device.profile().sorts_rays;
     if (!takes_packets && !sorts_rays) return Order::kAsGiven;
-    if (are_side_by_side(rays, cube)) return takes_packets ? Order::kInPackets : Order::kAsGiven;
-    return sorts_rays ? Order::kSorted : Order::kAsGiven;
+    if (!are_side_by_side(rays, cube)) return sorts_rays ? Order::kSorted : Order::kAsGiven;
+    const bool goes_alone = asks_for_crossings(query) && repeats_primitives;
+    return takes_packets && !goes_alone ? Order::kInPackets : Order::kAsGiven;
   }
 
-  /// Where a tree refers to a primitive twice a packet meets it as often as any of its rays does: of rays alone each
-  /// has the same number of crossings in any company, so that a list has what was counted.
-  Order order_of_crossings(std::span<const Ray> rays) const {
-    const Order order = order_of(rays);
-    return repeats_primitives && order == Order::kInPackets ? Order::kAsGiven : order;
-  }
-
-  /// Empty where the rays are traced as they come.
-  std::span<const uint32_t> permutation_of(std::span<const Ray> rays, Order order) {
-    if (order == Order::kInPackets) return tiler.tile(rays, cube);
-    if (order == Order::kSorted) return sorter.sort(rays, cube);
-    return {};
+  OrderedRays put_in_order(std::span<const Ray> rays, Order order) {
+    if (order == Order::kInPackets) return {rays, tiler.tile(rays, cube)};
+    if (order == Order::kSorted) return {rays, sorter.sort(rays, cube)};
+    return {rays, {}};
   }
 
   RayKernel& kernel_for(HitQuery query, Order order) {
@@ -153,52 +195,61 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
       options.features = features;
       options.query = query;
       options.packet_size = is_packet ? device.profile().ray_packet_size : 1;
-      const bool asks_for_crossings = query == HitQuery::kCount || query == HitQuery::kAll;
-      if (!asks_for_crossings) options.spirv = spirv;
+      if (!asks_for_crossings(query)) options.spirv = spirv;
       kernel.emplace(device, scene, options);
       stats.pipeline_ms += kernel->pipeline_ms();
     }
     return *kernel;
   }
 
-  /// Casts at most RayKernel::kMaxRays rays.
-  double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, const ProgressCallback& progress) {
+  /// Traces at most RayKernel::kMaxRays rays, for any query but kAll. Each answer is what `make` makes of the ray's
+  /// record and of the ray, which is null where no direction is scaled: on all cores.
+  template <typename Answer, typename Make>
+  double trace(std::span<const Ray> rays, std::span<Answer> answers, HitQuery query, Order order,
+               const ProgressCallback& progress, const Make& make) {
     const Stopwatch ordering;
-    const Order order = order_of(rays);
-    const std::span<const uint32_t> permutation = permutation_of(rays, order);
-    double time_ms = ordering.ms();
-    RayKernel& kernel = kernel_for(query, order);
-    const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
-    requests.resize(rays.size());
-    records.resize(rays.size());
-    for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
-    time_ms += kernel.run(requests, records, progress);
-    for (size_t i = 0; i < rays.size(); ++i) {
-      const size_t place = place_of(i);
-      hits[place] = hit_of(records[i], rays[place], query, numbers);
+    const OrderedRays ordered = put_in_order(rays, order);
+    const double ordering_ms = ordering.ms();
+    bool is_any_scaled = false;
+    const auto fill = [&](std::span<RayRecord> asked) { is_any_scaled = fill_requests(ordered, asked); };
+    const auto take = [&](std::span<const HitRecord> told) {
+      for_each_chunk(told.size(), kRaysOfThread, 0, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+          ordered.fetch_ahead(i, [&](size_t place) { __builtin_prefetch(&answers[place], 1); });
+          const size_t place = ordered.place_of(i);
+          answers[place] = make(told[i], is_any_scaled ? &rays[place] : nullptr);
+        }
+      });
+    };
+    return ordering_ms + kernel_for(query, order).run(rays.size(), fill, take, progress);
+  }
+
+  /// The same for any number of rays.
+  template <typename Answer, typename Make>
+  double trace_all(std::span<const Ray> rays, std::span<Answer> answers, HitQuery query,
+                   const ProgressCallback& progress, const Make& make) {
+    double time_ms = 0.0;
+    for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
+      const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
+      const std::span<const Ray> part = rays.subspan(first, count);
+      time_ms += trace(part, answers.subspan(first, count), query, order_for(query, part),
+                       part_of(progress, first, count, rays.size()), make);
+      tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
     }
     return time_ms;
   }
 
-  /// Whether counts are told by lists alone: where the device counts crossings that put_in_order drops.
+  /// Whether counts are told by lists alone: where the device counts crossings that sort_crossings drops.
   bool counts_by_lists(std::span<const Ray> rays) const {
-    return repeats_primitives ||
-           std::ranges::any_of(rays, [](const Ray& ray) { return scale_of(ray.direction) != 1.0F; });
-  }
-
-  /// What the device counts for at most RayKernel::kMaxRays rays.
-  double count(std::span<const Ray> rays, std::span<uint32_t> counts, Order order, const ProgressCallback& progress) {
-    const Stopwatch ordering;
-    const std::span<const uint32_t> permutation = permutation_of(rays, order);
-    double time_ms = ordering.ms();
-    RayKernel& kernel = kernel_for(HitQuery::kCount, order);
-    const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
-    requests.resize(rays.size());
-    records.resize(rays.size());
-    for (size_t i = 0; i < rays.size(); ++i) requests[i] = record_of(rays[place_of(i)]);
-    time_ms += kernel.run(requests, records, progress);
-    for (size_t i = 0; i < rays.size(); ++i) counts[place_of(i)] = records[i].a.x;
-    return time_ms;
+    if (repeats_primitives) return true;
+    std::atomic<bool> is_any_scaled = false;
+    for_each_chunk(rays.size(), kRaysOfThread, 0, [&](size_t begin, size_t end) {
+      const auto part = rays.subspan(begin, end - begin);
+      if (!is_any_scaled && std::ranges::any_of(part, [](const Ray& ray) { return scale_of(ray.direction) != 1.0F; })) {
+        is_any_scaled = true;
+      }
+    });
+    return is_any_scaled;
   }
 
   /// Fills list_offsets and list_hits for rays with these counts, all of which fit.
@@ -215,17 +266,17 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
       asked_places.push_back(static_cast<uint32_t>(i));
       total += counts[i];
     }
-    const std::span<const uint32_t> permutation = permutation_of(asked_rays, order);
+    const OrderedRays ordered = put_in_order(asked_rays, order);
     double time_ms = ordering.ms();
-    const auto place_of = [&](size_t i) { return permutation.empty() ? i : permutation[i]; };
     requests.resize(asked_rays.size());
+    fill_requests(ordered, requests);
     asked_counts.resize(asked_rays.size());
     first_records.resize(asked_rays.size());
     records.resize(total);
     for (size_t i = 0, first = 0; i < asked_rays.size(); ++i) {
-      requests[i] = record_of(asked_rays[place_of(i)]);
-      asked_counts[i] = counts[asked_places[place_of(i)]];
-      first_records[place_of(i)] = first;
+      const size_t place = ordered.place_of(i);
+      asked_counts[i] = counts[asked_places[place]];
+      first_records[place] = first;
       first += asked_counts[i];
     }
     if (!asked_rays.empty()) {
@@ -240,7 +291,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     kept_counts.resize(asked_rays.size());
     for_each_chunk(asked_rays.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        kept_counts[i] = static_cast<uint32_t>(put_in_order(crossings_of(i), asked_rays[i]));
+        kept_counts[i] = static_cast<uint32_t>(sort_crossings(crossings_of(i), asked_rays[i]));
       }
     });
     list_offsets.assign(rays.size() + 1, 0);
@@ -273,12 +324,12 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   std::array<std::array<std::optional<RayKernel>, 2>, 4> kernels;
   RaySorter sorter;
   RayTiler tiler;
-  /// What is asked and answered for the rays at hand, in the order in which they are traced.
+  /// Of lists: what is asked and answered for the rays at hand, in the order in which they are traced; what the device
+  /// counts for a chunk of rays; of the part at hand the rays that cross something, their places in it, how many
+  /// crossings they have, in the order in which they are traced, where in `records` these begin and how many of them
+  /// are kept; what the sink gets.
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;
-  /// Of lists: what the device counts for a chunk of rays; of the part at hand the rays that cross something, their
-  /// places in it, how many crossings they have, in the order in which they are traced, where in `records` these begin
-  /// and how many of them are kept; what the sink gets.
   std::vector<uint32_t> chunk_counts;
   std::vector<Ray> asked_rays;
   std::vector<uint32_t> asked_places;
@@ -299,12 +350,12 @@ Caster::Caster(Caster&&) noexcept = default;
 Caster& Caster::operator=(Caster&&) noexcept = default;
 
 void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
-  if (query == HitQuery::kNearest || query == HitQuery::kAny) {
-    impl_->kernel_for(query, impl_->order_of(rays));
+  const Impl::Order order = impl_->order_for(query, rays);
+  if (!asks_for_crossings(query)) {
+    impl_->kernel_for(query, order);
     return;
   }
   // Lists are made by counts, and some counts by lists.
-  const Impl::Order order = impl_->order_of_crossings(rays);
   impl_->kernel_for(HitQuery::kCount, order);
   if (query == HitQuery::kAll || impl_->counts_by_lists(rays)) impl_->kernel_for(HitQuery::kAll, order);
 }
@@ -318,14 +369,19 @@ double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery que
     throw UsageError(
         {"a count or a list is asked of a ray's one hit", "in Caster::cast", "call Caster::count or Caster::list"});
   }
-  double time_ms = 0.0;
-  for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
-    const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
-    time_ms += impl_->cast(rays.subspan(first, count), hits.subspan(first, count), query,
-                           part_of(progress, first, count, rays.size()));
-    tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
+  return impl_->trace_all(rays, hits, query, progress, [&](const HitRecord& record, const Ray* scaled) {
+    return hit_of(record, scaled, query, impl_->numbers);
+  });
+}
+
+double Caster::occluded(std::span<const Ray> rays, std::span<bool> are_occluded, const ProgressCallback& progress) {
+  if (rays.size() != are_occluded.size()) {
+    throw UsageError(
+        {"there are " + std::to_string(are_occluded.size()) + " answers for " + std::to_string(rays.size()) + " rays",
+         "in Caster::occluded", "give as many answers as rays"});
   }
-  return time_ms;
+  return impl_->trace_all(rays, are_occluded, HitQuery::kAny, progress,
+                          [](const HitRecord& record, const Ray*) { return record.a.y != layout::NO_ORDER; });
 }
 
 double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const ProgressCallback& progress) {
@@ -342,18 +398,9 @@ double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const
     };
     return list(rays, take, kListBytes, progress);
   }
-  double time_ms = 0.0;
-  for (size_t first = 0; first < rays.size(); first += RayKernel::kMaxRays) {
-    const size_t count = std::min(RayKernel::kMaxRays, rays.size() - first);
-    impl_->chunk_counts.resize(count);
-    const std::span<const Ray> chunk = rays.subspan(first, count);
-    time_ms += impl_->count(chunk, impl_->chunk_counts, impl_->order_of_crossings(chunk),
-                            part_of(progress, first, count, rays.size()));
-    // No ray has 2^31 crossings: there are fewer than 2^27 primitives.
-    std::ranges::copy(impl_->chunk_counts, counts.begin() + static_cast<ptrdiff_t>(first));
-    tell_progress(progress, static_cast<double>(first + count) / static_cast<double>(rays.size()));
-  }
-  return time_ms;
+  // No ray has 2^31 crossings: there are fewer than 2^27 primitives.
+  return impl_->trace_all(rays, counts, HitQuery::kCount, progress,
+                          [](const HitRecord& record, const Ray*) { return static_cast<int32_t>(record.a.x); });
 }
 
 double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t budget_bytes,
@@ -363,9 +410,10 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
     const std::span<const Ray> chunk = rays.subspan(first, std::min(RayKernel::kMaxRays, rays.size() - first));
     std::vector<uint32_t>& counts = impl_->chunk_counts;
     counts.resize(chunk.size());
-    const Impl::Order order = impl_->order_of_crossings(chunk);
+    const Impl::Order order = impl_->order_for(HitQuery::kAll, chunk);
     // Between dispatches nothing new is told: only whether to go on is asked.
-    time_ms += impl_->count(chunk, counts, order, part_of(progress, first, 0, rays.size()));
+    time_ms += impl_->trace(chunk, std::span(counts), HitQuery::kCount, order, part_of(progress, first, 0, rays.size()),
+                            [](const HitRecord& record, const Ray*) { return record.a.x; });
     // How many are listed together, whole rays, hangs on the device too.
     const uint64_t most_listed = impl_->kernel_for(HitQuery::kAll, order).most_listed(chunk.size());
     const uint64_t most = std::min(budget_bytes / sizeof(Hit), most_listed);

@@ -117,11 +117,20 @@ struct RayKernel::Impl {
     return head.outcome.x != 0;
   }
 
-  double run(std::span<const layout::RayRecord> input, std::span<layout::HitRecord> records,
-             const ProgressCallback& progress) {
-    make_buffers(input.size(), input.size());
-    const double time_ms = trace(input, progress);
-    hits->read(std::as_writable_bytes(records), sizeof(layout::Dispatch));
+  double run(size_t count, const std::function<void(std::span<layout::RayRecord>)>& fill,
+             const std::function<void(std::span<const layout::HitRecord>)>& take, const ProgressCallback& progress) {
+    make_buffers(count, count);
+    rays->write_by(
+        [&](std::span<std::byte> bytes) {
+          fill({reinterpret_cast<layout::RayRecord*>(bytes.data()), count});
+        },
+        count * sizeof(layout::RayRecord));
+    const double time_ms = trace(count, progress);
+    hits->read_by(
+        [&](std::span<const std::byte> bytes) {
+          take({reinterpret_cast<const layout::HitRecord*>(bytes.data()), count});
+        },
+        count * sizeof(layout::HitRecord), sizeof(layout::Dispatch));
     return time_ms;
   }
 
@@ -136,7 +145,8 @@ struct RayKernel::Impl {
     }
     const std::span<std::byte> head_bytes = std::as_writable_bytes(std::span(heads));
     hits->write(head_bytes, sizeof(layout::Dispatch));
-    const double time_ms = trace(input, progress);
+    rays->write(std::as_bytes(input));
+    const double time_ms = trace(input.size(), progress);
     hits->read(head_bytes, sizeof(layout::Dispatch));
     for (size_t i = 0; i < input.size(); ++i) {
       if (heads[i].a.x != counts[i]) {
@@ -148,11 +158,11 @@ struct RayKernel::Impl {
     return time_ms;
   }
 
-  double trace(std::span<const layout::RayRecord> input, const ProgressCallback& progress) {
-    rays->write(std::as_bytes(input));
+  /// Traces the first rays of the buffer, so many.
+  double trace(size_t ray_count, const ProgressCallback& progress) {
     double total_ms = 0.0;
     const uint32_t most_group_rows = device.profile().most_group_rows;
-    const auto end = static_cast<uint32_t>(input.size());
+    const auto end = static_cast<uint32_t>(ray_count);
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
       // A workgroup takes as long with fewer rays; on a busy machine the pacer would come down to one.
@@ -198,10 +208,19 @@ RayKernel& RayKernel::operator=(RayKernel&&) noexcept = default;
 
 double RayKernel::run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records,
                       const ProgressCallback& progress) {
-  assert(rays.size() <= kMaxRays && rays.size() == records.size());
-  if (rays.empty()) return 0.0;
+  assert(rays.size() == records.size());
+  return run(
+      rays.size(), [&](std::span<layout::RayRecord> filled) { std::ranges::copy(rays, filled.begin()); },
+      [&](std::span<const layout::HitRecord> taken) { std::ranges::copy(taken, records.begin()); }, progress);
+}
+
+double RayKernel::run(size_t count, const std::function<void(std::span<layout::RayRecord>)>& fill,
+                      const std::function<void(std::span<const layout::HitRecord>)>& take,
+                      const ProgressCallback& progress) {
+  assert(count <= kMaxRays);
+  if (count == 0) return 0.0;
   double time_ms = 0.0;
-  gpu::translate_vulkan_errors([&] { time_ms = impl_->run(rays, records, progress); });
+  gpu::translate_vulkan_errors([&] { time_ms = impl_->run(count, fill, take, progress); });
   return time_ms;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,6 +60,11 @@ class RayKernel {
   /// was before. Of kCount a.x of each record is the ray's number of crossings. Returns device milliseconds. Not for
   /// kAll. `progress` is called between dispatches; throws Cancelled, and then no record is filled.
   double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records,
+             const ProgressCallback& progress = {});
+  /// The same without copies between: `fill` writes `count` rays, and `take` is shown as many records, both where the
+  /// device has them if the host can map that.
+  double run(size_t count, const std::function<void(std::span<layout::RayRecord>)>& fill,
+             const std::function<void(std::span<const layout::HitRecord>)>& take,
              const ProgressCallback& progress = {});
 
   /// For kAll: fills the crossings of the rays, of which each has `counts` at the same place, as kCount told; ray by

@@ -77,6 +77,10 @@ class PROMIN_EXPORT Caster {
   double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query = HitQuery::kNearest,
               const ProgressCallback& progress = {});
 
+  /// Tells of each ray whether it hits anything, as cast() does with HitQuery::kAny; as many answers as rays, any
+  /// number. Returns and throws what cast() does.
+  double occluded(std::span<const Ray> rays, std::span<bool> are_occluded, const ProgressCallback& progress = {});
+
   // Crossings. A ray crosses a triangle where it goes through it, a plane where it meets it, a solid where it enters
   // and where it leaves it, an open cylinder or cone where it goes through its side; of these the ones with tmin < t <
   // tmax count. The rays count as moved aside by an infinitely small step: of the triangles that share an edge or a

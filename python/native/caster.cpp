@@ -27,6 +27,8 @@ namespace {
 using RayArray = nb::ndarray<const float, nb::shape<-1, 8>, nb::c_contig, nb::device::cpu>;
 /// A count for each ray.
 using CountArray = nb::ndarray<int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+/// Whether each ray hits.
+using AnswerArray = nb::ndarray<bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 /// N hits as they lie in HITS.npy, as bytes: nanobind takes no structured arrays.
 using HitArray = nb::ndarray<uint8_t, nb::shape<-1, sizeof(Hit)>, nb::c_contig, nb::device::cpu>;
 
@@ -60,39 +62,42 @@ class SharedCaster {
     caster_.emplace(std::move(caster));
   }
 
-  double cast(const RayArray& rays, const HitArray& hits, bool is_any, const nb::object& progress) {
-    Caster& caster = caster_->get();
-    double trace_ms = 0.0;
-    run_watched(progress, [&](const ProgressCallback& tell) {
-      const auto lock = lock_watched(mutex_, tell);
-      trace_ms = caster.cast(view(rays), {reinterpret_cast<Hit*>(hits.data()), hits.shape(0)},
-                             is_any ? HitQuery::kAny : HitQuery::kNearest, tell);
-    });
-    return trace_ms;
-  }
-
-  void count(const RayArray& rays, const CountArray& counts, const nb::object& progress) {
-    Caster& caster = caster_->get();
-    run_watched(progress, [&](const ProgressCallback& tell) {
-      const auto lock = lock_watched(mutex_, tell);
-      caster.count(view(rays), {counts.data(), counts.shape(0)}, tell);
+  double cast(const RayArray& rays, const HitArray& hits, const nb::object& progress) {
+    return run(progress, [&](Caster& caster, const ProgressCallback& tell) {
+      return caster.cast(view(rays), {reinterpret_cast<Hit*>(hits.data()), hits.shape(0)}, HitQuery::kNearest, tell);
     });
   }
 
-  /// Where each ray's hits begin and the last one's end, and the hits as bytes.
-  nb::tuple list(const RayArray& rays, const nb::object& progress) {
-    Caster& caster = caster_->get();
+  double occluded(const RayArray& rays, const AnswerArray& answers, const nb::object& progress) {
+    return run(progress, [&](Caster& caster, const ProgressCallback& tell) {
+      return caster.occluded(view(rays), {answers.data(), answers.shape(0)}, tell);
+    });
+  }
+
+  double count(const RayArray& rays, const CountArray& counts, const nb::object& progress) {
+    return run(progress, [&](Caster& caster, const ProgressCallback& tell) {
+      return caster.count(view(rays), {counts.data(), counts.shape(0)}, tell);
+    });
+  }
+
+  /// Where each ray's hits begin and the last one's end, and the hits as bytes; with a budget of as many of the first
+  /// rays as have hits of so many bytes, or of one.
+  nb::tuple list(const RayArray& rays, const std::optional<uint64_t>& budget_bytes, const nb::object& progress) {
     std::vector<int64_t> splits{0};
     std::vector<Hit> hits;
-    run_watched(progress, [&](const ProgressCallback& tell) {
-      const auto lock = lock_watched(mutex_, tell);
-      splits.reserve(rays.shape(0) + 1);
+    struct IsEnough {};
+    run(progress, [&](Caster& caster, const ProgressCallback& tell) {
       const auto take = [&](const HitList& part) {
         const auto before = static_cast<int64_t>(hits.size());
         for (const uint64_t end : part.offsets.subspan(1)) splits.push_back(before + static_cast<int64_t>(end));
         hits.insert(hits.end(), part.hits.begin(), part.hits.end());
+        if (budget_bytes) throw IsEnough{};
       };
-      caster.list(view(rays), take, Caster::kListBytes, tell);
+      try {
+        return caster.list(view(rays), take, budget_bytes.value_or(Caster::kListBytes), tell);
+      } catch (const IsEnough&) {
+        return 0.0;
+      }
     });
     return nb::make_tuple(give<int64_t>(std::move(splits), 1), give<uint8_t>(std::move(hits), sizeof(Hit)));
   }
@@ -100,6 +105,18 @@ class SharedCaster {
   nb::dict setup() const { return describe(caster_->get().setup_stats()); }
 
  private:
+  /// What a call of the caster returns, which is made when no other is.
+  template <typename Call>
+  double run(const nb::object& progress, const Call& call) {
+    Caster& caster = caster_->get();
+    double time_ms = 0.0;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      time_ms = call(caster, tell);
+    });
+    return time_ms;
+  }
+
   // Before the caster, which must end first.
   std::shared_ptr<OpenDevice> device_;
   std::optional<InProcess<std::unique_ptr<Caster>>> caster_;
@@ -113,11 +130,14 @@ void bind_caster(nb::module_& module) {
       .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::string&, const std::optional<std::string>&,
                     const nb::object&>(),
            nb::arg("device"), nb::arg("scene"), nb::arg("builder"), nb::arg("bvh").none(), nb::arg("progress").none())
-      .def("cast", &SharedCaster::cast, nb::arg("rays").noconvert(), nb::arg("hits").noconvert(), nb::arg("is_any"),
+      .def("cast", &SharedCaster::cast, nb::arg("rays").noconvert(), nb::arg("hits").noconvert(),
+           nb::arg("progress").none())
+      .def("occluded", &SharedCaster::occluded, nb::arg("rays").noconvert(), nb::arg("answers").noconvert(),
            nb::arg("progress").none())
       .def("count", &SharedCaster::count, nb::arg("rays").noconvert(), nb::arg("counts").noconvert(),
            nb::arg("progress").none())
-      .def("list", &SharedCaster::list, nb::arg("rays").noconvert(), nb::arg("progress").none())
+      .def("list", &SharedCaster::list, nb::arg("rays").noconvert(), nb::arg("budget_bytes").none(),
+           nb::arg("progress").none())
       .def("setup", &SharedCaster::setup);
 }
 

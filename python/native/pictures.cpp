@@ -14,6 +14,7 @@
 #include "bind.h"
 #include "picture_arrays.h"
 #include "promin/compare.h"
+#include "promin/cryptomatte.h"
 #include "promin/display.h"
 #include "promin/error.h"
 #include "promin/image.h"
@@ -31,7 +32,8 @@ using ChannelArray = nb::ndarray<const uint32_t, nb::ndim<2>, nb::c_contig, nb::
 using Placement = std::pair<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>>;
 
 void save(const std::string& file, const PictureArray& pixels, const Metadata& metadata,
-          const std::optional<Placement>& placement, const nb::list& channels, const nb::dict& display) {
+          const std::optional<Placement>& placement, const nb::list& channels, const nb::dict& display,
+          const nb::dict& exr) {
   const Image image = read_image_array(pixels);
   std::vector<Channel> copies;
   for (const nb::handle row : channels) {
@@ -44,8 +46,9 @@ void save(const std::string& file, const PictureArray& pixels, const Metadata& m
                          {placement->second.first, placement->second.second}};
   }
   const DisplayTransform transform = read_display(display);
+  const ExrOptions options = read_exr_options(exr);
   run_watched(nb::none(),
-              [&](const ProgressCallback&) { write_image(file, image, metadata, crop, copies, transform); });
+              [&](const ProgressCallback&) { write_image(file, image, metadata, crop, copies, transform, options); });
 }
 
 nb::object load(const std::string& file) {
@@ -103,12 +106,13 @@ nb::object write_image_array(Image image) {
 
 void bind_pictures(nb::module_& module) {
   module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
-             nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"));
+             nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr"));
   module.def("read_image", &load, nb::arg("file"));
   module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"));
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),
              nb::arg("fail"));
   module.def("has_named_channels", [](const std::string& file) { return has_named_channels(file); });
+  module.def("cryptomatte_id", [](const std::string& name) { return std::bit_cast<float>(cryptomatte_id(name)); });
   module.def("encoding_is_linear",
              [](const std::string& file) { return encoding_of(file) == PictureEncoding::kLinear; });
 }

@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include "picture_arrays.h"
 #include "promin/error.h"
@@ -25,324 +28,235 @@ constexpr std::string_view kAttenuations[] = {"none", "inverse_square"};
 constexpr std::string_view kAlphaModes[] = {"opaque", "mask", "blend"};
 constexpr std::string_view kProjections[] = {"perspective", "orthographic"};
 constexpr std::string_view kDepthKinds[] = {"ray", "plane"};
-constexpr const char* kModels[] = {"phong", "metallic_roughness", "unlit"};
+using Names = std::span<const std::string_view>;
 
-// What a struct is made of, told to a visitor that reads or writes.
+// clang-format off
+// Names of enumerators, by their values.
+Names names_of(LightKind) { return kLightKinds; }
+Names names_of(Attenuation) { return kAttenuations; }
+Names names_of(AlphaMode) { return kAlphaModes; }
+Names names_of(Projection) { return kProjections; }
+Names names_of(DepthKind) { return kDepthKinds; }
+Names names_of(ToneMapping) { return tone_mapping_names(); }
+Names names_of(PixelFilter) { return pixel_filter_names(); }
+Names names_of(DebugView) { return debug_view_names(); }
+Names names_of(ExrCompression) { return exr_compression_names(); }
+// clang-format on
 
-template <typename Visitor>
-void visit(Visitor& v, Light& x) {
-  v.field("name", x.name);
-  v.choice("kind", x.kind, kLightKinds);
-  v.field("position", x.position);
-  v.field("direction", x.direction);
-  v.field("diffuse", x.diffuse);
-  v.field("specular", x.specular);
-  v.choice("attenuation", x.attenuation, kAttenuations);
-  v.field("range", x.range);
-  v.field("inner_cone_angle", x.inner_cone_angle);
-  v.field("outer_cone_angle", x.outer_cone_angle);
-  v.field("is_on", x.is_on);
+using Model = decltype(Material::model);
+using Sky = decltype(Environment::sky);
+using Shape = std::variant<Sphere, Plane, Cylinder, Cone, Box, Capsule>;
+
+// Names of alternatives, in their order.
+constexpr std::string_view kModels[] = {"phong", "metallic_roughness", "unlit"};
+constexpr std::string_view kSkies[] = {"none", "studio", "gradient", "panorama"};
+constexpr std::string_view kShapes[] = {"sphere", "plane", "cylinder", "cone", "box", "capsule"};
+
+/// Has the visitor see members by their names, which stand in one text with ", " between.
+template <typename Visitor, typename... Members>
+void visit_members(Visitor& visitor, std::string_view names, Members&... members) {
+  const auto next = [&] {
+    const std::string name(names.substr(0, names.find(',')));
+    names.remove_prefix(std::min(names.size(), name.size() + 2));
+    return name;
+  };
+  (visitor.field(next(), members), ...);
 }
 
-template <typename Visitor>
-void visit(Visitor& v, TextureSlot& x) {
-  v.field("texture", x.texture);
-  v.field("uv_set", x.uv_set);
-  v.field("to_u", x.to_u);
-  v.field("to_v", x.to_v);
-}
+// PROMIN_MEMBERS(STRUCT, members...): what a struct is made of, for a visitor that reads or writes. All its members are
+// listed, in their order; where one is left out it does not compile.
+#define PROMIN_MEMBERS(STRUCT, ...)                    \
+  template <typename Visitor>                          \
+  void visit(Visitor& visitor, STRUCT& record) {       \
+    auto& [__VA_ARGS__] = record;                      \
+    visit_members(visitor, #__VA_ARGS__, __VA_ARGS__); \
+  }
+
+// clang-format off
+PROMIN_MEMBERS(Light, name, kind, position, direction, diffuse, specular, attenuation, range, inner_cone_angle,
+               outer_cone_angle, is_on)
+PROMIN_MEMBERS(TextureSlot, texture, uv_set, to_u, to_v)
+PROMIN_MEMBERS(Phong, ambient, diffuse, specular, shininess, reflection, transmission, ior, fresnel, diffuse_texture,
+               specular_texture, normal_texture)
+PROMIN_MEMBERS(MetallicRoughness, base_color, metallic, roughness, ior, specular, specular_color, specular_texture,
+               specular_color_texture, transmission, transmission_texture, thickness, attenuation_color,
+               attenuation_distance, dispersion, base_color_texture, metallic_roughness_texture, normal_texture,
+               normal_scale, occlusion_texture, occlusion_strength, clearcoat, clearcoat_roughness, clearcoat_texture,
+               clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale, sheen_color,
+               sheen_roughness, sheen_color_texture, sheen_roughness_texture)
+PROMIN_MEMBERS(Unlit, color, color_texture)
+PROMIN_MEMBERS(Material, name, model, emissive, emissive_texture, alpha_mode, alpha, alpha_cutoff, is_double_sided)
+PROMIN_MEMBERS(Camera, name, projection, eye, look, up, yfov, ymag, aspect_ratio, resolution, near)
+PROMIN_MEMBERS(Studio, front)
+PROMIN_MEMBERS(GradientSky, top, horizon, bottom, top_curve, bottom_curve)
+PROMIN_MEMBERS(Panorama, image)
+PROMIN_MEMBERS(Environment, ambient, background, sky, shows_sky, rotation, intensity)
+PROMIN_MEMBERS(DisplayTransform, exposure_ev, tone_mapping, dithers)
+PROMIN_MEMBERS(ExrOptions, is_half, compression, is_multipart)
+PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, max_samples)
+PROMIN_MEMBERS(PixelWindow, lo, hi)
+PROMIN_MEMBERS(RenderMode, debug_view, has_shadows)
+PROMIN_MEMBERS(View, camera, size, crop, samples_per_pixel, error_target, depth_kind, filter, filter_width, max_depth,
+               mode)
+PROMIN_MEMBERS(Sphere, center, radius)
+PROMIN_MEMBERS(Plane, point, normal)
+PROMIN_MEMBERS(Cylinder, center, axis, half_height, radius, is_open)
+PROMIN_MEMBERS(Cone, center, axis, half_height, radius_bottom, radius_top, is_open)
+PROMIN_MEMBERS(Box, center, half_size)
+PROMIN_MEMBERS(Capsule, center, axis, half_height, radius_bottom, radius_top)
+// clang-format on
+#undef PROMIN_MEMBERS
 
 template <typename Visitor>
-void visit(Visitor& v, Phong& x) {
-  v.field("ambient", x.ambient);
-  v.field("diffuse", x.diffuse);
-  v.field("specular", x.specular);
-  v.field("shininess", x.shininess);
-  v.field("reflection", x.reflection);
-  v.field("transmission", x.transmission);
-  v.field("ior", x.ior);
-  v.field("fresnel", x.fresnel);
-  v.slot("diffuse_texture", x.diffuse_texture);
-  v.slot("specular_texture", x.specular_texture);
-  v.slot("normal_texture", x.normal_texture);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, MetallicRoughness& x) {
-  v.field("base_color", x.base_color);
-  v.field("metallic", x.metallic);
-  v.field("roughness", x.roughness);
-  v.field("ior", x.ior);
-  v.field("specular", x.specular);
-  v.field("specular_color", x.specular_color);
-  v.slot("specular_texture", x.specular_texture);
-  v.slot("specular_color_texture", x.specular_color_texture);
-  v.field("transmission", x.transmission);
-  v.slot("transmission_texture", x.transmission_texture);
-  v.field("thickness", x.thickness);
-  v.field("attenuation_color", x.attenuation_color);
-  v.field("attenuation_distance", x.attenuation_distance);
-  v.field("dispersion", x.dispersion);
-  v.slot("base_color_texture", x.base_color_texture);
-  v.slot("metallic_roughness_texture", x.metallic_roughness_texture);
-  v.slot("normal_texture", x.normal_texture);
-  v.field("normal_scale", x.normal_scale);
-  v.slot("occlusion_texture", x.occlusion_texture);
-  v.field("occlusion_strength", x.occlusion_strength);
-  v.field("clearcoat", x.clearcoat);
-  v.field("clearcoat_roughness", x.clearcoat_roughness);
-  v.slot("clearcoat_texture", x.clearcoat_texture);
-  v.slot("clearcoat_roughness_texture", x.clearcoat_roughness_texture);
-  v.slot("clearcoat_normal_texture", x.clearcoat_normal_texture);
-  v.field("clearcoat_normal_scale", x.clearcoat_normal_scale);
-  v.field("sheen_color", x.sheen_color);
-  v.field("sheen_roughness", x.sheen_roughness);
-  v.slot("sheen_color_texture", x.sheen_color_texture);
-  v.slot("sheen_roughness_texture", x.sheen_roughness_texture);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Unlit& x) {
-  v.field("color", x.color);
-  v.slot("color_texture", x.color_texture);
-}
-
-/// Without the model.
-template <typename Visitor>
-void visit(Visitor& v, Material& x) {
-  v.field("name", x.name);
-  v.field("emissive", x.emissive);
-  v.slot("emissive_texture", x.emissive_texture);
-  v.choice("alpha_mode", x.alpha_mode, kAlphaModes);
-  v.field("alpha", x.alpha);
-  v.field("alpha_cutoff", x.alpha_cutoff);
-  v.field("is_double_sided", x.is_double_sided);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Camera& x) {
-  v.field("name", x.name);
-  v.choice("projection", x.projection, kProjections);
-  v.field("eye", x.eye);
-  v.field("look", x.look);
-  v.field("up", x.up);
-  v.field("yfov", x.yfov);
-  v.field("ymag", x.ymag);
-  v.field("aspect_ratio", x.aspect_ratio);
-  v.field("resolution", x.resolution);
-  v.field("near", x.near);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Studio& x) {
-  v.field("front", x.front);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, GradientSky& x) {
-  v.field("top", x.top);
-  v.field("horizon", x.horizon);
-  v.field("bottom", x.bottom);
-  v.field("top_curve", x.top_curve);
-  v.field("bottom_curve", x.bottom_curve);
-}
-
-/// Without the sky.
-template <typename Visitor>
-void visit(Visitor& v, Environment& x) {
-  v.field("ambient", x.ambient);
-  v.field("background", x.background);
-  v.field("shows_sky", x.shows_sky);
-  v.field("rotation", x.rotation);
-  v.field("intensity", x.intensity);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, DisplayTransform& x) {
-  v.field("exposure_ev", x.exposure_ev);
-  v.choice("tone_mapping", x.tone_mapping, tone_mapping_names());
-  v.field("dithers", x.dithers);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, ErrorTarget& x) {
-  v.field("error", x.error);
-  v.field("min_samples", x.min_samples);
-  v.field("white", x.white);
-  v.field("max_samples", x.max_samples);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, PixelWindow& x) {
-  v.field("lo", x.lo);
-  v.field("hi", x.hi);
-}
-
-/// Without the camera.
-template <typename Visitor>
-void visit(Visitor& v, View& x) {
-  v.field("size", x.size);
-  v.optional("crop", x.crop);
-  v.field("samples_per_pixel", x.samples_per_pixel);
-  v.optional("error_target", x.error_target);
-  v.choice("depth_kind", x.depth_kind, kDepthKinds);
-  v.choice("filter", x.filter, pixel_filter_names());
-  v.field("filter_width", x.filter_width);
-  v.field("max_depth", x.max_depth);
-  v.choice("debug_view", x.mode.debug_view, debug_view_names());
-  v.field("has_shadows", x.mode.has_shadows);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Sphere& x) {
-  v.field("center", x.center);
-  v.field("radius", x.radius);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Plane& x) {
-  v.field("point", x.point);
-  v.field("normal", x.normal);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Cylinder& x) {
-  v.field("center", x.center);
-  v.field("axis", x.axis);
-  v.field("half_height", x.half_height);
-  v.field("radius", x.radius);
-  v.field("is_open", x.is_open);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Cone& x) {
-  v.field("center", x.center);
-  v.field("axis", x.axis);
-  v.field("half_height", x.half_height);
-  v.field("radius_bottom", x.radius_bottom);
-  v.field("radius_top", x.radius_top);
-  v.field("is_open", x.is_open);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Box& x) {
-  v.field("center", x.center);
-  v.field("half_size", x.half_size);
-}
-
-template <typename Visitor>
-void visit(Visitor& v, Capsule& x) {
-  v.field("center", x.center);
-  v.field("axis", x.axis);
-  v.field("half_height", x.half_height);
-  v.field("radius_bottom", x.radius_bottom);
-  v.field("radius_top", x.radius_top);
-}
+void visit(Visitor&, std::monostate&) {}
 
 template <int N, typename T>
 using Vec = glm::vec<N, T, glm::defaultp>;
+
+/// The place of a name among others; throws UsageError with all of them.
+size_t find_name(Names names, const std::string& name, const std::string& what) {
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return static_cast<size_t>(found - names.begin());
+  std::string all;
+  for (const std::string_view one : names) all += (all.empty() ? "" : ", ") + std::string(one);
+  throw UsageError({"no " + what + " \"" + name + "\"", "", "choose one of: " + all});
+}
+
+template <typename T>
+T read_one(const nb::dict& record);
+
+/// Makes the variant hold what the record is by its kind, one of the names.
+template <typename... Kinds>
+void read_kind(std::variant<Kinds...>& value, Names names, const std::string& kind, const std::string& what,
+               const nb::dict& record) {
+  const size_t place = find_name(names, kind, what);
+  size_t index = 0;
+  const auto read = [&]<typename Kind>(std::type_identity<Kind>) {
+    if (index++ == place) value = read_one<Kind>(record);
+  };
+  (read(std::type_identity<Kinds>()), ...);
+}
 
 /// Fills a struct from a dict.
 class Reader {
  public:
   explicit Reader(const nb::dict& record) : record_(record) {}
 
+  /// A number, an enumerator by its name, or a struct as a dict.
   template <typename T>
-  void field(const char* name, T& value) {
-    value = convert<T>(find(name), name, "a number");
+  void field(const std::string& name, T& value) const {
+    if constexpr (std::is_enum_v<T>) {
+      value = static_cast<T>(find_name(names_of(T()), find_text(name), name));
+    } else if constexpr (std::is_class_v<T>) {
+      value = read_one<T>(convert<nb::dict>(find(name), name, "a record"));
+    } else {
+      value = convert<T>(find(name), name, "a number");
+    }
   }
-  void field(const char* name, std::string& value) { value = convert<std::string>(find(name), name, "text"); }
-  void field(const char* name, bool& value) { value = convert<bool>(find(name), name, "True or False"); }
+  void field(const std::string& name, std::string& value) const { value = find_text(name); }
+  void field(const std::string& name, bool& value) const { value = convert<bool>(find(name), name, "True or False"); }
   template <int N, typename T>
-  void field(const char* name, Vec<N, T>& value) {
+  void field(const std::string& name, Vec<N, T>& value) const {
     const auto numbers = convert<std::array<T, N>>(find(name), name, N == 2 ? "two numbers" : "three numbers");
     for (int i = 0; i < N; ++i) value[i] = numbers[static_cast<size_t>(i)];
   }
-  template <typename Enum>
-  void choice(const char* name, Enum& value, std::span<const std::string_view> names) {
-    const auto word = convert<std::string>(find(name), name, "text");
-    const auto found = std::ranges::find(names, word);
-    if (found == names.end()) {
-      std::string all;
-      for (const std::string_view one : names) all += (all.empty() ? "" : ", ") + std::string(one);
-      throw UsageError({std::string("no ") + name + " \"" + word + "\"", "", "choose one of: " + all});
-    }
-    value = static_cast<Enum>(found - names.begin());
-  }
-  void slot(const char* name, TextureSlot& value) {
-    value = {};
-    if (!find(name).is_none()) nest(name, value);
+  void field(const std::string& name, TextureSlot& value) const {
+    std::optional<TextureSlot> slot;
+    field(name, slot);
+    value = slot.value_or(TextureSlot());
   }
   template <typename T>
-  void optional(const char* name, std::optional<T>& value) {
+  void field(const std::string& name, std::optional<T>& value) const {
     value.reset();
-    if (!find(name).is_none()) nest(name, value.emplace());
+    if (!find(name).is_none()) value = read_one<T>(convert<nb::dict>(find(name), name, "a record"));
   }
-
-  nb::object find(const char* name) const {
-    if (!record_.contains(name)) throw UsageError({std::string("no ") + name, "", ""});
-    return record_[name];
+  void field(const std::string& name, Model& value) const {
+    read_kind(value, kModels, find_text(name), "model of materials", record_);
   }
-  nb::dict find_dict(const char* name) const { return convert<nb::dict>(find(name), name, "a record"); }
+  void field(const std::string& name, Sky& value) const {
+    value = {};
+    if (find(name).is_none()) return;
+    const auto sky = convert<nb::dict>(find(name), name, "a record");
+    read_kind(value, kSkies, Reader(sky).find_text("kind"), "kind of sky", sky);
+  }
+  void field(const std::string& name, std::shared_ptr<const Image>& value) const {
+    PictureArray pixels;
+    if (!nb::try_cast(find(name), pixels, false)) {
+      throw UsageError({name + " is no array of (rows, columns, 3) float32", "", ""});
+    }
+    value = std::make_shared<const Image>(read_image_array(pixels));
+  }
 
  private:
+  nb::object find(const std::string& name) const {
+    if (!record_.contains(name.c_str())) throw UsageError({"no " + name, "", ""});
+    return record_[name.c_str()];
+  }
+  std::string find_text(const std::string& name) const { return convert<std::string>(find(name), name, "text"); }
   template <typename T>
-  static T convert(const nb::object& value, const char* name, const char* kind) {
+  static T convert(const nb::object& value, const std::string& name, const char* kind) {
     T result;
     // A number that is cut off, as 1.5 for an integer, is none of the right kind: Python's int() decides.
     if (nb::try_cast<T>(value, result)) return result;
     const std::string shown = nb::cast<std::string>(nb::str(nb::repr(value)));
-    throw UsageError({std::string(name) + " is " + shown.substr(0, 80) + ", not " + kind, "", ""});
-  }
-  template <typename T>
-  void nest(const char* name, T& value) {
-    const nb::dict record = find_dict(name);
-    Reader reader(record);
-    visit(reader, value);
+    throw UsageError({name + " is " + shown.substr(0, 80) + ", not " + kind, "", ""});
   }
 
   const nb::dict& record_;
 };
 
+template <typename T>
+T read_one(const nb::dict& record) {
+  T value;
+  const Reader reader(record);
+  visit(reader, value);
+  return value;
+}
+
 /// Fills a dict from a struct.
 class Writer {
  public:
   template <typename T>
-  void field(const char* name, T& value) {
-    record[name] = value;
-  }
-  template <int N, typename T>
-  void field(const char* name, Vec<N, T>& value) {
-    std::array<T, N> numbers;
-    for (int i = 0; i < N; ++i) numbers[static_cast<size_t>(i)] = value[i];
-    record[name] = nb::tuple(nb::cast(numbers));
-  }
-  template <typename Enum>
-  void choice(const char* name, Enum& value, std::span<const std::string_view> names) {
-    record[name] = std::string(names[static_cast<size_t>(value)]);
-  }
-  void slot(const char* name, TextureSlot& value) {
-    record[name] = nb::none();
-    if (value.exists()) record[name] = write_one(value);
-  }
-
-  template <typename T>
   static nb::dict write_one(T value) {
     Writer writer;
     visit(writer, value);
-    return writer.record;
+    return writer.record_;
   }
 
-  nb::dict record;
-};
+  /// A number or text, or an enumerator as its name.
+  template <typename T>
+  void field(const std::string& name, T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      put(name, nb::cast(std::string(names_of(value)[static_cast<size_t>(value)])));
+    } else {
+      put(name, nb::cast(value));
+    }
+  }
+  template <int N, typename T>
+  void field(const std::string& name, Vec<N, T>& value) {
+    std::array<T, N> numbers;
+    for (int i = 0; i < N; ++i) numbers[static_cast<size_t>(i)] = value[i];
+    put(name, nb::tuple(nb::cast(numbers)));
+  }
+  void field(const std::string& name, TextureSlot& value) {
+    put(name, value.exists() ? nb::object(write_one(value)) : nb::none());
+  }
+  void field(const std::string& name, Model& value) {
+    put(name, nb::cast(std::string(kModels[value.index()])));
+    std::visit([&](const auto& model) { record_.update(write_one(model)); }, value);
+  }
+  void field(const std::string& name, Sky& value) {
+    nb::dict sky = std::visit([](const auto& one) { return write_one(one); }, value);
+    sky["kind"] = std::string(kSkies[value.index()]);
+    put(name, value.index() == 0 ? nb::none() : nb::object(sky));
+  }
+  void field(const std::string& name, std::shared_ptr<const Image>& value) { put(name, write_image_array(*value)); }
 
-template <typename T>
-T read_one(const nb::dict& record) {
-  T value;
-  Reader reader(record);
-  visit(reader, value);
-  return value;
-}
+ private:
+  void put(const std::string& name, const nb::object& value) { record_[name.c_str()] = value; }
+
+  nb::dict record_;
+};
 
 }  // namespace
 
@@ -355,25 +269,11 @@ nb::dict write(const Light& light) {
 }
 
 Material read_material(const nb::dict& record) {
-  auto material = read_one<Material>(record);
-  const auto model = nb::cast<std::string>(nb::str(Reader(record).find("model")));
-  if (model == kModels[0]) {
-    material.model = read_one<Phong>(record);
-  } else if (model == kModels[1]) {
-    material.model = read_one<MetallicRoughness>(record);
-  } else if (model == kModels[2]) {
-    material.model = read_one<Unlit>(record);
-  } else {
-    throw UsageError({"no model of materials \"" + model + "\"", "", ""});
-  }
-  return material;
+  return read_one<Material>(record);
 }
 
 nb::dict write(const Material& material) {
-  nb::dict record = Writer::write_one(material);
-  record["model"] = kModels[material.model.index()];
-  std::visit([&](const auto& model) { record.update(Writer::write_one(model)); }, material.model);
-  return record;
+  return Writer::write_one(material);
 }
 
 Camera read_camera(const nb::dict& record) {
@@ -385,42 +285,11 @@ nb::dict write(const Camera& camera) {
 }
 
 Environment read_environment(const nb::dict& record) {
-  auto environment = read_one<Environment>(record);
-  const Reader reader(record);
-  if (reader.find("sky").is_none()) return environment;
-  const nb::dict sky = reader.find_dict("sky");
-  const auto kind = nb::cast<std::string>(nb::str(Reader(sky).find("kind")));
-  if (kind == "studio") {
-    environment.sky = read_one<Studio>(sky);
-  } else if (kind == "gradient") {
-    environment.sky = read_one<GradientSky>(sky);
-  } else if (kind == "panorama") {
-    PictureArray pixels;
-    if (!nb::try_cast(Reader(sky).find("image"), pixels, false)) {
-      throw UsageError({"the panorama's image is no array of (rows, columns, 3) float32", "", ""});
-    }
-    environment.sky = Panorama{std::make_shared<const Image>(read_image_array(pixels))};
-  } else {
-    throw UsageError({"no kind of sky \"" + kind + "\"", "", ""});
-  }
-  return environment;
+  return read_one<Environment>(record);
 }
 
 nb::dict write(const Environment& environment) {
-  nb::dict record = Writer::write_one(environment);
-  record["sky"] = nb::none();
-  const auto put = [&](const char* kind, nb::dict sky) {
-    sky["kind"] = kind;
-    record["sky"] = sky;
-  };
-  if (const auto* studio = std::get_if<Studio>(&environment.sky)) put("studio", Writer::write_one(*studio));
-  if (const auto* gradient = std::get_if<GradientSky>(&environment.sky)) put("gradient", Writer::write_one(*gradient));
-  if (const auto* panorama = std::get_if<Panorama>(&environment.sky)) {
-    nb::dict sky;
-    sky["image"] = write_image_array(*panorama->image);
-    put("panorama", sky);
-  }
-  return record;
+  return Writer::write_one(environment);
 }
 
 DisplayTransform read_display(const nb::dict& record) {
@@ -431,20 +300,22 @@ nb::dict write(const DisplayTransform& display) {
   return Writer::write_one(display);
 }
 
+ExrOptions read_exr_options(const nb::dict& record) {
+  return read_one<ExrOptions>(record);
+}
+
 View read_view(const nb::dict& record) {
-  auto view = read_one<View>(record);
-  view.camera = read_camera(Reader(record).find_dict("camera"));
-  return view;
+  return read_one<View>(record);
+}
+
+RenderMode read_mode(const nb::dict& record) {
+  return read_one<RenderMode>(record);
 }
 
 Geometry read_shape(const std::string& kind, const nb::dict& record) {
-  if (kind == "sphere") return read_one<Sphere>(record);
-  if (kind == "plane") return read_one<Plane>(record);
-  if (kind == "cylinder") return read_one<Cylinder>(record);
-  if (kind == "cone") return read_one<Cone>(record);
-  if (kind == "box") return read_one<Box>(record);
-  if (kind == "capsule") return read_one<Capsule>(record);
-  throw UsageError({"no shape \"" + kind + "\"", "", ""});
+  Shape shape;
+  read_kind(shape, kShapes, kind, "shape", record);
+  return std::visit([](const auto& one) -> Geometry { return one; }, shape);
 }
 
 }  // namespace promin::python

@@ -7,6 +7,7 @@
 #include "promin/camera.h"
 #include "promin/display.h"
 #include "promin/environment.h"
+#include "promin/image.h"
 #include "promin/lights.h"
 #include "promin/materials.h"
 #include "promin/shapes.h"
@@ -35,7 +36,11 @@ nanobind::dict write(const Environment& environment);
 DisplayTransform read_display(const nanobind::dict& record);
 nanobind::dict write(const DisplayTransform& display);
 
+/// How an EXR is kept.
+ExrOptions read_exr_options(const nanobind::dict& record);
+
 View read_view(const nanobind::dict& record);
+RenderMode read_mode(const nanobind::dict& record);
 
 /// One of "sphere", "plane", "cylinder", "cone", "box" and "capsule" by its fields.
 Geometry read_shape(const std::string& kind, const nanobind::dict& record);

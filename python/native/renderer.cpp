@@ -14,6 +14,7 @@
 #include "device.h"
 #include "in_process.h"
 #include "picture_arrays.h"
+#include "promin/cryptomatte.h"
 #include "promin/error.h"
 #include "records.h"
 #include "scene.h"
@@ -25,6 +26,8 @@ namespace nb = nanobind;
 namespace promin::python {
 namespace {
 
+constexpr std::string_view kCryptomatte = "cryptomatte";
+
 AovSet read_aovs(const std::vector<std::string>& names) {
   AovSet set;
   for (const std::string& name : names) {
@@ -34,9 +37,13 @@ AovSet read_aovs(const std::vector<std::string>& names) {
     continue;                                                      \
   }
 #include "promin/kinds/aovs.def"
+    if (name == kCryptomatte) {
+      set.cryptomatte = true;
+      continue;
+    }
     std::string all;
-    for (const std::string_view one : aov_names()) all += (all.empty() ? "" : ", ") + std::string(one);
-    throw UsageError({"no AOV \"" + name + "\"", "", "choose of: " + all});
+    for (const std::string_view one : aov_names()) all += std::string(one) + ", ";
+    throw UsageError({"no AOV \"" + name + "\"", "", "choose of: " + all + std::string(kCryptomatte)});
   }
   return set;
 }
@@ -59,6 +66,17 @@ nb::dict write_aovs(Aovs aovs, const AovSet& choice, const uvec2& size) {
   if (choice.FIELD) arrays[#FIELD] = write_aov(std::move(aovs.FIELD), size);
 #include "promin/kinds/aovs.def"
   return arrays;
+}
+
+/// Channels with their bits, and entries of an EXR's header.
+nb::tuple write_cryptomatte(Cryptomatte cryptomatte, const uvec2& size) {
+  nb::list channels;
+  for (Channel& channel : cryptomatte.channels) {
+    channels.append(nb::make_tuple(channel.name, write_array<uint32_t>(std::move(channel.values), size)));
+  }
+  nb::list metadata;
+  for (const auto& [name, value] : cryptomatte.metadata) metadata.append(nb::make_tuple(name, value));
+  return nb::make_tuple(channels, metadata);
 }
 
 nb::object write_error(const std::optional<PictureError>& error) {
@@ -86,16 +104,21 @@ class SharedRenderer {
  public:
   SharedRenderer(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::vector<std::string>& aovs,
                  const std::string& builder, const std::optional<std::string>& bvh, bool has_error_target,
-                 uint64_t texture_bytes, const nb::object& progress)
+                 const nb::dict& mode, uint64_t texture_bytes, const nb::object& progress)
       : device_(std::move(device)), aovs_(read_aovs(aovs)) {
+    named_.objects = scene.objects;
+    named_.object_numbers = scene.object_numbers;
+    named_.materials = scene.materials;
     const gpu::Device& open = device_->get();
     std::unique_ptr<Renderer> renderer;
+    const RenderMode first_mode = read_mode(mode);
     run_watched(progress, [&](const ProgressCallback& tell) {
       RendererOptions options;
       options.builder = builder;
       if (bvh) options.bvh = *bvh;
       options.aovs = aovs_;
       options.has_error_target = has_error_target;
+      options.mode = first_mode;
       options.texture_bytes = texture_bytes;
       options.progress = tell;
       renderer = std::make_unique<Renderer>(open, scene, options);
@@ -107,12 +130,15 @@ class SharedRenderer {
     const View view = read_view(record);
     Renderer& renderer = renderer_->get();
     RenderResult result;
+    Cryptomatte cryptomatte;
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
       result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
+      if (aovs_.cryptomatte) cryptomatte = make_cryptomatte(named_, result.aovs);
     });
     nb::dict frame;
     const uvec2 size = result.image.size;
+    frame["cryptomatte"] = write_cryptomatte(std::move(cryptomatte), size);
     frame["aovs"] = write_aovs(std::move(result.aovs), aovs_, size);
     frame["rgb"] = write_image_array(std::move(result.image));
     frame["error"] = write_error(result.error);
@@ -130,7 +156,10 @@ class SharedRenderer {
   void set_materials(const nb::list& records) {
     std::vector<Material> materials;
     for (const nb::handle record : records) materials.push_back(read_material(nb::cast<nb::dict>(record)));
-    change([&](Renderer& renderer) { renderer.set_materials(materials); });
+    change([&](Renderer& renderer) {
+      renderer.set_materials(materials);
+      named_.materials = materials;
+    });
   }
 
   void set_environment(const nb::dict& record) {
@@ -153,6 +182,8 @@ class SharedRenderer {
   // Before the renderer, which must end first.
   std::shared_ptr<OpenDevice> device_;
   AovSet aovs_;
+  /// Objects and materials alone, whose names Cryptomatte tells.
+  Scene named_;
   std::optional<InProcess<std::unique_ptr<Renderer>>> renderer_;
   std::timed_mutex mutex_;
 };
@@ -171,9 +202,9 @@ nb::list list_aovs() {
 void bind_renderer(nb::module_& module) {
   nb::class_<SharedRenderer>(module, "Renderer")
       .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::vector<std::string>&, const std::string&,
-                    const std::optional<std::string>&, bool, uint64_t, const nb::object&>(),
+                    const std::optional<std::string>&, bool, const nb::dict&, uint64_t, const nb::object&>(),
            nb::arg("device"), nb::arg("scene"), nb::arg("aovs"), nb::arg("builder"), nb::arg("bvh").none(),
-           nb::arg("has_error_target"), nb::arg("texture_bytes"), nb::arg("progress").none())
+           nb::arg("has_error_target"), nb::arg("mode"), nb::arg("texture_bytes"), nb::arg("progress").none())
       .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("progress").none())
       .def("set_lights", &SharedRenderer::set_lights)
       .def("set_materials", &SharedRenderer::set_materials)

@@ -14,7 +14,7 @@ from promin._arrays import HIT_DTYPE, RaysLike, positions
 from promin._caster import Caster, Progress
 from promin._device import Device, DeviceInfo, DeviceLike
 from promin._errors import Cancelled, DeviceError, DifferenceError, Error, InputError, RunError, UsageError
-from promin._frame import Frame, read_image, write_image
+from promin._frame import Frame, cryptomatte_id, read_image, write_image
 from promin._promin import __version__
 from promin._records import (
     Camera,
@@ -67,6 +67,7 @@ __all__ = [
     "UsageError",
     "View",
     "__version__",
+    "cryptomatte_id",
     "positions",
     "read_image",
     "write_image",

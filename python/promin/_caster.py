@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
 from typing import Any, Union
 
 import numpy as np
@@ -16,6 +17,9 @@ from promin._arrays import HIT_DTYPE, RaysLike, pack_rays
 from promin._device import Device, DeviceLike, find_device
 from promin._errors import UsageError
 from promin._scene import Scene
+
+_RAYS_AT_A_TIME = 2**20
+"""As many as the library asks for at a time."""
 
 Progress = Union[Callable[[float], object], None]
 """Is told the fraction that is done about twenty times a second, on the caller's thread; where it returns False the
@@ -29,6 +33,8 @@ class Caster:
     threads may use it, one at a time; without Python's lock, so others run meanwhile. Ctrl-C ends a call before its
     next dispatch and leaves the Caster usable. It is pickled as scene, options and choice of device, and opens these at
     its first use. After a fork, use raises RuntimeError in the child."""
+
+    _opened: tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]] | None
 
     def __init__(
         self,
@@ -47,7 +53,7 @@ class Caster:
         self._scene = scene.snapshot()
         self._options = (str(builder), None if bvh is None else os.fsdecode(bvh))
         self._chosen = device
-        self._opened: tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]] | None = None
+        self._make_private()
         self._open(progress)
 
     @property
@@ -66,79 +72,139 @@ class Caster:
         warnings."""
         return self._open()[1].setup()
 
-    def cast(self, rays: RaysLike, *, progress: Progress = None) -> NDArray[Any]:
+    def cast(self, rays: RaysLike, *, out: NDArray[Any] | None = None, progress: Progress = None) -> NDArray[Any]:
         """The nearest hit of each ray.
 
         rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (...,
         3)) or (origins, directions, tmin, tmax), broadcast together. Any strides and real types; all is rounded to
         float32 once, and C-contiguous float32 of the first form is not copied. Directions have any length but 0, t is
-        in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses everything.
+        in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses everything. out: the
+        array to fill and return, C-contiguous, of the answer's shape and type; what is there is touched faster than
+        new memory.
 
         Returns an array (...) of `promin.HIT_DTYPE`, what `promin cast` writes: t (infinite on a miss), object and
         primitive (-1 on a miss), u and v (weights of a triangle's second and third corner), normal (geometric, unit, as
         wound or outward, never flipped to the ray; 0 on a miss). At equal t the lower (object, primitive) wins; a
         triangle's edges belong to it. Raises UsageError, RunError, Cancelled."""
-        return self._cast(rays, False, progress)
+        _, native, center, numbers = self._open()
+        packed, shape = pack_rays(rays, center)
+        hits = prepare_answers(out, shape, HIT_DTYPE, packed)
+        native.cast(packed, as_bytes(hits), progress)
+        if len(numbers):
+            number_as_in_file(hits.reshape(-1), numbers)
+        return hits
 
-    def occluded(self, rays: RaysLike, *, progress: Progress = None) -> NDArray[np.bool_]:
-        """Whether each ray hits anything, which is answered faster. rays as for `cast`; returns bool (...)."""
-        hits = self._cast(rays, True, progress)
-        result: NDArray[np.bool_] = np.asarray(np.isfinite(hits["t"]))
-        return result
+    def occluded(
+        self, rays: RaysLike, *, out: NDArray[np.bool_] | None = None, progress: Progress = None
+    ) -> NDArray[np.bool_]:
+        """Whether each ray hits anything, which is answered faster. rays and out as for `cast`; returns bool (...)."""
+        _, native, center, _ = self._open()
+        packed, shape = pack_rays(rays, center)
+        answers = prepare_answers(out, shape, np.dtype(np.bool_), packed)
+        native.occluded(packed, answers.reshape(-1), progress)
+        return answers
 
-    def count(self, rays: RaysLike, *, progress: Progress = None) -> NDArray[np.int32]:
-        """How often each ray crosses the scene: int32 (...). rays as for `cast`.
+    def count(
+        self, rays: RaysLike, *, out: NDArray[np.int32] | None = None, progress: Progress = None
+    ) -> NDArray[np.int32]:
+        """How often each ray crosses the scene: int32 (...). rays and out as for `cast`.
 
         A ray that meets an edge or a corner of a closed mesh crosses one of the triangles there, and a ray along a
         silhouette none or two, so the count is odd exactly where the ray begins inside (include/promin/caster.h has the
         rule). `cast` takes edges as the triangle's instead. Raises UsageError, RunError, Cancelled."""
         _, native, center, _ = self._open()
         packed, shape = pack_rays(rays, center)
-        counts = np.empty(len(packed), np.int32)
-        native.count(packed, counts, progress)
-        return counts.reshape(shape)
+        counts = prepare_answers(out, shape, np.dtype(np.int32), packed)
+        native.count(packed, counts.reshape(-1), progress)
+        return counts
 
     def list(self, rays: RaysLike, *, progress: Progress = None) -> tuple[NDArray[np.int64], NDArray[Any]]:
         """All crossings of each ray, by the rule of `count`: splits, int64 (n + 1) for the n rays in C order, and hits
         of `promin.HIT_DTYPE`, where those of ray i are hits[splits[i]:splits[i + 1]], by t, then by (object,
-        primitive). Memory is needed for all of them: cast many rays part by part. rays as for `cast`; raises as it
-        does."""
+        primitive). Memory is needed for all of them; see `iter_list`. rays as for `cast`; raises as it does."""
         _, native, center, numbers = self._open()
         packed, _ = pack_rays(rays, center)
-        splits, rows = native.list(packed, progress)
-        hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1)
-        if len(numbers):
-            number_as_in_file(hits, numbers)
-        return splits, hits
+        splits, rows = native.list(packed, None, progress)
+        return splits, _to_hits(rows, numbers)
 
-    def _cast(self, rays: RaysLike, is_any: bool, progress: Progress) -> NDArray[Any]:
+    def iter_list(
+        self, rays: RaysLike, budget: int = 256 << 20, *, progress: Progress = None
+    ) -> Iterator[tuple[int, NDArray[np.int64], NDArray[Any]]]:
+        """`list` part by part, for more hits than memory holds: yields (first, splits, hits), where hits[splits[i]:
+        splits[i + 1]] are those of ray first + i in C order, of as many rays as have hits of `budget` bytes together,
+        or of one. progress is told of each part by itself."""
+        if not isinstance(budget, (int, np.integer)) or not 0 < budget < 2**63:
+            raise UsageError(f"budget is {budget!r:.80}; give a positive number of bytes")
         _, native, center, numbers = self._open()
-        packed, shape = pack_rays(rays, center)
-        hits = np.empty(len(packed), HIT_DTYPE)
-        native.cast(packed, as_bytes(hits), is_any, progress)
-        if len(numbers) and not is_any:
-            number_as_in_file(hits, numbers)
-        return hits.reshape(shape)
+        packed, _ = pack_rays(rays, center)
+        return _list_parts(native, packed, int(budget), numbers, progress)
 
     def _open(self, progress: Progress = None) -> tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]]:
-        if self._opened is None:
-            device = find_device(self._chosen)
-            scene = self._scene.native()
-            native = _promin.Caster(device._native, scene, *self._options, progress)
-            numbers = np.array(scene.object_numbers(), np.int32)
-            self._opened = device, native, self._scene.native_center, numbers
-        return self._opened
+        opened = self._opened
+        if opened is not None:
+            return opened
+        with self._lock:
+            if self._opened is None:
+                device = find_device(self._chosen)
+                scene = self._scene.native()
+                native = _promin.Caster(device._native, scene, *self._options, progress)
+                numbers = np.array(scene.object_numbers(), np.int32)
+                self._opened = device, native, self._scene.native_center, numbers
+            return self._opened
+
+    def _make_private(self) -> None:
+        """What is not pickled: what is open, and what guards it."""
+        self._lock = threading.RLock()
+        self._opened = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_opened": None}
+        return {key: value for key, value in self.__dict__.items() if key not in ("_lock", "_opened")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._make_private()
+
+
+def prepare_answers(
+    out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dtype[Any], rays: NDArray[np.float32]
+) -> NDArray[Any]:
+    """The array that answers go to: the caller's, or a new one. Raises UsageError where the caller's does not suit."""
+    if out is None:
+        return np.empty(shape, dtype)
+    if not isinstance(out, np.ndarray) or out.dtype != dtype or out.shape != shape:
+        given = f"{out.dtype} {out.shape}" if isinstance(out, np.ndarray) else repr(out)[:80]
+        raise UsageError(f"out is {given}; give an array of {dtype} and the shape {shape}")
+    if not out.flags.c_contiguous or not out.flags.writeable or np.may_share_memory(out, rays):
+        raise UsageError("out is not C-contiguous, cannot be written or shares memory with the rays; give another")
+    return out
 
 
 def as_bytes(hits: NDArray[Any]) -> NDArray[np.uint8]:
     """The same memory as (n, 32) bytes."""
-    return hits.view(np.uint8).reshape(len(hits), HIT_DTYPE.itemsize)
+    return hits.reshape(-1).view(np.uint8).reshape(hits.size, HIT_DTYPE.itemsize)
 
 
 def number_as_in_file(hits: NDArray[Any], numbers: NDArray[np.int32]) -> None:
-    """Gives hits the numbers that the scene's file has for its objects."""
+    """Gives hits (n,) the numbers that the scene's file has for its objects."""
     is_hit = hits["object"] >= 0
     hits["object"][is_hit] = numbers[hits["object"][is_hit]]
+
+
+def _to_hits(rows: NDArray[np.uint8], numbers: NDArray[np.int32]) -> NDArray[Any]:
+    """Bytes (n, 32) of the library as hits (n,)."""
+    hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1)
+    if len(numbers):
+        number_as_in_file(hits, numbers)
+    return hits
+
+
+def _list_parts(
+    native: _promin.Caster, packed: NDArray[np.float32], budget: int, numbers: NDArray[np.int32], progress: Progress
+) -> Iterator[tuple[int, NDArray[np.int64], NDArray[Any]]]:
+    first, count = 0, _RAYS_AT_A_TIME
+    while first < len(packed):
+        splits, rows = native.list(packed[first : first + count], budget, progress)
+        yield first, splits, _to_hits(rows, numbers)
+        first += len(splits) - 1
+        # What is asked of more rays than there is a budget for is asked again.
+        count = min(2 * (len(splits) - 1), _RAYS_AT_A_TIME)

@@ -19,6 +19,10 @@ from promin._arrays import round_once, to_numbers
 from promin._errors import UsageError
 from promin._records import Display, to_dict
 
+_MATTES = {"cryptomatte_object": "CryptoObject", "cryptomatte_material": "CryptoMaterial"}
+"""Names of arrays, and of the layers that an EXR keeps them in."""
+_EXR = {"is_half": False, "compression": "zip", "is_multipart": False}
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -27,7 +31,9 @@ class Frame:
     rgb: NDArray[np.float32] = field(repr=False)
     """Linear light, (rows, columns, 3); row 0 is the top."""
     aovs: Mapping[str, NDArray[Any]] = field(repr=False)
-    """Arrays by the names of include/promin/aovs.h, (rows, columns) or (rows, columns, components)."""
+    """Arrays by the names of include/promin/aovs.h, (rows, columns) or (rows, columns, components). Of "cryptomatte" two,
+    "cryptomatte_object" and "cryptomatte_material", (rows, columns, 6, 2) float32: of six ranks, the largest first, id
+    (see `cryptomatte_id`) and share of the pixel, as an EXR has them; id and share are 0 where there is nothing."""
     metadata: Mapping[str, str]
     """What an EXR of it carries in its header: scene, device, size and choices."""
     display: Display = Display()
@@ -46,16 +52,39 @@ class Frame:
         """Width and height."""
         return self.rgb.shape[1], self.rgb.shape[0]
 
-    def save(self, path: str | os.PathLike[str], display: Display | None = None) -> None:
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        display: Display | None = None,
+        *,
+        half: bool = False,
+        compression: str = "zip",
+        multipart: bool = False,
+    ) -> None:
         """Writes an .exr with all AOVs, linear, or a .png as `display` shows it, None being the picture's own; whole or
-        not at all. Raises UsageError for another ending, RunError where it cannot be written."""
+        not at all. Of an .exr: half: keep colours, normals and shares as halves; compression: "none", "rle", "zips",
+        "zip" or "piz", always without loss; multipart: give each AOV a part. Raises UsageError for another ending,
+        RunError where it cannot be written."""
         file = os.fsdecode(path)
         channels = list_channels(self.aovs) if _promin.has_named_channels(file) else []
         if "alpha" in self.aovs and not channels:
             channels = list_channels({"alpha": self.aovs["alpha"]})
-        _promin.write_image(
-            file, self.rgb, list(self.metadata.items()), self.placement, channels, to_dict(display or self.display)
-        )
+        exr = {"is_half": bool(half), "compression": compression, "is_multipart": bool(multipart)}
+        shown = to_dict(display or self.display)
+        _promin.write_image(file, self.rgb, list(self.metadata.items()), self.placement, channels, shown, exr)
+
+    def matte(self, name: str, of: str = "object") -> NDArray[np.float32]:
+        """How much of each pixel is covered by the objects, or with of="material" the materials, of this name: (rows,
+        columns) float32, 0...1, of pictures with the AOV "cryptomatte". What has no name is called by its number,
+        "object 3". 0 everywhere for a name that nothing has."""
+        layer = self.aovs.get(f"cryptomatte_{of}")
+        if layer is None:
+            raise UsageError(
+                f'there are no mattes of {of!r:.80}; render with aovs=("cryptomatte",) and ask for those of '
+                '"object" or "material"'
+            )
+        ids, shares = layer[..., 0], layer[..., 1]
+        return np.asarray(np.where(ids == cryptomatte_id(name), shares, 0).sum(axis=-1), np.float32)
 
     def srgb(self, display: Display | None = None) -> NDArray[np.uint8]:
         """What a screen shows, (rows, columns, 3) of 8 bits in sRGB, without noise."""
@@ -67,6 +96,22 @@ class Frame:
             file = Path(folder) / "frame.png"
             self.save(file)
             return file.read_bytes()
+
+
+def cryptomatte_id(name: str) -> np.float32:
+    """The number by which Cryptomatte knows the objects or materials of this name."""
+    return np.float32(_promin.cryptomatte_id(str(name)))
+
+
+def to_mattes(told: tuple[list[tuple[str, NDArray[np.uint32]]], object]) -> dict[str, NDArray[np.float32]]:
+    """The arrays that Frame.aovs has of Cryptomatte, of the library's channels; none of none."""
+    mattes = {}
+    for name, layer in _MATTES.items():
+        planes = [values for channel, values in told[0] if channel.startswith(layer)]
+        if planes:
+            stack = np.stack(planes, axis=-1).view(np.float32)
+            mattes[name] = stack.reshape(*stack.shape[:2], -1, 2)
+    return mattes
 
 
 def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDArray[np.uint32]]]:
@@ -82,6 +127,12 @@ def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDA
         planes = [values] if values.ndim == 2 else [values[..., i] for i in range(values.shape[2])]
         names = [channel] if values.ndim == 2 else [f"{channel}.{letter}" for letter in letters]
         channels += [(n, is_integer, np.ascontiguousarray(p).view(np.uint32)) for n, p in zip(names, planes)]
+    for name, layer in _MATTES.items():
+        if name in aovs:
+            values = round_once(aovs[name]).view(np.uint32)
+            planes = [values[..., rank, i] for rank in range(values.shape[2]) for i in (0, 1)]
+            names = [f"{layer}{i // 4:02}.{'RGBA'[i % 4]}" for i in range(len(planes))]
+            channels += [(n, False, np.ascontiguousarray(p)) for n, p in zip(names, planes)]
     return channels
 
 
@@ -93,7 +144,7 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
 
 def write_image(path: str | os.PathLike[str], rgb: ArrayLike, display: Display = Display()) -> None:
     """Writes linear light (rows, columns, 3) as .exr, or as .png as `display` shows it. Raises UsageError, RunError."""
-    _promin.write_image(os.fsdecode(path), to_picture(rgb), [], None, [], to_dict(display))
+    _promin.write_image(os.fsdecode(path), to_picture(rgb), [], None, [], to_dict(display), _EXR)
 
 
 def to_picture(rgb: object) -> NDArray[np.float32]:

@@ -21,7 +21,7 @@ from promin import _promin
 from promin._caster import Progress
 from promin._device import Device, DeviceLike, find_device
 from promin._errors import UsageError
-from promin._frame import Frame
+from promin._frame import Frame, to_mattes
 from promin._records import Camera, Display, Environment, Light, Material, from_dict, to_dict
 from promin._scene import Scene, move_camera, move_light
 
@@ -96,6 +96,7 @@ class Renderer:
         device: DeviceLike = None,
         *,
         aovs: Iterable[str] = (),
+        view: View = View(),
         light: str = "auto",
         framing: str = "auto",
         builder: str = "sah",
@@ -104,8 +105,8 @@ class Renderer:
         progress: Progress = None,
     ) -> None:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
-        "object", ..., but "cryptomatte"; `render` may ask for others, and where they change the tree is built anew.
-        light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from
+        "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
+        is built anew. view: that of pictures which are given none; what it takes is compiled at once. light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from
         where a scene without cameras is seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that
         textures take. The rest as Caster. Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
         if not isinstance(scene, Scene):
@@ -118,6 +119,7 @@ class Renderer:
         self._bvh = None if bvh is None else os.fsdecode(bvh)
         self._texture_memory = texture_memory
         self._aovs = _names(aovs)
+        self._view = _of_view(view)
         self._changes: dict[str, Any] = {}
         self._make_private()
         self._open(progress=progress)
@@ -193,13 +195,18 @@ class Renderer:
         max_depth: int | None = None,
         target_error: float | None = None,
         time_limit: float | None = None,
+        min_spp: int | None = None,
+        max_spp: int | None = None,
         filter: str | None = None,
+        filter_width: float | None = None,
+        depth: str | None = None,
         debug_view: str | None = None,
+        shadows: bool | None = None,
     ) -> Frame:
-        """Traces one picture. What is given beside the view takes the place of the view's. aovs: None are those that
-        the Renderer was made with. Of a scene file the picture has the bits of `promin render` with the same options.
-        Raises UsageError for what breaks the rules of include/promin/view.h or contradicts itself, RunError,
-        Cancelled."""
+        """Traces one picture. view: None is the one that the Renderer was made with; what is given beside it takes the
+        place of its fields. aovs: None are those that the Renderer was made with. Of a scene file the picture has the
+        bits of `promin render` with the same options. Raises UsageError for what breaks the rules of
+        include/promin/view.h or contradicts itself, RunError, Cancelled."""
         given: dict[str, Any] = {
             "camera": camera,
             "size": size,
@@ -208,15 +215,19 @@ class Renderer:
             "max_depth": max_depth,
             "target_error": target_error,
             "time_limit": time_limit,
+            "min_spp": min_spp,
+            "max_spp": max_spp,
             "filter": filter,
+            "filter_width": filter_width,
+            "depth": depth,
             "debug_view": debug_view,
+            "shadows": shadows,
         }
         changes = {key: value for key, value in given.items() if value is not None}
-        if view is not None and not isinstance(view, View):
-            raise UsageError(f"{view!r:.80} is no promin.View")
-        whole = dataclasses.replace(view or View(), **changes)
+        whole = dataclasses.replace(self._view if view is None else _of_view(view), **changes)
         names = self._aovs if aovs is None else _names(aovs)
-        opened = self._open(names, _has_target(whole), progress)
+        _check_shading(whole, names)
+        opened = self._open(names, whole, progress)
         record, shown = self._describe_view(whole)
         limit_s = None if whole.time_limit is None else _seconds(whole.time_limit)
         result = opened.native.render(record, limit_s, progress)
@@ -225,7 +236,7 @@ class Renderer:
             placement = (record["crop"]["lo"], record["size"])
         return Frame(
             rgb=result["rgb"],
-            aovs=self._finish(result["aovs"], names),
+            aovs={**self._finish(result["aovs"], names), **to_mattes(result["cryptomatte"])},
             metadata=self._describe(opened, record, shown, result),
             display=shown,
             error=result["error"],
@@ -286,8 +297,7 @@ class Renderer:
             "filter": view.filter,
             "filter_width": width,
             "max_depth": depth,
-            "debug_view": view.debug_view,
-            "has_shadows": bool(view.shadows),
+            "mode": _mode(view),
         }
         _check_samples(view)
         if _has_target(view):
@@ -323,7 +333,7 @@ class Renderer:
             described["promin:error_unmet"] = str(error["unmet_pixels"])
         if "depth" in opened.aovs:
             described["promin:depth"] = record["depth_kind"]
-        return described
+        return {**described, **dict(result["cryptomatte"][1])}
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """The AOVs of these names in the world and by the file's numbers."""
@@ -340,27 +350,35 @@ class Renderer:
     # The native renderer, made when it is first needed.
 
     def _open(
-        self, aovs: tuple[str, ...] | None = None, has_error_target: bool = False, progress: Progress = None
+        self, aovs: tuple[str, ...] | None = None, view: View | None = None, progress: Progress = None
     ) -> _Opened:
-        """One whose pictures tell these AOVs; None: whatever they tell. has_error_target: whether the picture that it
-        is wanted for has one."""
+        """One whose pictures tell these AOVs; None: whatever they tell. view: of the picture that it is wanted for;
+        None: the Renderer's own."""
         opened = self._opened
         if opened is None or aovs not in (None, opened.aovs):
             with self._lock:
                 opened = self._opened
                 if opened is None or aovs not in (None, opened.aovs):
-                    opened = self._make(self._aovs if aovs is None else aovs, has_error_target, progress)
+                    opened = self._make(self._aovs if aovs is None else aovs, view or self._view, progress)
                     self._opened = opened
         # Without the lock where all is there: whoever changes the scene holds it while a picture is traced, of which
         # the function for progress may ask for the lights.
         return opened
 
-    def _make(self, aovs: tuple[str, ...], has_error_target: bool, progress: Progress) -> _Opened:
+    def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
         device = find_device(self._chosen)
         lit = self._scene.native().lit(self._light)
         asked = sorted({*aovs, "object"}) if self._moves(aovs) else list(aovs)
         native = _promin.Renderer(
-            device._native, lit, asked, self._builder, self._bvh, has_error_target, self._texture_memory, progress
+            device._native,
+            lit,
+            asked,
+            self._builder,
+            self._bvh,
+            _has_target(view),
+            _mode(view),
+            self._texture_memory,
+            progress,
         )
         for name, value in self._changes.items():
             self._apply(native, name, value)
@@ -421,6 +439,29 @@ class Renderer:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._make_private()
+
+
+def _of_view(view: object) -> View:
+    if isinstance(view, View):
+        return view
+    raise UsageError(f"{view!r:.80} is no promin.View")
+
+
+def _mode(view: View) -> dict[str, Any]:
+    """What of the view is compiled in."""
+    return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
+
+
+def _check_shading(view: View, aovs: tuple[str, ...]) -> None:
+    """A debug view is no light: it has no error and no background to leave out."""
+    if view.debug_view == "full":
+        return
+    for name, lacks in (("error", "error"), ("alpha", "background")):
+        if name in aovs:
+            raise UsageError(
+                f'aovs with "{name}" and debug_view="{view.debug_view}" contradict each other: a debug view has no '
+                f"{lacks}; leave one out"
+            )
 
 
 def _has_target(view: View) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 import hashlib
 import os
 import threading
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -165,15 +165,15 @@ class Scene:
 
     def add_sphere(self, center: ArrayLike = (0, 0, 0), radius: float = 0.5, **place: Any) -> int:
         """Adds a ball and returns its object number. `place`, of all shapes: transform=None, material=None, name=""."""
-        return self._add_shape("sphere", place, center=_vec(center), radius=_real(radius))
+        return self._add_shape("sphere", place, center=center, radius=radius)
 
     def add_plane(self, point: ArrayLike = (0, 0, 0), normal: ArrayLike = (0, 1, 0), **place: Any) -> int:
         """Adds an infinite plane through the point, at right angles to the normal of any length."""
-        return self._add_shape("plane", place, point=_vec(point), normal=_vec(normal))
+        return self._add_shape("plane", place, point=point, normal=normal)
 
     def add_box(self, center: ArrayLike = (0, 0, 0), half_size: ArrayLike = (0.5, 0.5, 0.5), **place: Any) -> int:
         """Adds a solid box along the axes; half_size is the distance of its faces from the middle."""
-        return self._add_shape("box", place, center=_vec(center), half_size=_vec(half_size))
+        return self._add_shape("box", place, center=center, half_size=half_size)
 
     def add_cylinder(
         self,
@@ -188,13 +188,7 @@ class Scene:
         """Adds a cylinder: center is the middle of its axis, half_height the way from there to its disks, which it has
         unless it is open."""
         return self._add_shape(
-            "cylinder",
-            place,
-            center=_vec(center),
-            axis=_vec(axis),
-            half_height=_real(half_height),
-            radius=_real(radius),
-            is_open=bool(is_open),
+            "cylinder", place, center=center, axis=axis, half_height=half_height, radius=radius, is_open=is_open
         )
 
     def add_cone(
@@ -212,12 +206,12 @@ class Scene:
         return self._add_shape(
             "cone",
             place,
-            center=_vec(center),
-            axis=_vec(axis),
-            half_height=_real(half_height),
-            radius_bottom=_real(radius_bottom),
-            radius_top=_real(radius_top),
-            is_open=bool(is_open),
+            center=center,
+            axis=axis,
+            half_height=half_height,
+            radius_bottom=radius_bottom,
+            radius_top=radius_top,
+            is_open=is_open,
         )
 
     def add_capsule(
@@ -233,11 +227,11 @@ class Scene:
         return self._add_shape(
             "capsule",
             place,
-            center=_vec(center),
-            axis=_vec(axis),
-            half_height=_real(half_height),
-            radius_bottom=_real(radius_bottom),
-            radius_top=_real(radius_top),
+            center=center,
+            axis=axis,
+            half_height=half_height,
+            radius_bottom=radius_bottom,
+            radius_top=radius_top,
         )
 
     def add_material(self, material: Material) -> int:
@@ -425,7 +419,8 @@ class Scene:
         self._forget_native()
         return (0 if self._file is None else len(self._load_base().objects())) + len(self._parts) - 1
 
-    def _add_shape(self, kind: str, place: dict[str, Any], **record: Any) -> int:
+    def _add_shape(self, kind: str, place: dict[str, Any], **fields: Any) -> int:
+        record = {name: _FIELDS.get(name, _real)(value) for name, value in fields.items()}
         transform, material, name = (place.pop(key, None) for key in ("transform", "material", "name"))
         if place:
             raise TypeError(f"add_{kind}() got an unexpected keyword argument '{next(iter(place))}'")
@@ -577,6 +572,17 @@ def _real(value: object) -> float:
     if array.shape != ():
         raise UsageError(f"one number is needed, not an array of the shape {array.shape}")
     return float(array)
+
+
+_FIELDS: dict[str, Callable[[Any], Any]] = {
+    "center": _vec,
+    "axis": _vec,
+    "point": _vec,
+    "normal": _vec,
+    "half_size": _vec,
+    "is_open": bool,
+}
+"""How fields of shapes are read; all others are numbers."""
 
 
 def _of(record: Any, kind: type[Any]) -> Any:

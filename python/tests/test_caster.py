@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Callable
 
@@ -11,6 +13,7 @@ import pytest
 from conftest import make_box, make_rays
 
 import promin
+from promin import _promin
 
 
 @pytest.mark.parametrize("name", ["showcase.gltf", "obj_materials.obj", "all_primitives.gltf"])
@@ -24,7 +27,10 @@ def test_hits_of_a_file_are_those_of_promin_cast(
         run_promin("cast", scenes / name, tmp_path / "rays.npy", "-o", tmp_path / "hits.npy", *words)
         expected = np.load(tmp_path / "hits.npy")
         assert expected.dtype == promin.HIT_DTYPE
-        assert caster._cast(rays, is_any, None).tobytes() == expected.tobytes()
+        if is_any:
+            assert (caster.occluded(rays) == (expected["t"] == 0)).all()
+        else:
+            assert caster.cast(rays).tobytes() == expected.tobytes()
 
 
 def test_objects_of_an_nff_file_have_its_numbers(tmp_path: Path, run_promin: Callable[..., None]) -> None:
@@ -111,6 +117,29 @@ def test_a_transform_places_a_mesh_and_its_shapes() -> None:
     assert hits["t"].tolist() == [5.0, 8.5]
 
 
+def test_shapes_have_their_fields() -> None:
+    scene = promin.Scene()
+    scene.add_plane((0, -3, 0), (0, 2, 0))
+    scene.add_sphere((0, 0, 0), 1)
+    scene.add_box((4, 0, 0), (1, 2, 1))
+    scene.add_cylinder((8, 0, 0), (1, 0, 0), 3, 0.5)
+    scene.add_cone((16, 0, 0), (0, 1, 0), 2, 1, 0.5)
+    scene.add_capsule((24, 0, 0), (0, 1, 0), 1, 0.5, 0.25)
+    scene.add_cylinder((32, 0, 0), (0, 1, 0), 1, 1, is_open=True)
+    places = [(x, 10, 0) for x in (40, 0, 4, 10, 16, 24, 32, 32.9999)]
+    hits = promin.Caster(scene).cast((places, (0, -1, 0)))
+    assert hits["t"].tolist() == [13, 9, 8, 9.5, 8, 8.75, 13, 13] and hits["object"].tolist() == [
+        0,
+        1,
+        2,
+        3,
+        4,
+        5,
+        0,
+        0,
+    ]
+
+
 def test_counts_and_lists_agree(box_caster: promin.Caster) -> None:
     rays = make_rays(300)
     rays[0] = 5, 5, 5, 0, -1, -1, -1, np.inf  # through two corners
@@ -128,6 +157,63 @@ def test_counts_and_lists_agree(box_caster: promin.Caster) -> None:
         assert (np.diff(hits["t"][splits[i] : splits[i + 1]]) > 0).all()
     splits, hits = box_caster.list(np.empty((0, 8)))
     assert splits.tolist() == [0] and len(hits) == 0
+
+
+def test_answers_go_to_the_array_of_the_caller(box_caster: promin.Caster) -> None:
+    rays = make_rays(24).reshape(4, 6, 8)
+    for query, dtype in (("cast", promin.HIT_DTYPE), ("occluded", bool), ("count", np.int32)):
+        ask = getattr(box_caster, query)
+        out = np.zeros((4, 6), dtype)
+        assert ask(rays, out=out) is out and (out == ask(rays)).all()
+        stripes = np.zeros((4, 12), dtype)[:, ::2]
+        frozen = out.copy()
+        frozen.flags.writeable = False
+        for wrong, sentence in (
+            (np.zeros((6, 4), dtype), "the shape"),
+            (np.zeros((4, 6), np.float64), "give an array of"),
+            (out.tolist(), "give an array of"),
+            (stripes, "not C-contiguous"),
+            (frozen, "cannot be written"),
+        ):
+            with pytest.raises(promin.UsageError, match=sentence):
+                ask(rays, out=wrong)
+    with pytest.raises(promin.UsageError, match="shares memory"):
+        box_caster.cast(rays, out=rays.view(promin.HIT_DTYPE)[..., 0])
+
+
+def test_lists_come_part_by_part(box_caster: promin.Caster, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("promin._caster._RAYS_AT_A_TIME", 200)
+    rays = make_rays(500)
+    splits, hits = box_caster.list(rays)
+    assert len(hits) > 100
+    for budget, most_hits in ((1, 2), (32 * 7, 7), (10**6, 10**6)):
+        parts = list(box_caster.iter_list(rays.reshape(5, 100, 8), budget))
+        ends = [first + len(own) - 1 for first, own, _ in parts]
+        assert [first for first, _, _ in parts] == [0, *ends[:-1]] and ends[-1] == 500
+        assert max(len(own) for _, _, own in parts) <= most_hits
+        counts = np.concatenate([np.diff(own) for _, own, _ in parts])
+        assert (counts == np.diff(splits)).all()
+        assert np.concatenate([own for _, _, own in parts]).tobytes() == hits.tobytes()
+    assert len(parts) == 3
+    assert list(box_caster.iter_list(np.empty((0, 8)))) == []
+    for wrong in (0, 1.5, "1 GB"):
+        with pytest.raises(promin.UsageError, match="budget is"):
+            box_caster.iter_list(rays, wrong)  # type: ignore[arg-type]
+
+
+def test_threads_open_a_caster_once(box: promin.Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    caster = pickle.loads(pickle.dumps(promin.Caster(box)))
+    make, made = _promin.Caster, []
+
+    def make_slowly(*words: object) -> object:
+        time.sleep(0.1)
+        made.append(words)
+        return make(*words)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(_promin, "Caster", make_slowly)
+    with ThreadPoolExecutor(4) as pool:
+        hits = list(pool.map(lambda _: caster.cast(((0, 0, 9), (0, 0, -1)))["t"], range(4)))
+    assert hits == [8] * 4 and len(made) == 1
 
 
 def test_casters_and_scenes_are_pickled(box: promin.Scene, scenes: Path) -> None:

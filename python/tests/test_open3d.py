@@ -5,6 +5,11 @@ it is installed."""
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from conftest import make_box
@@ -79,6 +84,79 @@ def test_occupancy_is_exact_on_rays_through_edges_and_corners() -> None:
             closest(points)
 
 
+def make_ball(radius: float, count: int = 20) -> tuple[np.ndarray, np.ndarray]:  # type: ignore[type-arg]
+    """A sphere of meridians and parallels, as many as Open3D's create_sphere has."""
+    heights, turns = np.arange(1, count) * np.pi / count, np.arange(2 * count) * np.pi / count
+    around = np.stack([np.cos(turns), np.sin(turns), np.zeros_like(turns)], axis=-1)
+    rings = np.sin(heights)[:, None, None] * around + np.cos(heights)[:, None, None] * (0, 0, 1)
+    vertices = np.concatenate([[(0, 0, 1), (0, 0, -1)], rings.reshape(-1, 3)]) * radius
+    number = 2 + np.arange(rings.size // 3).reshape(count - 1, -1)
+    beside = np.roll(number, -1, axis=1)
+    caps = [np.stack([np.full(2 * count, 0), number[0], beside[0]], axis=-1)]
+    caps += [np.stack([np.full(2 * count, 1), beside[-1], number[-1]], axis=-1)]
+    upper = np.stack([number[:-1], number[1:], beside[:-1]], axis=-1).reshape(-1, 3)
+    lower = np.stack([beside[:-1], number[1:], beside[1:]], axis=-1).reshape(-1, 3)
+    return vertices.astype(np.float32), np.concatenate([*caps, upper, lower])
+
+
+def test_sphere_wrong_occupancy() -> None:
+    scene = RaycastingScene()
+    scene.add_triangles(*make_ball(0.8))
+    points = np.stack(np.meshgrid(*3 * [np.linspace(-0.88, 0.88, 6)]), axis=-1)
+    expected = np.linalg.norm(points, axis=-1) < 0.8
+    assert (give(scene.compute_occupancy(points)) == expected).all() and expected.sum() == 56
+
+
+def make_cube() -> RaycastingScene:
+    """From 0 to 1."""
+    scene = RaycastingScene()
+    scene.add_triangles(*make_box((0.5, 0.5, 0.5), 1.0))
+    return scene
+
+
+def make_lots(count: int) -> np.ndarray:  # type: ignore[type-arg]
+    return np.random.RandomState(123).rand(count, 6).astype(np.float32)
+
+
+def test_count_lots_of_intersections() -> None:
+    # Each begins inside.
+    assert (give(make_cube().count_intersections(make_lots(1234567))) == 1).all()
+
+
+def test_list_lots_of_intersections() -> None:
+    answer = make_cube().list_intersections(make_lots(123456))
+    assert (give(answer["ray_splits"]) == np.arange(123457)).all()
+    assert (give(answer["ray_ids"]) == np.arange(123456)).all() and (give(answer["t_hit"]) > 0).all()
+
+
+@pytest.mark.long
+def test_cast_lots_of_rays() -> None:
+    # None meets the plane of a triangle at z = 0, and each meets one of the cube but for two that begin on it.
+    rays = make_lots(7654321)
+    assert (give(make_scene().cast_rays(rays)["geometry_ids"]) != 0).all()
+    begins_inside = (rays[:, :3] < 1).all(axis=1)
+    assert begins_inside.sum() == 7654319
+    cube = make_cube()
+    assert give(cube.test_occlusions(rays))[begins_inside].all()
+    assert np.isfinite(give(cube.cast_rays(rays)["t_hit"]))[begins_inside].all()
+
+
+THEIRS = Path(os.environ.get("PROMIN_OPEN3D_TESTS", "/nonexistent"), "test_raycasting_scene.py")
+
+
+@pytest.mark.long
+def test_theirs() -> None:
+    """Open3D's own file, with only the class replaced; what asks for closest points is skipped."""
+    pytest.importorskip("open3d")
+    if not THEIRS.exists():
+        pytest.skip("PROMIN_OPEN3D_TESTS names no folder with Open3D's test_raycasting_scene.py")
+    words = [sys.executable, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "-p", "replace_open3d", str(THEIRS)]
+    paths = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    done = subprocess.run(words, env={**os.environ, "PYTHONPATH": paths}, capture_output=True, text=True, timeout=1200)
+    assert done.returncode == 0, done.stdout + done.stderr
+    print(done.stdout)
+
+
 def test_pinhole_rays() -> None:
     rays = give(RaycastingScene.create_rays_pinhole(90, [0, 0, 0], [0, 0, 4], [0, 1, 0], 8, 6))
     assert rays.shape == (6, 8, 6) and rays.dtype == np.float32
@@ -115,7 +193,13 @@ def test_hits_agree_with_open3d() -> None:
     expected, answer = theirs.cast_rays(o3d.core.Tensor(rays)), ours.cast_rays(o3d.core.Tensor(rays))
     same = answer["primitive_ids"].numpy() == expected["primitive_ids"].numpy()
     assert same.mean() > 0.9999
-    t = expected["t_hit"].numpy()[same]
-    hit = np.isfinite(t)
-    # 8 u S over the cosine, of which few are small.
-    assert np.quantile(np.abs(answer["t_hit"].numpy()[same][hit] - t[hit]), 0.999) < 1e-4
+    hit = same & np.isfinite(expected["t_hit"].numpy())
+    assert hit.sum() > 10000
+    # K of t between the two: their distance along the ray as one across the triangle, in u S (docs/glossary.md).
+    triangles = corners[expected["primitive_ids"].numpy()[hit]].astype(np.float64)
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    scale = np.linalg.norm(rays[hit, :3] - (low + high) / 2, axis=1) + np.linalg.norm(high - low, axis=1) / 2
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    slopes = np.abs(np.einsum("ij,ij->i", normals, rays[hit, 3:])) / np.linalg.norm(normals, axis=1)
+    apart = np.abs(answer["t_hit"].numpy()[hit].astype(np.float64) - expected["t_hit"].numpy()[hit])
+    assert (apart * slopes / (2.0**-24 * scale)).max() < 8

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -24,6 +25,16 @@ from promin import _promin
         ("glass.gltf", {"crop": (600, 300, 640, 330)}, ["--crop", 600, 300, 640, 330]),
         ("obj_materials.obj", {"size": (40, 30), "target_error": 0.05}, ["--size", 40, 30, "--target-error", 0.05]),
         ("cameras.gltf", {"camera": 1, "filter": "gauss"}, ["--camera", 1, "--filter", "gauss"]),
+        (
+            "box.gltf",
+            {"size": (40, 30), "spp": 3, "filter": "tent", "filter_width": 2.5, "depth": "plane", "shadows": False},
+            [*"--size 40 30 --spp 3 --filter tent --filter-width 2.5 --depth plane --no-shadows".split()],
+        ),
+        (
+            "box.gltf",
+            {"size": (40, 30), "target_error": 0.01, "min_spp": 4, "max_spp": 32},
+            [*"--size 40 30 --target-error 0.01 --min-spp 4 --max-spp 32".split()],
+        ),
     ],
 )
 def test_a_file_has_the_bits_of_promin_render(
@@ -42,6 +53,72 @@ def test_a_file_has_the_bits_of_promin_render(
     run_promin("render", scenes / name, *words, *outputs, "--aov", ",".join(aovs))
     assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
     assert (tmp_path / "ours.exr").read_bytes() == (tmp_path / "theirs.exr").read_bytes()
+
+
+def test_mattes_are_those_of_cryptomatte(scenes: Path, tmp_path: Path, run_promin: Callable[..., None]) -> None:
+    names = ("cryptomatte", "object", "depth")
+    for name in ("showcase.gltf", "obj_materials.obj"):
+        renderer = promin.Renderer(promin.Scene.load(scenes / name), aovs=names)
+        frame = renderer.render(size=(48, 32), spp=4)
+        frame.save(tmp_path / "ours.exr")
+        words = ["--size", 48, 32, "--spp", 4, "--aov", ",".join(names)]
+        run_promin("render", scenes / name, *words, "-o", tmp_path / "theirs.exr")
+        assert (tmp_path / "ours.exr").read_bytes() == (tmp_path / "theirs.exr").read_bytes()
+        assert set(frame.aovs) == {"object", "depth", "cryptomatte_object", "cryptomatte_material"}
+        manifests = [json.loads(v) for k, v in frame.metadata.items() if k.endswith("/manifest")]
+        assert len(manifests) == 2
+        for of, manifest in zip(("object", "material"), manifests):
+            layer = frame.aovs[f"cryptomatte_{of}"]
+            assert layer.shape == (32, 48, 6, 2) and layer.dtype == np.float32
+            for one, number in manifest.items():
+                assert promin.cryptomatte_id(one).view(np.uint32) == int(number, 16)
+            covered = sum(frame.matte(one, of) for one in manifest)
+            assert np.allclose(covered, layer[..., 1].sum(axis=-1)) and 0.1 < covered.mean() <= 1
+        assert not frame.matte("nobody").any()
+
+
+def test_mattes_follow_names(box: promin.Scene) -> None:
+    box.add_sphere((3, 0, 0), name="ball")
+    renderer = promin.Renderer(box, aovs=("cryptomatte",))
+    frame = renderer.render(size=(64, 32))
+    assert 0 < frame.matte("ball").sum() < frame.matte("object 0").sum()
+    assert (frame.matte("material 0", "material") > 0).any()
+    renderer.update(materials=[promin.Phong(name="clay")])
+    assert (renderer.render(size=(64, 32)).matte("clay", "material") == frame.matte("material 0", "material")).all()
+    with pytest.raises(promin.UsageError, match="there are no mattes of 'objects'"):
+        frame.matte("ball", "objects")
+    with pytest.raises(promin.UsageError, match="cryptomatte"):
+        renderer.render(size=(8, 8), aovs=()).matte("ball")
+
+
+def test_exr_files_are_kept_as_asked(box: promin.Scene, tmp_path: Path, run_promin: Callable[..., None]) -> None:
+    frame = promin.Renderer(box, aovs=("depth", "normal")).render(size=(48, 32))
+    frame.save(tmp_path / "plain.exr")
+    frame.save(tmp_path / "half.exr", half=True, compression="piz", multipart=True)
+    plain, half = (promin.read_image(tmp_path / f"{name}.exr") for name in ("plain", "half"))
+    assert (plain == frame.rgb).all() and (half == frame.rgb.astype(np.float16)).all() and (half != plain).any()
+    with pytest.raises(promin.UsageError, match='no compression "lossy"; choose one of: none, rle, zips, zip, piz'):
+        frame.save(tmp_path / "none.exr", compression="lossy")
+
+
+def test_a_renderer_has_a_view_of_its_own(box: promin.Scene) -> None:
+    view = promin.View(size=(16, 12), debug_view="normals", shadows=False)
+    renderer = pickle.loads(pickle.dumps(promin.Renderer(box, view=view)))
+    own = renderer.render()
+    assert own.size == (16, 12)
+    other = promin.Renderer(box)
+    assert (other.render(view).rgb == own.rgb).all() and (renderer.render(debug_view="uv").rgb != own.rgb).any()
+    with pytest.raises(promin.UsageError, match="is no promin.View"):
+        promin.Renderer(box, view=(16, 12))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["error", "alpha"])
+def test_debug_views_have_neither_error_nor_background(box: promin.Scene, name: str) -> None:
+    renderer = promin.Renderer(box, aovs=(name,))
+    with pytest.raises(promin.UsageError, match=f'aovs with "{name}" and debug_view="uv" contradict each other'):
+        renderer.render(size=(8, 8), debug_view="uv")
+    assert renderer.render(size=(8, 8), debug_view="uv", aovs=()).aovs == {}
+    assert name in renderer.render(size=(8, 8)).aovs
 
 
 def test_frames_tell_what_they_show(box: promin.Scene, tmp_path: Path) -> None:
@@ -87,13 +164,17 @@ def test_the_pipeline_is_that_of_the_first_picture(box: promin.Scene, monkeypatc
     told = []
 
     def note(device: object, scene: object, aovs: object, builder: object, bvh: object, *others: object) -> object:
-        told.append(others[0])
+        told.append(others[:2])
         return made(device, scene, aovs, builder, bvh, *others)  # type: ignore[arg-type]
 
     monkeypatch.setattr(_promin, "Renderer", note)
     for options in ({}, {"target_error": 0.5}, {"time_limit": 9.0}):
         pickle.loads(pickled).render(size=(8, 8), **options)
-    assert told == [False, True, True]
+    promin.Renderer(box, view=promin.View(target_error=0.5))
+    promin.Renderer(box, view=promin.View(debug_view="uv", shadows=False))
+    light = {"debug_view": "full", "has_shadows": True}
+    flat = {"debug_view": "uv", "has_shadows": False}
+    assert told == [(False, light), (True, light), (True, light), (True, light), (False, flat)]
 
 
 def test_a_centre_moves_camera_light_and_positions() -> None:

@@ -7,8 +7,11 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "gpu/device_fixture.h"
@@ -247,6 +250,27 @@ TEST_F(LibraryTest, ProgressivePicturesEndWhereTheyAreToldAndHaveTheBitsOfOthers
   EXPECT_EQ(last_view.size, view.size);
   EXPECT_EQ(last_view.samples_per_pixel, 4U);
   EXPECT_TRUE(has_same_bits(last, renderer.render(view).image));
+}
+
+TEST_F(LibraryTest, OcclusionIsWhetherAnythingIsHit) {
+  Caster caster(device(), scene_);
+  std::vector<Ray> rays;
+  // With directions that are taken as they are, and of a length that is scaled.
+  for (const float length : {1.0F, 0x1p127F}) {
+    for (int i = 0; i < 3000; ++i) {
+      const float x = static_cast<float>(i * 7919 % 3000) / 200.0F - 7.5F;
+      rays.push_back({{x, 5, static_cast<float>(i % 60) / 6.0F - 5.0F}, 0, vec3(0, -length, 0)});
+    }
+  }
+  std::vector<Hit> hits(rays.size());
+  caster.cast(rays, hits);
+  const auto are_occluded = std::make_unique<bool[]>(rays.size());
+  const std::span<bool> answers(are_occluded.get(), rays.size());
+  caster.occluded(rays, answers);
+  for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(answers[i], hits[i].object >= 0) << i;
+  EXPECT_GT(std::ranges::count(answers, true), 100);
+  EXPECT_GT(std::ranges::count(answers, false), 100);
+  EXPECT_THROW(caster.occluded(rays, answers.first(1)), UsageError);
 }
 
 TEST_F(LibraryTest, ABrokenOffCastStopsAtTheNextDispatchAndTheCasterStays) {

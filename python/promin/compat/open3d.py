@@ -27,10 +27,10 @@ class RaycastingScene:
     INVALID_ID = 0xFFFFFFFF
     """geometry_ids and primitive_ids of a miss."""
 
-    def __init__(self, nthreads: int = 0, device: DeviceLike = None) -> None:
-        """nthreads is ignored, here and below. device: as `promin.Caster` takes it."""
+    def __init__(self, nthreads: int = 0, device: Any = None) -> None:
+        """nthreads is ignored, here and below. device: as `promin.Caster` takes it; one of Open3D's is ignored."""
         self._scene = Scene(center=(0, 0, 0))
-        self._device = device
+        self._device: DeviceLike = None if type(device).__module__.startswith("open3d") else device
         self._caster: Caster | None = None
 
     def add_triangles(self, vertex_positions: Any, triangle_indices: Any = None) -> int:
