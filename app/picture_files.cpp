@@ -13,8 +13,10 @@ namespace {
 
 /// What a band's numbers take at most: of them there are a few copies at a time.
 constexpr size_t kBandBytes = size_t{12} << 20;
-/// EXRs are compressed by so many rows.
+/// Rows of a band are a multiple of those by which EXRs are compressed, unless these take more than that.
 constexpr uint32_t kRowsOfBlock = 16;
+/// Films are traced by so many.
+constexpr uint32_t kLeastRows = 8;
 
 // An AOV's channels, by the type of its values.
 
@@ -65,8 +67,8 @@ AovHeader describe_aovs(const Scene& scene, const AovSet& choice, DepthKind dept
 
 std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_count) {
   const uvec2 size = window.hi - window.lo;
-  const size_t most_rows = std::max<size_t>(kBandBytes / (channel_count * sizeof(float) * size.x), kRowsOfBlock);
-  const auto rows = static_cast<uint32_t>(std::min<size_t>(most_rows / kRowsOfBlock * kRowsOfBlock, size.y));
+  const size_t most_rows = kBandBytes / (channel_count * sizeof(float) * size.x) / kRowsOfBlock * kRowsOfBlock;
+  const auto rows = static_cast<uint32_t>(std::min<size_t>(std::max<size_t>(most_rows, kLeastRows), size.y));
   std::vector<PixelWindow> bands;
   for (uint32_t y = 0; y < size.y; y += rows) {
     bands.push_back({window.lo + uvec2(0, y), {window.hi.x, window.lo.y + std::min(size.y, y + rows)}});
@@ -92,6 +94,9 @@ void PictureFiles::write_rows(Image rows, std::vector<Channel> channels) {
   channels_ = std::move(channels);
   writing_ = std::async(std::launch::async, [this] {
     for (PictureWriter& writer : writers_) writer.write_rows(rows_, channels_);
+    // The next band takes as much.
+    rows_ = {};
+    channels_ = {};
   });
 }
 

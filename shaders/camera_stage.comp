@@ -45,6 +45,7 @@ bool is_lit[PACKET_SIZE];  // the pixel shows a surface
 Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
 vec3 seen[PACKET_SIZE];  // from the hit, so far
+vec3 own_lights[PACKET_SIZE];  // with FEATURE_LIGHT_AOVS, of that what no source brings
 vec3 contributions[PACKET_SIZE];
 // Where rays pass through surfaces, of the shadow rays:
 LightWay ways[PACKET_SIZE];
@@ -204,6 +205,7 @@ void arrive() {
       paths[i] = path;
       points[i] = point;
       seen[i] = light;
+      if (has(FEATURE_LIGHT_AOVS)) own_lights[i] = light;
       is_lit[i] = takes_part && DEBUG_VIEW == DEBUG_VIEW_NONE && hit.primitive != NO_PRIMITIVE;
     }
     ++at;
@@ -321,23 +323,22 @@ Ray ray_of(uint index) {
 }
 
 // Adds what is seen of a pixel to the parts of its light.
-void add_parts(Path path, ShadingPoint point, vec3 light, bool is_on_surface, float coverage) {
+void add_parts(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_surface, float coverage) {
   if (!is_on_surface) {
     add_beyond(path, light);
     return;
   }
-  vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, 0u));
   precise vec3 weight = coverage * path.weight;
   add_own_parts(path, point, own, coverage);
   add_seen_part(path.pixel, path.part, weight, own, light);
 }
 
 // Adds what is seen of a pixel to its path, and sends that on.
-void leave_pixel(Path path, ShadingPoint point, vec3 light, bool is_on_surface) {
+void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_surface) {
   float coverage = is_on_surface ? coverage_of(path, point) : 1.0;
   add_radiance(path, light, coverage);
   if (has(FEATURE_LIGHT_AOVS) && DEBUG_VIEW == DEBUG_VIEW_NONE) {
-    add_parts(path, point, light, is_on_surface, coverage);
+    add_parts(path, point, light, own, is_on_surface, coverage);
   }
   if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
   if (has(FEATURE_BLENDING) && coverage < 1.0) {
@@ -364,6 +365,7 @@ void leave_one_by_one() {
     Path path = paths[0];
     ShadingPoint point = points[0];
     vec3 light = seen[0];
+    vec3 own = own_lights[0];
     bool is_on_surface = is_lit[0];
     bool takes_part = is_inside[0];
     [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
@@ -371,10 +373,11 @@ void leave_one_by_one() {
       path = paths[i];
       point = points[i];
       light = seen[i];
+      own = own_lights[i];
       is_on_surface = is_lit[i];
       takes_part = is_inside[i];
     }
-    if (takes_part) leave_pixel(path, point, light, is_on_surface);
+    if (takes_part) leave_pixel(path, point, light, own, is_on_surface);
     ++at;
   } while (at < PACKET_SIZE);
 }
@@ -388,7 +391,7 @@ void leave() {
     if (!is_inside[i]) continue;
     Path path = paths[i];
     ShadingPoint point = points[i];
-    leave_pixel(path, point, seen[i], is_lit[i]);
+    leave_pixel(path, point, seen[i], own_lights[i], is_lit[i]);
   }
 }
 

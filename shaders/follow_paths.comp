@@ -279,9 +279,9 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
     path.kind = path_glass.w >> KIND_SHIFT;
     has_seen = !begins_bounce(turn) || (path_glass.z >> HAS_SEEN_SHIFT) != 0u;
   }
-  uvec4 seen_part = uvec4(0u);
-  path.part = PART_BACKGROUND;
-  if (has(FEATURE_LIGHT_AOVS)) {
+  uvec4 seen_part = uvec4(0u, 0u, 0u, PART_REFLECTION);
+  path.part = PART_REFLECTION;
+  if (STREAM_HAS_PARTS != 0u) {
     seen_part = pixels[record_of_part(path.pixel, PART_SEEN)];
     path.part = seen_part.w >> PART_OF_RAY_SHIFT;
   }

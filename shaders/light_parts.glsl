@@ -22,13 +22,12 @@ void add_to_part(uint pixel, uint part, vec3 light) {
 // Adds what a path's ray sees where it meets nothing.
 void add_beyond(Path path, vec3 beyond) {
   if (!has(FEATURE_LIGHT_AOVS)) return;
-  precise vec3 light = path.weight * beyond;
-  add_to_part(path.pixel, path.part, light);
-  if (path.part != PART_BACKGROUND) return;
+  uint record = record_of_part(path.pixel, path.part);
+  vec4 part = uintBitsToFloat(pixels[record]);
+  precise vec3 sum = part.xyz + path.weight * beyond;
   // Only surfaces that blend have weighed it, all colours alike.
-  uint record = record_of_part(path.pixel, PART_BACKGROUND);
-  precise float share = uintBitsToFloat(pixels[record].w) + path.weight.x;
-  pixels[record].w = floatBitsToUint(share);
+  precise float share = part.w + (path.part == PART_BACKGROUND ? path.weight.x : 0.0);
+  pixels[record] = floatBitsToUint(vec4(sum, share));
 }
 
 // Adds what a point that the path's ray has met sends without lights, where the camera sees it.
@@ -50,17 +49,21 @@ void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
   add_to_part(pixel, is_of_camera ? PART_DIRECT : part, light);
 }
 
+// Whether the stream has rays of several parts. Else all of them come from mirrors.
+const uint STREAM_HAS_PARTS = FEATURE_BIT(FEATURE_LIGHT_AOVS) & KEEPS_PROGRESS;
+
 // In w of PART_SEEN: the part of the point at hand, and from here on that of the path's ray.
 const uint PART_OF_RAY_SHIFT = 8u;
 
 void store_part_of_ray(Path path) {
-  if (!has(FEATURE_LIGHT_AOVS)) return;
+  if (STREAM_HAS_PARTS == 0u) return;
   uint record = record_of_part(path.pixel, PART_SEEN);
   pixels[record].w = (pixels[record].w & ((1u << PART_OF_RAY_SHIFT) - 1u)) | path.part << PART_OF_RAY_SHIFT;
 }
 
-// Keeps what add_stored_part needs; its light may come over several turns.
+// Keeps what is needed of the point at hand when its light has come, which may take several turns.
 void store_seen_part(Path path, vec3 own) {
+  if (STREAM_HAS_PARTS == 0u) return;
   pixels[record_of_part(path.pixel, PART_SEEN)] =
       uvec4(floatBitsToUint(own), path.part | path.part << PART_OF_RAY_SHIFT);
 }

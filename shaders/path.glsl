@@ -32,6 +32,9 @@ void enter_part(inout Path path, uint part) {
   if (has(FEATURE_LIGHT_AOVS) && path.part == PART_BACKGROUND) path.part = part;
 }
 
+// Whether the number of a path's bounces is its own and not that of the turn.
+const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
+
 #include "light_parts.glsl"
 
 // Takes what the medium absorbs on the way to a hit, from where the ray has passed a surface before.
@@ -110,9 +113,6 @@ bool bounce(inout Path path, ShadingPoint point) {
   return true;
 }
 
-// Whether the number of a path's bounces is its own and not that of the turn.
-const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
-
 // Keeps in the stream what tells a path that may go through surfaces from others.
 void store_passed(uint number, Path path) {
   if (KEEPS_PROGRESS == 0u) return;
@@ -136,8 +136,11 @@ void clear_range(uint pixel) {
 void extend_range(uint pixel, vec3 sampled) {
   uint least = record_of_range(pixel, RANGE_LEAST);
   uint largest = record_of_range(pixel, RANGE_LARGEST);
-  pixels[least].xyz = floatBitsToUint(min(uintBitsToFloat(pixels[least].xyz), sampled));
-  pixels[largest].xyz = floatBitsToUint(max(uintBitsToFloat(pixels[largest].xyz), sampled));
+  vec3 lo = uintBitsToFloat(pixels[least].xyz);
+  vec3 hi = uintBitsToFloat(pixels[largest].xyz);
+  // Most samples are within.
+  if (any(lessThan(sampled, lo))) pixels[least].xyz = floatBitsToUint(min(lo, sampled));
+  if (any(greaterThan(sampled, hi))) pixels[largest].xyz = floatBitsToUint(max(hi, sampled));
 }
 
 // Adds the path's radiance to its pixel, as one sample.

@@ -15,7 +15,6 @@ namespace {
 
 /// Ranks of a channel group, such as CryptoObject00.RGBA.
 constexpr size_t kRanksOfGroup = 2;
-constexpr size_t kPixelChunk = 65536;
 
 /// MurmurHash3_x86_32 with seed 0 (Appleby, public domain algorithm).
 uint32_t murmur3(std::string_view text) {
@@ -62,29 +61,27 @@ void add_layer(const std::string& layer, const std::vector<std::string>& names,
                                  std::vector<uint32_t>(coverage.size())});
     }
   }
-  for_each_chunk(coverage.size(), kPixelChunk, 0, [&](size_t begin, size_t end) {
-    for (size_t pixel = begin; pixel < end; ++pixel) {
-      // Of one name are one.
-      std::array<std::pair<uint32_t, float>, kCoverageRanks> mattes{};
-      size_t count = 0;
-      for (const Coverage& covered : coverage[pixel]) {
-        if (covered.id == Coverage::kNoId) break;
-        const auto known = mattes.begin() + static_cast<std::ptrdiff_t>(count);
-        const auto same =
-            std::find_if(mattes.begin(), known, [&](const auto& matte) { return matte.first == ids[covered.id]; });
-        if (same == known) {
-          *known = {ids[covered.id], covered.share};
-          ++count;
-        } else {
-          same->second += covered.share;
-        }
+  for_each_pixel(coverage.size(), [&](size_t pixel) {
+    // Of one name are one.
+    std::array<std::pair<uint32_t, float>, kCoverageRanks> mattes{};
+    size_t count = 0;
+    for (const Coverage& covered : coverage[pixel]) {
+      if (covered.id == Coverage::kNoId) break;
+      const auto known = mattes.begin() + static_cast<std::ptrdiff_t>(count);
+      const auto same =
+          std::find_if(mattes.begin(), known, [&](const auto& matte) { return matte.first == ids[covered.id]; });
+      if (same == known) {
+        *known = {ids[covered.id], covered.share};
+        ++count;
+      } else {
+        same->second += covered.share;
       }
-      std::stable_sort(mattes.begin(), mattes.begin() + static_cast<std::ptrdiff_t>(count),
-                       [](const auto& a, const auto& b) { return a.second > b.second; });
-      for (size_t rank = 0; rank < count; ++rank) {
-        result.channels[first + 2 * rank].values[pixel] = mattes[rank].first;
-        result.channels[first + 2 * rank + 1].values[pixel] = std::bit_cast<uint32_t>(mattes[rank].second);
-      }
+    }
+    std::stable_sort(mattes.begin(), mattes.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    for (size_t rank = 0; rank < count; ++rank) {
+      result.channels[first + 2 * rank].values[pixel] = mattes[rank].first;
+      result.channels[first + 2 * rank + 1].values[pixel] = std::bit_cast<uint32_t>(mattes[rank].second);
     }
   });
 

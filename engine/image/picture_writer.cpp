@@ -37,13 +37,18 @@ const Channel* find_alpha(std::span<const Channel> channels) {
   return alpha == channels.end() ? nullptr : &*alpha;
 }
 
-/// The pixels one after the other, with the channels in the order of the EXR's spec; each channel is four bytes.
-std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> channels) {
+/// Of an EXR, what is handed over at a time: many rows, or of wide pictures with many channels few.
+constexpr size_t kMostWords = size_t{4} << 20;
+
+/// Pixels [begin, end) one after the other, with the channels in the order of the EXR's spec; each channel is four
+/// bytes.
+std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> channels, size_t begin, size_t end) {
   const size_t stride = 3 + channels.size();
-  std::vector<uint32_t> words(image.pixels.size() * stride);
-  for_each_index(image.size.y, 0, [&](size_t y) {
-    for (size_t i = y * image.size.x; i < (y + 1) * image.size.x; ++i) {
-      uint32_t* word = &words[i * stride];
+  std::vector<uint32_t> words((end - begin) * stride);
+  constexpr size_t kChunk = 16384;
+  for_each_chunk(end - begin, kChunk, 0, [&](size_t first, size_t last) {
+    for (size_t i = begin + first; i < begin + last; ++i) {
+      uint32_t* word = &words[(i - begin) * stride];
       for (int c = 0; c < 3; ++c) *word++ = std::bit_cast<uint32_t>(image.pixels[i][c]);
       for (const Channel& channel : channels) *word++ = channel.values[i];
     }
@@ -193,7 +198,13 @@ class PictureWriter::Impl {
     check(channels.size() == header_.channels.size(), "rows have other channels than the picture",
           "give values of all that were named");
     if (is_exr_) {
-      check_done(plugin_.write_rows(writer_.get(), rows.size.y, interleave(rows, channels).data(), &message_));
+      const size_t width = rows.size.x;
+      const size_t most_rows = std::max<size_t>(kMostWords / (width * (3 + channels.size())), 1);
+      for (size_t y = 0; y < rows.size.y; y += most_rows) {
+        const size_t end = std::min<size_t>(rows.size.y, y + most_rows);
+        const std::vector<uint32_t> words = interleave(rows, channels, y * width, end * width);
+        check_done(plugin_.write_rows(writer_.get(), static_cast<uint32_t>(end - y), words.data(), &message_));
+      }
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
       const std::vector<uint8_t> bytes = encode_pixels(rows, find_alpha(channels), header_.display, lo);

@@ -66,7 +66,8 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
 
 void PictureTracer::prepare_film(const RenderMode& mode) {
   FeatureMask features = scene_.features(mode) | features_of_samples(mode);
-  if (wanted_.has_any(AovSource::kSurface)) features |= layout::FEATURE_AOVS;
+  // With steps trace_middle tells of surfaces.
+  if (wanted_.has_any(AovSource::kSurface) && !wanted_.steps) features |= layout::FEATURE_AOVS;
   if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
   prepare_film(features);
 }
@@ -97,7 +98,7 @@ FilmOptions PictureTracer::film_options() const {
 }
 
 void PictureTracer::take_change() {
-  step_film_.reset();
+  middle_film_.reset();
   if (!film_) return;
   try {
     film_->bind_scene();
@@ -164,7 +165,7 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
     if (wanted_.cryptomatte) tally_samples(read, range.end - range.first, tally);
   }
   average_samples(film_records_, samples, std::span(result.image.pixels).subspan(first, count));
-  if (wanted_.has_any(AovSource::kSurface)) {
+  if (film_features_.has_any(layout::FEATURE_AOVS)) {
     read_surfaces(read, scene_.numbers(), view.depth_kind, first, result.aovs);
   }
   for_each_pixel(count, [&](size_t i) {
@@ -196,14 +197,6 @@ uint32_t PictureTracer::object_of(uint32_t order) const {
   return order == layout::NO_ORDER ? Aovs::kNoId : primitive_of_order(scene_.numbers(), order).object;
 }
 
-void PictureTracer::trace_surfaces(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
-                                   const ProgressCallback& on_progress) {
-  const uvec2 size = band.hi - band.lo;
-  film_->reserve(size.x * size.y);
-  trace_window(*film_, band, view, {0, 1}, result, on_progress);
-  read_surfaces(read_film(*film_, size), scene_.numbers(), view.depth_kind, first, result.aovs);
-}
-
 ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
   const size_t count = static_cast<size_t>(size.x) * size.y;
   film_records_.resize(count * from.records().count);
@@ -211,27 +204,30 @@ ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
   return {film_records_, count, from.records()};
 }
 
-void PictureTracer::trace_steps(const View& view, RenderResult& result, const ProgressCallback& on_progress) {
-  View step_view = view;
-  step_view.max_depth = 0;
-  step_view.mode.debug_view = DebugView::kSteps;
-  FeatureMask features = scene_.features(step_view.mode) | layout::FEATURE_AOVS;
+void PictureTracer::trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+  View middle_view = view;
+  middle_view.max_depth = 0;
+  // Nothing is lit that way.
+  middle_view.mode.debug_view = wanted_.steps ? DebugView::kSteps : DebugView::kNormals;
+  FeatureMask features = scene_.features(middle_view.mode) | layout::FEATURE_AOVS;
   features = features.without(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
-  if (!step_film_) {
-    FilmOptions film_of_steps = film_options();
-    film_of_steps.packet_size = 1;
-    step_film_.emplace(device_, scene_.device_scene(), features, film_of_steps);
-    step_film_->warm_up();
+  if (!middle_film_) {
+    FilmOptions film_of_middle = film_options();
+    if (wanted_.steps) film_of_middle.packet_size = 1;
+    middle_film_.emplace(device_, scene_.device_scene(), features, film_of_middle);
+    middle_film_->warm_up();
   }
   const SampleRange middle{view.samples_per_pixel / 2, view.samples_per_pixel / 2 + 1};
-  for_each_band(view, step_film_->records().count, [&](const PixelWindow& band, size_t first) {
+  for_each_band(view, middle_film_->records().count, [&](const PixelWindow& band, size_t first) {
     const uvec2 size = band.hi - band.lo;
-    step_film_->reserve(size.x * size.y);
+    middle_film_->reserve(size.x * size.y);
     // Its rays are the picture's, counted there.
-    RenderResult of_steps;
-    trace_window(*step_film_, band, step_view, middle, of_steps, on_progress);
-    result.trace_ms += of_steps.trace_ms;
-    read_steps(read_film(*step_film_, size), first, result.aovs);
+    RenderResult of_middle;
+    trace_window(*middle_film_, band, middle_view, middle, of_middle, on_progress);
+    result.trace_ms += of_middle.trace_ms;
+    const ReadFilm read = read_film(*middle_film_, size);
+    read_surfaces(read, scene_.numbers(), view.depth_kind, first, result.aovs);
+    if (wanted_.steps) read_steps(read, first, result.aovs);
   });
 }
 
@@ -270,7 +266,7 @@ RenderResult PictureTracer::render_samples(const View& view, const ProgressCallb
   prepare_film(view.mode);
   const double steps_share = wanted_.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
   const auto pixel_count = static_cast<double>(result.image.pixels.size());
-  if (wanted_.steps) trace_steps(view, result, keep_going(progress));
+  if (wanted_.steps) trace_middle(view, result, keep_going(progress));
   for_each_band(view, film_->records().count, [&](const PixelWindow& band, size_t first) {
     const uvec2 size = band.hi - band.lo;
     trace_band(band, view, first, result, [&](double fraction) {

@@ -80,9 +80,6 @@ class PictureTracer {
                   const ProgressCallback& on_progress);
   void tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const;
   uint32_t object_of(uint32_t order) const;
-  /// Traces a sample of each pixel of a band for what it has met alone.
-  void trace_surfaces(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
-                      const ProgressCallback& on_progress);
   /// Reads what a film holds of a window; what was read before is gone then.
   ReadFilm read_film(const Film& from, const uvec2& size);
   /// Cuts a picture into bands of whole blocks that a film has room for.
@@ -97,8 +94,9 @@ class PictureTracer {
       trace_band(band, static_cast<size_t>(y - window.lo.y) * width);
     }
   }
-  /// Traces the middle sample once more, as steps are of single rays, and packets are not.
-  void trace_steps(const View& view, RenderResult& result, const ProgressCallback& on_progress);
+  /// Traces the middle sample once more, without light, for its steps and the surfaces that it has met: steps are of
+  /// single rays, and packets are not; samples of a list have nothing but light.
+  void trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress);
   /// A picture without pixels yet.
   RenderResult make_result(const View& view) const;
   /// A picture of a fixed number of samples a pixel.
@@ -131,8 +129,8 @@ class PictureTracer {
   SceneOnDevice scene_;
   std::optional<Film> film_;
   FeatureMask film_features_;
-  /// Counts steps; there as soon as somebody has asked for them.
-  std::optional<Film> step_film_;
+  /// Of trace_middle; there as soon as somebody has asked for what it tells.
+  std::optional<Film> middle_film_;
   UnsetVector<uvec4> film_records_;
   /// Of the samples of a picture's pixels, where their errors are estimated.
   std::vector<ColorRange> ranges_;

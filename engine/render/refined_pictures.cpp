@@ -81,15 +81,7 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
   View centers = view;
   centers.error_target.reset();
   centers.samples_per_pixel = 1;
-  centers.max_depth = 0;
-  const ProgressCallback goes_on = keep_going(progress);
-  if (wanted_.has_any(AovSource::kSurface)) {
-    prepare_film(scene_.features(view.mode) | layout::FEATURE_AOVS);
-    for_each_band(centers, film_->records().count, [&](const PixelWindow& band, size_t first) {
-      trace_surfaces(band, centers, first, result, goes_on);
-    });
-  }
-  if (wanted_.steps) trace_steps(centers, result, goes_on);
+  if (wanted_.steps || wanted_.has_any(AovSource::kSurface)) trace_middle(centers, result, keep_going(progress));
   result.error.emplace(PictureError{.target = view.error_target->error});
   prepare_refining_film(view.mode);
   return result;

@@ -150,6 +150,24 @@ TEST_F(ExrCliTest, BandsLeaveNoTrace) {
   EXPECT_EQ(read_exr("whole.exr").channels, read_exr("once.exr").channels);
 }
 
+// OpenEXR holds blocks of rows for each thread that compresses, of this picture 40 MB each and three of them. It takes
+// memory when rows come, so there are some.
+TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
+  const auto held_mb = [&](const OptionValues& aovs) {
+    OptionValues arguments = {"render", "square.gltf", "-o", "a.exr", "--size", "16384", "72", "-v"};
+    arguments.insert(arguments.end(), aovs.begin(), aovs.end());
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const size_t place = result.err.find("held ");
+    EXPECT_NE(place, std::string::npos) << result.err;
+    return place == std::string::npos ? 0.0 : std::stod(result.err.substr(place + 5));
+  };
+  const double of_colors = held_mb({});
+  const double of_all = held_mb({"--aov", "cryptomatte,depth,normal,position,object,albedo"});
+  EXPECT_GT(of_colors, 50.0);
+  EXPECT_LT(of_all - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
+}
+
 // What beauty is the sum of, in the file.
 TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
   const ReadExr exr = render_exr({"--spp", "16", "--background", "0.5", "0.25", "1", "--aov",

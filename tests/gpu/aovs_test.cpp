@@ -372,6 +372,29 @@ TEST_F(AovsTest, RefinedPicturesHaveThemToo) {
   }
 }
 
+// With steps they are told by rays of their own.
+TEST_F(AovsTest, SurfacesAreTheSameBesideSteps) {
+  for (const Subject& subject : subjects()) {
+    View view = subject.view;
+    view.samples_per_pixel = 4;
+    // Whose kernels compile soon.
+    view.mode.debug_view = DebugView::kNormals;
+    TunedRendererOptions options;
+    options.with_aovs = true;
+    options.mode = view.mode;
+    const Aovs expected = make_renderer(device(), subject.scene, options).render(view).aovs;
+    options.aovs.steps = true;
+    const Aovs same = make_renderer(device(), subject.scene, options).render(view).aovs;
+    EXPECT_FALSE(same.steps.empty());
+    EXPECT_FALSE(expected.albedo.empty());
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE)             \
+  if (AovSource::SOURCE == AovSource::kSurface) {                              \
+    EXPECT_EQ(same.FIELD, expected.FIELD) << #FIELD << " of " << subject.name; \
+  }
+#include "promin/kinds/aovs.def"
+  }
+}
+
 // The heat map of a debug view, which counts the same steps.
 TEST_F(AovsTest, StepsAreThoseOfTheDebugView) {
   const world::Scene scene = make_scene_of_everything(60);

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "image/plugin/webp.h"
@@ -153,6 +154,23 @@ std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
   return parts;
 }
 
+/// How many threads compress an EXR, as OpenImageIO takes it: 0 is one for each core, -1 none but the caller's. OpenEXR
+/// holds two blocks of rows for each thread, and of each three copies: of wide pictures with many channels that is more
+/// than all else.
+int count_exr_threads(const std::vector<Part>& parts) {
+  constexpr size_t kMostBytes = size_t{128} << 20;
+  constexpr size_t kCopies = 2 * 3;
+  size_t block_bytes = 1;
+  for (const Part& part : parts) {
+    const OIIO::string_view compression = part.spec.get_string_attribute("compression");
+    const size_t rows = compression == "zip" ? 16 : compression == "piz" ? 32 : 1;
+    block_bytes = std::max<size_t>(block_bytes, rows * part.spec.scanline_bytes(true));
+  }
+  const size_t threads = kMostBytes / (kCopies * block_bytes);
+  if (threads >= std::thread::hardware_concurrency()) return 0;
+  return threads == 0 ? -1 : static_cast<int>(threads);
+}
+
 std::vector<Part> make_png_parts(const ProminPicturesSource& source) {
   Part part;
   part.spec = OIIO::ImageSpec(static_cast<int>(source.width), static_cast<int>(source.height),
@@ -170,11 +188,13 @@ struct ProminPicturesWriter {
       : is_exr(std::string_view(source.format) == "openexr"),
         file_name(source.file_name),
         proxy(source.file_name, sink),
-        parts(is_exr ? make_exr_parts(source) : make_png_parts(source)),
-        output(OIIO::ImageOutput::create(source.format)) {
+        parts(is_exr ? make_exr_parts(source) : make_png_parts(source)) {
     for (const ProminPicturesChannel& channel : std::span(source.channels, source.channel_count)) {
       samples.push_back(channel.sample);
     }
+    // It is heeded when an output is made.
+    if (is_exr) OIIO::attribute("exr_threads", count_exr_threads(parts));
+    output = OIIO::ImageOutput::create(source.format);
     check(output != nullptr);
     if (parts.size() == 1) {
       check(output->set_ioproxy(&proxy));
