@@ -76,6 +76,11 @@ void refuse_leftovers(const CLI::App& program) {
   throw UsageError({what + leftovers.front(), kWhere, cure});
 }
 
+/// As messages have it.
+std::string name_of(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
+}
+
 /// One word in place of the several that an option takes.
 struct Alternative {
   std::string word;
@@ -184,11 +189,17 @@ void OptionTable::add_flag(const std::string& names, const std::string& help, bo
 }
 
 std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command) {
+  std::map<std::string, Alternative> alternatives;
+  find_alternatives(command, alternatives);
   std::vector<std::pair<std::string, std::vector<std::string>>> given;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0) continue;
-    given.emplace_back(option->get_lnames().empty() ? option->get_name() : "--" + option->get_lnames().back(),
-                       option->results());
+    const std::string name = name_of(*option);
+    std::vector<std::string> words;
+    if (option->get_items_expected_max() > 0) words = option->reduced_results();
+    const auto alternative = alternatives.find(name);
+    if (alternative != alternatives.end() && words.front() == alternative->second.word) words.resize(1);
+    given.emplace_back(name, std::move(words));
   }
   return given;
 }

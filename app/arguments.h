@@ -75,8 +75,9 @@ struct Command {
   std::function<void()> run;
 };
 
-/// The options and arguments that a parsed command was given, by the names that messages have, with their words; in the
-/// order of its table.
+/// The options and arguments that a parsed command was given, by the names that messages have, in the order of its
+/// table; with the words that give them again: of what is repeated those that hold, one where one stands for several,
+/// of a flag none.
 std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command);
 
 /// Adds a command with --help and --version.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cast_command.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
@@ -13,6 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "cast_job.h"
+#include "cast_options.h"
+#include "command_job.h"
 #include "console.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
@@ -30,91 +33,11 @@ namespace {
 /// Rays in memory at a time.
 constexpr uint64_t kChunkRays = uint64_t{1} << 20;
 
-struct CastOptions {
-  TracingOptions tracing;
-  std::filesystem::path rays;
-  /// Hits, or with --count counts.
-  std::filesystem::path output;
-  std::optional<std::filesystem::path> offsets;
-  bool is_any = false;
-  bool is_count = false;
-  bool is_all = false;
-
-  HitQuery query() const {
-    if (is_all) return HitQuery::kAll;
-    if (is_count) return HitQuery::kCount;
-    return is_any ? HitQuery::kAny : HitQuery::kNearest;
-  }
-  std::vector<std::filesystem::path> outputs() const {
-    return offsets ? std::vector{output, *offsets} : std::vector{output};
-  }
-};
-
-void add_cast_options(CLI::App& command, CastOptions& options) {
-  OptionTable table(command);
-  add_scene_argument(table, options.tracing);
-  table.add_required("RAYS.npy", "", "NumPy array of N x 8 float32: origin xyz, tmin, direction xyz (any length), tmax",
-                     [&](const OptionValues& w) { options.rays = w.text(); });
-  table.add_required_repeated("-o,--output", "HITS.npy",
-                              "NumPy array to write: t, object, primitive, u, v, normal of each ray's nearest hit",
-                              [&](const OptionValues& w) {
-                                if (w.all().size() > 1) w.refuse("--output takes one file here");
-                                options.output = w.text();
-                              });
-  table.add_flag("--any", "Ask only whether anything is hit: t is 0 then, and infinite on a miss", options.is_any);
-  table.add_flag("--count", "Write how often each ray crosses a surface instead, as int32", options.is_count);
-  table.add_flag("--all", "Write all hits of each ray instead, ray after ray, by t; needs --offsets", options.is_all);
-  table.add("--offsets", "OFFSETS.npy",
-            "With --all: N + 1 uint64, where in HITS.npy each ray's hits begin and the last one's end",
-            [&](const OptionValues& w) { options.offsets = w.text(); });
-  add_tracing_options(table, options.tracing);
-  add_measuring_options(table, options.tracing);
-}
-
-void check_query(const CastOptions& options) {
-  std::vector<std::string> asked;
-  if (options.is_any) asked.emplace_back("--any");
-  if (options.is_count) asked.emplace_back("--count");
-  if (options.is_all) asked.emplace_back("--all");
-  if (asked.size() > 1) {
-    throw UsageError(
-        {asked[0] + " and " + asked[1] + " ask for different things", "on the command line", "give one of them"});
-  }
-  if (options.is_all && !options.offsets) {
-    throw UsageError({"--all is given without --offsets", "on the command line",
-                      "add --offsets OFFSETS.npy, which tells the hits of each ray apart"});
-  }
-  if (options.offsets && !options.is_all) {
-    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or take it away"});
-  }
-}
-
-void check_cast_options(const CastOptions& options) {
-  check_tracing_options(options.tracing);
-  check_query(options);
-  for (const std::filesystem::path& output : options.outputs()) {
-    if (lower_case_ending(output) != ".npy") {
-      throw UsageError({"unknown output ending \"" + output.extension().string() + "\"", output.string(), "use .npy"});
-    }
-  }
-  std::vector<std::filesystem::path> inputs = input_files(options.tracing);
-  inputs.push_back(options.rays);
-  check_outputs(inputs, options.outputs(), options.tracing.stats);
-}
-
 /// The file's next rays, at most kChunkRays; none at its end.
 std::vector<Ray> read_chunk(RayReader& reader, uint64_t done) {
   std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
   reader.read(rays);
   return rays;
-}
-
-/// Gives hits the numbers that the file has for its objects.
-void number_as_in_file(const Scene& scene, std::span<Hit> hits) {
-  if (scene.object_numbers.empty()) return;
-  for (Hit& hit : hits) {
-    if (hit.object >= 0) hit.object = static_cast<int32_t>(object_number(scene, static_cast<uint32_t>(hit.object)));
-  }
 }
 
 /// What a query makes of rays, chunk by chunk, and the files that it writes.
@@ -136,7 +59,7 @@ class Answers {
 class OneHitEach : public Answers {
  public:
   OneHitEach(const CastOptions& options, Caster& caster, const Scene& scene, uint64_t ray_count)
-      : caster_(caster), scene_(scene), query_(options.query()), writer_(options.output, ray_count) {}
+      : caster_(caster), scene_(scene), query_(options.query()), writer_(*options.output, ray_count) {}
   double trace(std::span<const Ray> rays, bool /*is_last*/, const ProgressCallback& progress) override {
     hits_.resize(rays.size());
     return caster_.cast(rays, hits_, query_, progress);
@@ -158,7 +81,7 @@ class OneHitEach : public Answers {
 class Counts : public Answers {
  public:
   Counts(const CastOptions& options, Caster& caster, uint64_t ray_count)
-      : caster_(caster), writer_(options.output, ray_count) {}
+      : caster_(caster), writer_(*options.output, ray_count) {}
   double trace(std::span<const Ray> rays, bool /*is_last*/, const ProgressCallback& progress) override {
     counts_.resize(rays.size());
     return caster_.count(rays, counts_, progress);
@@ -176,7 +99,7 @@ class Counts : public Answers {
 class Lists : public Answers {
  public:
   Lists(const CastOptions& options, Caster& caster, const Scene& scene, uint64_t ray_count)
-      : caster_(caster), scene_(scene), hit_writer_(options.output), offset_writer_(*options.offsets, ray_count + 1) {
+      : caster_(caster), scene_(scene), hit_writer_(*options.output), offset_writer_(*options.offsets, ray_count + 1) {
     offset_writer_.write(std::array{uint64_t{0}});
   }
   double trace(std::span<const Ray> rays, bool is_last, const ProgressCallback& progress) override {
@@ -248,11 +171,27 @@ void answer_all(std::vector<Ray> rays, RayReader& reader, Answers& answers, cons
   stats.write_ms += answers.write_ms();
 }
 
-void cast(const CastOptions& options) {
+/// Goes on with a job, and where it has all pieces writes its files.
+void cast_job(const CastOptions& options, const CLI::App& command, const Console& console) {
+  RunStats stats;
+  const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
+                          .merge = [&](const jobs::Job& job) { merge_job_deferring(job, options.outputs()); },
+                          .outputs = fmt::format("{}", fmt::join(names_of(options.outputs()), ", "))};
+  run_job(*plan_rays(options, command, console), options.job, steps, console);
+}
+
+void cast(const CastOptions& options, const CLI::App& command) {
   const Stopwatch total;
   const TracingOptions& tracing = options.tracing;
   check_cast_options(options);
+  std::vector<std::filesystem::path> inputs = input_files(tracing);
+  inputs.push_back(options.rays);
+  check_outputs(inputs, options.outputs(), tracing.stats);
   const Console console(tracing.verbosity());
+  if (options.job.folder) {
+    cast_job(options, command, console);
+    return;
+  }
 
   RunStats stats;
   RayReader reader(options.rays);
@@ -294,7 +233,7 @@ Command add_cast_command(CLI::App& program) {
   CLI::App& command = add_command(program, "cast", "Answer rays from a file with hits");
   const auto options = std::make_shared<CastOptions>();
   add_cast_options(command, *options);
-  return {&command, [options] { cast(*options); }};
+  return {&command, [options, &command] { cast(*options, command); }};
 }
 
 }  // namespace promin::app

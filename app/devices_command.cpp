@@ -6,17 +6,40 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
 
+#include "arguments.h"
 #include "promin/device_info.h"
 #include "promin/error.h"
 
 namespace promin::app {
 namespace {
 
-void print_devices() {
+void print_json(const std::vector<gpu::DeviceInfo>& devices) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const gpu::DeviceInfo& device : devices) {
+    list.push_back({{"index", device.index},
+                    {"name", device.name},
+                    {"type", device.type},
+                    {"driver", device.driver},
+                    {"uuid", device.uuid},
+                    {"api_version", device.api_version},
+                    {"obstacles", device.obstacles},
+                    {"lacks", device.lacks},
+                    {"is_default", device.is_default}});
+  }
+  fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_devices(bool is_json) {
   const std::vector<gpu::DeviceInfo> devices = gpu::list_devices();
   if (devices.empty()) {
     throw DeviceError({"no Vulkan device found", "", "install a driver, e.g. the package mesa-vulkan-drivers"});
+  }
+  if (is_json) {
+    print_json(devices);
+    return;
   }
   size_t name_width = 4;
   size_t type_width = 4;
@@ -44,7 +67,9 @@ void print_devices() {
 
 Command add_devices_command(CLI::App& program) {
   CLI::App& command = add_command(program, "devices", "Print the Vulkan devices and which one is picked");
-  return {&command, print_devices};
+  const auto is_json = std::make_shared<bool>(false);
+  OptionTable(command).add_flag("--json", "Print JSON, with the UUIDs that --device takes", *is_json);
+  return {&command, [is_json] { print_devices(*is_json); }};
 }
 
 }  // namespace promin::app

@@ -6,7 +6,10 @@
 
 #include <CLI/App.hpp>
 #include <memory>
+#include <optional>
 
+#include "cast_options.h"
+#include "command_job.h"
 #include "console.h"
 #include "image/open_pictures.h"
 #include "jobs/job.h"
@@ -19,36 +22,41 @@ namespace {
 
 struct MergeOptions {
   std::filesystem::path folder;
-  std::vector<std::filesystem::path> pictures;
+  std::vector<std::filesystem::path> files;
+  std::optional<std::filesystem::path> offsets;
   bool is_quiet = false;
 };
 
 void merge(const MergeOptions& options) {
-  check_pictures(options.pictures);
-  check_outputs({}, options.pictures, {});
-  find_pictures();
+  std::vector<std::filesystem::path> files = options.files;
+  if (options.offsets) files.push_back(*options.offsets);
   const jobs::Job job = jobs::Job::open(options.folder);
-  if (job.manifest().kind != kPictureJob) {
-    throw InputError({fmt::format("the job is no pictures but \"{}\"", job.manifest().kind), options.folder.string(),
-                      "name the folder of promin render --job"});
+  if (job.manifest().kind == kPictureJob) {
+    check_pictures(files);
+    find_pictures();
+  } else {
+    check_arrays(files);
   }
-  merge_pictures(job, options.pictures);
-  if (!options.is_quiet) fmt::print("{} pieces: {}\n", job.piece_count(), fmt::join(names_of(options.pictures), ", "));
+  check_outputs({}, files, {});
+  merge_job_deferring(job, files);
+  if (!options.is_quiet) fmt::print("{} pieces: {}\n", job.piece_count(), fmt::join(names_of(files), ", "));
 }
 
 }  // namespace
 
 Command add_merge_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "merge", "Make the pictures of a job from its pieces");
+  CLI::App& command = add_command(program, "merge", "Make the files of a job from its pieces");
   const auto options = std::make_shared<MergeOptions>();
   OptionTable table(command);
-  table.add_required("DIR", "", "Folder of promin render --job",
+  table.add_required("DIR", "", "Folder of promin render --job or promin cast --job",
                      [=](const OptionValues& w) { options->folder = w.text(); });
   table.add_required_repeated(
       "-o,--output", "FILE",
-      "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); of frames with #### in place "
-      "of their number; repeatable",
-      [=](const OptionValues& w) { options->pictures.assign(w.all().begin(), w.all().end()); });
+      "File to write. Pictures: .exr (linear float) or .png (sRGB, 8 bit), of frames with #### in place of their "
+      "number; repeatable. Answers to rays: .npy",
+      [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
+  table.add("--offsets", "OFFSETS.npy", "Of a job of promin cast --all: where the hits of each ray begin",
+            [=](const OptionValues& w) { options->offsets = w.text(); });
   table.add_flag("--quiet", "Print nothing but errors", options->is_quiet);
   return {&command, [options] { merge(*options); }};
 }

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_job.h"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "deferred_signals.h"
+#include "command_job.h"
 #include "frame_plan.h"
+#include "outputs.h"
 #include "picture_files.h"
 #include "promin/error.h"
 #include "run_stats.h"
@@ -26,8 +27,6 @@ constexpr uint64_t kBandPixels = uint64_t{1} << 19;
 constexpr uint64_t kMostParts = 1'000'000;
 /// The names of a path's pieces begin so.
 constexpr std::string_view kOfFrame = "frame";
-/// Missing pieces that a message names.
-constexpr size_t kMostNamed = 5;
 
 Json json_of(const PixelWindow& window) {
   return {window.lo.x, window.lo.y, window.hi.x, window.hi.y};
@@ -65,6 +64,15 @@ std::vector<uint32_t> divide(uint32_t length, uint32_t count) {
   std::vector<uint32_t> places;
   for (uint64_t i = 0; i <= count; ++i) places.push_back(static_cast<uint32_t>(i * length / count));
   return places;
+}
+
+/// What a picture of these metadata is made on, as driver_of tells it of a device.
+std::string driver_of(const Metadata& metadata) {
+  std::string driver;
+  for (const auto& [name, value] : metadata) {
+    if (name == "promin:device" || name == "promin:driver") driver += (driver.empty() ? "" : ", ") + value;
+  }
+  return driver;
 }
 
 bool is_within(const PixelWindow& part, const PixelWindow& window) {
@@ -132,7 +140,8 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
 }
 
 /// Writes one picture of its pieces, which lie row by row. A row of them is held at a time.
-void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const std::vector<fs::path>& files) {
+void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const std::vector<fs::path>& files,
+                  const ProgressCallback& progress) {
   const PicturePart first = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
   PictureHeader header;
   header.size = size_of(first.window);
@@ -143,12 +152,11 @@ void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const st
   header.display = first.display;
   header.exr = first.exr;
 
-  const DeferredSignals while_writing;
   PictureFiles written(files, header);
   std::optional<RowOfParts> row;
   for (const size_t piece : pieces) {
-    // What the signal's sender wants is an end; what is written goes.
-    if (while_writing.is_pending()) return;
+    const double done = static_cast<double>(piece) / static_cast<double>(job.piece_count());
+    if (progress && !progress(done)) throw Cancelled();
     const PicturePart part = decode_part(job.read(piece), job.file_of(piece));
     check_same(part, first, job.file_of(piece));
     if (!row) row.emplace(part);
@@ -181,7 +189,7 @@ std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions
   const uvec2 size = size_of(window);
   const auto default_bands =
       is_one_picture ? static_cast<uint32_t>(std::clamp<uint64_t>(area_of(window) / kBandPixels, 1, size.y)) : 1;
-  const uvec2 tiles = options.tiles.value_or(uvec2(1, options.bands.value_or(default_bands)));
+  const uvec2 tiles = options.tiles.value_or(uvec2(1, options.pieces.value_or(default_bands)));
   if (tiles.x > size.x || tiles.y > size.y) {
     throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the {}x{} pixels have", tiles.x,
                                   tiles.y, size.x, size.y),
@@ -220,7 +228,8 @@ jobs::Content encode_part(const PicturePart& part) {
   for (const Channel& channel : part.channels) {
     channels.push_back({{"name", channel.name}, {"is_integer", channel.is_integer}});
   }
-  Json json = {{"full_size", {part.full_size.x, part.full_size.y}},
+  Json json = {{"driver", driver_of(part.metadata)},
+               {"full_size", {part.full_size.x, part.full_size.y}},
                {"window", json_of(part.window)},
                {"part", json_of(part.part)},
                {"exposure_ev", part.display.exposure_ev},
@@ -279,35 +288,10 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
   return part;
 }
 
-std::string driver_of(const Metadata& metadata) {
-  std::string driver;
-  for (const auto& [name, value] : metadata) {
-    if (name == "promin:device" || name == "promin:driver") driver += (driver.empty() ? "" : ", ") + value;
-  }
-  return driver;
-}
-
-std::string find_driver(const jobs::Job& job) {
-  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
-    if (job.state_of(piece) != jobs::PieceState::kDone) continue;
-    return driver_of(decode_part(job.read(piece), job.file_of(piece)).metadata);
-  }
-  return "";
-}
-
-void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
+void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress) {
+  check_pictures(files);
   if (job.manifest().pieces.front().starts_with(kOfFrame)) check_numbered(job, files);
-  const std::vector<size_t> missing = jobs::find_missing(job);
-  if (!missing.empty()) {
-    std::vector<std::string> names;
-    for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
-      names.push_back(job.manifest().pieces[missing[i]]);
-    const std::string more = missing.size() > kMostNamed ? ", …" : "";
-    throw RunError({fmt::format("{} of {} pieces are missing or bad: {}{}", missing.size(), job.piece_count(),
-                                fmt::join(names, ", "), more),
-                    job.file_of(missing.front()).parent_path().string(),
-                    "run the job again, which makes what is missing"});
-  }
+  check_whole(job);
   const std::vector<std::string>& names = job.manifest().pieces;
   for (size_t begin = 0; begin < names.size();) {
     std::vector<size_t> pieces;
@@ -317,7 +301,7 @@ void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
     const std::optional<uint32_t> frame = decode_part(job.read(pieces.front()), job.file_of(pieces.front())).frame;
     std::vector<fs::path> numbered;
     for (const fs::path& file : files) numbered.push_back(frame ? number_file(file, *frame) : file);
-    write_merged(job, pieces, numbered);
+    write_merged(job, pieces, numbered, progress);
   }
 }
 

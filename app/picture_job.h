@@ -11,24 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "job_options.h"
 #include "jobs/job.h"
 #include "promin/image.h"
+#include "promin/progress.h"
 #include "promin/renderer.h"
 
 namespace promin::app {
 
 /// The kind of a job whose pieces are parts of pictures.
 inline constexpr std::string_view kPictureJob = "render";
-
-/// How pictures are made in pieces that a folder keeps.
-struct JobOptions {
-  std::optional<std::filesystem::path> folder;
-  /// Bands of rows that each picture is cut into, or columns and rows of tiles; empty: as suits it.
-  std::optional<uint32_t> bands;
-  std::optional<uvec2> tiles;
-  /// What of the pieces is to be made; without it all, and then the pictures of them.
-  std::optional<jobs::Share> share;
-};
 
 /// The pieces of a picture's window, row by row, of which there are several pictures or one. Throws UsageError for more
 /// of them than the window has rows or columns.
@@ -58,15 +50,11 @@ PicturePart decode_part(const jobs::Content& content, const std::filesystem::pat
 std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
                                      const std::vector<PixelWindow>& parts);
 
-/// What the pieces of a job that are there were made on; empty where there is none.
-std::string find_driver(const jobs::Job& job);
-/// What pieces of a picture with these metadata are made on: device and driver.
-std::string driver_of(const Metadata& metadata);
-
 /// Puts the pieces of a job of pictures together and writes each picture to the files of these names, with the number
 /// of its frame. Throws RunError where pieces are missing, which names some, InputError where pieces do not belong
-/// together (made by different drivers) or are damaged, UsageError where several frames would go to one file. A signal
-/// waits until the file at hand is whole.
-void merge_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
+/// together (made by different drivers) or are damaged, UsageError for files that are no pictures and where several
+/// frames would go to one file, Cancelled where `progress`, which is asked before each piece, says so.
+void merge_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files,
+                    const ProgressCallback& progress);
 
 }  // namespace promin::app

@@ -12,83 +12,26 @@
 #include <future>
 #include <memory>
 
+#include "command_job.h"
 #include "console.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
-#include "frame_plan.h"
 #include "image/open_pictures.h"
-#include "jobs/job.h"
-#include "jobs/sha256.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"
+#include "picture_run.h"
 #include "progress.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "render/renderer_impl.h"
-#include "render_options.h"
+#include "render_job.h"
 #include "tracing_run.h"
-#include "view_setup.h"
 
 namespace promin::app {
 namespace {
-
-using GivenOptions = std::vector<std::pair<std::string, std::vector<std::string>>>;
-
-/// Of all pictures together.
-uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options) {
-  if (options.explained_pixel) return view.samples_per_pixel;
-  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
-  const uint32_t samples = view.error_target ? view.error_target->min_samples : view.samples_per_pixel;
-  return uint64_t{size.x} * size.y * samples * frames * options.tracing.repeat_count;
-}
-
-TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_t expected_samples) {
-  TunedRendererOptions result;
-  result.expected_samples = expected_samples;
-  choose_tree(options.tracing, result);
-  result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
-  result.force_all_features = options.has_all_features;
-  result.has_error_target = options.error.is_given();
-  result.mode = {options.view.debug_view, !options.view.has_no_shadows};
-  result.aovs = options.aovs;
-  // The average takes pixels that hit something.
-  if (options.view.look.averages_exposure) result.aovs.object = true;
-  return result;
-}
-
-/// A picture and the device's time for each of its repetitions.
-struct TracedFrame {
-  RenderResult result;
-  std::vector<double> trace_ms;
-};
-
-TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
-                  const std::function<bool(double)>& on_progress) {
-  TracedFrame frame;
-  const uint32_t repeats = options.tracing.repeat_count;
-  for (uint32_t i = 0; i < repeats; ++i) {
-    const auto tell = [&](double fraction) { return on_progress((i + fraction) / repeats); };
-    const std::optional<double> limit_s = options.error.time_limit_s;
-    frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
-    frame.trace_ms.push_back(frame.result.trace_ms);
-  }
-  return frame;
-}
-
-/// No times: equal pictures are equal files.
-Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs) {
-  Metadata metadata = describe_picture(stats);
-  if (frame) metadata.emplace_back("promin:frame", std::to_string(*frame));
-  metadata.insert(metadata.end(), aovs.metadata.begin(), aovs.metadata.end());
-  return metadata;
-}
-
-PixelWindow window_of(const View& view) {
-  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
-}
 
 PictureHeader make_header(const RenderOptions& options, const Scene& scene, const std::optional<uint32_t>& frame,
                           const RunStats& stats) {
@@ -136,14 +79,6 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
                      stats.view->size.y, describe_samples(stats), frames,
                      1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
                      stats.mrays_per_s(), stats.device.name, fmt::join(names_of(options.pictures), ", "));
-}
-
-/// Gives pixels the numbers that the file has for its objects.
-void number_as_in_file(const Scene& scene, Aovs& aovs) {
-  if (scene.object_numbers.empty()) return;
-  for (uint32_t& object : aovs.object) {
-    if (object != Aovs::kNoId) object = object_number(scene, object);
-  }
 }
 
 /// Whether the whole picture decides what its files begin with, or takes one call: it is not written band by band then.
@@ -202,144 +137,6 @@ void render_frame(const PlannedFrame& planned, const RenderOptions& options, con
   }
 }
 
-/// What of the options does not reach a bit of a piece; the files that others name are in the manifest by their hashes.
-constexpr std::string_view kNotInJob[] = {"SCENE",   "--output",   "--job",     "--piece", "--pieces",
-                                          "--tiles", "--stats",    "--device",  "--quiet", "--builder",
-                                          "--bvh",   "--features", "--verbose", "--repeat"};
-constexpr std::string_view kNamesFile[] = {"--path", "--environment"};
-
-jobs::Manifest make_manifest(const RenderOptions& options, const GivenOptions& given, const RunStats& stats,
-                             const std::vector<SourceFile>& sources, std::vector<std::string> pieces) {
-  jobs::Manifest manifest;
-  manifest.kind = kPictureJob;
-  manifest.options = {{"version", PROMIN_VERSION}, {"program", jobs::sha256_of_file("/proc/self/exe")}};
-  for (const auto& [name, words] : given) {
-    if (std::ranges::find(kNotInJob, name) != std::end(kNotInJob)) continue;
-    const bool is_file = std::ranges::find(kNamesFile, name) != std::end(kNamesFile);
-    const std::string value = fmt::format("{}", fmt::join(words, " "));
-    manifest.options.emplace_back(name, is_file ? std::filesystem::path(value).filename().string() : value);
-  }
-  manifest.options.emplace_back("size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y));
-  for (const SourceFile& source : sources) {
-    if (!source.stamp) continue;
-    manifest.files.push_back(jobs::describe_input(source.file));
-    if (stamp_of(source.file) == source.stamp) continue;
-    throw InputError({"the file has changed while it was read", source.file.string(), "try again"});
-  }
-  if (options.path) manifest.files.push_back(jobs::describe_input(*options.path));
-  const auto& panorama = options.view.environment.panorama;
-  if (panorama) manifest.files.push_back(jobs::describe_input(*panorama));
-  manifest.pieces = std::move(pieces);
-  return manifest;
-}
-
-/// Makes the pieces of a job: each a part of a frame.
-class JobRun {
- public:
-  JobRun(const RenderOptions& options, const std::vector<PlannedFrame>& frames, const Scene& scene, RunStats& stats,
-         const Console& console)
-      : options_(options),
-        frames_(frames),
-        scene_(scene),
-        stats_(stats),
-        console_(console),
-        whole_view_(*stats.view),
-        window_(window_of(*stats.view)),
-        parts_(cut_picture(window_, options.job, frames.size() == 1)),
-        progress_(console.is_quiet()) {}
-
-  std::vector<std::string> piece_names() const {
-    std::vector<std::optional<uint32_t>> numbers;
-    for (const PlannedFrame& frame : frames_) numbers.push_back(frame.number);
-    return name_pieces(numbers, parts_);
-  }
-
-  /// Returns how many pieces it has made. False in `is_whole` where a signal has ended it before its share was done.
-  size_t run(const jobs::Job& job, bool& is_whole) {
-    const jobs::Share share = options_.job.share.value_or(jobs::Share{});
-    is_whole = true;
-    size_t done = 0;
-    // A signal ends the work when the piece at hand is written, and the program at the end of this.
-    const DeferredSignals while_working;
-    const auto before = [&](const jobs::NextPiece& next) {
-      if (while_working.is_pending()) {
-        console_.note(
-            fmt::format("stopped before piece {} of {}; the same command goes on", next.number, job.piece_count()));
-        is_whole = false;
-        return false;
-      }
-      if (!next.why.empty()) {
-        console_.warn(fmt::format("{} {}; it is made anew", job.file_of(next.number).string(), next.why));
-      }
-      next_ = next;
-      return true;
-    };
-    open_device();
-    check_driver(job);
-    done = jobs::run_share(job, share, fmt::format("{}, {}", stats_.device.name, stats_.device.driver), before,
-                           [&](size_t piece) { return make(piece); });
-    return done;
-  }
-
- private:
-  void open_device() {
-    device_ = open_device_for(options_.tracing, stats_, console_);
-    const size_t pieces = frames_.size() * parts_.size();
-    const size_t shares = options_.job.share ? options_.job.share->count : 1;
-    const uint64_t samples = count_samples(whole_view_, frames_.size(), options_) / std::min(shares, pieces);
-    renderer_.emplace(make_renderer(*device_, scene_, make_renderer_options(options_, samples)));
-    take_setup(renderer_->setup_stats(), stats_, console_);
-  }
-
-  /// Another driver's pieces have other bits.
-  void check_driver(const jobs::Job& job) const {
-    const std::string of_pieces = find_driver(job);
-    const std::string own = driver_of(describe_picture(stats_));
-    if (of_pieces.empty() || of_pieces == own) return;
-    throw UsageError({fmt::format("the job's pieces were made on {}, and this is {}", of_pieces, own),
-                      options_.job.folder->string(), "go on with that device by --device, or take another folder"});
-  }
-
-  jobs::Content make(size_t piece) {
-    const PlannedFrame& frame = frames_[piece / parts_.size()];
-    View view = whole_view_;
-    if (frame.camera) view.camera = *frame.camera;
-    view.crop = parts_[piece % parts_.size()];
-    TracedFrame traced = trace(*renderer_, view, options_, [&](double fraction) {
-      progress_.update((static_cast<double>(next_.before) + fraction) / static_cast<double>(next_.total));
-      return true;
-    });
-    check_validation(*device_, stats_);
-    number_as_in_file(scene_, traced.result.aovs);
-    stats_.errors.clear();
-    if (traced.result.error) stats_.errors.push_back(*traced.result.error);
-    const AovHeader aovs = describe_aovs(scene_, options_.aovs, view.depth_kind);
-    return encode_part({.frame = frame.number,
-                        .full_size = view.size,
-                        .window = window_,
-                        .part = *view.crop,
-                        .metadata = make_metadata(stats_, frame.number, aovs),
-                        .exr = options_.exr,
-                        .display = stats_.display,
-                        .error = traced.result.error,
-                        .image = std::move(traced.result.image),
-                        .channels = make_channels(scene_, traced.result.aovs, options_.aovs)});
-  }
-
-  const RenderOptions& options_;
-  const std::vector<PlannedFrame>& frames_;
-  const Scene& scene_;
-  RunStats& stats_;
-  const Console& console_;
-  View whole_view_;
-  PixelWindow window_;
-  std::vector<PixelWindow> parts_;
-  Progress progress_;
-  jobs::NextPiece next_;
-  gpu::DeviceHandle device_;
-  std::optional<Renderer> renderer_;
-};
-
 /// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
 /// are whole.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const gpu::Device& device,
@@ -375,12 +172,6 @@ std::vector<std::filesystem::path> pictures_of(const std::vector<PlannedFrame>& 
   return files;
 }
 
-void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
-  if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
-  throw UsageError({fmt::format("--explain is beyond the picture of {}x{}", size.x, size.y), "on the command line",
-                    "stay within it or give a larger --size"});
-}
-
 /// Opens the plugin for pictures on a thread, while the tree is built and the pipeline compiled. Not before there is a
 /// device: the dynamic loader takes turns, and a Vulkan driver that has to wait for the plugin's libraries costs a
 /// tenth of a second.
@@ -406,26 +197,16 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures) {
 }
 
 /// Goes on with a job, and where it has all pieces writes its pictures.
-void render_job(const RenderOptions& options, const GivenOptions& words, const std::vector<PlannedFrame>& frames,
-                const Scene& scene, const std::vector<SourceFile>& sources, RunStats& stats, const Console& console) {
-  JobRun run(options, frames, scene, stats, console);
-  const jobs::Job job =
-      jobs::Job::create(*options.job.folder, make_manifest(options, words, stats, sources, run.piece_names()));
-  const jobs::Share share = options.job.share.value_or(jobs::Share{});
-  bool is_whole = true;
-  const size_t made = jobs::find_missing(job, share).empty() ? 0 : run.run(job, is_whole);
-  if (!is_whole) return;
-  if (!share.is_all()) {
-    if (!console.is_quiet())
-      fmt::print("{} pieces made of {}, in {}\n", made, job.piece_count(), options.job.folder->string());
-    return;
-  }
-  merge_pictures(job, options.pictures);
-  if (console.is_quiet()) return;
-  fmt::print("{} of {} pieces made now: {}\n", made, job.piece_count(), fmt::join(names_of(options.pictures), ", "));
+void render_job(PictureRun run, const CLI::App& command, const Console& console) {
+  const RenderOptions options = run.options;
+  RunStats stats;
+  const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
+                          .merge = [&](const jobs::Job& job) { merge_job_deferring(job, options.pictures); },
+                          .outputs = fmt::format("{}", fmt::join(names_of(options.pictures), ", "))};
+  run_job(*plan_pictures(std::move(run), command, console), options.job, steps, console);
 }
 
-void render(const RenderOptions& given, const GivenOptions& words) {
+void render(const RenderOptions& given, const CLI::App& command) {
   const Stopwatch total;
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
@@ -448,35 +229,18 @@ void render(const RenderOptions& given, const GivenOptions& words) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
   }
 
-  RunStats stats;
-  std::vector<SourceFile> sources;
-  Scene scene = load_for(tracing, stats, console, sources);
-  ViewOptions view = options.view;
-  view.given_camera = frames.front().camera;
-  stats.view = make_view(scene, view, console);
-  stats.view->error_target = options.error.error_target();
-  check_explained_pixel(options, stats.view->size);
-  const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
-  stats.display = choose_display(scene, view.look, view.debug_view);
-  if (stats.view->error_target) stats.view->error_target->white = std::exp2(-stats.display.exposure_ev);
-  const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
-  const std::string assumptions =
-      describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
-  if (!assumptions.empty()) console.note(assumptions);
-  check_lights(scene, options.view.lights_off);
-  switch_lights(scene.lights, options.view.lights_off);
-  const auto is_on = [](const Light& light) { return light.is_on; };
-  stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));
-
+  PictureRun run = prepare_pictures(options, std::move(frames), console);
   if (options.job.folder) {
-    render_job(options, words, frames, scene, sources, stats, console);
+    render_job(std::move(run), command, console);
     return;
   }
+  const Scene& scene = run.scene;
+  RunStats& stats = run.stats;
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   std::future<void> pictures;
   if (has_pictures) pictures = open_pictures_aside();
-  Renderer renderer =
-      make_renderer(*device, scene, make_renderer_options(options, count_samples(*stats.view, frames.size(), options)));
+  Renderer renderer = make_renderer(
+      *device, scene, make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {
     const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
@@ -486,7 +250,7 @@ void render(const RenderOptions& given, const GivenOptions& words) {
   }
   // A plugin that does not load is told of before the tracing, which may take long.
   pictures.get();
-  render_frames(frames, options, *device, scene, renderer, stats, console);
+  render_frames(run.frames, options, *device, scene, renderer, stats, console);
 
   if (options.error.time_limit_s) console.note(describe_target(stats));
   const DeferredSignals while_writing;
@@ -502,7 +266,7 @@ Command add_render_command(CLI::App& program) {
   CLI::App& command = add_command(program, "render", "Render a picture of a scene");
   const auto options = std::make_shared<RenderOptions>();
   add_render_options(command, *options);
-  return {&command, [options, &command] { render(*options, given_options(command)); }};
+  return {&command, [options, &command] { render(*options, command); }};
 }
 
 }  // namespace promin::app

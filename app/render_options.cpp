@@ -31,7 +31,6 @@ constexpr double kMaxBackground = 1e9;
 /// More would leave the range of floats.
 constexpr double kMaxExposureEv = 64.0;
 constexpr uint32_t kMaxTextureMib = 8192;
-constexpr uint32_t kMostShares = 1000000;
 /// Seconds.
 constexpr double kMinTimeLimit = 1e-3;
 constexpr double kMaxTimeLimit = 1e6;
@@ -218,15 +217,6 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
 
 namespace {
 
-jobs::Share read_share(const OptionValues& words) {
-  const std::string& text = words.text();
-  const size_t slash = text.find('/');
-  if (slash == std::string::npos) words.refuse(fmt::format("--piece takes I/N, as 0/4, not \"{}\"", text));
-  const OptionValues numbers = words.with({text.substr(0, slash), text.substr(slash + 1)});
-  const uint32_t count = numbers.whole(1, 1, kMostShares);
-  return {numbers.whole(0, 0, count - 1), count};
-}
-
 void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
   table.add("--time-limit", "SECONDS",
             "Instead of --spp: the most exact picture that can be had in this time, and the --target-error that gives "
@@ -255,24 +245,6 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w); });
 }
-
-namespace {
-
-void add_job_options(OptionTable& table, JobOptions& job) {
-  table.add("--job", "DIR", "Keep the work in this folder, piece by piece: the same command goes on where it was ended",
-            [&](const OptionValues& w) { job.folder = w.text(); });
-  table.add("--pieces", "N",
-            "Of a job: bands of rows that each picture is cut into, 1 to 32768 [as suits its size; a path's frames 1]",
-            [&](const OptionValues& w) { job.bands = w.whole(0, 1, kMaxSide); });
-  table.add("--tiles", "C R", "The same in columns and rows of tiles",
-            [&](const OptionValues& w) { job.tiles = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
-  table.add("--piece", "I/N",
-            "Of a job: make only the pieces whose number is I more than a multiple of N, and no picture; promin merge "
-            "makes it of all",
-            [&](const OptionValues& w) { job.share = read_share(w); });
-}
-
-}  // namespace
 
 std::optional<ErrorTarget> ErrorOptions::error_target() const {
   if (!is_given()) return {};
@@ -320,7 +292,13 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_fps_option(table, options.fps);
   table.add_flag("--skip-existing", "Leave out frames whose pictures are there", options.skips_existing);
 
-  add_job_options(table, options.job);
+  add_job_options(
+      table, options.job,
+      "Of a job: bands of rows that each picture is cut into, 1 to 32768 [as suits its size; a path's frames 1]",
+      kMaxSide);
+  table.add(
+      "--tiles", "C R", "Of a job, in place of --pieces: columns and rows of tiles of each picture",
+      [&](const OptionValues& w) { options.job.tiles = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--aov", "NAMES",
             fmt::format("Channels of an EXR beside R, G, B, of {},{}", fmt::join(aov_names(), ","), kCryptomatte),
             [&](const OptionValues& w) { options.aovs = options.aovs | read_aovs(w); });
@@ -366,11 +344,8 @@ namespace {
 
 void check_job_options(const RenderOptions& options) {
   const JobOptions& job = options.job;
-  if (!job.folder) {
-    const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.bands ? "--pieces" : "";
-    if (name.empty()) return;
-    throw UsageError({fmt::format("{} has no job to cut", name), "on the command line", "give --job as well"});
-  }
+  check_has_job(job);
+  if (!job.folder) return;
   const std::pair<bool, std::string_view> others[] = {{options.explained_pixel.has_value(), "--explain"},
                                                       {options.error.time_limit_s.has_value(), "--time-limit"},
                                                       {options.view.look.averages_exposure, "--exposure average"},
@@ -381,7 +356,7 @@ void check_job_options(const RenderOptions& options) {
     if (!is_given) continue;
     throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
   }
-  if (job.bands && job.tiles) {
+  if (job.pieces && job.tiles) {
     throw UsageError({"--pieces and --tiles contradict each other", "on the command line", "leave one out"});
   }
   if (job.share && !options.pictures.empty()) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "environment_options.h"
-#include "picture_job.h"
+#include "job_options.h"
 #include "promin/lighting.h"
 #include "promin/math.h"
 #include "promin/renderer.h"

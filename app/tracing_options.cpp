@@ -21,9 +21,11 @@ void add_scene_argument(OptionTable& table, TracingOptions& options) {
 }
 
 void add_device_option(OptionTable& table, std::optional<std::string>& device) {
-  table.add("--device", "NAME|INDEX", "Vulkan device by a part of its name or its index in `promin devices`",
+  table.add("--device", "NAME|INDEX",
+            "Vulkan device by a part of its name, its index or uuid: and its UUID in `promin devices --json`",
             [&](const OptionValues& w) {
-              if (w.text().empty()) w.refuse("--device takes a part of a device's name or its index, not \"\"");
+              if (w.text().empty())
+                w.refuse("--device takes a part of a device's name, its index or uuid: and its UUID, not \"\"");
               device = w.text();
             });
 }

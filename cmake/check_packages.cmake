@@ -8,7 +8,7 @@ find_package(PkgConfig QUIET)
 if(NOT PkgConfig_FOUND)
   list(APPEND PROMIN_LACKING pkg-config)
 endif()
-foreach(ROW libpng:libpng-dev libturbojpeg:libturbojpeg0-dev libwebp:libwebp-dev OpenImageIO:libopenimageio-dev)
+foreach(ROW libcrypto:libssl-dev libpng:libpng-dev libturbojpeg:libturbojpeg0-dev libwebp:libwebp-dev OpenImageIO:libopenimageio-dev)
   string(REPLACE ":" ";" ROW ${ROW})
   list(GET ROW 0 MODULE)
   list(GET ROW 1 PACKAGE)
@@ -19,7 +19,7 @@ foreach(ROW libpng:libpng-dev libturbojpeg:libturbojpeg0-dev libwebp:libwebp-dev
     list(APPEND PROMIN_LACKING ${PACKAGE})
   endif()
 endforeach()
-foreach(ROW glm:libglm-dev SPIRV-Headers:spirv-headers nlohmann_json:nlohmann-json3-dev draco:libdraco-dev
+foreach(ROW CLI11:libcli11-dev fmt:libfmt-dev glm:libglm-dev SPIRV-Headers:spirv-headers nlohmann_json:nlohmann-json3-dev draco:libdraco-dev
             meshoptimizer:libmeshoptimizer-dev Vulkan:libvulkan-dev)
   string(REPLACE ":" ";" ROW ${ROW})
   list(GET ROW 0 MODULE)

@@ -14,6 +14,8 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <mutex>
+#include <set>
 
 #include "promin/error.h"
 
@@ -67,6 +69,38 @@ std::string host_name() {
   return name.data();
 }
 
+namespace {
+
+/// The temporary files that this process is at: another of its threads may write the same file, and what is left by a
+/// process that had this one's id is told from them.
+class LiveFiles {
+ public:
+  /// False where there is one of this name.
+  bool add(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    return files_.insert(fs::absolute(file).lexically_normal()).second;
+  }
+  void remove(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    files_.erase(fs::absolute(file).lexically_normal());
+  }
+  bool has(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    return files_.contains(fs::absolute(file).lexically_normal());
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<fs::path> files_;
+};
+
+LiveFiles& live_files() {
+  static LiveFiles files;
+  return files;
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
   // rename() would replace a symbolic link, not what it points to.
@@ -85,14 +119,18 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
     throw RunError({"the output file is a device or a pipe", target_.string(), "name a file"});
   }
-  fs::path name = target_.stem();
-  // A folder may be seen by several machines.
-  name += ".tmp" + std::to_string(getpid()) + "-" + host_name();
-  name += target_.extension();
-  temporary_ = folder / name;
+  for (int writer = 1; temporary_.empty() || !live_files().add(temporary_); ++writer) {
+    fs::path name = target_.stem();
+    if (writer > 1) name += "." + std::to_string(writer);
+    // A folder may be seen by several machines.
+    name += ".tmp" + std::to_string(getpid()) + "-" + host_name();
+    name += target_.extension();
+    temporary_ = folder / name;
+  }
 }
 
 AtomicFile::~AtomicFile() {
+  live_files().remove(temporary_);
   if (committed_) return;
   std::error_code error;
   fs::remove(temporary_, error);
@@ -190,7 +228,7 @@ void clear_leftovers(const fs::path& folder) {
     const char* end = name.data() + name.size();
     const auto [rest, problem] = std::from_chars(name.data() + mark + kMark.size(), end, pid);
     if (problem != std::errc() || pid <= 0 || std::string_view(rest, end) != owner) continue;
-    const bool is_alive = pid != getpid() && (kill(pid, 0) == 0 || errno != ESRCH);
+    const bool is_alive = pid == getpid() ? live_files().has(entry.path()) : kill(pid, 0) == 0 || errno != ESRCH;
     if (!is_alive) fs::remove(entry.path(), error);
   }
 }

@@ -52,7 +52,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// The temporary file lies beside the target and has its ending, so that writers which pick the format by the ending
-  /// see the right one: NAME.tmpPID-HOST.ENDING.
+  /// see the right one: NAME.tmpPID-HOST.ENDING; NAME.2.tmp… where another thread of the process writes the same
+  /// target.
   const std::filesystem::path& temporary() const { return temporary_; }
 
   /// Flushes the temporary file to disk and renames it. Throws RunError.

@@ -89,6 +89,15 @@ DeviceTraits traits_of(const vk::raii::PhysicalDevice& device, const vk::Physica
           .texel_buffer_bytes = properties.limits.maxTexelBufferElements * kTexelBytes};
 }
 
+std::string uuid_of(const vk::raii::PhysicalDevice& device) {
+  const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
+  std::string text;
+  for (const uint8_t byte : chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID) {
+    for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
+  }
+  return text;
+}
+
 DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::SurfaceKHR surface) {
   const vk::PhysicalDeviceProperties properties = device.getProperties();
   DeviceInfo info;
@@ -102,6 +111,7 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::
     return info;
   }
   info.driver = driver_text(device, properties);
+  info.uuid = uuid_of(device);
   if (!find_family(device, {})) {
     info.obstacles.emplace_back("no compute queue");
     return info;
@@ -149,7 +159,10 @@ std::string list_names(const std::vector<DeviceInfo>& infos) {
   return text;
 }
 
-/// Index into `infos`; by exact index where the selection is a number, else by a part of the name.
+constexpr std::string_view kByUuid = "uuid:";
+
+/// Index into `infos`; by exact index where the selection is a number, by a UUID where it says so, else by a part of
+/// the name.
 size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<std::string>& selection) {
   if (infos.empty()) throw NoDriverError();
   for (size_t i = 0; i < infos.size(); ++i) {
@@ -167,7 +180,8 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
     // An empty text is a part of any name, and no choice.
     const bool is_part =
         !selection->empty() && lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
-    const bool matches = is_number ? i == number : is_part;
+    const bool is_uuid = lower_case(*selection) == std::string(kByUuid) + infos[i].uuid;
+    const bool matches = is_number ? i == number : is_part || is_uuid;
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
       throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],

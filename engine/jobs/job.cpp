@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
@@ -24,8 +26,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Of manifests and of pieces.
-constexpr int kFormat = 1;
-constexpr std::string_view kMagic = "promin piece 1";
+constexpr int kFormat = 2;
+constexpr std::string_view kMagic = "promin piece 2";
 /// Longer than any header of a piece.
 constexpr size_t kMostHeaderBytes = 1U << 20;
 
@@ -161,8 +163,8 @@ std::optional<Header> read_header(std::string_view text) {
   return Header{std::move(json), end + 1};
 }
 
-std::string hash_of(const std::string& description, std::span<const std::byte> bytes) {
-  return Sha256().add(description).add(bytes).finish();
+std::string hash_of(std::span<const std::byte> bytes) {
+  return Sha256().add(bytes).finish();
 }
 
 /// A piece's content, or what is bad about it.
@@ -187,23 +189,53 @@ Reading read_piece(const fs::path& file, const std::string& job, const std::stri
     if (word("piece") != name) return {{}, "is another piece"};
     Content content{word("description"), {bytes.begin() + static_cast<std::ptrdiff_t>(header->begin), bytes.end()}};
     if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0})) return {{}, "is cut"};
-    if (word("sha256") != hash_of(content.description, content.bytes)) return {{}, "is damaged"};
+    if (word("description_sha256") != sha256_of(content.description)) return {{}, "is damaged"};
+    if (word("sha256") != hash_of(content.bytes)) return {{}, "is damaged"};
     return {std::move(content), ""};
   } catch (const nlohmann::json::exception&) {
     return {{}, "is damaged"};
   }
 }
 
-/// A line at the end of a file, which reaches the disk.
-void append_line(const fs::path& file, const std::string& line) {
+/// A line at the end of a file that no other process writes, whole or not at all.
+void append_line(const fs::path& file, const std::string& line, bool reaches_disk) {
+  // Its threads take turns: one that fails takes back what it has written.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  const bool is_written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == ssize_t(line.size()) &&
-                          fsync(descriptor) == 0;
+  const off_t end = descriptor >= 0 ? lseek(descriptor, 0, SEEK_END) : -1;
+  bool is_written = end >= 0 && ::write(descriptor, line.data(), line.size()) == ssize_t(line.size());
+  if (is_written && reaches_disk) is_written = fsync(descriptor) == 0;
   const int error = errno;
+  if (!is_written && end >= 0) static_cast<void>(ftruncate(descriptor, end));
   if (descriptor >= 0) close(descriptor);
   if (is_written) return;
-  throw RunError({std::string("cannot write the receipt (") + std::strerror(error) + ")", file.string(),
+  throw RunError({std::string("cannot write to the ledger (") + std::strerror(error) + ")", file.string(),
                   "check the disk and permissions"});
+}
+
+/// Seconds since 1970.
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// What every line of the ledger has.
+Json begin_line(const char* event, size_t piece, const Manifest& manifest, const Maker& maker) {
+  Json line = {{"event", event}, {"number", piece}, {"piece", manifest.pieces[piece]}, {"time_s", now_s()}};
+  line["made_on"] = maker.made_on;
+  line["fingerprint"] = maker.fingerprint;
+  return line;
+}
+
+std::string text_of_line(const Json& line) {
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string version_of(const Manifest& manifest) {
+  for (const auto& [name, value] : manifest.options) {
+    if (name == "version") return value;
+  }
+  return "";
 }
 
 }  // namespace
@@ -228,14 +260,11 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
     write_text_file(manifest_file(folder), text_of(manifest));
     flush_folder(folder);
   }
-  const Manifest there = read_manifest(folder);
-  if (text_of(there) != text_of(manifest)) {
-    throw UsageError({"the folder has another job: " + find_difference(there, manifest), folder.string(),
-                      "take another folder, or the options and files of that one"});
-  }
+  const Job job(folder, read_manifest(folder));
+  job.check_same(manifest);
   make_folder(folder / "pieces");
   make_folder(folder / "ledger");
-  return {folder, manifest};
+  return job;
 }
 
 Job Job::open(const fs::path& folder) {
@@ -247,6 +276,16 @@ Job Job::open(const fs::path& folder) {
     throw InputError({"there is no job in the folder", folder.string(), "name that of --job"});
   }
   return {folder, read_manifest(folder)};
+}
+
+void Job::check_same(const Manifest& manifest) const {
+  if (text_of(manifest_) == text_of(manifest)) return;
+  throw UsageError({"the folder has another job: " + find_difference(manifest_, manifest), folder_.string(),
+                    "take another folder, or the options and files of that one"});
+}
+
+fs::path Job::ledger_file() const {
+  return folder_ / "ledger" / fmt::format("{}-{}.jsonl", host_name(), getpid());
 }
 
 fs::path Job::file_of(size_t piece) const {
@@ -268,30 +307,76 @@ Content Job::read(size_t piece) const {
   throw InputError({reading.why, file_of(piece).string(), "run the job again, which makes it anew"});
 }
 
-void Job::write(size_t piece, const Content& content, double ms, const std::string& made_on) const {
-  const std::string hash = hash_of(content.description, content.bytes);
+Receipt Job::write(size_t piece, const Content& content, double ms, const Maker& maker) const {
+  Receipt receipt{.number = piece,
+                  .name = manifest_.pieces[piece],
+                  .sha256 = hash_of(content.bytes),
+                  .size_bytes = content.bytes.size(),
+                  .ms = ms,
+                  .maker = maker,
+                  .version = version_of(manifest_),
+                  .host = host_name(),
+                  .pid = getpid()};
   const Json header = {{"job", id_},
-                       {"piece", manifest_.pieces[piece]},
-                       {"size_bytes", content.bytes.size()},
-                       {"sha256", hash},
-                       {"description", content.description}};
+                       {"piece", receipt.name},
+                       {"size_bytes", receipt.size_bytes},
+                       {"sha256", receipt.sha256},
+                       {"description", content.description},
+                       {"description_sha256", sha256_of(content.description)}};
   const std::string head = fmt::format("{}\n{}\n", kMagic, header.dump(-1, ' ', false, Json::error_handler_t::replace));
   write_file(file_of(piece), {std::as_bytes(std::span(head)), content.bytes});
   flush_folder(folder_ / "pieces");
-  const Json receipt = {{"piece", manifest_.pieces[piece]},
-                        {"sha256", hash},
-                        {"size_bytes", content.bytes.size()},
-                        {"ms", ms},
-                        {"made_on", made_on}};
-  append_line(folder_ / "ledger" / fmt::format("{}-{}.jsonl", host_name(), getpid()),
-              receipt.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  Json line = begin_line("done", piece, manifest_, maker);
+  line.update({{"sha256", receipt.sha256},
+               {"size_bytes", receipt.size_bytes},
+               {"ms", ms},
+               {"version", receipt.version},
+               {"host", receipt.host},
+               {"pid", receipt.pid}});
+  append_line(ledger_file(), text_of_line(line), true);
+  return receipt;
+}
+
+void Job::tell_begun(size_t piece, const Maker& maker) const {
+  append_line(ledger_file(), text_of_line(begin_line("begun", piece, manifest_, maker)), false);
+}
+
+void Job::tell_failed(size_t piece, const Maker& maker, const std::string& why) const {
+  Json line = begin_line("failed", piece, manifest_, maker);
+  line["why"] = why;
+  try {
+    append_line(ledger_file(), text_of_line(line), true);
+  } catch (const RunError&) {
+  }
+}
+
+void Job::tell_stopped(size_t piece, const Maker& maker) const {
+  try {
+    append_line(ledger_file(), text_of_line(begin_line("stopped", piece, manifest_, maker)), false);
+  } catch (const RunError&) {
+  }
 }
 
 void Job::clear_leftovers() const {
   promin::clear_leftovers(folder_ / "pieces");
 }
 
-size_t run_share(const Job& job, const Share& share, const std::string& made_on, const BeforePiece& before,
+Receipt make_piece(const Job& job, size_t piece, const Maker& maker, const std::function<Content(size_t piece)>& make) {
+  job.tell_begun(piece, maker);
+  try {
+    const Stopwatch making;
+    const Content content = make(piece);
+    return job.write(piece, content, making.ms(), maker);
+  } catch (const Cancelled&) {
+    job.tell_stopped(piece, maker);
+    throw;
+  } catch (const std::exception& error) {
+    job.tell_failed(piece, maker, error.what());
+    throw;
+  }
+}
+
+size_t run_share(const Job& job, const Share& share, const Maker& maker, const BeforePiece& before,
                  const std::function<Content(size_t piece)>& make) {
   job.clear_leftovers();
   const std::vector<size_t> missing = find_missing(job, share);
@@ -302,9 +387,7 @@ size_t run_share(const Job& job, const Share& share, const std::string& made_on,
     // Another may have made it by now.
     if (job.state_of(piece, &why) == PieceState::kDone) continue;
     if (!before({piece, i, missing.size(), why})) return made;
-    const Stopwatch making;
-    const Content content = make(piece);
-    job.write(piece, content, making.ms(), made_on);
+    make_piece(job, piece, maker, make);
     ++made;
   }
   return made;

@@ -172,12 +172,17 @@ RayReader::RayReader(const fs::path& file) : file_(file) {
     throw InputError({"the file ends within its header", file.string(), kCure});
   }
   count_ = parse_header(header, file);
+  begin_ = stream_.tellg();
   const uint64_t data_bytes = file_bytes - (8 + static_cast<uint64_t>(length_bytes) + header_bytes);
   if (data_bytes % sizeof(Ray) != 0 || data_bytes / sizeof(Ray) != count_) {
     throw InputError({"the header tells of " + std::to_string(count_) + " rays, the file holds " +
                           std::to_string(data_bytes) + " bytes of them, 32 each",
                       file.string(), "let NumPy write the file again"});
   }
+}
+
+void RayReader::seek(uint64_t ray) {
+  stream_.seekg(begin_ + static_cast<std::streamoff>(ray * sizeof(Ray)));
 }
 
 void RayReader::read(std::span<Ray> rays) {

@@ -25,6 +25,8 @@ class RayReader {
 
   uint64_t count() const { return count_; }
 
+  /// Goes to the ray of this number, from which read() goes on.
+  void seek(uint64_t ray);
   /// Reads the next rays, as many as fit in `rays`, but not more than are left. Throws InputError.
   void read(std::span<Ray> rays);
 
@@ -32,6 +34,7 @@ class RayReader {
   std::filesystem::path file_;
   std::ifstream stream_;
   uint64_t count_ = 0;
+  std::streamoff begin_ = 0;
 };
 
 /// Writes rays as a file that RayReader reads, whole or not at all. Throws RunError.

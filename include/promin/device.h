@@ -23,7 +23,8 @@ struct DeviceDeleter {
 /// Owns a Device. Every Renderer and Caster that was made with the device must end before it.
 using DeviceHandle = std::unique_ptr<Device, DeviceDeleter>;
 
-/// Opens the device that `selection` names: an index of list_devices or a part of a name, case ignored; without one a
+/// Opens the device that `selection` names: an index of list_devices, "uuid:" with a DeviceInfo::uuid, or a part of a
+/// name, case ignored; without one a
 /// discrete GPU before an integrated before a virtual one before a CPU.
 /// Throws DeviceError if none is usable or none matches, RunError if it fails, and UsageError if PROMIN_VALIDATION
 /// (validation_message_count) is none of its words.

@@ -20,6 +20,9 @@ struct DeviceInfo {
   std::string type;
   /// Driver's name and version as it says, e.g. "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".
   std::string driver;
+  /// By which a device is found again, on other days and beside others: 32 hexadecimal digits. Lavapipes all have the
+  /// same; empty where the device does not tell.
+  std::string uuid;
   /// The version of Vulkan that it speaks, e.g. "1.3.230".
   std::string api_version;
   /// Why the device cannot be used; empty for a usable one.

@@ -16,6 +16,8 @@ void bind_scene(nanobind::module_& module);
 void bind_caster(nanobind::module_& module);
 /// Adds Renderer.
 void bind_renderer(nanobind::module_& module);
+/// Adds Job, PlannedJob and Runner.
+void bind_jobs(nanobind::module_& module);
 /// Adds functions on picture files, their comparison and their display.
 void bind_pictures(nanobind::module_& module);
 

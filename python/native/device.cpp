@@ -23,6 +23,7 @@ nb::dict describe(const gpu::DeviceInfo& info) {
   result["name"] = info.name;
   result["type"] = info.type;
   result["driver"] = info.driver;
+  result["uuid"] = info.uuid;
   result["api_version"] = info.api_version;
   result["obstacles"] = nb::tuple(nb::cast(info.obstacles));
   result["lacks"] = nb::tuple(nb::cast(info.lacks));

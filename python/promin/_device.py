@@ -26,6 +26,8 @@ class DeviceInfo:
     """"discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"."""
     driver: str
     """The driver's name and version."""
+    uuid: str
+    """By which it is found again: "uuid:" with these 32 digits names it. Lavapipes all have the same."""
     api_version: str
     """The version of Vulkan that it speaks."""
     obstacles: tuple[str, ...] = ()
@@ -40,8 +42,8 @@ class Device:
     """An open Vulkan device, which any number of Casters and Renderers share, on any threads."""
 
     def __init__(self, selection: str | int | None = None) -> None:
-        """Opens the device that `selection` names: an index of `Device.list()` or a part of a name, case ignored;
-        without one a GPU before a CPU. Raises DeviceError where none is usable or none matches, and names the package
+        """Opens the device that `selection` names: an index of `Device.list()`, "uuid:" with a UUID, or a part of a
+        name, case ignored; without one a GPU before a CPU. Raises DeviceError where none is usable or none matches, and names the package
         with Mesa's drivers where there is no driver at all."""
         self._selection = _name(selection)
         self._native = _promin.Device.open(self._selection)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes a venv with promin, what its tests need, and trimesh's own tests; where all is there, brings promin up to date.
 
-    make_venv.py VENV --build FOLDER [--library PREFIX] [--compiler CXX]
+    make_venv.py VENV --build FOLDER [--library BUILD] [--compiler CXX]
 
-With --library the module is built over the library that is installed there, else the library is built too. It takes
+With --library the module is built over the libraries of that build, else these are built too. It takes
 python3-venv, python3-dev and PyPI."""
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 NEEDED = ["numpy", "nanobind>=2.4", "scikit-build-core>=0.11"]
-TESTS_WITH = ["pytest", "hypothesis", "mypy", "scipy", "rtree", "networkx", "shapely", "manifold3d", "trimesh"]
+FARM_WITH = ["distributed", "dask-jobqueue", "zarr"]
+TESTS_WITH = [*FARM_WITH, "pytest", "hypothesis", "mypy", "scipy", "rtree", "networkx", "shapely", "manifold3d", "trimesh"]
 
 
 def main() -> None:
@@ -37,7 +38,7 @@ def main() -> None:
     run([*pip, "install", *NEEDED, *([] if options.library is None else TESTS_WITH)])
     settings = [f"build-dir={options.build}"]
     if options.library is not None:
-        settings += ["cmake.source-dir=python", f"cmake.define.CMAKE_PREFIX_PATH={options.library}"]
+        settings += ["cmake.source-dir=python", f"cmake.define.PROMIN_BUILD={options.library}"]
     words = [f"--config-settings={setting}" for setting in settings]
     # Named as in the project's own build, so that ccache knows what it has compiled.
     environment = {**os.environ, **({"CXX": options.compiler} if options.compiler else {})}

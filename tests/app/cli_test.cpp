@@ -396,6 +396,18 @@ TEST_F(CliTest, DevicesNamesTheDefault) {
   EXPECT_THAT(devices.out, HasSubstr("picked by default"));
 }
 
+TEST_F(CliTest, ADeviceIsFoundByItsUuid) {
+  const nlohmann::json devices = nlohmann::json::parse(run({"devices", "--json"}).out);
+  const std::string uuid = devices.at(0).at("uuid");
+  EXPECT_THAT(uuid, MatchesRegex("[0-9a-f]{32}"));
+  EXPECT_NE(uuid, std::string(32, '0'));
+  const ProcessResult result =
+      run({"render", "square.gltf", "--size", "4", "4", "-o", "a.exr", "--device", "uuid:" + uuid});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--device", "uuid:" + std::string(32, '0')}), 4,
+                 "no Vulkan device matches \"uuid:0000");
+}
+
 TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
   const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-o", "a.png"});
   EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -145,6 +145,23 @@ TEST_F(FileTest, LeftoversOfTheDeadAreCleared) {
   clear_leftovers(folder_ / "nowhere");
 }
 
+// One that had this process's number has left something; what this one is at stays.
+TEST_F(FileTest, ThreadsMayWriteOneFileAtATime) {
+  AtomicFile first(folder_ / "a.exr");
+  AtomicFile second(folder_ / "a.exr");
+  EXPECT_NE(first.temporary(), second.temporary());
+  std::ofstream(first.temporary()) << "first";
+  std::ofstream(second.temporary()) << "second";
+  const fs::path left = folder_ / ("b.tmp" + std::to_string(getpid()) + "-" + host_name() + ".exr");
+  std::ofstream(left) << "half";
+  clear_leftovers(folder_);
+  EXPECT_FALSE(fs::exists(left));
+  second.commit();
+  EXPECT_EQ(text_of(folder_ / "a.exr"), "second");
+  first.commit();
+  EXPECT_EQ(text_of(folder_ / "a.exr"), "first");
+}
+
 TEST_F(FileTest, UnreadableFilesSayWhy) {
   std::ofstream(folder_ / "empty.obj").close();
   EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasSubstr("not found"));

@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "cast_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "promin/caster.h"
+#include "promin/error.h"
+#include "rays/npy.h"
+#include "tracing_run.h"
+
+namespace promin::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Rays in memory at a time.
+constexpr uint64_t kChunkRays = uint64_t{1} << 20;
+
+/// By HitQuery.
+constexpr std::array<std::string_view, 4> kQueryNames = {"nearest", "any", "count", "all"};
+
+std::string_view name_of(HitQuery query) {
+  return kQueryNames[static_cast<size_t>(query)];
+}
+
+/// Rays of a file, from the first up to the end.
+struct RayRange {
+  uint64_t begin = 0;
+  uint64_t end = 0;
+
+  uint64_t count() const { return end - begin; }
+};
+
+/// All rays in nearly equal ranges, of which there is one at least.
+std::vector<RayRange> cut_rays(uint64_t count, const CastOptions& options) {
+  const uint64_t usual = options.is_all ? kPieceRaysOfAll : kPieceRays;
+  const uint64_t pieces = options.job.pieces.value_or(std::max<uint64_t>((count + usual - 1) / usual, 1));
+  if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
+    throw UsageError({fmt::format("{} pieces are more than the {}", pieces,
+                                  pieces > kMostRayPieces ? fmt::format("{} that a job has", kMostRayPieces)
+                                                          : fmt::format("{} rays", count)),
+                      options.rays.string(), "give another number by --pieces"});
+  }
+  std::vector<RayRange> ranges;
+  // The product would not fit where there are 10^13 rays and more.
+  const uint64_t least = count / pieces;
+  const uint64_t longer = count % pieces;
+  for (uint64_t i = 0, begin = 0; i < pieces; ++i) {
+    const uint64_t end = begin + least + (i < longer ? 1 : 0);
+    ranges.push_back({begin, end});
+    begin = end;
+  }
+  return ranges;
+}
+
+std::vector<std::string> name_pieces(const std::vector<RayRange>& ranges) {
+  std::vector<std::string> names;
+  for (const RayRange& range : ranges) names.push_back(fmt::format("r{:012}-{:012}", range.begin, range.end));
+  return names;
+}
+
+/// What is told of a piece. The bytes are its hits, or counts; with kAll its hits, then for each ray the number of hits
+/// up to its end.
+struct HitPiece {
+  HitQuery query = HitQuery::kNearest;
+  std::string driver;
+  RayRange rays;
+};
+
+std::string encode(const HitPiece& piece) {
+  const Json json = {{"driver", piece.driver},
+                     {"query", name_of(piece.query)},
+                     {"first_ray", piece.rays.begin},
+                     {"rays", piece.rays.count()}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Reads what is told of a piece and holds its bytes against it. Throws InputError.
+HitPiece decode(const jobs::Content& content, const fs::path& file) {
+  const InputError bad({"is no piece of hits", file.string(), "remove it and run the job again"});
+  HitPiece piece;
+  try {
+    const Json json = Json::parse(content.description);
+    const auto query = std::ranges::find(kQueryNames, json.at("query").get<std::string>());
+    if (query == kQueryNames.end()) throw bad;
+    piece.query = static_cast<HitQuery>(query - kQueryNames.begin());
+    piece.driver = json.at("driver").get<std::string>();
+    piece.rays.begin = json.at("first_ray").get<uint64_t>();
+    piece.rays.end = piece.rays.begin + json.at("rays").get<uint64_t>();
+  } catch (const nlohmann::json::exception&) {
+    throw bad;
+  }
+  const uint64_t count = piece.rays.count();
+  const uint64_t bytes = content.bytes.size();
+  bool is_whole = bytes == count * (piece.query == HitQuery::kCount ? sizeof(int32_t) : sizeof(Hit));
+  if (piece.query == HitQuery::kAll) {
+    uint64_t last = 0;
+    is_whole = bytes / sizeof(uint64_t) >= count;
+    if (is_whole && count > 0) std::memcpy(&last, &content.bytes[bytes - sizeof(last)], sizeof(last));
+    is_whole = is_whole && bytes % sizeof(Hit) == count * sizeof(uint64_t) % sizeof(Hit) &&
+               (bytes - count * sizeof(uint64_t)) / sizeof(Hit) == last;
+  }
+  if (!is_whole) throw bad;
+  return piece;
+}
+
+class RayJob : public PlannedJob {
+ public:
+  RayJob(const CastOptions& options, const CLI::App& command, const Console& console, std::shared_ptr<RaySource> rays)
+      : options_(options), console_(console), rays_(std::move(rays)), ranges_(cut_rays(rays_->count(), options)) {
+    std::vector<SourceFile> sources;
+    scene_ = load_for(options.tracing, stats_, console, sources);
+    manifest_ = begin_manifest(kRayJob, given_options(command));
+    manifest_.options.emplace_back("rays", std::to_string(rays_->count()));
+    add_scene_files(manifest_, sources);
+    manifest_.files.push_back(rays_->describe());
+    manifest_.pieces = name_pieces(ranges_);
+    arguments_ = keep_arguments(command);
+  }
+
+  std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces) override;
+  void remember() override { rays_->remember(); }
+
+ private:
+  friend class RayPieces;
+
+  CastOptions options_;
+  Console console_;
+  std::shared_ptr<RaySource> rays_;
+  std::vector<RayRange> ranges_;
+  RunStats stats_;
+  Scene scene_;
+};
+
+class RayPieces : public PieceMaker {
+ public:
+  RayPieces(RayJob& job, const gpu::Device& device) : job_(job), device_(device), stats_(job.stats_) {
+    stats_.device = gpu::info_of(device);
+    CasterOptions options;
+    choose_tree(job.options_.tracing, options);
+    caster_.emplace(device, job.scene_, options);
+    std::vector<Ray> rays(std::min(kChunkRays, job.ranges_.front().count()));
+    job.rays_->read(0, rays);
+    caster_->prepare(job.options_.query(), rays);
+    take_setup(caster_->setup_stats(), stats_, job.console_);
+  }
+
+  jobs::Content make(size_t number, const ProgressCallback& progress) override {
+    const HitPiece piece{job_.options_.query(), driver_of(stats_.device), job_.ranges_[number]};
+    jobs::Content content{encode(piece), {}};
+    ends_.clear();
+    std::vector<Ray> rays;
+    for (uint64_t done = 0; done < piece.rays.count(); done += rays.size()) {
+      rays.resize(std::min(kChunkRays, piece.rays.count() - done));
+      job_.rays_->read(piece.rays.begin + done, rays);
+      answer(rays, content.bytes, [&](double fraction) {
+        const double traced = static_cast<double>(done) + fraction * static_cast<double>(rays.size());
+        return !progress || progress(traced / static_cast<double>(piece.rays.count()));
+      });
+    }
+    const auto ends = std::as_bytes(std::span(ends_));
+    content.bytes.insert(content.bytes.end(), ends.begin(), ends.end());
+    check_validation(device_, stats_);
+    return content;
+  }
+
+ private:
+  /// Appends the rays' answers.
+  void answer(std::span<const Ray> rays, std::vector<std::byte>& bytes, const ProgressCallback& progress) {
+    const HitQuery query = job_.options_.query();
+    if (query == HitQuery::kAll) {
+      const auto take = [&](const HitList& list) {
+        const uint64_t before = bytes.size() / sizeof(Hit);
+        for (const uint64_t end : list.offsets.subspan(1)) ends_.push_back(before + end);
+        hits_.assign(list.hits.begin(), list.hits.end());
+        number_as_in_file(job_.scene_, hits_);
+        append(std::span(std::as_const(hits_)), bytes);
+      };
+      caster_->list(rays, take, Caster::kListBytes, progress);
+    } else if (query == HitQuery::kCount) {
+      counts_.resize(rays.size());
+      caster_->count(rays, counts_, progress);
+      append(std::span(std::as_const(counts_)), bytes);
+    } else {
+      hits_.resize(rays.size());
+      caster_->cast(rays, hits_, query, progress);
+      number_as_in_file(job_.scene_, hits_);
+      append(std::span(std::as_const(hits_)), bytes);
+    }
+  }
+
+  template <typename Value>
+  static void append(std::span<const Value> values, std::vector<std::byte>& bytes) {
+    const auto more = std::as_bytes(values);
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  }
+
+  const RayJob& job_;
+  const gpu::Device& device_;
+  RunStats stats_;
+  std::optional<Caster> caster_;
+  std::vector<Hit> hits_;
+  std::vector<int32_t> counts_;
+  /// With kAll, of the piece at hand.
+  std::vector<uint64_t> ends_;
+};
+
+std::unique_ptr<PieceMaker> RayJob::open(const gpu::Device& device, size_t /*pieces*/) {
+  return std::make_unique<RayPieces>(*this, device);
+}
+
+/// The files of a query, to which pieces are added in their order.
+class HitFiles {
+ public:
+  HitFiles(HitQuery query, const std::vector<fs::path>& files, uint64_t rays) : query_(query) {
+    const size_t count = query == HitQuery::kAll ? 2 : 1;
+    if (files.size() != count) {
+      throw UsageError({fmt::format("the job's answers go to {}, not to {}",
+                                    count == 2 ? "two files, hits and offsets" : "one file", files.size()),
+                        files.empty() ? "" : files.front().string(),
+                        count == 2 ? "give --output and --offsets" : "give --output alone"});
+    }
+    if (query == HitQuery::kCount) {
+      counts_.emplace(files[0], rays);
+      return;
+    }
+    hits_.emplace(files[0], query == HitQuery::kAll ? std::nullopt : std::optional(rays));
+    if (query != HitQuery::kAll) return;
+    offsets_.emplace(files[1], rays + 1);
+    offsets_->write(std::array{uint64_t{0}});
+  }
+
+  void add(const jobs::Content& content, uint64_t rays) {
+    if (counts_) return counts_->write(values_of<int32_t>(content.bytes));
+    const size_t hit_bytes = content.bytes.size() - (offsets_ ? rays * sizeof(uint64_t) : 0);
+    const auto bytes = std::span(content.bytes);
+    hits_->write(values_of<Hit>(bytes.first(hit_bytes)));
+    if (!offsets_) return;
+    const auto ends = values_of<uint64_t>(bytes.subspan(hit_bytes));
+    std::vector<uint64_t> offsets(ends.begin(), ends.end());
+    for (uint64_t& offset : offsets) offset += hit_count_;
+    offsets_->write(offsets);
+    hit_count_ += hit_bytes / sizeof(Hit);
+  }
+
+  void commit() {
+    if (counts_) return counts_->commit();
+    if (!offsets_) return hits_->commit();
+    ArrayWriter::commit_together({&*hits_, &*offsets_});
+  }
+
+ private:
+  /// The bytes begin where memory of any type does, or after hits.
+  template <typename Value>
+  static std::span<const Value> values_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const Value*>(bytes.data()), bytes.size() / sizeof(Value)};
+  }
+
+  HitQuery query_;
+  std::optional<HitWriter> hits_;
+  std::optional<CountWriter> counts_;
+  std::optional<OffsetWriter> offsets_;
+  uint64_t hit_count_ = 0;
+};
+
+}  // namespace
+
+void number_as_in_file(const Scene& scene, std::span<Hit> hits) {
+  if (scene.object_numbers.empty()) return;
+  for (Hit& hit : hits) {
+    if (hit.object >= 0) hit.object = static_cast<int32_t>(object_number(scene, static_cast<uint32_t>(hit.object)));
+  }
+}
+
+std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App& command, const Console& console,
+                                      std::shared_ptr<RaySource> rays) {
+  if (rays == nullptr) rays = open_rays(options.rays, *options.job.folder);
+  return std::make_unique<RayJob>(options, command, console, std::move(rays));
+}
+
+void merge_hits(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress,
+                bool is_mixed) {
+  check_arrays(files);
+  check_whole(job);
+  const size_t last = job.piece_count() - 1;
+  const uint64_t rays = decode(job.read(last), job.file_of(last)).rays.end;
+  std::optional<HitFiles> written;
+  std::optional<HitPiece> first;
+  uint64_t done = 0;
+  for (size_t number = 0; number <= last; ++number) {
+    if (progress && !progress(static_cast<double>(number) / static_cast<double>(last + 1))) throw Cancelled();
+    const jobs::Content content = job.read(number);
+    const fs::path file = job.file_of(number);
+    const HitPiece piece = decode(content, file);
+    if (!first) first = piece;
+    if (!written) written.emplace(piece.query, files, rays);
+    if (piece.query != first->query || piece.rays.begin != done) {
+      throw InputError({"is not of the rays of the other pieces", file.string(), "remove it and run the job again"});
+    }
+    if (piece.driver != first->driver && !is_mixed) {
+      throw InputError({fmt::format("it was made on {}, and other pieces on {}", piece.driver, first->driver),
+                        file.string(), "remove the ones or the others, and run the job again on one device"});
+    }
+    written->add(content, piece.rays.count());
+    done = piece.rays.end;
+  }
+  written->commit();
+}
+
+}  // namespace promin::app

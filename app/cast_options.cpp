@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "cast_options.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "arguments.h"
+#include "core/file.h"
+#include "promin/error.h"
+
+namespace promin::app {
+
+std::vector<std::filesystem::path> CastOptions::outputs() const {
+  std::vector<std::filesystem::path> files;
+  if (output) files.push_back(*output);
+  if (offsets) files.push_back(*offsets);
+  return files;
+}
+
+void add_cast_options(CLI::App& command, CastOptions& options) {
+  OptionTable table(command);
+  add_scene_argument(table, options.tracing);
+  table.add_required("RAYS.npy", "", "NumPy array of N x 8 float32: origin xyz, tmin, direction xyz (any length), tmax",
+                     [&](const OptionValues& w) { options.rays = w.text(); });
+  table.add_repeated("-o,--output", "HITS.npy",
+                     "NumPy array to write: t, object, primitive, u, v, normal of each ray's nearest hit",
+                     [&](const OptionValues& w) {
+                       if (w.all().size() > 1) w.refuse("--output takes one file here");
+                       options.output = w.text();
+                     });
+  table.add_flag("--any", "Ask only whether anything is hit: t is 0 then, and infinite on a miss", options.is_any);
+  table.add_flag("--count", "Write how often each ray crosses a surface instead, as int32", options.is_count);
+  table.add_flag("--all", "Write all hits of each ray instead, ray after ray, by t; needs --offsets", options.is_all);
+  table.add("--offsets", "OFFSETS.npy",
+            "With --all: N + 1 uint64, where in HITS.npy each ray's hits begin and the last one's end",
+            [&](const OptionValues& w) { options.offsets = w.text(); });
+  add_job_options(table, options.job,
+                  fmt::format("Of a job: pieces of rays, 1 to {} [as many as have {} rays, with --all {}]",
+                              kMostRayPieces, kPieceRays, kPieceRaysOfAll),
+                  kMostRayPieces);
+  add_tracing_options(table, options.tracing);
+  add_measuring_options(table, options.tracing);
+}
+
+namespace {
+
+void check_query(const CastOptions& options) {
+  std::vector<std::string> asked;
+  if (options.is_any) asked.emplace_back("--any");
+  if (options.is_count) asked.emplace_back("--count");
+  if (options.is_all) asked.emplace_back("--all");
+  if (asked.size() > 1) {
+    throw UsageError(
+        {asked[0] + " and " + asked[1] + " ask for different things", "on the command line", "give one of them"});
+  }
+  if (options.is_all && !options.offsets && !options.job.share) {
+    throw UsageError({"--all is given without --offsets", "on the command line",
+                      "add --offsets OFFSETS.npy, which tells the hits of each ray apart"});
+  }
+  if (options.offsets && !options.is_all) {
+    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or take it away"});
+  }
+}
+
+void check_job_options(const CastOptions& options) {
+  check_has_job(options.job);
+  if (!options.output && !options.job.share) {
+    throw UsageError({"--output is required", "on the command line", "see promin cast --help"});
+  }
+  if (!options.job.folder) return;
+  const std::pair<bool, std::string_view> others[] = {{options.tracing.stats.has_value(), "--stats"},
+                                                      {options.tracing.repeat_count > 1, "--repeat"}};
+  for (const auto& [is_given, name] : others) {
+    if (!is_given) continue;
+    throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
+  }
+  if (options.job.share && !options.outputs().empty()) {
+    throw UsageError({"--piece and --output contradict each other: a share makes no file", "on the command line",
+                      "leave one out; promin merge writes the file"});
+  }
+}
+
+}  // namespace
+
+void check_arrays(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    if (lower_case_ending(file) == ".npy") continue;
+    throw UsageError({"unknown output ending \"" + file.extension().string() + "\"", file.string(), "use .npy"});
+  }
+}
+
+void check_cast_options(const CastOptions& options) {
+  check_tracing_options(options.tracing);
+  check_query(options);
+  check_job_options(options);
+  check_arrays(options.outputs());
+}
+
+}  // namespace promin::app

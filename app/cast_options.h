@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "job_options.h"
+#include "promin/ray.h"
+#include "tracing_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace promin::app {
+
+/// The rays of a job's piece where nothing else is asked for; with --all, where there may be any number of hits.
+inline constexpr uint64_t kPieceRays = uint64_t{1} << 22;
+inline constexpr uint64_t kPieceRaysOfAll = uint64_t{1} << 20;
+inline constexpr uint32_t kMostRayPieces = 1'000'000;
+
+struct CastOptions {
+  TracingOptions tracing;
+  std::filesystem::path rays;
+  JobOptions job;
+  /// Hits, or with --count counts.
+  std::optional<std::filesystem::path> output;
+  std::optional<std::filesystem::path> offsets;
+  bool is_any = false;
+  bool is_count = false;
+  bool is_all = false;
+
+  HitQuery query() const {
+    if (is_all) return HitQuery::kAll;
+    if (is_count) return HitQuery::kCount;
+    return is_any ? HitQuery::kAny : HitQuery::kNearest;
+  }
+  /// The hits, then their offsets, as far as they are given.
+  std::vector<std::filesystem::path> outputs() const;
+};
+
+/// Adds a row for each option to the command. `options` must outlive the parsing.
+void add_cast_options(CLI::App& command, CastOptions& options);
+
+/// Throws UsageError where options contradict each other or one is missing, and for outputs that are no .npy.
+void check_cast_options(const CastOptions& options);
+
+/// Throws UsageError for a file of another ending than .npy.
+void check_arrays(const std::vector<std::filesystem::path>& files);
+
+}  // namespace promin::app

@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "command_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "cast_job.h"
+#include "cast_options.h"
+#include "core/file.h"
+#include "deferred_signals.h"
+#include "outputs.h"
+#include "picture_job.h"
+#include "progress.h"
+#include "promin/error.h"
+#include "promin/image.h"
+#include "render_job.h"
+#include "render_options.h"
+#include "sources_hash.h"
+
+namespace promin::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Missing pieces that a message names.
+constexpr size_t kMostNamed = 5;
+/// Of the file that keeps arguments.
+constexpr int kFormat = 1;
+
+/// What of the options does not reach a bit of a piece; the files that others name are in the manifest by their hashes.
+constexpr std::string_view kNotInManifest[] = {
+    "SCENE",   "RAYS.npy", "--output", "--offsets", "--job", "--piece",    "--pieces",  "--tiles",
+    "--stats", "--device", "--quiet",  "--builder", "--bvh", "--features", "--verbose", "--repeat"};
+constexpr std::string_view kNamesFile[] = {"SCENE", "RAYS.npy", "--path", "--environment", "--bvh"};
+/// What each who works on a job chooses for themselves.
+constexpr std::string_view kNotKept[] = {"--output", "--offsets", "--job",   "--piece",
+                                         "--stats",  "--device",  "--quiet", "--verbose"};
+/// What a job's arguments have no place for.
+constexpr std::string_view kNotArguments[] = {"--output", "--offsets", "--job", "--piece"};
+
+bool is_among(std::string_view name, std::span<const std::string_view> names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+fs::path arguments_file(const fs::path& folder) {
+  return folder / "command.json";
+}
+
+/// Parses what the command of this name takes.
+void parse(CLI::App& program, const CLI::App& command, const std::vector<std::string>& arguments) {
+  for (const std::string& word : arguments) {
+    if (word != "-h" && word != "--help" && word != "--version") continue;
+    throw UsageError({word + " makes no job", "in its arguments", "leave it out"});
+  }
+  const std::string name = command.get_name();
+  std::vector<const char*> words = {"promin", name.c_str()};
+  for (const std::string& word : arguments) words.push_back(word.c_str());
+  static_cast<void>(parse_arguments(program, static_cast<int>(words.size()), words.data()));
+  for (const auto& [option, values] : given_options(command)) {
+    if (!is_among(option, kNotArguments)) continue;
+    throw UsageError({option + " is none of a job's arguments", "in its arguments",
+                      "leave it out; what the files are called is said when pieces are merged"});
+  }
+}
+
+/// Another driver's pieces have other bits.
+void check_driver(const jobs::Job& job, const std::string& driver) {
+  const std::string of_pieces = find_driver(job);
+  if (of_pieces.empty() || of_pieces == driver) return;
+  throw UsageError({fmt::format("the job's pieces were made on {}, and this is {}", of_pieces, driver),
+                    job.folder().string(), "go on with that device by --device, or take another folder"});
+}
+
+/// Makes what is missing of a share. Returns how many pieces it has made, nothing where a signal has ended it before.
+std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, const jobs::Share& share,
+                                 const JobSteps& steps, const Console& console) {
+  const std::vector<size_t> missing = jobs::find_missing(job, share);
+  if (missing.empty()) return 0;
+  // A signal ends the work when the piece at hand is written, and the program at the end of this.
+  const DeferredSignals while_working;
+  const gpu::DeviceHandle device = steps.open_device();
+  const std::string driver = driver_of(gpu::info_of(*device));
+  check_driver(job, driver);
+  const std::unique_ptr<PieceMaker> maker = planned.open(*device, missing.size());
+  Progress progress(console.is_quiet());
+  jobs::NextPiece at_hand;
+  bool is_whole = true;
+  const auto before = [&](const jobs::NextPiece& next) {
+    if (while_working.is_pending()) {
+      console.note(
+          fmt::format("stopped before piece {} of {}; the same command goes on", next.number, job.piece_count()));
+      is_whole = false;
+      return false;
+    }
+    if (!next.why.empty()) {
+      console.warn(fmt::format("{} {}; it is made anew", job.file_of(next.number).string(), next.why));
+    }
+    at_hand = next;
+    return true;
+  };
+  const auto make = [&](size_t piece) {
+    return maker->make(piece, [&](double fraction) {
+      progress.update((static_cast<double>(at_hand.before) + fraction) / static_cast<double>(at_hand.total));
+      return true;
+    });
+  };
+  const size_t made = jobs::run_share(job, share, {driver, ""}, before, make);
+  return is_whole ? std::optional(made) : std::nullopt;
+}
+
+}  // namespace
+
+jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given) {
+  jobs::Manifest manifest;
+  manifest.kind = kind;
+  manifest.options = {{"version", PROMIN_VERSION}, {"program", std::string(kSourcesHash)}};
+  for (const auto& [name, words] : given) {
+    if (is_among(name, kNotInManifest)) continue;
+    const std::string value = words.empty() ? "given" : fmt::format("{}", fmt::join(words, " "));
+    manifest.options.emplace_back(name, is_among(name, kNamesFile) ? fs::path(value).filename().string() : value);
+  }
+  return manifest;
+}
+
+void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& sources) {
+  for (const SourceFile& source : sources) {
+    if (!source.stamp) continue;
+    manifest.files.push_back(jobs::describe_input(source.file));
+    if (stamp_of(source.file) == source.stamp) continue;
+    throw InputError({"the file has changed while it was read", source.file.string(), "try again"});
+  }
+}
+
+std::vector<std::string> keep_arguments(const CLI::App& command) {
+  std::vector<std::string> arguments;
+  for (const auto& [name, words] : given_options(command)) {
+    if (is_among(name, kNotKept)) continue;
+    if (name.starts_with('-')) arguments.push_back(name);
+    for (const std::string& word : words) {
+      arguments.push_back(is_among(name, kNamesFile) ? fs::absolute(word).lexically_normal().string() : word);
+    }
+  }
+  return arguments;
+}
+
+std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<std::string>& arguments,
+                                     const fs::path& folder, const Console& console, std::shared_ptr<RaySource> rays) {
+  CLI::App program("", "promin");
+  // A share, as it makes no file.
+  const jobs::Share all;
+  if (kind == kPictureJob) {
+    if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave them out"});
+    RenderOptions options;
+    CLI::App& command = add_command(program, kind, "");
+    add_render_options(command, options);
+    parse(program, command, arguments);
+    options.job.folder = folder;
+    options.job.share = all;
+    check_render_options(options);
+    return plan_pictures(prepare_pictures(options, plan_frames(options), console), command, console);
+  }
+  if (kind == kRayJob) {
+    CastOptions options;
+    CLI::App& command = add_command(program, kind, "");
+    add_cast_options(command, options);
+    parse(program, command, arguments);
+    options.job.folder = folder;
+    options.job.share = all;
+    check_cast_options(options);
+    return plan_rays(options, command, console, std::move(rays));
+  }
+  throw UsageError({fmt::format("no command \"{}\" makes jobs", kind), "", "name render or cast"});
+}
+
+jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
+  const jobs::Job job = jobs::Job::create(folder, planned.manifest());
+  if (read_arguments(job) != planned.arguments()) {
+    const Json json = {{"promin_command", kFormat}, {"kind", job.manifest().kind}, {"arguments", planned.arguments()}};
+    write_text_file(arguments_file(folder), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  planned.remember();
+  return job;
+}
+
+std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job) {
+  const Json json = Json::parse(std::ifstream(arguments_file(job.folder())), nullptr, false);
+  try {
+    if (json.is_object() && json.at("promin_command") == kFormat && json.at("kind") == job.manifest().kind) {
+      return json.at("arguments").get<std::vector<std::string>>();
+    }
+  } catch (const nlohmann::json::exception&) {
+  }
+  return {};
+}
+
+std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& console, std::shared_ptr<RaySource> rays) {
+  const std::optional<std::vector<std::string>> arguments = read_arguments(job);
+  if (!arguments) {
+    throw InputError({"does not say by what command the job's pieces are made, or is damaged",
+                      arguments_file(job.folder()).string(), "give the job's command once more"});
+  }
+  std::unique_ptr<PlannedJob> planned =
+      plan_job(job.manifest().kind, *arguments, job.folder(), console, std::move(rays));
+  job.check_same(planned->manifest());
+  planned->remember();
+  return planned;
+}
+
+std::string find_driver(const jobs::Job& job) {
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    if (job.state_of(piece) != jobs::PieceState::kDone) continue;
+    const Json json = Json::parse(job.read(piece).description, nullptr, false);
+    return json.is_object() ? json.value("driver", "") : "";
+  }
+  return "";
+}
+
+std::string driver_of(const gpu::DeviceInfo& device) {
+  return fmt::format("{}, {}", device.name, device.driver);
+}
+
+void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console) {
+  const jobs::Job job = create_job(planned, *options.folder);
+  const std::optional<size_t> made = make_share(job, planned, options.share.value_or(jobs::Share{}), steps, console);
+  if (!made) return;
+  if (options.share) {
+    if (!console.is_quiet()) {
+      fmt::print("{} pieces made of {}, in {}\n", *made, job.piece_count(), options.folder->string());
+    }
+    return;
+  }
+  steps.merge(job);
+  if (!console.is_quiet()) fmt::print("{} of {} pieces made now: {}\n", *made, job.piece_count(), steps.outputs);
+}
+
+void check_whole(const jobs::Job& job) {
+  const std::vector<size_t> missing = jobs::find_missing(job);
+  if (missing.empty()) return;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
+  throw RunError({fmt::format("{} of {} pieces are missing or bad: {}{}", missing.size(), job.piece_count(),
+                              fmt::join(names, ", "), missing.size() > kMostNamed ? ", …" : ""),
+                  job.file_of(missing.front()).parent_path().string(),
+                  "run the job again, which makes what is missing"});
+}
+
+void merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs, const ProgressCallback& progress,
+               bool is_mixed) {
+  const std::string& kind = job.manifest().kind;
+  if (kind == kPictureJob) return merge_pictures(job, outputs, progress);
+  if (kind == kRayJob) return merge_hits(job, outputs, progress, is_mixed);
+  throw InputError({fmt::format("the job is one of \"{}\", and not of promin render or cast", kind),
+                    job.folder().string(), "name the folder of promin render --job or promin cast --job"});
+}
+
+void merge_job_deferring(const jobs::Job& job, const std::vector<fs::path>& outputs) {
+  const DeferredSignals while_writing;
+  try {
+    merge_job(job, outputs, [&](double) { return !while_writing.is_pending(); });
+  } catch (const Cancelled&) {
+    // What the signal's sender wants is an end, and has it now.
+  }
+}
+
+}  // namespace promin::app

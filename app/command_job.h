@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "arguments.h"
+#include "console.h"
+#include "formats/source_file.h"
+#include "job_options.h"
+#include "jobs/job.h"
+#include "promin/device.h"
+#include "promin/progress.h"
+#include "ray_source.h"
+
+namespace promin::app {
+
+/// The words that a command was given, by given_options().
+using GivenOptions = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+/// Makes the pieces of a planned job, with what it has opened once. It serves one thread at a time, and the plan and
+/// the device must outlive it.
+class PieceMaker {
+ public:
+  virtual ~PieceMaker() = default;
+  /// Throws RunError, Cancelled where `progress` says so, and InputError where an input has changed meanwhile.
+  virtual jobs::Content make(size_t piece, const ProgressCallback& progress) = 0;
+};
+
+/// A job that a command line asks for: its inputs are read and hashed, and no device is open.
+class PlannedJob {
+ public:
+  virtual ~PlannedJob() = default;
+
+  const jobs::Manifest& manifest() const { return manifest_; }
+  /// The words by which plan_job plans it again, from any folder: files have absolute paths, and what does not decide
+  /// how pieces are made is left out.
+  const std::vector<std::string>& arguments() const { return arguments_; }
+  /// Opens what the device makes pieces with: about so many.
+  virtual std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces) = 0;
+  /// Has the job's folder, now that it is there, keep what would cost others time to find out.
+  virtual void remember() {}
+
+ protected:
+  jobs::Manifest manifest_;
+  std::vector<std::string> arguments_;
+};
+
+/// The beginning of a command's manifest: kind, version, the hash of the program's sources, and the given options that
+/// decide about bits.
+jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given);
+/// Adds the files that a scene was loaded from. Throws InputError where one has changed since.
+void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& sources);
+
+/// What PlannedJob::arguments() is of a parsed command.
+std::vector<std::string> keep_arguments(const CLI::App& command);
+
+/// Plans the job of the kind "render" or "cast" by what the command of that name takes, without --output, --job,
+/// --piece and what contradicts --job. `folder` is where it is, or will be. `rays` take the place of those of the file
+/// that "cast" names, of which the name remains. Throws UsageError, InputError.
+std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<std::string>& arguments,
+                                     const std::filesystem::path& folder, const Console& console,
+                                     std::shared_ptr<RaySource> rays = nullptr);
+
+/// Makes the job's folder or goes on with what is in it, and keeps there by what arguments it was planned. Throws what
+/// jobs::Job::create does.
+jobs::Job create_job(PlannedJob& planned, const std::filesystem::path& folder);
+
+/// Plans the job of a folder again, by what create_job has kept there. Throws InputError where it has kept nothing, or
+/// an input is gone, and UsageError where the job would be another one today, as an input has changed.
+std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& console,
+                                       std::shared_ptr<RaySource> rays = nullptr);
+
+/// The arguments that create_job has kept; nothing where it has not.
+std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job);
+
+/// What the pieces of a job that are there were made on; empty where there is none.
+std::string find_driver(const jobs::Job& job);
+
+/// The device and its driver, in the words that find_driver has.
+std::string driver_of(const gpu::DeviceInfo& device);
+
+/// What differs about commands with --job.
+struct JobSteps {
+  std::function<gpu::DeviceHandle()> open_device;
+  /// Makes the command's files of all pieces.
+  std::function<void(const jobs::Job& job)> merge;
+  /// These files, in words.
+  std::string outputs;
+};
+/// Does what a command with --job does: makes the pieces of its share that are missing, and without --piece then the
+/// files of them; and says so on standard output unless quiet. A signal ends it with the piece at hand. Throws
+/// UsageError where the pieces that are there were made by another driver.
+void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console);
+
+/// Throws RunError where pieces of a job are missing or bad, which names some.
+void check_whole(const jobs::Job& job);
+
+/// Makes the files of a job of its pieces: pictures of the kind "render"; of "cast" the hits or counts, and of --all
+/// the offsets as a second file. `is_mixed` is for rays alone (merge_hits). Throws UsageError for files that the job
+/// does not make, InputError for a job of another kind, Cancelled, and what merge_pictures and merge_hits do.
+void merge_job(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
+               const ProgressCallback& progress, bool is_mixed = false);
+/// The same for a program: a signal ends it, and leaves no file half written.
+void merge_job_deferring(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
+
+}  // namespace promin::app

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "job_options.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "promin/error.h"
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kMostShares = 1000000;
+
+jobs::Share read_share(const OptionValues& words) {
+  const std::string& text = words.text();
+  const size_t slash = text.find('/');
+  if (slash == std::string::npos) words.refuse(fmt::format("--piece takes I/N, as 0/4, not \"{}\"", text));
+  const OptionValues numbers = words.with({text.substr(0, slash), text.substr(slash + 1)});
+  const uint32_t count = numbers.whole(1, 1, kMostShares);
+  return {numbers.whole(0, 0, count - 1), count};
+}
+
+}  // namespace
+
+void add_job_options(OptionTable& table, JobOptions& job, const std::string& pieces_help, uint32_t most_pieces) {
+  table.add("--job", "DIR", "Keep the work in this folder, piece by piece: the same command goes on where it was ended",
+            [&](const OptionValues& w) { job.folder = w.text(); });
+  table.add("--pieces", "N", pieces_help,
+            [&job, most_pieces](const OptionValues& w) { job.pieces = w.whole(0, 1, most_pieces); });
+  table.add("--piece", "I/N",
+            "Of a job: make only the pieces whose number is I more than a multiple of N, and no file of them; promin "
+            "merge makes it of all",
+            [&](const OptionValues& w) { job.share = read_share(w); });
+}
+
+void check_has_job(const JobOptions& job) {
+  if (job.folder) return;
+  const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.pieces ? "--pieces" : "";
+  if (name.empty()) return;
+  throw UsageError({fmt::format("{} has no job to cut", name), "on the command line", "give --job as well"});
+}
+
+}  // namespace promin::app

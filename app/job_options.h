@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "arguments.h"
+#include "jobs/job.h"
+#include "promin/math.h"
+
+namespace promin::app {
+
+/// How the work of a command is kept in pieces in a folder.
+struct JobOptions {
+  std::optional<std::filesystem::path> folder;
+  /// Of pictures: bands of rows that each is cut into, or columns and rows of tiles. Of rays: pieces of all rays.
+  /// Empty: as suits it.
+  std::optional<uint32_t> pieces;
+  std::optional<uvec2> tiles;
+  /// What of the pieces is to be made; without it all, and then the files that are made of them.
+  std::optional<jobs::Share> share;
+};
+
+/// Adds the rows of --job, --pieces and --piece with this help for --pieces, of which there are at most so many. `job`
+/// must outlive the parsing.
+void add_job_options(OptionTable& table, JobOptions& job, const std::string& pieces_help, uint32_t most_pieces);
+
+/// Throws UsageError where one of --pieces, --tiles and --piece has no job to cut.
+void check_has_job(const JobOptions& job);
+
+}  // namespace promin::app

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "promin/error.h"
+#include "promin/image.h"
+#include "view_setup.h"
+
+namespace promin::app {
+namespace {
+
+void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
+  if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
+  throw UsageError({fmt::format("--explain is beyond the picture of {}x{}", size.x, size.y), "on the command line",
+                    "stay within it or give a larger --size"});
+}
+
+}  // namespace
+
+PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFrame> frames, const Console& console) {
+  PictureRun run{.options = options, .frames = std::move(frames), .scene = {}, .sources = {}, .stats = {}};
+  RunStats& stats = run.stats;
+  run.scene = load_for(options.tracing, stats, console, run.sources);
+  Scene& scene = run.scene;
+  ViewOptions view = options.view;
+  view.given_camera = run.frames.front().camera;
+  stats.view = make_view(scene, view, console);
+  stats.view->error_target = options.error.error_target();
+  check_explained_pixel(options, stats.view->size);
+  const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
+  stats.display = choose_display(scene, view.look, view.debug_view);
+  if (stats.view->error_target) stats.view->error_target->white = std::exp2(-stats.display.exposure_ev);
+  const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
+  const std::string assumptions =
+      describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
+  if (!assumptions.empty()) console.note(assumptions);
+  check_lights(scene, options.view.lights_off);
+  switch_lights(scene.lights, options.view.lights_off);
+  const auto is_on = [](const Light& light) { return light.is_on; };
+  stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));
+  return run;
+}
+
+uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options) {
+  if (options.explained_pixel) return view.samples_per_pixel;
+  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
+  const uint32_t samples = view.error_target ? view.error_target->min_samples : view.samples_per_pixel;
+  return uint64_t{size.x} * size.y * samples * frames * options.tracing.repeat_count;
+}
+
+TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_t expected_samples) {
+  TunedRendererOptions result;
+  result.expected_samples = expected_samples;
+  choose_tree(options.tracing, result);
+  result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
+  result.force_all_features = options.has_all_features;
+  result.has_error_target = options.error.is_given();
+  result.mode = {options.view.debug_view, !options.view.has_no_shadows};
+  result.aovs = options.aovs;
+  // The average takes pixels that hit something.
+  if (options.view.look.averages_exposure) result.aovs.object = true;
+  return result;
+}
+
+TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
+                  const std::function<bool(double)>& on_progress) {
+  TracedFrame frame;
+  const uint32_t repeats = options.tracing.repeat_count;
+  for (uint32_t i = 0; i < repeats; ++i) {
+    const auto tell = [&](double fraction) { return on_progress((i + fraction) / repeats); };
+    const std::optional<double> limit_s = options.error.time_limit_s;
+    frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
+    frame.trace_ms.push_back(frame.result.trace_ms);
+  }
+  return frame;
+}
+
+Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs) {
+  Metadata metadata = describe_picture(stats);
+  if (frame) metadata.emplace_back("promin:frame", std::to_string(*frame));
+  metadata.insert(metadata.end(), aovs.metadata.begin(), aovs.metadata.end());
+  return metadata;
+}
+
+PixelWindow window_of(const View& view) {
+  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
+}
+
+void number_as_in_file(const Scene& scene, Aovs& aovs) {
+  if (scene.object_numbers.empty()) return;
+  for (uint32_t& object : aovs.object) {
+    if (object != Aovs::kNoId) object = object_number(scene, object);
+  }
+}
+
+}  // namespace promin::app

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "console.h"
+#include "formats/source_file.h"
+#include "frame_plan.h"
+#include "picture_files.h"
+#include "promin/aovs.h"
+#include "promin/image.h"
+#include "promin/renderer.h"
+#include "promin/scene.h"
+#include "promin/view.h"
+#include "render/renderer_impl.h"
+#include "render_options.h"
+#include "run_stats.h"
+#include "tracing_run.h"
+
+namespace promin::app {
+
+// The steps of rendering that a single run and a job have in common.
+
+/// Pictures that are about to be traced: all inputs are read, no device is open.
+struct PictureRun {
+  RenderOptions options;
+  std::vector<PlannedFrame> frames;
+  /// Lit and framed.
+  Scene scene;
+  std::vector<SourceFile> sources;
+  /// With the view of all frames, but for their cameras, and how they are shown.
+  RunStats stats;
+};
+
+/// Loads the scene of checked options and decides what they leave open, which it notes. Throws InputError, and
+/// UsageError for what the scene does not have.
+PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFrame> frames, const Console& console);
+
+/// Of all pictures together.
+uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options);
+
+TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_t expected_samples);
+
+/// A picture and the device's time for each of its repetitions.
+struct TracedFrame {
+  RenderResult result;
+  std::vector<double> trace_ms;
+};
+
+TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
+                  const std::function<bool(double)>& on_progress);
+
+/// No times: equal pictures are equal files.
+Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs);
+
+/// What of the whole picture is rendered.
+PixelWindow window_of(const View& view);
+
+/// Gives pixels the numbers that the file has for its objects.
+void number_as_in_file(const Scene& scene, Aovs& aovs);
+
+}  // namespace promin::app

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/known_hashes.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "promin/error.h"
+
+namespace promin::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+KnownHashes::KnownHashes(const fs::path& folder) : file_(folder / "hashes.json") {
+  const Json json = Json::parse(std::ifstream(file_), nullptr, false);
+  if (!json.is_object()) return;
+  try {
+    for (const auto& [path, entry] : json.items()) {
+      known_[path] = {{entry.at("written_ns"), entry.at("size_bytes"), entry.at("inode")}, entry.at("sha256")};
+    }
+  } catch (const nlohmann::json::exception&) {
+    known_.clear();
+  }
+}
+
+InputFile KnownHashes::describe(const fs::path& file) {
+  const std::optional<FileStamp> stamp = stamp_of(file);
+  const std::string path = fs::absolute(file).lexically_normal().string();
+  const auto found = known_.find(path);
+  if (stamp && found != known_.end() && found->second.stamp == *stamp) {
+    return {file.filename().string(), stamp->size_bytes, found->second.sha256};
+  }
+  InputFile described = describe_input(file);
+  if (!stamp || stamp_of(file) != stamp) {
+    throw InputError({"the file has changed while it was read", file.string(), "try again"});
+  }
+  known_[path] = {*stamp, described.sha256};
+  has_more_ = true;
+  return described;
+}
+
+void KnownHashes::save() {
+  if (!has_more_) return;
+  Json json = Json::object();
+  for (const auto& [path, entry] : known_) {
+    json[path] = {{"written_ns", entry.stamp.written_ns},
+                  {"size_bytes", entry.stamp.size_bytes},
+                  {"inode", entry.stamp.inode},
+                  {"sha256", entry.sha256}};
+  }
+  try {
+    write_text_file(file_, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  } catch (const RunError&) {
+    // Whoever comes later reads the file then.
+    return;
+  }
+  has_more_ = false;
+}
+
+}  // namespace promin::jobs

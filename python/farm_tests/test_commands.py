@@ -1,0 +1,277 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""The command line, status, audit, the page, and the job scripts of queues."""
+
+from __future__ import annotations
+
+import ast
+import json
+import shutil
+import struct
+import subprocess
+import sys
+import zlib
+from collections import Counter
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import HERE, Farm, wait_for
+
+
+def test_wrong_use_is_refused_in_one_line(farm: Farm) -> None:
+    farm.write_scene(3)
+    base = ("render", farm.scene, "--job", farm.job)
+    out = ("-o", farm.out)
+    for words, sentence in (
+        (base, "name it by -o"),
+        ((*base, "-o", "out.jpg"), f"an output is none of .exr, .png, {farm.root}/out.jpg"),
+        ((*base, *out, "--nonsense"), "--nonsense is not known"),
+        ((*base, *out, "--workers", "0"), "give 1 or more"),
+        ((*base, *out, "--scheduler", "sge"), "give tcp://HOST:PORT, slurm, pbs, lsf"),
+        ((*base, *out, "--scheduler", "slurm", "--device", "A"), "set PROMIN_DEVICE"),
+        ((*base, *out, "--scheduler", "tcp://a:1", "--workers", "2"), "it has its own"),
+        ((*base, *out, "--scheduler", "slurm", "--queue-config", "nothing.toml"), "no settings can be read"),
+        (("resume", farm.job, "--nonsense"), "--nonsense is not known"),
+        (("audit", farm.job, "--share", "200%"), "give a part, as 1% or 0.01"),
+    ):
+        said = farm.run(*words, code=2)
+        assert sentence in said and said.startswith("promin-farm: error: ") and said.count("\n") == 1, said
+
+
+def test_frames_need_files_of_their_own_and_outputs_a_folder(farm: Farm) -> None:
+    farm.write_scene(4, names="frames")
+    assert "put #### where their numbers go" in farm.render(code=2)
+    words = ("render", farm.scene, "-o", "nowhere/out.####.exr", "--job", farm.job)
+    assert "cannot write to the folder" in farm.run(*words, code=1)
+    assert not farm.events("begun")
+
+
+def test_rates_are_of_rays_or_of_pixels(farm: Farm) -> None:
+    from promin_farm.status import rate_of
+    from promin_farm.survey import take_survey
+
+    farm.write_scene(4, ms=5)
+    job = farm.create()
+    assert rate_of(job, take_survey(job)) is None
+    farm.run("work", farm.job)
+    survey = take_survey(job)
+    assert survey.rate is not None and rate_of(job, survey) == (survey.rate, "rays")
+    job.options = {"--spp": "16"}
+    assert rate_of(job, survey) == (16 * survey.rate, "rays")
+    job.options = {"--target-error": "0.1"}
+    assert rate_of(job, survey) == (survey.rate, "pixels")
+
+
+def test_a_scene_that_is_not_there(farm: Farm) -> None:
+    assert "cannot open" in farm.render(code=3)
+
+
+def test_what_promin_takes_goes_to_promin_in_its_order(farm: Farm) -> None:
+    farm.write_scene(2)
+    words = ("--size", "10", "-20", "--tiles", "2", "1")
+    farm.run("render", "--workers", "1", farm.scene, *words, "-o", farm.out, "--quiet", "--job", farm.job)
+    assert json.loads((farm.job / "job.json").read_text())["arguments"] == ["scene.json", *words]
+
+
+def test_status_in_words_and_as_json(farm: Farm) -> None:
+    farm.write_scene(6, ms=20, fails=[4])
+    farm.create()
+    farm.run("work", farm.job, code=1)
+    status = farm.status()
+    assert status["pieces"] == 6 and status["done"] == 5 and status["running"] == []
+    assert status["failed"][0]["reason"].startswith("the device was lost") and status["rays_per_s"] > 0
+    assert status["weight_done"] + status["weight_left"] == 12 and status["time_left_s"] is None
+    assert len(status["slowest"]) == 5 and all(20 <= item["ms"] < 2000 for item in status["slowest"])
+    words = farm.run("status", farm.job)
+    assert "render of 6 pieces: 5 done (83 %), 0 running, 1 failed" in words and "after" not in words.splitlines()[0]
+    assert "3 failures, the last: the device was lost at 4" in words
+
+
+def test_status_of_what_runs_tells_the_time_left(farm: Farm) -> None:
+    farm.write_scene(30, ms=150)
+    farm.create()
+    process = farm.start("work", farm.job)
+    wait_for(lambda: len(farm.events("done")) >= 2)
+    status = farm.status()
+    process.terminate()
+    process.communicate()
+    assert len(status["running"]) == 1 and 1.0 < status["time_left_s"] < 30.0
+
+
+def test_audit_finds_a_machine_that_gives_other_bits(farm: Farm) -> None:
+    farm.write_scene(20)
+    job = farm.create()
+    farm.run("work", farm.job)
+    assert "20 of 20 pieces of this fingerprint have equal bits" in farm.run("audit", farm.job, "--share", "100%")
+    assert "2 of 2" in farm.run("audit", farm.job, "--share", "10%")
+    for piece in job.pieces[:3]:
+        Path(piece.file).unlink()
+    farm.run("work", farm.job, FAKE_SALT="a broken machine")
+    said = farm.run("audit", farm.job, "--share", "100%", code=1)
+    assert f"other bits of the same fingerprint: {', '.join(piece.name for piece in job.pieces[:3])}" in said
+    # Where the fingerprints differ so may the bits.
+    said = farm.run("audit", farm.job, "--share", "1", FAKE_FINGERPRINT="two")
+    assert "17 of 20 pieces of other fingerprints have equal bits" in said
+
+
+def test_an_audit_of_nothing_is_refused(farm: Farm) -> None:
+    farm.write_scene(3)
+    farm.create()
+    assert "no piece is there to be audited" in farm.run("audit", farm.job, code=1)
+
+
+def test_samples_are_spread_and_the_same_for_a_seed(farm: Farm) -> None:
+    from promin_farm.audit import pick_sample
+
+    farm.write_scene(1000)
+    job = farm.create()
+    first = pick_sample(job, list(range(1000)), 0.01, 0)
+    assert len(first) == 10 == len(set(first)) and first == pick_sample(job, list(range(1000)), 0.01, 0)
+    assert first != pick_sample(job, list(range(1000)), 0.01, 1) and first != list(range(10))
+
+
+def make_page(farm: Farm, **values: object) -> str:
+    farm.write_scene(6, **values)
+    farm.create()
+    farm.run("work", farm.job, code=1 if values.get("fails") else 0)
+    farm.run("status", farm.job, "--page")
+    return (farm.job / "index.html").read_text()
+
+
+class Tags(HTMLParser):
+    """Counts elements and keeps the text; raises where they do not close as they open."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.count: Counter[str] = Counter()
+        self.sources: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.count[f"{tag}.{dict(attrs).get('class')}" if tag == "rect" else tag] += 1
+        self.sources += [value for name, value in attrs if name == "src" and value]
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_the_page_has_pictures_timeline_and_failures(farm: Farm) -> None:
+    tags = Tags()
+    tags.feed(make_page(farm, fails=[4], ms=10))
+    assert not tags.open and tags.count["img"] == 5
+    assert tags.count["rect.done"] == 5 and tags.count["rect.failed"] == 3
+    assert "5 of 6 pieces, 0 running, 1 failed" in tags.text and "the device was lost at 4" in tags.text
+    assert all((farm.job / source).read_bytes().startswith(b"\x89PNG") for source in tags.sources)
+
+
+def test_pictures_are_pngs(tmp_path: Path) -> None:
+    from promin_farm.page import encode_png
+
+    pixels = np.arange(5 * 7 * 3, dtype=np.uint8)
+    png = encode_png(7, 5, pixels.tobytes())
+    assert png[:8] == b"\x89PNG\r\n\x1a\n" and png[-8:-4] == b"IEND"
+    assert struct.unpack(">II", png[16:24]) == (7, 5)
+    at = png.index(b"IDAT")
+    lines = zlib.decompress(png[at + 4 : at + 4 + struct.unpack(">I", png[at - 4 : at])[0]])
+    assert b"".join(lines[y * 22 + 1 : (y + 1) * 22] for y in range(5)) == pixels.tobytes()
+
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium")
+def test_the_page_in_chromium(farm: Farm) -> None:
+    make_page(farm, fails=[4], ms=10)
+    done = subprocess.run(
+        [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=2000", "--dump-dom",
+         f"file://{farm.job}/index.html"],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert "5 of 6 pieces" in done.stdout and done.stdout.count("<rect") == 8 and done.stdout.count("<img") == 5
+
+
+def test_job_scripts_of_queues(tmp_path: Path) -> None:
+    pytest.importorskip("dask_jobqueue")
+    from promin_farm.queues import QUEUES, make_cluster, read_config
+
+    config = tmp_path / "queue.toml"
+    config.write_text('queue = "short"\ncores = 4\nwalltime = "02:00:00"\njob_script_prologue = ["module load mesa"]\n')
+    for queue in QUEUES:
+        extra = {"interface": "lo", **({"use_stdin": True} if queue == "lsf" else {})}
+        with make_cluster(queue, {**read_config(str(config)), **extra}) as cluster:
+            script = cluster.job_script()
+        assert (
+            "module load mesa\nexport LP_NUM_THREADS=4\nexport PROMIN_FARM_ENDS_AT=$(( $(date +%s) + 7140 ))" in script
+        )
+        assert "--nthreads 1" in script and "--lifetime 7140s --lifetime-stagger 30s" in script and "short" in script
+
+
+def test_wrong_settings_of_a_queue_are_refused(farm: Farm) -> None:
+    pytest.importorskip("dask_jobqueue")
+    farm.write_scene(3)
+    config = farm.root / "queue.toml"
+    for text, sentence in (('walltime = "soon"', "give HH:MM:SS"), ("nonsense = 1", "not those of dask-jobqueue")):
+        config.write_text(text + "\n")
+        said = farm.render("--scheduler", "slurm", "--queue-config", config, code=2)
+        assert sentence in said and "promin-farm: error: " in said, said
+
+
+def test_rays_of_zarr_are_those_of_numpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    zarr = pytest.importorskip("zarr")
+    from promin import jobs
+
+    from promin_farm import rays as module
+
+    monkeypatch.setattr(module, "_ROWS", 600)  # Several parts, each of whole chunks.
+    rays = np.random.default_rng(1).normal(size=(1000, 8)).astype(np.float32)
+    source = tmp_path / "rays.zarr"
+    array = zarr.open_array(str(source), mode="w", shape=rays.shape, chunks=(300, 8), dtype="float32")
+    array[:] = rays
+    copy, expected = tmp_path / "job.rays.npy", tmp_path / "expected.npy"
+    words = ["scene.gltf", str(source), "--count"]
+    for _ in range(2):
+        assert module.prepare_rays(words, tmp_path / "job") == ["scene.gltf", str(copy), "--count"]
+        np.save(expected, rays)
+        assert copy.read_bytes() == expected.read_bytes()
+    array[5, 5] = 7
+    with pytest.raises(jobs.InputError, match="the rays have changed since the job was begun"):
+        module.prepare_rays(words, tmp_path / "job")
+    zarr.open_array(str(tmp_path / "flat.zarr"), mode="w", shape=(8,), chunks=(8,), dtype="float32")
+    with pytest.raises(jobs.InputError, match="rays are N x 8 float32"):
+        module.prepare_rays([str(tmp_path / "flat.zarr")], tmp_path / "other")
+    with pytest.raises(jobs.InputError, match="no array of zarr"):
+        module.prepare_rays([str(tmp_path / "nothing.zarr")], tmp_path / "other")
+
+
+def test_of_promin_only_its_jobs_are_imported() -> None:
+    seen = set()
+    for file in (HERE.parent / "promin_farm").glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.Import):
+                seen |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0
+                seen |= (
+                    {f"{node.module}.{alias.name}" for alias in node.names}
+                    if node.module == "promin"
+                    else {node.module}
+                )
+    assert {name for name in seen if str(name).partition(".")[0] == "promin"} == {"promin.jobs"}
+
+
+def test_mypy_strict(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "-p", "promin_farm", "--cache-dir", str(tmp_path)],
+        cwd=tmp_path, env={"MYPYPATH": f"{HERE / 'fake'}:{HERE.parent}", "PATH": "/usr/bin:/bin"},
+        capture_output=True, text=True, timeout=300,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout

@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""`promin-farm work`: the same without Dask, for any queue."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from conftest import Farm, wait_for
+
+
+def test_tasks_of_an_array_share_the_pieces_and_take_what_others_leave(farm: Farm) -> None:
+    farm.write_scene(30)
+    assert "30 pieces in" in farm.render("--prepare") and not farm.ledger()
+    said = farm.run("work", farm.job, "--array-task", "1/3")
+    # Its own third first, then the rest from its place of the list on, as nobody else was there.
+    made = farm.events("done")
+    assert made[:10] == list(range(1, 30, 3)) and made[10] == 11 and sorted(made) == list(range(30))
+    assert "30 pieces made; all are there" in said
+    assert "0 pieces made" in farm.run("work", farm.job, "--array-task", "0/3")
+    assert farm.run("resume", farm.job).strip().endswith(f"30 pieces: {farm.out}")
+    assert farm.out.read_bytes() == farm.expected()
+
+
+def test_two_at_once_make_each_piece_once(farm: Farm) -> None:
+    farm.write_scene(40, ms=20)
+    farm.create()
+    both = [farm.start("work", farm.job, "--array-task", f"{i}/2") for i in range(2)]
+    for process in both:
+        assert process.wait(60) == 0
+    made = farm.events("done")
+    assert sorted(set(made)) == list(range(40)) and len(made) <= 42
+
+
+def test_what_a_killed_one_has_begun_is_made_by_the_other(farm: Farm) -> None:
+    farm.write_scene(12, ms=150)
+    farm.create()
+    first = farm.start("work", farm.job, "--array-task", "0/2")
+    wait_for(lambda: farm.events("begun"))
+    first.kill()
+    first.wait()
+    (at_hand,) = set(farm.events("begun")) - set(farm.events("done"))
+    farm.run("work", farm.job, "--array-task", "1/2")
+    assert at_hand in farm.events("done")
+    status = farm.status()
+    assert status["done"] == 12 and status["tries"][farm.create().pieces[at_hand].name]["deaths"] == 1
+
+
+def test_what_another_is_at_is_left_to_it(farm: Farm) -> None:
+    farm.write_scene(2, ms=300)
+    farm.create()
+    first = farm.start("work", farm.job, "--array-task", "0/2")
+    wait_for(lambda: farm.events("begun"))
+    first.send_signal(signal.SIGSTOP)  # It lives and does not get on.
+    try:
+        said = farm.run("work", farm.job, "--array-task", "1/2")
+    finally:
+        first.send_signal(signal.SIGCONT)
+    assert "1 piece made; 1 of 2 are missing or with others" in said
+    assert first.wait(30) == 0 and sorted(farm.events("done")) == [0, 1] == sorted(farm.events("begun"))
+
+
+def test_a_signal_lets_the_piece_at_hand_be_made(farm: Farm) -> None:
+    farm.write_scene(10, ms=300)
+    farm.create()
+    process = farm.start("work", farm.job)
+    wait_for(lambda: farm.events("begun"))
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 1 and f"promin-farm work {farm.job} goes on" in err
+    assert farm.events("begun") == farm.events("done") and len(farm.events("done")) == 1
+
+
+def test_two_signals_leave_it(farm: Farm) -> None:
+    farm.write_scene(3, ms=20000)
+    farm.create()
+    process = farm.start("work", farm.job)
+    wait_for(lambda: farm.events("begun"))
+    for _ in range(2):
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+    process.communicate(timeout=10)
+    assert process.returncode == 1 and farm.events("stopped") == [0] and not farm.events("done")
+
+
+def test_slurms_array_tells_the_share(farm: Farm) -> None:
+    farm.write_scene(9)
+    farm.create()
+    array = {"SLURM_ARRAY_TASK_ID": "6", "SLURM_ARRAY_TASK_MIN": "2", "SLURM_ARRAY_TASK_STEP": "2"}
+    farm.run("work", farm.job, SLURM_ARRAY_TASK_COUNT="3", **array)
+    assert farm.events("done")[:3] == [2, 5, 8]
+
+
+@pytest.mark.parametrize("words", ["3/3", "1", "-1/2", "a/b", "1/0"])
+def test_a_wrong_share_is_refused(farm: Farm, words: str) -> None:
+    farm.write_scene(3)
+    farm.create()
+    assert "give I/N with I from 0 to N - 1" in farm.run("work", farm.job, f"--array-task={words}", code=2)
+
+
+def test_without_a_device_it_says_so(farm: Farm) -> None:
+    farm.write_scene(3)
+    farm.create()
+    assert "there is no Vulkan device" in farm.run("work", farm.job, code=4, FAKE_NO_DEVICE="1")
+
+
+def test_other_bits_are_refused_and_left_alone(farm: Farm) -> None:
+    farm.write_scene(6)
+    farm.create()
+    farm.run("work", farm.job)
+    for piece in farm.create().pieces[:3]:
+        os.unlink(piece.file)
+    said = farm.run("work", farm.job, code=1, FAKE_FINGERPRINT="two")
+    assert "this worker would give other bits" in said and "--allow-mixed" in said
+    assert farm.status()["done"] == 3
+
+
+def test_it_needs_no_dask(farm: Farm) -> None:
+    farm.write_scene(3)
+    farm.create()
+    for name in ("dask", "distributed"):
+        blocked = farm.root / "blocked" / name
+        blocked.mkdir(parents=True)
+        (blocked / "__init__.py").write_text("raise ImportError('it is blocked')\n")
+    paths = os.pathsep.join([str(farm.root / "blocked"), farm.environment()["PYTHONPATH"]])
+    farm.run("work", farm.job, PYTHONPATH=paths)
+    Path(farm.create().pieces[0].file).unlink()
+    assert "pip install 'promin[farm]'" in farm.run("resume", farm.job, code=2, PYTHONPATH=paths)
+
+
+def test_frames_of_two_kinds_of_devices_stay_apart(farm: Farm) -> None:
+    from promin_farm.settings import Settings, claim_group
+
+    farm.write_scene(8, names="frames")
+    farm.create()
+    Settings(outputs=[str(farm.out)], allow_mixed=True).write(farm.job)
+    claim_group(farm.job, "frame000001", hashlib.sha256(b"two").hexdigest())
+    said = farm.run("work", farm.job, FAKE_FINGERPRINT="one")
+    assert "6 pieces made; 2 of 8 are missing or with others" in said and sorted(farm.events("done")) == [
+        0,
+        1,
+        4,
+        5,
+        6,
+        7,
+    ]
+    assert "2 pieces made; all are there" in farm.run("work", farm.job, FAKE_FINGERPRINT="two")
+    # One of whose bits no frame is does nothing.
+    Path(farm.create().pieces[0].file).unlink()
+    assert "0 pieces made" in farm.run("work", farm.job, FAKE_FINGERPRINT="three")
+    assert len(farm.status()["fingerprints"]) == 2

@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <span>
+
+#include "bind.h"
+#include "command_job.h"
+#include "device.h"
+#include "fingerprint.h"
+#include "in_process.h"
+#include "jobs/job.h"
+#include "jobs/sha256.h"
+#include "promin/error.h"
+#include "ray_source.h"
+#include "watched.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+using jobs::Job;
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+/// Python shows warnings of its own and no notes.
+const app::Console& no_console() {
+  static const app::Console console(app::Verbosity::kQuiet);
+  return console;
+}
+
+nb::dict describe(const jobs::Receipt& receipt) {
+  nb::dict record;
+  record["number"] = receipt.number;
+  record["name"] = receipt.name;
+  record["sha256"] = receipt.sha256;
+  record["bytes"] = receipt.size_bytes;
+  record["ms"] = receipt.ms;
+  record["made_on"] = receipt.maker.made_on;
+  record["fingerprint"] = receipt.maker.fingerprint;
+  record["version"] = receipt.version;
+  record["host"] = receipt.host;
+  record["pid"] = receipt.pid;
+  return record;
+}
+
+size_t check(const Job& job, size_t piece) {
+  if (piece < job.piece_count()) return piece;
+  throw UsageError({"there is no piece " + std::to_string(piece) + " of " + std::to_string(job.piece_count()),
+                    job.folder().string(), "name one from 0 on"});
+}
+
+/// Without Python's lock.
+template <typename Work>
+auto unlocked(const Work& work) {
+  const nb::gil_scoped_release release;
+  return work();
+}
+
+std::string hash_of(const jobs::Content& content) {
+  return jobs::Sha256().add(content.bytes).finish();
+}
+
+Job create_with(const std::string& folder, const std::string& kind, const Pairs& options,
+                const std::vector<std::string>& files, const std::vector<std::string>& pieces) {
+  return unlocked([&] {
+    jobs::Manifest manifest{.kind = kind, .options = options, .files = {}, .pieces = pieces};
+    for (const std::string& file : files) manifest.files.push_back(jobs::describe_input(file));
+    return Job::create(folder, manifest);
+  });
+}
+
+nb::dict describe(const Job& job) {
+  const jobs::Manifest& manifest = job.manifest();
+  nb::list files;
+  for (const jobs::InputFile& file : manifest.files) {
+    files.append(nb::make_tuple(file.name, file.size_bytes, file.sha256));
+  }
+  nb::dict record;
+  record["id"] = job.id();
+  record["kind"] = manifest.kind;
+  record["options"] = nb::cast(manifest.options);
+  record["files"] = files;
+  record["pieces"] = nb::cast(manifest.pieces);
+  return record;
+}
+
+/// "done", "missing" or "bad", and what is bad.
+std::pair<std::string, std::string> state_of(const Job& job, size_t piece) {
+  return unlocked([&]() -> std::pair<std::string, std::string> {
+    std::string why;
+    switch (job.state_of(check(job, piece), &why)) {
+      case jobs::PieceState::kDone:
+        return {"done", ""};
+      case jobs::PieceState::kMissing:
+        return {"missing", ""};
+      case jobs::PieceState::kBad:
+        break;
+    }
+    return {"bad", why};
+  });
+}
+
+nb::tuple read(const Job& job, size_t piece) {
+  const jobs::Content content = unlocked([&] { return job.read(check(job, piece)); });
+  return nb::make_tuple(content.description, nb::bytes(content.bytes.data(), content.bytes.size()));
+}
+
+nb::dict write(const Job& job, size_t piece, const std::string& description, const nb::bytes& data, double ms,
+               const std::string& made_on, const std::string& fingerprint) {
+  jobs::Content content{description, {}};
+  content.bytes.resize(data.size());
+  // Bytes of none have no place.
+  if (data.size() > 0) std::memcpy(content.bytes.data(), data.c_str(), data.size());
+  return describe(unlocked([&] { return job.write(check(job, piece), content, ms, {made_on, fingerprint}); }));
+}
+
+void merge(const Job& job, const std::vector<std::string>& outputs, bool is_mixed, const nb::object& progress) {
+  run_watched(progress, [&](const ProgressCallback& tell) {
+    app::merge_job(job, {outputs.begin(), outputs.end()}, tell, is_mixed);
+  });
+}
+
+/// A job that is read and checked; what opens its pieces has part in it.
+using Plan = std::shared_ptr<app::PlannedJob>;
+
+struct SharedPlan {
+  Plan plan;
+};
+
+/// Rays that Python has: an object with the attributes count, name, size_bytes and sha256, and a method read(first,
+/// count) that returns N x 8 float32. Its lock is taken for each call.
+class PythonRays : public app::RaySource {
+ public:
+  explicit PythonRays(nb::object source)
+      : source_(std::move(source)), count_(nb::cast<uint64_t>(source_.attr("count"))) {}
+  ~PythonRays() override {
+    const nb::gil_scoped_acquire acquire;
+    source_.reset();
+  }
+  uint64_t count() const override { return count_; }
+  void read(uint64_t first, std::span<Ray> rays) override {
+    if (rays.empty()) return;
+    const nb::gil_scoped_acquire acquire;
+    const auto read = nb::cast<RayArray>(source_.attr("read")(first, rays.size()));
+    if (read.shape(0) != rays.size()) {
+      throw InputError({"the rays end at " + std::to_string(first + read.shape(0)) + " of " + std::to_string(count_),
+                        nb::cast<std::string>(source_.attr("name")), "give as many as the job was begun with"});
+    }
+    std::memcpy(rays.data(), read.data(), rays.size_bytes());
+  }
+  jobs::InputFile describe() override {
+    const nb::gil_scoped_acquire acquire;
+    return {nb::cast<std::string>(source_.attr("name")), nb::cast<uint64_t>(source_.attr("size_bytes")),
+            nb::cast<std::string>(source_.attr("sha256"))};
+  }
+
+ private:
+  using RayArray = nb::ndarray<const float, nb::shape<-1, 8>, nb::c_contig, nb::device::cpu>;
+
+  nb::object source_;
+  uint64_t count_;
+};
+
+std::shared_ptr<app::RaySource> take_rays(const nb::object& source) {
+  return source.is_none() ? nullptr : std::make_shared<PythonRays>(source);
+}
+
+SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arguments, const std::string& folder,
+                    const nb::object& source) {
+  Plan plan;
+  run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
+    plan = app::plan_job(kind, arguments, folder, no_console(), rays);
+  });
+  return {plan};
+}
+
+SharedPlan plan_again(const Job& job, const nb::object& source) {
+  Plan plan;
+  run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
+    plan = app::plan_again(job, no_console(), rays);
+  });
+  return {plan};
+}
+
+/// SHA-256 and size of a piece that is done; None of another.
+std::optional<std::pair<std::string, uint64_t>> stored(const Job& job, size_t piece) {
+  return unlocked([&]() -> std::optional<std::pair<std::string, uint64_t>> {
+    try {
+      const jobs::Content content = job.read(check(job, piece));
+      return std::pair(hash_of(content), uint64_t{content.bytes.size()});
+    } catch (const InputError&) {
+      return {};
+    }
+  });
+}
+
+Job create(const SharedPlan& shared, const std::string& folder) {
+  return unlocked([&] { return app::create_job(*shared.plan, folder); });
+}
+
+/// What makes the pieces of one job, for one thread at a time.
+class Runner {
+ public:
+  Runner(std::shared_ptr<OpenDevice> device, const SharedPlan& shared, Job job)
+      : device_(std::move(device)), plan_(shared.plan), job_(std::move(job)) {
+    const gpu::Device& open = device_->get();
+    made_on_ = app::driver_of(gpu::info_of(open));
+    std::unique_ptr<app::PieceMaker> maker;
+    run_watched(nb::none(), [&](const ProgressCallback&) { maker = plan_->open(open, job_.piece_count()); });
+    maker_.emplace(std::move(maker));
+  }
+
+  nb::dict run(size_t piece, const std::string& fingerprint, const nb::object& progress) {
+    check(job_, piece);
+    app::PieceMaker& maker = maker_->get();
+    std::optional<jobs::Receipt> receipt;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      receipt = jobs::make_piece(job_, piece, {made_on_, fingerprint},
+                                 [&](size_t number) { return maker.make(number, tell); });
+    });
+    return describe(*receipt);
+  }
+
+  std::string recompute(size_t piece, const nb::object& progress) {
+    check(job_, piece);
+    app::PieceMaker& maker = maker_->get();
+    std::string hash;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      hash = hash_of(maker.make(piece, tell));
+    });
+    return hash;
+  }
+
+  const std::string& made_on() const { return made_on_; }
+
+ private:
+  // Before the maker, which must end first.
+  std::shared_ptr<OpenDevice> device_;
+  Plan plan_;
+  Job job_;
+  std::string made_on_;
+  std::optional<InProcess<std::unique_ptr<app::PieceMaker>>> maker_;
+  std::timed_mutex mutex_;
+};
+
+std::string fingerprint_of(const OpenDevice& device) {
+  const gpu::Device& open = device.get();
+  std::string fingerprint;
+  run_watched(nb::none(), [&](const ProgressCallback&) { fingerprint = app::fingerprint_of(open); });
+  return fingerprint;
+}
+
+}  // namespace
+
+void bind_jobs(nb::module_& module) {
+  nb::class_<Job>(module, "Job")
+      .def_static("create_with", &create_with)
+      .def_static("open", [](const std::string& folder) { return unlocked([&] { return Job::open(folder); }); })
+      .def("describe", [](const Job& job) { return describe(job); })
+      .def("arguments", [](const Job& job) { return app::read_arguments(job); })
+      .def("file_of", [](const Job& job, size_t piece) { return job.file_of(check(job, piece)).string(); })
+      .def("state_of", &state_of)
+      .def("sha256",
+           [](const Job& job, size_t piece) { return unlocked([&] { return hash_of(job.read(check(job, piece))); }); })
+      .def("stored", &stored)
+      .def("read", &read)
+      .def("write", &write)
+      .def("tell_begun",
+           [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint) {
+             job.tell_begun(check(job, piece), {made_on, fingerprint});
+           })
+      .def("tell_failed",
+           [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint,
+              const std::string& why) {
+             job.tell_failed(check(job, piece), {made_on, fingerprint}, why);
+           })
+      .def("clear_leftovers", &Job::clear_leftovers)
+      .def("merge", &merge, nb::arg("outputs"), nb::arg("is_mixed"), nb::arg("progress").none());
+  module.def("fingerprint_of", &fingerprint_of);
+  nb::class_<SharedPlan>(module, "PlannedJob")
+      .def_static("plan", &plan_job, nb::arg("kind"), nb::arg("arguments"), nb::arg("folder"), nb::arg("rays").none())
+      .def_static("plan_again", &plan_again, nb::arg("job"), nb::arg("rays").none())
+      .def("create", &create);
+  nb::class_<Runner>(module, "Runner")
+      .def(nb::init<std::shared_ptr<OpenDevice>, const SharedPlan&, Job>())
+      .def("made_on", &Runner::made_on)
+      .def("run", &Runner::run, nb::arg("piece"), nb::arg("fingerprint"), nb::arg("progress").none())
+      .def("recompute", &Runner::recompute, nb::arg("piece"), nb::arg("progress").none());
+}
+
+}  // namespace promin::python

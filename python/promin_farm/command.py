@@ -1,0 +1,231 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""The command line of promin-farm."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from promin import jobs
+
+from promin_farm.alone import Signals, find_share, work
+from promin_farm.audit import audit
+from promin_farm.errors import exit_code_of
+from promin_farm.foreman import Tally
+from promin_farm.run import Options, carry_on
+from promin_farm.settings import Settings
+from promin_farm.page import Page
+from promin_farm.status import describe, to_json
+from promin_farm.survey import take_survey
+from promin_farm.watch import Progress
+
+_EPILOG = """Exit codes: 0 done; 1 failed while running, or pieces were given up; 2 wrong use; 3 bad input; 4 no device.
+docs/farm.md tells how to run on one machine, several, and queues."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs a command and returns its exit code."""
+    parser = _make_parser()
+    options, others = parser.parse_known_args(arguments)
+    if "folder" in options:
+        options.folder = os.path.abspath(options.folder)
+    try:
+        if options.command in ("render", "cast"):
+            return _begin(options, [word for word in others if word != "--"])
+        if others:
+            raise jobs.UsageError(
+                f"{others[0]} is not known, on the command line; see promin-farm {options.command} -h"
+            )
+        commands = {"resume": _resume, "work": _work, "status": _status, "verify": _verify, "audit": _audit}
+        return commands[options.command](options)
+    except jobs.Error as error:
+        first, *rest = str(error).splitlines()
+        print("\n".join([f"promin-farm: error: {first}", *rest]), file=sys.stderr)
+        return exit_code_of(error)
+    except KeyboardInterrupt:
+        print("promin-farm: stopped; what is made is there, promin-farm resume goes on", file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        return 1
+
+
+def _make_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="promin-farm",
+        description="Makes pictures and casts rays piece by piece, on many processes and machines.",
+        epilog=_EPILOG,
+        allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def add(name: str, words: str, usage: str | None = None) -> argparse.ArgumentParser:
+        return commands.add_parser(name, help=words, description=words, usage=usage, allow_abbrev=False)
+
+    render = add(
+        "render", "Make pictures", "promin-farm render SCENE -o OUT --job DIR [options] [options of promin render]"
+    )
+    cast = add(
+        "cast",
+        "Cast rays",
+        "promin-farm cast SCENE RAYS.npy|RAYS.zarr -o HITS --job DIR [options] [options of promin cast]",
+    )
+    for command in (render, cast):
+        command.add_argument("--job", metavar="DIR", required=True, help="the job's folder, seen by all workers")
+        command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="repeatable")
+        command.add_argument(
+            "--prepare", action="store_true", help="make the job's folder and no piece, for promin-farm work"
+        )
+    cast.add_argument("--offsets", metavar="FILE", help="as of promin cast --all")
+    resume = add("resume", "Make what is missing of a job, then its files")
+    resume.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="in place of the job's own")
+    for command in (render, cast, resume):
+        _add_run_options(command)
+    alone = add("work", "Make a share of a job in this process, without Dask")
+    alone.add_argument(
+        "--array-task",
+        metavar="I/N",
+        help="every N-th piece from I on, then what is missing; default: of Slurm's array",
+    )
+    status = add("status", "Tell how far a job is")
+    status.add_argument("--json", action="store_true", help="as JSON")
+    status.add_argument("--page", action="store_true", help="write the job's page, DIR/index.html, anew")
+    verify = add("verify", "Read and hash every piece of a job")
+    check = add("audit", "Make a sample of a job's pieces once more and compare")
+    check.add_argument("--share", metavar="P", default="1%", help="of the pieces, as 1%% or 0.01 (1%%)")
+    check.add_argument("--seed", metavar="N", type=int, default=0, help="picks another sample (0)")
+    for command in (resume, alone, status, verify, check):
+        command.add_argument("folder", metavar="DIR", help="the job's folder")
+    for command in (alone, check):
+        command.add_argument("--device", metavar="NAME|INDEX", help="as of promin render")
+    for command in (alone, verify, check):
+        command.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    return parser
+
+
+def _add_run_options(command: argparse.ArgumentParser) -> None:
+    add = command.add_argument
+    add("--workers", metavar="N", type=int, help="processes; with a queue, its jobs (one for each device)")
+    add(
+        "--device",
+        metavar="NAME|INDEX|uuid:…",
+        action="append",
+        default=[],
+        help="device of this machine's workers, repeatable: each is used by workers of its own",
+    )
+    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a cluster of Dask, or the queue that starts workers")
+    add("--queue-config", metavar="FILE.toml", help="of a queue's jobs: what dask-jobqueue takes")
+    add("--allow-mixed", action="store_true", help="devices of different bits may share the work, frame by frame")
+    add("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
+    if not options.output:
+        raise jobs.UsageError("there is no output, on the command line; name it by -o")
+    if options.command == "cast":
+        from promin_farm.rays import prepare_rays  # NumPy takes a while to load.
+
+        arguments = prepare_rays(arguments, Path(options.job))
+        # The assembly writes them behind the hits.
+        options.output += [options.offsets] if options.offsets else []
+    job = jobs.create(options.command, arguments, os.path.abspath(options.job))
+    return _run(job, options)
+
+
+def _resume(options: argparse.Namespace) -> int:
+    return _run(jobs.open(options.folder), options)
+
+
+def _run(job: jobs.Job, options: argparse.Namespace) -> int:
+    folder = Path(job.folder)
+    settings = Settings.read(folder).with_outputs(options.output)
+    settings = replace(settings, allow_mixed=settings.allow_mixed or options.allow_mixed, retries_from=time.time())
+    settings.write(folder)
+    if options.command != "resume" and options.prepare:
+        if not options.quiet:
+            print(
+                f"{len(job.pieces)} pieces in {job.folder}; promin-farm work makes them, promin-farm resume the files"
+            )
+        return 0
+    return carry_on(
+        job,
+        settings,
+        Options(
+            workers=options.workers,
+            devices=options.device,
+            scheduler=options.scheduler,
+            queue_config=options.queue_config,
+            is_quiet=options.quiet,
+        ),
+    )
+
+
+def _work(options: argparse.Namespace) -> int:
+    share = find_share(options.array_task)
+    job = jobs.open(options.folder)
+    watch = Progress(job, (), is_quiet=options.quiet)
+    with Signals() as signals:
+        tally = work(job, share, options.device, watch, signals)
+    watch.close()
+    if tally.reason:
+        print(f"promin-farm: error: {tally.reason}", file=sys.stderr)
+        return tally.exit_code
+    survey = take_survey(job)
+    left = survey.total - len(survey.done)
+    if tally.was_stopped and left:
+        print(f"promin-farm: stopped; promin-farm work {job.folder} goes on", file=sys.stderr)
+        return 1
+    if not options.quiet:
+        print(f"{tally.done} piece{'s' * (tally.done != 1)} made; {_words_of_left(left, job)}")
+    return _tell_failed(tally)
+
+
+def _words_of_left(left: int, job: jobs.Job) -> str:
+    if left:
+        return f"{left} of {len(job.pieces)} are missing or with others"
+    return f"all are there, promin-farm resume {job.folder} writes the files"
+
+
+def _tell_failed(tally: Tally) -> int:
+    return 1 if tally.failed else 0
+
+
+def _status(options: argparse.Namespace) -> int:
+    job = jobs.open(options.folder)
+    survey = take_survey(job)
+    if options.page:
+        Page(job).write(survey)
+    print(json.dumps(to_json(job, survey), indent=1) if options.json else describe(job, survey))
+    return 0
+
+
+def _verify(options: argparse.Namespace) -> int:
+    job = jobs.open(options.folder)
+    states = {piece.number: job.verify(piece.number) for piece in job.pieces}
+    bad = [number for number, state in states.items() if state == "bad"]
+    for number in bad:
+        print(
+            f"promin-farm: error: {job.why(number)}, {job.pieces[number].file}; promin-farm resume makes it anew",
+            file=sys.stderr,
+        )
+    missing = sum(state == "missing" for state in states.values())
+    if not options.quiet:
+        print(
+            f"{len(states) - len(bad) - missing} of {len(states)} pieces are whole, {len(bad)} bad, {missing} missing"
+        )
+    return 1 if bad or missing else 0
+
+
+def _audit(options: argparse.Namespace) -> int:
+    job = jobs.open(options.folder)
+    report = audit(job, options.share, options.seed, options.device)
+    if not options.quiet or report.differing:
+        print(report.describe(), file=sys.stderr if report.differing else sys.stdout)
+    return 1 if report.differing else 0

@@ -1,0 +1,214 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Crews by Dask distributed: processes of this machine, a cluster that there is, and those that a queue starts.
+
+Of Dask is used what its versions from 2022 on have: Client, SpecCluster, Nanny. Its scheduler carries numbers and
+receipts between the foreman and the workers; where a piece is made the foreman says."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import os
+import queue
+import secrets
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from promin import jobs
+
+from promin_farm import worker
+from promin_farm.foreman import PROOF
+from promin_farm.watch import of_workers
+
+_LOCAL_PATIENCE_S = 180.0
+_LOST_S = 45
+"""After this time without a worker a nanny is given up; another takes its seat then."""
+_PATIENCE_S = 600.0
+_TOP_UP_S = 15.0
+_CONNECT_S = 20
+"""How long a scheduler is waited for."""
+
+
+def need(module: str, package: str) -> Any:
+    """A module that is not everywhere. Raises UsageError, which says how to have it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise jobs.UsageError(
+            f"{package} is not installed ({error}), in this Python; run: pip install 'promin[farm]', or take "
+            "promin-farm work, which needs none"
+        ) from error
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A place for a worker: a device, and the threads that it has where the device is a processor."""
+
+    device: str | None
+    """What `--device` takes; None is the default."""
+    threads: int | None = None
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """Of the worker's process: lavapipe reads it when the first device is opened."""
+        words = {"PROMIN_DEVICE": self.device} if self.device else {}
+        return words | ({"LP_NUM_THREADS": str(self.threads)} if self.threads else {})
+
+
+def count_cores() -> int:
+    """That this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def deal_seats(devices: list[str], count: int | None) -> list[Seat]:
+    """A worker for each device, or `count` of them, which share the devices; workers of a machine share its cores.
+
+    devices: what `--device` takes; none: the default one, which may be a processor."""
+    count = count or max(1, len(devices))
+    threads = max(1, count_cores() // count) if count > 1 else None
+    return [Seat(devices[i % len(devices)] if devices else None, threads) for i in range(count)]
+
+
+class DaskCrew:
+    """Workers of a Dask cluster."""
+
+    most_at_once = 4
+
+    def __init__(
+        self, client: Any, job: jobs.Job, patience_s: float, keep_up: Callable[[], None] | None = None
+    ) -> None:
+        """keep_up: asks a queue again for workers that have gone; called now and then."""
+        self.patience_s = patience_s
+        self._client = client
+        self._folder = job.folder
+        self._keep_up = keep_up
+        self._kept_up = time.monotonic()
+        # Tasks of two runs over one job are different for Dask: each foreman answers for its own.
+        self._keys = f"{job.id[:16]}-{secrets.token_hex(4)}"
+        self._count = 0
+        self._futures: dict[tuple[str, int], Any] = {}
+        self._ended: queue.SimpleQueue[tuple[str, int, Any]] = queue.SimpleQueue()
+        self._members: set[str] = set()
+        self._looked = 0.0
+
+    def members(self) -> set[str]:
+        now = time.monotonic()
+        if now - self._looked < 0.5:
+            return self._members
+        self._looked = now
+        if self._keep_up and now - self._kept_up > _TOP_UP_S:
+            self._kept_up = now
+            self._keep_up()
+        try:
+            self._members = set(self._client.nthreads())
+        except Exception as error:
+            raise jobs.RunError(
+                f"the scheduler has gone ({type(error).__name__}: {error}), {self._folder}; the pieces that are made "
+                "are there: promin-farm resume goes on"
+            ) from error
+        return self._members
+
+    def send(self, member: str, number: int) -> None:
+        self._count += 1
+        words: tuple[Any, ...] = (
+            (worker.prove, self._folder) if number == PROOF else (worker.make, self._folder, number)
+        )
+        future = self._client.submit(
+            *words,
+            key=f"{self._keys}-{number}-{self._count}",
+            pure=False,
+            workers=[member],
+            allow_other_workers=False,
+        )
+        self._futures[member, number] = future
+        future.add_done_callback(lambda ended: self._ended.put((member, number, ended)))
+
+    def next_answer(self, timeout_s: float) -> tuple[str, int, worker.Answer | None] | None:
+        try:
+            member, number, future = self._ended.get(timeout=timeout_s)
+        except queue.Empty:
+            return None
+        if (member, number) not in self._futures or self._futures[member, number] is not future:
+            return None
+        del self._futures[member, number]
+        try:
+            answer: worker.Answer | None = future.result(timeout=10) if future.status == "finished" else None
+        except Exception:
+            answer = None  # The worker has gone with it; the piece is there or it is not.
+        future.release()
+        return member, number, answer
+
+    def withdraw(self, member: str, number: int) -> None:
+        future = self._futures.pop((member, number), None)
+        if future is not None:
+            self._client.cancel([future])
+
+    def forget(self, member: str) -> None:
+        lost = [key for key in self._futures if key[0] == member]
+        futures = [self._futures.pop(key) for key in lost]
+        if futures:
+            self._client.cancel(futures)
+
+
+def open_local(job: jobs.Job, seats: list[Seat], stack: Any) -> tuple[DaskCrew, str]:
+    """A cluster of this machine, which ends with the stack; and a sentence about it."""
+    quiet()
+    distributed = need("distributed", "Dask distributed")
+    has_dashboard = importlib.util.find_spec("bokeh") is not None
+    # The nannies' own folders: sockets and locks, nothing of the job.
+    scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="promin-farm-"))
+    options = {"nthreads": 1, "memory_limit": 0, "local_directory": scratch, "silence_logs": logging.CRITICAL}
+    specification = {
+        i: {"cls": distributed.Nanny, "options": {**options, "env": seat.environment}} for i, seat in enumerate(seats)
+    }
+    scheduler = {
+        "cls": distributed.Scheduler,
+        "options": {"dashboard": has_dashboard, "dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "port": 0},
+    }
+    try:
+        cluster = stack.enter_context(
+            distributed.SpecCluster(workers=specification, scheduler=scheduler, silence_logs=logging.CRITICAL)
+        )
+    except (RuntimeError, OSError) as error:
+        raise jobs.RunError(
+            f"Dask cannot start workers ({error}), on this machine; try again, or take promin-farm work"
+        ) from error
+    client = stack.enter_context(distributed.Client(cluster))
+    threads = f", LP_NUM_THREADS={seats[0].threads} each" if seats[0].threads else ""
+    dashboard = f"; {cluster.dashboard_link}" if has_dashboard else ""
+
+    def keep_up() -> None:
+        # The same number again fills seats whose nannies have failed, as they do where a process takes long to start.
+        cluster.scale(len(seats))
+
+    words = f"{of_workers(len(seats))} on this machine{threads}{dashboard}"
+    return DaskCrew(client, job, _LOCAL_PATIENCE_S, keep_up), words
+
+
+def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]:
+    """Joins a cluster. Raises RunError where there is none at the address."""
+    quiet()
+    distributed = need("distributed", "Dask distributed")
+    try:
+        client = stack.enter_context(distributed.Client(address, timeout=_CONNECT_S))
+    except (OSError, ValueError) as error:
+        raise jobs.RunError(f"no scheduler answers ({error}), {address}; start it with: dask scheduler") from error
+    return DaskCrew(client, job, _PATIENCE_S), f"{of_workers(len(client.nthreads()))} of {address}"
+
+
+def quiet() -> None:
+    """Dask's own words about each worker that comes and goes; the foreman tells what matters."""
+    dask = need("dask", "Dask distributed")
+    dask.config.set(
+        {
+            "logging": {"distributed": "critical", "distributed.nanny": "critical", "distributed.worker": "critical"},
+            "distributed.deploy.lost-worker-timeout": f"{_LOST_S}s",
+            "distributed.scheduler.allowed-failures": 50,
+            "distributed.comm.timeouts.connect": f"{_CONNECT_S}s",
+        }
+    )
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)

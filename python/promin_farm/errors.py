@@ -1,0 +1,16 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Exit codes, which are those of promin's programs."""
+
+from __future__ import annotations
+
+from promin import jobs
+
+
+def exit_code_of(error: BaseException) -> int:
+    """1 for what fails while running, 2 for wrong use, 3 for bad input, 4 without a device."""
+    if isinstance(error, jobs.UsageError):
+        return 2
+    if isinstance(error, jobs.InputError):
+        return 3
+    return 4 if isinstance(error, jobs.DeviceError) else 1

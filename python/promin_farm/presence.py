@@ -1,0 +1,137 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Who works on a job, as its folder tells: `farm/workers/HOST-PID.json`, which each worker touches while it lives."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import threading
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from promin_farm.files import read_json, write_whole
+
+BEAT_S = 10.0
+STALE_S = 60.0
+"""A worker of another host that has not touched its file for so long is gone."""
+
+
+@dataclass(frozen=True)
+class Presence:
+    """A worker."""
+
+    host: str
+    pid: int
+    started: int
+    """When the process began, in the kernel's clock ticks, by which a later one with its number is told from it."""
+    fingerprint: str
+    device: str
+    """In words."""
+    threads: str
+    """LP_NUM_THREADS, empty where the driver decides."""
+
+    @property
+    def name(self) -> str:
+        """As its ledger is named."""
+        return f"{self.host}-{self.pid}"
+
+
+class Heart:
+    """Writes this process's file and touches it from a thread of its own until `stop`."""
+
+    def __init__(self, folder: Path, fingerprint: str, device: str) -> None:
+        self.presence = Presence(
+            host=socket.gethostname(),
+            pid=os.getpid(),
+            started=_start_of(os.getpid()) or 0,
+            fingerprint=fingerprint,
+            device=device,
+            threads=os.environ.get("LP_NUM_THREADS", ""),
+        )
+        self._file = folder / "farm" / "workers" / f"{self.presence.name}.json"
+        self._ends = threading.Event()
+        self._write()
+        threading.Thread(target=self._beat, name="promin-farm heart", daemon=True).start()
+
+    def stop(self) -> None:
+        """Tells that the worker has ended."""
+        self._ends.set()
+        try:
+            os.utime(self._file, (0, 0))
+        except OSError:
+            pass
+
+    def _write(self) -> None:
+        try:
+            write_whole(self._file, json.dumps(asdict(self.presence)) + "\n")
+        except OSError:
+            pass  # A full disk must not end a worker that only tells that it is there.
+
+    def _beat(self) -> None:
+        while not self._ends.wait(BEAT_S):
+            try:
+                os.utime(self._file)
+            except FileNotFoundError:
+                self._write()
+            except OSError:
+                pass
+
+
+class Roll:
+    """Who is alive, by the names of their ledgers. It looks once, and remembers."""
+
+    def __init__(self, folder: Path) -> None:
+        self.workers: dict[str, Presence] = {}
+        self._ages: dict[str, float] = {}
+        now = _now_of_disk(folder)
+        for file in sorted((folder / "farm" / "workers").glob("*.json")):
+            value = read_json(file)
+            try:
+                presence = Presence(**value) if value else None
+                age = now - file.stat().st_mtime
+            except (TypeError, OSError):
+                continue
+            if presence:
+                self.workers[presence.name] = presence
+                self._ages[presence.name] = age
+
+    def is_alive(self, name: str, last_sign: float) -> bool:
+        """Whether a writer of ledgers, HOST-PID, lives. last_sign: the time of its last line, which decides of those
+        without a file (by `promin render --job`) on other hosts: they are given up after ten minutes."""
+        host, _, pid_word = name.rpartition("-")
+        presence = self.workers.get(name)
+        if presence and self._ages[name] > 1e8:
+            return False  # It has said that it ended.
+        if host == socket.gethostname() and pid_word.isdigit():
+            started = _start_of(int(pid_word))
+            if started is None:
+                return False
+            return presence is None or presence.started == started
+        if presence:
+            return self._ages[name] < STALE_S
+        return time.time() - last_sign < 600.0
+
+
+def _now_of_disk(folder: Path) -> float:
+    """The file system's clock, which may be another machine's."""
+    probe = folder / "farm" / f".clock.{os.getpid()}.tmp"
+    try:
+        probe.parent.mkdir(exist_ok=True)
+        probe.write_bytes(b"")
+        now = probe.stat().st_mtime
+        probe.unlink()
+        return now
+    except OSError:
+        return time.time()
+
+
+def _start_of(pid: int) -> int | None:
+    """None where there is no such process; a dead one that nobody has waited for is none."""
+    try:
+        words = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
+    except OSError:
+        return None
+    return None if words[0] in (b"Z", b"X") else int(words[19])

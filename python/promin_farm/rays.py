@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Rays of a zarr array become the NumPy file that promin casts, once for a job, chunk by chunk."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from promin import jobs
+
+from promin_farm.crews import need
+
+_ROWS = 1 << 20
+
+
+def prepare_rays(arguments: list[str], folder: Path) -> list[str]:
+    """The arguments of `cast` with DIR.rays.npy in place of a name that ends in .zarr. The file's bytes are those of
+    the array, so the job is the one of these rays whatever brought them. Raises UsageError and InputError."""
+    target = folder.with_name(f"{folder.name}.rays.npy")
+    return [str(_copy(Path(word), target)) if word.rstrip("/").endswith(".zarr") else word for word in arguments]
+
+
+def _copy(source: Path, target: Path) -> Path:
+    zarr = need("zarr", "zarr")
+    try:
+        array = zarr.open_array(str(source), mode="r")
+    except Exception as error:
+        raise jobs.InputError(
+            f"no array of zarr can be opened ({error}), {source}; name one of N x 8 float32"
+        ) from error
+    if array.ndim != 2 or array.shape[1] != 8 or array.dtype != np.float32:
+        raise jobs.InputError(f"the array is {array.dtype} {array.shape}, {source}; rays are N x 8 float32")
+    # Whole chunks at a time, as each is unpacked as a whole.
+    step = max(1, _ROWS // array.chunks[0]) * array.chunks[0]
+    parts = [slice(begin, begin + step) for begin in range(0, array.shape[0], step)]
+    if target.exists():
+        there = np.load(target, mmap_mode="r")
+        if there.shape != array.shape or not all(there[part].tobytes() == array[part].tobytes() for part in parts):
+            raise jobs.InputError(f"the rays have changed since the job was begun, {source}; take another folder")
+        return target
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with open(temporary, "wb") as stream:
+            np.lib.format.write_array_header_1_0(
+                stream, {"descr": "<f4", "fortran_order": False, "shape": tuple(map(int, array.shape))}
+            )
+            for part in parts:
+                stream.write(np.ascontiguousarray(array[part], "<f4").tobytes())
+        os.replace(temporary, target)
+    except OSError as error:
+        raise jobs.RunError(f"cannot write ({error.strerror}), {target}; check the disk and permissions") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+    return target

@@ -1,0 +1,143 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""A run: what is missing of a job is made by a crew, then its files are written of the pieces."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from promin import jobs
+
+from promin_farm.alone import Signals
+from promin_farm.crews import DaskCrew, deal_seats, open_local, open_remote
+from promin_farm.foreman import Foreman, Tally
+from promin_farm.page import Page
+from promin_farm.queues import QUEUES, open_queue
+from promin_farm.settings import Settings, claim_what_is_there, frame_of
+from promin_farm.survey import take_survey
+from promin_farm.watch import Progress
+
+_MOST_ROUNDS = 3
+"""Pieces that are altered while the job goes on are made again; who alters them oftener than that is told."""
+_MOST_NAMED = 5
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a run gets its workers."""
+
+    workers: int | None = None
+    devices: list[str] = field(default_factory=list)
+    scheduler: str | None = None
+    queue_config: str | None = None
+    is_quiet: bool = False
+
+
+def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
+    """Makes what is missing, writes the outputs, and returns the exit code. Raises promin's errors."""
+    _check(options)
+    check_outputs(job, settings.outputs)
+    job.clear_leftovers()
+    for round_ in range(_MOST_ROUNDS):
+        missing = [piece.number for piece in job.pieces if job.state(piece.number) != "done"]
+        if missing:
+            exit_code = _make(job, settings, options, missing)
+            if exit_code is not None:
+                return exit_code
+        try:
+            if settings.outputs:
+                job.merge(settings.outputs, allow_mixed=settings.allow_mixed)
+            break
+        except (jobs.InputError, jobs.RunError):
+            if round_ + 1 == _MOST_ROUNDS or all(job.state(piece.number) == "done" for piece in job.pieces):
+                raise
+    if not options.is_quiet:
+        print(f"{len(job.pieces)} pieces: {', '.join(settings.outputs) or job.folder}")
+    return 0
+
+
+def check_outputs(job: jobs.Job, outputs: list[str]) -> None:
+    """Before the work, which may be long. Raises UsageError and RunError."""
+    endings = (".exr", ".png") if job.kind == "render" else (".npy",)
+    has_frames = frame_of(job.pieces[0]) != frame_of(job.pieces[-1])
+    for output in outputs:
+        if not output.endswith(endings):
+            raise jobs.UsageError(f"an output is none of {', '.join(endings)}, {output}; name it so")
+        if has_frames and "#" not in Path(output).name:
+            raise jobs.UsageError(f"several frames would go to one file, {output}; put #### where their numbers go")
+        if not os.access(Path(output).parent, os.W_OK):
+            raise jobs.RunError(f"cannot write to the folder, {Path(output).parent}; make it, or check permissions")
+
+
+def _check(options: Options) -> None:
+    if options.workers is not None and options.workers < 1:
+        raise jobs.UsageError(f"--workers is {options.workers}, on the command line; give 1 or more")
+    scheduler = options.scheduler
+    if scheduler and scheduler not in QUEUES and "://" not in scheduler:
+        known = ", ".join(QUEUES)
+        raise jobs.UsageError(f"--scheduler is {scheduler!r}, on the command line; give tcp://HOST:PORT, {known}")
+    if scheduler and options.devices:
+        raise jobs.UsageError(
+            "--device is of this machine's workers, on the command line; set PROMIN_DEVICE where the others start"
+        )
+    if scheduler and "://" in scheduler and options.workers:
+        raise jobs.UsageError("--workers is not for a cluster that there is, on the command line; it has its own")
+
+
+def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int]) -> int | None:
+    """The exit code of a run that has not made all; None of one that has."""
+    survey = take_survey(job)
+    claim_what_is_there(job, settings, survey.fingerprints)
+    page = Page(job)
+    watch = Progress(job, missing, is_quiet=options.is_quiet, on_tick=page.tick)
+    with Signals() as signals, ExitStack() as stack:
+        crew, words = _open_crew(job, options, stack)
+        watch.say(f"{len(missing)} of {len(job.pieces)} pieces to make, by {words}")
+        foreman = Foreman(job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon)
+        try:
+            tally = foreman.run(missing)
+        finally:
+            watch.close()
+            page.write()
+    return _conclude(job, tally)
+
+
+def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[DaskCrew, str]:
+    if options.scheduler in QUEUES:
+        return open_queue(job, str(options.scheduler), options.workers or 1, options.queue_config, stack)
+    if options.scheduler:
+        return open_remote(job, options.scheduler, stack)
+    # Each GPU has a worker; a processor has one that takes all of it.
+    return open_local(job, deal_seats(options.devices or jobs.list_gpus(), options.workers), stack)
+
+
+def _conclude(job: jobs.Job, tally: Tally) -> int | None:
+    again = f"promin-farm resume {job.folder}"
+    if tally.reason:
+        print(f"promin-farm: error: {tally.reason}; {tally.done} pieces were made, {again} goes on", file=sys.stderr)
+        return tally.exit_code
+    if tally.was_stopped:
+        print(f"promin-farm: stopped after {tally.done} pieces; {again} goes on", file=sys.stderr)
+        return 1
+    if tally.failed:
+        named = [f"{job.pieces[number].name} ({tries.reason})" for number, tries in sorted(tally.failed.items())]
+        more = ", …" if len(named) > _MOST_NAMED else ""
+        print(
+            f"promin-farm: error: {len(named)} of {len(job.pieces)} pieces cannot be made: "
+            f"{', '.join(named[:_MOST_NAMED])}{more}, {job.folder}; mend that, then {again} tries them again",
+            file=sys.stderr,
+        )
+        return 1
+    if tally.foreign:
+        owner = next(iter(tally.foreign.values()))
+        print(
+            f"promin-farm: error: {len(tally.foreign)} pieces must have the bits of the fingerprint {owner[:16]}, which "
+            f"no worker has, {Path(job.folder)}; {again} with a worker of that kind",
+            file=sys.stderr,
+        )
+        return 1
+    return None

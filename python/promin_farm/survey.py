@@ -1,0 +1,188 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What a job's folder tells, by its ledgers and by which pieces are there. Nothing is hashed: that do `verify`,
+`resume` and the assembly."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from promin import jobs
+
+from promin_farm.files import read_json_lines
+from promin_farm.presence import Roll
+from promin_farm.settings import Settings
+
+MOST_FAILURES = 3
+MOST_DEATHS = 5
+_RATE_OVER_S = 600.0
+
+
+@dataclass
+class Tries:
+    """What has become of a piece in vain."""
+
+    failures: int = 0
+    deaths: int = 0
+    """Processes that ended while they made it."""
+    reason: str = ""
+    """The last one."""
+
+    @property
+    def is_hopeless(self) -> bool:
+        """Whether it is not tried again."""
+        return self.failures >= MOST_FAILURES or self.deaths >= MOST_DEATHS
+
+    def fail(self, reason: str) -> None:
+        """Counts an error."""
+        self.failures += 1
+        self.reason = reason
+
+    def die(self, worker: str) -> None:
+        """Counts the end of a process."""
+        self.deaths += 1
+        self.reason = f"{worker} ended while it made the piece"
+
+    def describe(self) -> str:
+        """In words, the last reason with them."""
+        counts = [f"{self.failures} failures"] * bool(self.failures) + [f"{self.deaths} deaths"] * bool(self.deaths)
+        return f"{' and '.join(counts) or 'no try'}, the last: {self.reason}"
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The time in which a process made, or was at, a piece."""
+
+    number: int
+    worker: str
+    begun: float
+    """Seconds since 1970."""
+    ended: float | None
+    """None of what runs."""
+    outcome: str
+    """"done", "failed", "died", "running"."""
+
+
+@dataclass
+class Survey:
+    """A job at a moment."""
+
+    total: int
+    roll: Roll
+    done: set[int] = field(default_factory=set)
+    running: list[Stretch] = field(default_factory=list)
+    tries: dict[int, Tries] = field(default_factory=dict)
+    """Of those that failed since `retries_from`."""
+    receipts: dict[int, dict[str, Any]] = field(default_factory=dict)
+    """The last of each piece that is there."""
+    stretches: list[Stretch] = field(default_factory=list)
+    weight_done: float = 0.0
+    weight_left: float = 0.0
+    rate: float | None = None
+    """Weight a second over the last ten minutes of work; None where nothing was made."""
+
+    @property
+    def failed(self) -> dict[int, Tries]:
+        """Pieces that are given up."""
+        return {number: tries for number, tries in self.tries.items() if tries.is_hopeless and number not in self.done}
+
+    @property
+    def time_left_s(self) -> float | None:
+        """None where nobody works, or there is no rate."""
+        if not self.running or not self.rate:
+            return None
+        return self.weight_left / self.rate
+
+    @property
+    def fingerprints(self) -> dict[int, str]:
+        """Of pieces that are there, where it is known."""
+        return {n: str(receipt["fingerprint"]) for n, receipt in self.receipts.items() if receipt.get("fingerprint")}
+
+
+def take_survey(job: jobs.Job) -> Survey:
+    """Reads the ledgers and lists the pieces. Raises InputError where the farm's settings are damaged."""
+    folder = Path(job.folder)
+    survey = Survey(total=len(job.pieces), roll=Roll(folder))
+    try:
+        names = {entry.name for entry in os.scandir(folder / "pieces")}
+    except OSError:
+        names = set()
+    survey.done = {piece.number for piece in job.pieces if Path(piece.file).name in names}
+    survey.weight_done = sum(piece.weight for piece in job.pieces if piece.number in survey.done)
+    survey.weight_left = sum(piece.weight for piece in job.pieces) - survey.weight_done
+    since = Settings.read(folder).retries_from
+    for file in sorted((folder / "ledger").glob("*.jsonl")):
+        _read_ledger(survey, file, since)
+    survey.stretches.sort(key=lambda stretch: stretch.begun)
+    weights = [piece.weight for piece in job.pieces]
+    survey.rate = _rate_of(survey.stretches, weights)
+    return survey
+
+
+def open_piece(folder: Path, worker: str) -> int | None:
+    """The piece that a writer of ledgers has begun and not ended."""
+    number = None
+    for line in read_json_lines(folder / "ledger" / f"{worker}.jsonl"):
+        number = int(line["number"]) if line.get("event") == "begun" else None
+    return number
+
+
+def _read_ledger(survey: Survey, file: Path, since: float) -> None:
+    """Lines of promin.jobs (docs/jobs.md): begun, then done, failed or stopped; a process makes one piece at a time."""
+    worker = file.stem
+    begun: dict[str, Any] | None = None
+    for line in read_json_lines(file):
+        number, at = line.get("number"), line.get("time_s")
+        if not isinstance(number, int) or not isinstance(at, (int, float)) or not 0 <= number < survey.total:
+            continue
+        start = float(begun["time_s"]) if begun and begun["number"] == number else float(at)
+        event = line.get("event")
+        if event == "begun":
+            if begun:
+                _bury(survey, worker, begun, at, since)
+            begun = line
+            continue
+        begun = None
+        if event == "done":
+            survey.stretches.append(Stretch(number, worker, start, at, "done"))
+            if number in survey.done:
+                survey.receipts[number] = line
+        elif event == "failed":
+            survey.stretches.append(Stretch(number, worker, start, at, "failed"))
+            if at >= since:
+                survey.tries.setdefault(number, Tries()).fail(str(line.get("why", "")))
+    if begun is None:
+        return
+    at = float(begun["time_s"])
+    if survey.roll.is_alive(worker, at):
+        running = Stretch(int(begun["number"]), worker, at, None, "running")
+        survey.running.append(running)
+        survey.stretches.append(running)
+    else:
+        _bury(survey, worker, begun, at, since)
+
+
+def _bury(survey: Survey, worker: str, begun: dict[str, Any], at: float, since: float) -> None:
+    number, began = int(begun["number"]), float(begun["time_s"])
+    survey.stretches.append(Stretch(number, worker, began, at, "died"))
+    if number in survey.done:
+        # It may have been written before its receipt was.
+        survey.receipts.setdefault(number, begun)
+    if began >= since:
+        survey.tries.setdefault(number, Tries()).die(worker)
+
+
+def _rate_of(stretches: list[Stretch], weights: list[float]) -> float | None:
+    """Over the last minutes in which pieces were made, whenever that was."""
+    made = [s for s in stretches if s.outcome == "done" and s.ended is not None]
+    if not made:
+        return None
+    last = max(s.ended for s in made if s.ended is not None)
+    recent = [s for s in made if s.ended is not None and s.ended > last - _RATE_OVER_S]
+    until = time.time() if any(s.outcome == "running" for s in stretches) and time.time() - last < 60.0 else last
+    span = until - max(min(s.begun for s in recent), last - _RATE_OVER_S)
+    return sum(weights[s.number] for s in recent) / max(span, 1e-3)

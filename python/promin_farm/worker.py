@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What a process of the farm does: opens the job once, proves itself, makes pieces.
+
+The two functions take words and numbers and return JSON's values, so that nothing else travels; they raise nothing,
+as an exception of another machine says less than a sentence. An answer has one key of its own:
+
+    proof     the fingerprint and what the process is
+    idle      why this process can do nothing here (no device)
+    refused   why it must not (another scene, other bits), and `exit_code`
+    done      the receipt of a piece
+    failed    why a piece was not made, and `is_disk_full`
+    elsewhere the fingerprint that the piece must have
+    left      the piece was left because it was asked to"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from promin import jobs
+
+from promin_farm.errors import exit_code_of
+from promin_farm.presence import Heart
+from promin_farm.settings import Settings, claim_group, group_of
+
+Answer = dict[str, Any]
+
+_DISK_FULL = ("No space left on device", "Disk quota exceeded", "File too large")
+
+
+class Bench:
+    """A job opened in this process: its scene, its device, and the kernels that are compiled for it."""
+
+    def __init__(self, folder: str, device: str | None) -> None:
+        """Raises promin's errors."""
+        self.folder = Path(folder)
+        self.stamp = _stamp_of(self.folder)
+        self.job = jobs.open(folder)
+        self.settings = Settings.read(self.folder)
+        self.runner = self.job.runner(device)
+        self.heart = Heart(self.folder, self.runner.fingerprint, str(getattr(self.runner, "made_on", "")))
+
+    def find_obstacle(self, number: int | None) -> Answer | None:
+        """Whether other bits are wanted than those of this process, of the whole job or of a piece."""
+        if number is None and self.settings.allow_mixed:
+            return None
+        group = "job" if number is None else group_of(self.job, self.job.pieces[number], self.settings)
+        owner = claim_group(self.folder, group, self.runner.fingerprint)
+        if owner == self.runner.fingerprint:
+            return None
+        if self.settings.allow_mixed:
+            return {"elsewhere": owner}
+        return _refuse(
+            f"this worker would give other bits, {self.heart.presence.name}: its fingerprint is "
+            f"{self.runner.fingerprint[:16]}, that of the job {owner[:16]}; use machines of one kind, or resume with "
+            "--allow-mixed",
+            1,
+        )
+
+    def close(self) -> None:
+        self.heart.stop()
+
+
+_bench: Bench | None = None
+_using = threading.RLock()
+
+
+def prove(folder: str, device: str | None = None) -> Answer:
+    """Opens the job, or keeps it open, and tells by a probe what bits this process gives.
+
+    device: what `--device` takes; None: PROMIN_DEVICE of the environment, else the default."""
+    with _using:
+        try:
+            bench = _open(folder, device)
+            obstacle = bench.find_obstacle(None)
+            if obstacle:
+                return obstacle
+            presence = bench.heart.presence
+        except jobs.DeviceError as error:
+            return {"idle": str(error), "exit_code": exit_code_of(error)}
+        except Exception as error:
+            return _refuse(_sentence(error), exit_code_of(error))
+        return {
+            "proof": presence.fingerprint,
+            "name": presence.name,
+            "device": presence.device,
+            "ends_at": float(os.environ.get("PROMIN_FARM_ENDS_AT", "inf")),
+        }
+
+
+def make(folder: str, number: int, stop: Callable[[], bool] | None = None) -> Answer:
+    """Makes a piece, or finds it made. stop: asked while it works; True leaves the piece."""
+    with _using:
+        try:
+            bench = _open(folder, None)
+        except jobs.DeviceError as error:
+            return {"idle": str(error), "exit_code": exit_code_of(error)}
+        except Exception as error:
+            return _refuse(_sentence(error), exit_code_of(error))
+        try:
+            obstacle = bench.find_obstacle(number)
+            if obstacle:
+                return obstacle
+            receipt = bench.runner.run(number, stop)
+        except jobs.Cancelled:
+            return {"left": True}
+        except Exception as error:
+            if isinstance(error, jobs.DeviceError):
+                close()  # A lost device is opened anew for the next piece.
+            sentence = _sentence(error)
+            return {"failed": sentence, "is_disk_full": any(words in sentence for words in _DISK_FULL)}
+        return {"done": receipt.to_dict()}
+
+
+def close() -> None:
+    """Ends what this process has open."""
+    global _bench
+    with _using:
+        if _bench:
+            _bench.close()
+        _bench = None
+
+
+def _open(folder: str, device: str | None) -> Bench:
+    global _bench
+    if _bench and (str(_bench.folder) != folder or _stamp_of(_bench.folder) != _bench.stamp):
+        close()  # Another job, or another in the same folder.
+    if _bench:
+        _bench.settings = Settings.read(_bench.folder)
+    else:
+        _bench = Bench(folder, device or os.environ.get("PROMIN_DEVICE") or None)
+    return _bench
+
+
+def _stamp_of(folder: Path) -> tuple[int, int, int] | None:
+    """Differs where the job's manifest was written anew."""
+    try:
+        status = (folder / "job.json").stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_mtime_ns, status.st_size
+
+
+def _refuse(sentence: str, exit_code: int) -> Answer:
+    return {"refused": sentence, "exit_code": exit_code}
+
+
+def _sentence(error: Exception) -> str:
+    """Errors of promin are sentences; of others the kind says more than the words alone."""
+    return str(error) if isinstance(error, jobs.Error) else f"{type(error).__name__}: {error}"

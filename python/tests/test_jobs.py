@@ -1,0 +1,401 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""promin.jobs: pieces that any process may make, and files that are those of a single run."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import hashlib
+import json
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import promin
+from conftest import make_rays
+from promin import jobs
+
+RunPromin = Callable[..., None]
+
+PATH = {
+    "format": "promin camera path",
+    "version": 1,
+    "frames": [
+        {"time_s": 0.0, "eye": [0, 2, 8], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45},
+        {"time_s": 0.1, "eye": [1, 2, 8], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 60},
+    ],
+}
+
+
+@pytest.fixture
+def scene(scenes: Path, tmp_path: Path) -> Path:
+    """A copy that may be changed."""
+    return Path(shutil.copy(scenes / "box.gltf", tmp_path / "box.gltf"))
+
+
+@pytest.fixture
+def rays(tmp_path: Path) -> Path:
+    file = tmp_path / "rays.npy"
+    np.save(file, make_rays(1000))
+    return file
+
+
+def make_all(job: jobs.Job) -> jobs.Runner:
+    runner = job.runner()
+    for piece in job.pieces:
+        runner.run(piece.number)
+    return runner
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_pictures_are_those_of_the_single_run(scene: Path, tmp_path: Path, run_promin: RunPromin, count: int) -> None:
+    words = [scene, "--size", "40", "30", "--aov", "depth", "--background", "environment"]
+    run_promin("render", *words, "-o", tmp_path / "whole.exr")
+    job = jobs.create("render", [*map(str, words), "--pieces", str(count)], tmp_path / "job")
+    assert [job.state(piece.number) for piece in job.pieces] == ["missing"] * count
+    assert sum(piece.weight for piece in job.pieces) == 40 * 30
+    make_all(job)
+    assert [job.verify(piece.number) for piece in job.pieces] == ["done"] * count
+    job.merge([tmp_path / "merged.exr"])
+    assert (tmp_path / "merged.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
+    # The program takes it for its own.
+    run_promin("render", *words, "--pieces", count, "--job", tmp_path / "job", "-o", tmp_path / "again.exr")
+    assert (tmp_path / "again.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
+    assert len([event for event in job.events() if event["event"] == "done"]) == count
+
+
+def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) -> None:
+    (tmp_path / "path.json").write_text(json.dumps(PATH))
+    words = [str(scene), "--size", "24", "18", "--path", str(tmp_path / "path.json")]
+    run_promin("render", *words, "-o", tmp_path / "whole.##.png")
+    job = jobs.create("render", [*words, "--tiles", "2", "1"], tmp_path / "job")
+    assert len(job.pieces) == 4
+    make_all(job)
+    with pytest.raises(promin.UsageError, match="several frames would go to one file"):
+        job.merge([tmp_path / "one.png"])
+    job.merge([tmp_path / "cut.##.png"])
+    for number in ("00", "01"):
+        assert (tmp_path / f"cut.{number}.png").read_bytes() == (tmp_path / f"whole.{number}.png").read_bytes()
+
+
+@pytest.mark.parametrize("query", [[], ["--any"], ["--count"], ["--all"]])
+def test_answers_to_rays_are_those_of_the_single_run(
+    scene: Path, rays: Path, tmp_path: Path, run_promin: RunPromin, query: list[str]
+) -> None:
+    def outputs(name: str) -> list[Path]:
+        return [tmp_path / f"{name}.npy", tmp_path / f"{name}_offsets.npy"][: 2 if query == ["--all"] else 1]
+
+    whole = outputs("whole")
+    more = ["--offsets", whole[1]] if query == ["--all"] else []
+    run_promin("cast", scene, rays, *query, "-o", whole[0], *more)
+    job = jobs.create("cast", [str(scene), str(rays), *query, "--pieces", "3"], tmp_path / "job")
+    assert [piece.weight for piece in job.pieces] == [334, 333, 333]
+    make_all(job)
+    job.merge(outputs("merged"))
+    for one, other in zip(whole, outputs("merged")):
+        assert one.read_bytes() == other.read_bytes()
+
+
+class Chunks:
+    """Rays that lie in no .npy file."""
+
+    name = "rays.chunks"
+
+    def __init__(self, rays: NDArray[np.float32]) -> None:
+        self.rays = rays
+        self.count = len(rays)
+        self.size_bytes = rays.nbytes
+        self.sha256 = hashlib.sha256(rays.tobytes()).hexdigest()
+
+    def read(self, first: int, count: int) -> NDArray[np.float32]:
+        return self.rays[first : first + count]
+
+
+def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
+    source = Chunks(make_rays(500))
+    words = [str(scene), "rays.chunks", "--pieces", "4"]
+    job = jobs.create("cast", words, tmp_path / "job", rays=source)
+    make_all(job)
+    job.merge([tmp_path / "hits.npy"])
+    hits = np.load(tmp_path / "hits.npy")
+    assert hits.tobytes() == promin.Caster(promin.Scene.load(scene)).cast(source.rays).tobytes()
+    # Elsewhere they are passed again, and others are refused.
+    again = jobs.open(tmp_path / "job")
+    assert again.runner(rays=source).recompute(2) == job.sha256(2)
+    with pytest.raises(promin.UsageError, match='the file "rays.chunks" has changed since'):
+        again.runner(rays=Chunks(make_rays(500, seed=2)))
+    Path(job.pieces[1].file).unlink()
+
+    class Short(Chunks):
+        def read(self, first: int, count: int) -> NDArray[np.float32]:
+            return super().read(first, min(count, 400 - first))
+
+    runner = jobs.open(tmp_path / "job").runner(rays=Short(source.rays))
+    assert runner.recompute(0) == job.sha256(0)
+    Path(job.pieces[3].file).unlink()
+    with pytest.raises(promin.InputError, match="the rays end at 400 of 500, rays.chunks"):
+        runner.run(3)
+    assert job.state(3) == "missing" and job.events()[-1]["event"] == "failed"
+    source.rays = np.zeros((500, 7), np.float32)
+    with pytest.raises(Exception):
+        job.runner().run(1)
+    assert job.state(1) == "missing"
+
+
+def test_receipts_and_events(scene: Path, tmp_path: Path) -> None:
+    job = jobs.create("render", [str(scene), "--size", "16", "12", "--pieces", "3"], tmp_path / "job")
+    assert job.receipt(1) is None
+    runner = job.runner()
+    receipt = runner.run(1)
+    assert (receipt.number, receipt.name, receipt.bytes) == (1, "y00004-00008_x00000-00016", 16 * 4 * 12)
+    assert receipt.sha256 == hashlib.sha256(job.read(1)[1]).hexdigest() == job.sha256(1) == runner.recompute(1)
+    assert receipt.fingerprint == runner.fingerprint == job.runner().fingerprint and len(receipt.fingerprint) == 64
+    assert receipt.made_on == runner.made_on and receipt.pid == os.getpid() and receipt.ms > 0
+    assert json.loads(json.dumps(receipt.to_dict()))["version"] == promin.__version__
+    # Done is done: what is returned is what was told.
+    before = Path(job.pieces[1].file).stat().st_mtime_ns
+    assert (
+        runner.run(1) == receipt == jobs.open(tmp_path / "job").receipt(1) == pickle.loads(pickle.dumps(job)).receipt(1)
+    )
+    assert Path(job.pieces[1].file).stat().st_mtime_ns == before
+    with pytest.raises(promin.Cancelled):
+        runner.run(2, stop=lambda: True)
+    assert job.state(2) == "missing"
+    assert [(event["event"], event["number"]) for event in job.events()] == [("begun", 1), ("done", 1)]
+    # What the ledger cannot tell is left open; half a line waits, and what is no line is left out.
+    (ledger,) = (tmp_path / "job/ledger").iterdir()
+    ledger.write_bytes(b"\xff{}\n[]\n{}\n" + ledger.read_bytes()[:-1])
+    bare = jobs.open(tmp_path / "job").receipt(1)
+    assert bare is not None and bare.made_on == "" and bare.sha256 == receipt.sha256 and bare.bytes == receipt.bytes
+
+
+def test_a_stop_ends_a_piece(scenes: Path, tmp_path: Path) -> None:
+    words = [str(scenes / "showcase.gltf"), "--size", "960", "540", "--spp", "4096", "--pieces", "1"]
+    job = jobs.create("render", words, tmp_path / "job")
+    runner = job.runner()
+    asked: list[int] = []
+
+    def stop() -> bool:
+        asked.append(0)
+        return len(asked) > 3
+
+    with pytest.raises(promin.Cancelled):
+        runner.run(0, stop)
+    assert job.state(0) == "missing"
+    assert [event["event"] for event in job.events()] == ["begun", "stopped"]
+
+
+def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
+    job = jobs.create("render", [str(scene), "--size", "16", "12", "--pieces", "4"], tmp_path / "job")
+    runner = make_all(job)
+    job.merge([tmp_path / "whole.png"])
+    files = [Path(piece.file) for piece in job.pieces]
+    whole = [file.read_bytes() for file in files]
+    files[0].write_bytes(whole[0][:-1])
+    files[1].write_bytes(b"")
+    files[2].write_bytes(whole[2][:-3] + bytes([whole[2][-3] ^ 1]) + whole[2][-2:])
+    files[3].write_bytes(whole[1])
+    assert [job.state(number) for number in range(4)] == ["bad"] * 4
+    assert [job.why(number) for number in range(4)] == ["is cut", "the file is empty", "is damaged", "is another piece"]
+    with pytest.raises(promin.RunError, match="4 of 4 pieces are missing or bad"):
+        job.merge([tmp_path / "none.png"])
+    assert not (tmp_path / "none.png").exists()
+    for number in range(4):
+        runner.run(number)
+    assert [file.read_bytes() for file in files] == whole
+    other = jobs.create("render", [str(scene), "--size", "16", "12", "--spp", "2", "--pieces", "4"], tmp_path / "other")
+    shutil.copy(files[0], other.pieces[0].file)
+    assert (other.state(0), other.why(0)) == ("bad", "is of another job")
+
+
+def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
+    words = [str(scene), str(rays), "--pieces", "2"]
+    job = jobs.create("cast", words, tmp_path / "job")
+    runner = job.runner()
+    assert job.arguments == words
+    for other, what in (([*words, "--any"], "it has no --any"), ([*words[:2]], "it has 2 pieces, and 1 now")):
+        with pytest.raises(promin.UsageError, match=f"the folder has another job: {what}"):
+            jobs.create("cast", other, tmp_path / "job")
+    changed = make_rays(1000)
+    changed[3, 3] = 0.5
+    np.save(rays, changed)
+    with pytest.raises(promin.InputError, match="has changed since .*rays.npy"):
+        runner.run(0)
+    with pytest.raises(promin.UsageError, match='the file "rays.npy" has changed since'):
+        jobs.open(tmp_path / "job").runner()
+    np.save(rays, make_rays(1000))
+    scene.write_text(scene.read_text() + "\n")
+    with pytest.raises(promin.UsageError, match='the file "box.gltf" has changed since'):
+        jobs.open(tmp_path / "job").runner()
+    scene.unlink()
+    with pytest.raises(promin.InputError, match="file not found, .*box.gltf"):
+        jobs.open(tmp_path / "job").runner()
+    (tmp_path / "job/command.json").write_text("{}")
+    with pytest.raises(promin.UsageError, match="made by a function"):
+        jobs.open(tmp_path / "job").runner()
+
+
+@pytest.mark.parametrize(
+    "kind, words, error, sentence",
+    [
+        ("render", [], promin.UsageError, "SCENE is required"),
+        ("render", ["box.gltf", "--sp", "2"], promin.UsageError, "unknown option --sp, .*did you mean --spp"),
+        ("render", ["box.gltf", "--spp", "x"], promin.UsageError, "--spp takes a whole number"),
+        ("render", ["box.gltf", "--help"], promin.UsageError, "--help makes no job"),
+        ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "--output is none of a job's arguments"),
+        ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "--piece is none of a job's arguments"),
+        ("render", ["box.gltf", "--time-limit", "1"], promin.UsageError, "--job and --time-limit contradict"),
+        ("render", ["none.gltf"], promin.InputError, "file not found, none.gltf"),
+        ("cast", ["box.gltf"], promin.UsageError, "RAYS.npy is required"),
+        ("cast", ["box.gltf", "none.npy"], promin.InputError, "file not found, none.npy"),
+        ("paint", ["box.gltf"], promin.UsageError, 'no command "paint" makes jobs'),
+    ],
+)
+def test_wrong_arguments(
+    scenes: Path, tmp_path: Path, kind: str, words: list[str], error: type[promin.Error], sentence: str
+) -> None:
+    with pytest.raises(error, match=sentence):
+        jobs.create(kind, [str(scenes / word) if word == "box.gltf" else word for word in words], tmp_path / "job")
+    assert not (tmp_path / "job").exists()
+
+
+def test_folders_without_a_job(tmp_path: Path) -> None:
+    with pytest.raises(promin.InputError, match="there is no such folder"):
+        jobs.open(tmp_path / "none")
+    with pytest.raises(promin.InputError, match="there is no job in the folder"):
+        jobs.open(tmp_path)
+
+
+def test_pieces_of_a_function(tmp_path: Path) -> None:
+    (tmp_path / "input.txt").write_text("7")
+    made: list[int] = []
+
+    def make(number: int) -> tuple[str, bytes]:
+        made.append(number)
+        if number == 2:
+            raise OSError("the node is gone")
+        return f"number {number}", bytes([number]) * 7
+
+    def create(factor: str) -> jobs.Job:
+        return jobs.create_with(
+            "bytes",
+            tmp_path / "job",
+            options={"version": "3", "factor": factor},
+            pieces=["a", "b", "c"],
+            files=[tmp_path / "input.txt"],
+            make=make,
+        )
+
+    job = create("7")
+    assert (job.kind, job.options, [piece.weight for piece in job.pieces]) == (
+        "bytes",
+        {"version": "3", "factor": "7"},
+        [1, 1, 1],
+    )
+    runner = job.runner()
+    receipt = runner.run(1)
+    assert runner.run(1) == receipt and receipt.version == "3" and made == [1]
+    assert job.read(1) == ("number 1", bytes([1]) * 7) and runner.recompute(1) == receipt.sha256
+    with pytest.raises(OSError, match="the node is gone"):
+        runner.run(2)
+    assert [(event["event"], event.get("why")) for event in job.events()] == [
+        ("begun", None),
+        ("done", None),
+        ("begun", None),
+        ("failed", "the node is gone"),
+    ]
+    assert job.write(2, "", b"", made_on="elsewhere").made_on == "elsewhere" and job.state(2) == "done"
+    with pytest.raises(promin.UsageError, match="its factor is"):
+        create("8")
+    with pytest.raises(promin.UsageError, match="made by a function"):
+        jobs.open(tmp_path / "job").runner()
+    with pytest.raises(promin.InputError, match='the job is one of "bytes"'):
+        job.merge([tmp_path / "a.npy"])
+    with pytest.raises(promin.UsageError, match="there is no piece 3 of 3"):
+        job.state(3)
+    with pytest.raises(promin.UsageError, match="return a text and bytes"):
+        job.runner(make=lambda number: ("", 1)).run(0)  # type: ignore[arg-type, return-value]
+    for pieces in ([], ["a", "a"], ["a/b"]):
+        with pytest.raises(promin.UsageError, match="different names"):
+            jobs.create_with("bytes", tmp_path / "other", options={}, pieces=pieces)
+
+
+def test_threads_and_processes_share_a_job(scene: Path, tmp_path: Path) -> None:
+    job = jobs.create("render", [str(scene), "--size", "32", "24", "--pieces", "8"], tmp_path / "job")
+    code = "import sys\nfrom promin import jobs\njob = jobs.open(sys.argv[1])\nrunner = job.runner()\n"
+    code += "for piece in reversed(job.pieces): runner.run(piece.number)"
+    other = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "job")])
+    with concurrent.futures.ThreadPoolExecutor(3) as pool:
+        for done in [pool.submit(make_all, job) for _ in range(3)]:
+            done.result()
+    assert other.wait(120) == 0
+    assert [job.state(piece.number) for piece in job.pieces] == ["done"] * 8
+    assert len(list((tmp_path / "job/pieces").iterdir())) == 8
+    job.merge([tmp_path / "cut.exr"])
+    promin.Renderer(promin.Scene.load(scene)).render(size=(32, 24)).save(tmp_path / "whole.exr")
+    assert np.array_equal(promin.read_image(tmp_path / "cut.exr"), promin.read_image(tmp_path / "whole.exr"))
+
+
+def test_leftovers_are_cleared(tmp_path: Path) -> None:
+    job = jobs.create_with("bytes", tmp_path / "job", options={}, pieces=["a"])
+    left = tmp_path / "job/pieces" / f"a.tmp99999999-{os.uname().nodename}.piece"
+    left.write_bytes(b"half")
+    job.clear_leftovers()
+    assert not left.exists()
+
+
+ENDLESS = """
+import sys, threading, os, signal, time
+from promin import jobs
+job = jobs.open(sys.argv[1])
+runner = job.runner()
+runner.fingerprint
+threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    runner.run(0)
+except KeyboardInterrupt:
+    print([event["event"] for event in job.events()], job.state(0))
+"""
+
+
+def test_ctrl_c_ends_a_piece(scenes: Path, tmp_path: Path) -> None:
+    words = [str(scenes / "showcase.gltf"), "--size", "960", "540", "--spp", "4096", "--pieces", "1"]
+    jobs.create("render", words, tmp_path / "job")
+    done = subprocess.run(
+        [sys.executable, "-c", ENDLESS, str(tmp_path / "job")], capture_output=True, text=True, timeout=120
+    )
+    assert done.stdout == "['begun', 'stopped'] missing\n", done.stderr
+
+
+def test_wrong_types(tmp_path: Path) -> None:
+    with pytest.raises(promin.UsageError, match="give a list of words"):
+        jobs.create("render", "scene.gltf", tmp_path / "job")
+
+
+def test_previews_are_the_picture_made_small(scene: Path, rays: Path, tmp_path: Path) -> None:
+    words = [str(scene), "--size", "40", "30", "--tiles", "2", "3", "--tone-mapping", "none", "--exposure", "1"]
+    job = jobs.create("render", words, tmp_path / "job")
+    make_all(job)
+    job.merge([tmp_path / "whole.png"])
+    whole = np.round(255.0 * promin.read_image(tmp_path / "whole.png")).astype(int)
+    preview = job.preview(3)
+    assert preview is not None and preview.shape == (10, 20, 3) and preview.dtype == np.uint8
+    assert np.abs(preview.astype(int) - whole[10:20, 20:40]).max() <= 1 and np.ptp(preview) > 50
+    small = job.preview(3, 5)
+    assert small is not None and small.shape == (2, 5, 3) and (small == preview[2::4, 2::4]).all()
+    answers = jobs.create("cast", [str(scene), str(rays)], tmp_path / "rays_job")
+    make_all(answers)
+    assert answers.preview(0) is None
+
+
+def test_processors_are_no_gpus() -> None:
+    gpus = [info for info in promin.Device.list() if info.type != "CPU" and not info.obstacles]
+    assert jobs.list_gpus() == [f"uuid:{info.uuid}" for info in gpus]

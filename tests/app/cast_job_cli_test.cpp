@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// `promin cast --job`: answers to rays in pieces, whatever ends the work.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <thread>
+
+#include "cli_fixture.h"
+
+namespace promin {
+namespace {
+
+using testing::HasSubstr;
+
+class CastJobCliTest : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    write_rays("rays.npy", make_rays(1000));
+  }
+
+  /// Rays at the square and around it, some along its plane.
+  static std::vector<Ray> make_rays(size_t count) {
+    std::vector<Ray> rays(count);
+    for (size_t i = 0; i < count; ++i) {
+      const auto place = [&](double step) { return static_cast<float>(3.0 * std::fmod(step * (i + 1), 1.0) - 1.5); };
+      rays[i].origin = {place(0.618033988749895), place(0.754877666246693), i % 7 == 0 ? 0.0F : 2.0F};
+      rays[i].direction = {0.1F * place(0.569840290998053), 0.0F, i % 7 == 0 ? 0.0F : -1.0F};
+    }
+    return rays;
+  }
+
+  ProcessResult cast(OptionValues more) const {
+    more.insert(more.begin(), {"cast", "square.gltf", "rays.npy", "--quiet"});
+    return run(more);
+  }
+  void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
+  std::vector<std::filesystem::path> pieces() const {
+    std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder() / "job" / "pieces"),
+                                             std::filesystem::directory_iterator());
+    std::ranges::sort(files);
+    return files;
+  }
+};
+
+TEST_F(CastJobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
+  for (const char* query : {"", "--any", "--count", "--all"}) {
+    const bool is_all = std::string(query) == "--all";
+    const auto words = [&](const std::string& name, OptionValues more) {
+      if (*query != '\0') more.emplace_back(query);
+      more.insert(more.end(), {"-o", name + ".npy"});
+      if (is_all) more.insert(more.end(), {"--offsets", name + "_offsets.npy"});
+      return more;
+    };
+    expect_done(cast(words("whole", {})));
+    for (const OptionValues& cut : {OptionValues{}, OptionValues{"--pieces", "7"}}) {
+      std::filesystem::remove_all(folder() / "job");
+      OptionValues more = cut;
+      more.insert(more.end(), {"--job", "job"});
+      expect_done(cast(words("cut", more)));
+      EXPECT_EQ(pieces().size(), cut.empty() ? 1U : 7U);
+      EXPECT_TRUE(read("cut.npy") == read("whole.npy")) << query;
+      if (is_all) EXPECT_TRUE(read("cut_offsets.npy") == read("whole_offsets.npy"));
+    }
+  }
+  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the job's answers go to two files"));
+  expect_done(run({"merge", "job", "-o", "merged.npy", "--offsets", "merged_offsets.npy"}));
+  EXPECT_TRUE(read("merged.npy") == read("whole.npy") && read("merged_offsets.npy") == read("whole_offsets.npy"));
+}
+
+TEST_F(CastJobCliTest, SharesAreMergedAndPiecesWithoutRaysAreWhole) {
+  expect_done(cast({"-o", "whole.npy"}));
+  expect_done(cast({"--job", "job", "--pieces", "5", "--piece", "1/2"}));
+  const ProcessResult early = run({"merge", "job", "-o", "merged.npy"});
+  expect_failure(early, 1, "3 of 5 pieces are missing or bad: r000000000000-000000000200, r000000000400-");
+  expect_done(cast({"--job", "job", "--pieces", "5", "--piece", "0/2"}));
+  expect_done(run({"merge", "job", "-o", "merged.npy", "--quiet"}));
+  EXPECT_TRUE(read("merged.npy") == read("whole.npy"));
+  write_rays("rays.npy", {});
+  expect_done(cast({"-o", "none.npy"}));
+  expect_done(cast({"--job", "empty", "-o", "cut.npy"}));
+  EXPECT_TRUE(read("cut.npy") == read("none.npy"));
+}
+
+TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
+  expect_done(cast({"-o", "whole.npy"}));
+  const OptionValues words = {"--job", "job", "--pieces", "4", "-o", "cut.npy"};
+  expect_done(cast(words));
+  const auto files = pieces();
+  std::filesystem::resize_file(files[0], std::filesystem::file_size(files[0]) - 10);
+  std::filesystem::resize_file(files[1], 0);
+  std::string bytes = read("job/pieces/" + files[2].filename().string());
+  bytes[bytes.size() - 5] = static_cast<char>(bytes[bytes.size() - 5] ^ 4);
+  write("job/pieces/" + files[2].filename().string(), bytes);
+  EXPECT_THAT(run({"merge", "job", "-o", "cut.npy"}).err, HasSubstr("3 of 4 pieces are missing or bad"));
+  const ProcessResult result =
+      run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + " is cut; it is made anew"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + " is damaged; it is made anew"));
+  EXPECT_THAT(result.out, HasSubstr("3 of 4 pieces made now: cut.npy"));
+  EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
+
+  expect_failure(cast({"--job", "job", "--pieces", "4", "--any", "-o", "cut.npy"}), 2,
+                 "the folder has another job: it has no --any, which is \"given\" now");
+  expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2, "it has 4 pieces, and 3 now");
+  write_rays("rays.npy", make_rays(999));
+  expect_failure(cast(words), 2, "its rays is \"1000\", and \"999\" now");
+  std::vector<Ray> rays = make_rays(1000);
+  rays[17].tmin = 0.5F;
+  write_rays("rays.npy", rays);
+  expect_failure(cast(words), 2, "the file \"rays.npy\" has changed since");
+}
+
+TEST_F(CastJobCliTest, WrongUseIsRefused) {
+  const std::pair<OptionValues, std::string> cases[] = {
+      {{}, "--output is required"},
+      {{"-o", "a.npy", "--pieces", "4"}, "--pieces has no job to cut"},
+      {{"--piece", "0/2"}, "--piece has no job to cut"},
+      {{"--job", "job"}, "--output is required"},
+      {{"--job", "job", "--all", "-o", "a.npy"}, "--all is given without --offsets"},
+      {{"-o", "a.npy", "--job", "job", "--pieces", "1001"}, "1001 pieces are more than the 1000 rays"},
+      {{"-o", "a.npy", "--job", "job", "--piece", "0/4"}, "--piece and --output contradict each other"},
+      {{"-o", "a.npy", "--job", "job", "--repeat", "2"}, "--job and --repeat contradict each other"},
+      {{"-o", "a.npy", "--job", "job", "--stats", "s.json"}, "--job and --stats contradict each other"}};
+  for (const auto& [words, sentence] : cases) {
+    expect_failure(cast(words), 2, sentence);
+    EXPECT_FALSE(std::filesystem::exists(folder() / "job")) << sentence;
+  }
+  expect_done(run({"render", "square.gltf", "--size", "8", "8", "--job", "job", "--piece", "0/1", "--quiet"}));
+  expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "unknown output ending \".npy\"");
+}
+
+// The piece at hand is not there, and those before it are.
+TEST_F(CastJobCliTest, AFullDiskLeavesWholePieces) {
+  write_rays("rays.npy", make_rays(20000));
+  expect_done(cast({"-o", "whole.npy"}));
+  fill_disk(400'000);
+  // Mesa's cache is no concern of this test.
+  options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
+  expect_failure(cast({"--job", "job", "--pieces", "1", "-o", "cut.npy"}), 1, "cannot write the output file");
+  EXPECT_TRUE(pieces().empty());
+  options_ = {.folder = options_.folder};
+  expect_done(cast({"--job", "job", "--pieces", "1", "-o", "cut.npy"}));
+  EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
+}
+
+TEST_F(CastJobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
+  write_rays("rays.npy", make_rays(200'000));
+  Process program(PROMIN_EXECUTABLE,
+                  {"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "2000", "-o", "cut.npy"}, options_);
+  const auto is_begun = [&] {
+    return std::filesystem::is_directory(folder() / "job" / "pieces") && pieces().size() > 1;
+  };
+  for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  program.send(SIGTERM);
+  const ProcessResult result = program.wait();
+  EXPECT_EQ(result.signal, SIGTERM);
+  EXPECT_THAT(result.err, HasSubstr("of 2000; the same command goes on"));
+  EXPECT_LT(pieces().size(), 2000U);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "cut.npy"));
+}
+
+/// Ends the work again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does not say.
+TEST_F(CastJobCliTest, WhateverEndsItTheSameCommandGoesOn) {
+  const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");
+  const int kills = kills_word == nullptr ? 6 : std::atoi(kills_word);
+  write_rays("rays.npy", make_rays(100'000));
+  const OptionValues words = {"--job", "job", "--pieces", "40", "-o", "cut.npy"};
+  expect_done(cast({"-o", "whole.npy"}));
+  const auto start = std::chrono::steady_clock::now();
+  expect_done(cast(words));
+  const auto whole = std::chrono::steady_clock::now() - start;
+  std::filesystem::remove_all(folder() / "job");
+  std::filesystem::remove(folder() / "cut.npy");
+  int ended = 0;
+  for (int i = 0; i < kills; ++i) {
+    OptionValues all = words;
+    all.insert(all.begin(), {"cast", "square.gltf", "rays.npy", "--quiet"});
+    Process program(PROMIN_EXECUTABLE, all, options_);
+    // At any time of a run, by the golden ratio.
+    const double share = std::fmod(0.618033988749895 * (i + 1), 1.0);
+    std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(whole * share));
+    const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
+    program.send(signal);
+    ended += program.wait().signal == signal ? 1 : 0;
+    // What is there is whole, or nothing.
+    if (std::filesystem::exists(folder() / "cut.npy")) {
+      EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
+      std::filesystem::remove_all(folder() / "job");
+      std::filesystem::remove(folder() / "cut.npy");
+    }
+  }
+  EXPECT_GT(ended, kills / 4);
+  expect_done(cast(words));
+  EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
+  EXPECT_EQ(pieces().size(), 40U);
+}
+
+}  // namespace
+}  // namespace promin
