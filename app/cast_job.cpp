@@ -217,17 +217,20 @@ std::unique_ptr<PieceMaker> RayJob::open(const gpu::Device& device, size_t /*pie
   return std::make_unique<RayPieces>(*this, device);
 }
 
+/// Of files that answers go to.
+void check_count(size_t count, const std::vector<fs::path>& files) {
+  if (files.size() == count) return;
+  throw UsageError({fmt::format("the job's answers go to {}, not to {}",
+                                count == 2 ? "two files, hits and offsets" : "one file", files.size()),
+                    files.empty() ? "" : files.front().string(),
+                    count == 2 ? "give --output and --offsets" : "give --output alone"});
+}
+
 /// The files of a query, to which pieces are added in their order.
 class HitFiles {
  public:
-  HitFiles(HitQuery query, const std::vector<fs::path>& files, uint64_t rays) : query_(query) {
-    const size_t count = query == HitQuery::kAll ? 2 : 1;
-    if (files.size() != count) {
-      throw UsageError({fmt::format("the job's answers go to {}, not to {}",
-                                    count == 2 ? "two files, hits and offsets" : "one file", files.size()),
-                        files.empty() ? "" : files.front().string(),
-                        count == 2 ? "give --output and --offsets" : "give --output alone"});
-    }
+  HitFiles(HitQuery query, const std::vector<fs::path>& files, uint64_t rays) {
+    check_count(query == HitQuery::kAll ? 2 : 1, files);
     if (query == HitQuery::kCount) {
       counts_.emplace(files[0], rays);
       return;
@@ -264,7 +267,6 @@ class HitFiles {
     return {reinterpret_cast<const Value*>(bytes.data()), bytes.size() / sizeof(Value)};
   }
 
-  HitQuery query_;
   std::optional<HitWriter> hits_;
   std::optional<CountWriter> counts_;
   std::optional<OffsetWriter> offsets_;
@@ -286,9 +288,16 @@ std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App
   return std::make_unique<RayJob>(options, command, console, std::move(rays));
 }
 
+void check_merged_hits(const jobs::Job& job, const std::vector<fs::path>& files) {
+  check_arrays(files);
+  // What other pieces than a command's hold, they say themselves.
+  const std::optional<std::vector<std::string>> arguments = read_arguments(job);
+  if (arguments) check_count(std::ranges::find(*arguments, "--all") != arguments->end() ? 2 : 1, files);
+}
+
 void merge_hits(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress,
                 bool is_mixed) {
-  check_arrays(files);
+  check_merged_hits(job, files);
   check_whole(job);
   const size_t last = job.piece_count() - 1;
   const uint64_t rays = decode(job.read(last), job.file_of(last)).rays.end;

@@ -26,6 +26,8 @@ void number_as_in_file(const Scene& scene, std::span<Hit> hits);
 std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App& command, const Console& console,
                                       std::shared_ptr<RaySource> rays = nullptr);
 
+/// Throws UsageError for files that are no arrays, and where a command has planned the job for another number of them.
+void check_merged_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
 /// Writes what the pieces of a job of rays are together: hits, or counts, and of --all the offsets to a second file.
 /// Throws UsageError for another number of files, RunError, Cancelled, and InputError where pieces do not belong
 /// together; unless `is_mixed`, that is where they were made by different drivers.

@@ -79,6 +79,15 @@ void check_driver(const jobs::Job& job, const std::string& driver) {
                     job.folder().string(), "go on with that device by --device, or take another folder"});
 }
 
+/// Whether a file is, by all that the manifest tells, one that the job's pieces hang on.
+bool is_input(const jobs::Job& job, const fs::path& file) {
+  return std::ranges::any_of(job.manifest().files, [&](const jobs::InputFile& input) {
+    std::error_code none;
+    return input.name == file.filename() && fs::file_size(file, none) == input.size_bytes && !none &&
+           jobs::describe_input(file).sha256 == input.sha256;
+  });
+}
+
 /// Makes what is missing of a share. Returns how many pieces it has made, nothing where a signal has ended it before.
 std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, const jobs::Share& share,
                                  const JobSteps& steps, const Console& console) {
@@ -252,13 +261,27 @@ void check_whole(const jobs::Job& job) {
                   "run the job again, which makes what is missing"});
 }
 
+void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs) {
+  const std::string& kind = job.manifest().kind;
+  if (kind == kPictureJob) {
+    check_merged_pictures(job, outputs);
+  } else if (kind == kRayJob) {
+    check_merged_hits(job, outputs);
+  } else {
+    throw InputError({fmt::format("the job is one of \"{}\", and not of promin render or cast", kind),
+                      job.folder().string(), "name the folder of promin render --job or promin cast --job"});
+  }
+  for (const fs::path& output : outputs) {
+    if (!is_input(job, output)) continue;
+    throw UsageError({"the output would overwrite an input", output.string(), "name another file"});
+  }
+}
+
 void merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs, const ProgressCallback& progress,
                bool is_mixed) {
-  const std::string& kind = job.manifest().kind;
-  if (kind == kPictureJob) return merge_pictures(job, outputs, progress);
-  if (kind == kRayJob) return merge_hits(job, outputs, progress, is_mixed);
-  throw InputError({fmt::format("the job is one of \"{}\", and not of promin render or cast", kind),
-                    job.folder().string(), "name the folder of promin render --job or promin cast --job"});
+  check_job_files(job, outputs);
+  if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress);
+  merge_hits(job, outputs, progress, is_mixed);
 }
 
 void merge_job_deferring(const jobs::Job& job, const std::vector<fs::path>& outputs) {

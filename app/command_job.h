@@ -101,12 +101,17 @@ struct JobSteps {
 /// UsageError where the pieces that are there were made by another driver.
 void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console);
 
+/// Before the work: throws UsageError for files that merge_job does not make of this job, and for one that the job's
+/// pieces hang on; the manifest tells these by name, size and hash, not by folder. Throws InputError for a job of
+/// another kind.
+void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
+
 /// Throws RunError where pieces of a job are missing or bad, which names some.
 void check_whole(const jobs::Job& job);
 
 /// Makes the files of a job of its pieces: pictures of the kind "render"; of "cast" the hits or counts, and of --all
-/// the offsets as a second file. `is_mixed` is for rays alone (merge_hits). Throws UsageError for files that the job
-/// does not make, InputError for a job of another kind, Cancelled, and what merge_pictures and merge_hits do.
+/// the offsets as a second file. `is_mixed` is for rays alone (merge_hits). Throws Cancelled, and what check_job_files,
+/// merge_pictures and merge_hits do.
 void merge_job(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
                const ProgressCallback& progress, bool is_mixed = false);
 /// The same for a program: a signal ends it, and leaves no file half written.

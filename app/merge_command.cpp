@@ -31,12 +31,8 @@ void merge(const MergeOptions& options) {
   std::vector<std::filesystem::path> files = options.files;
   if (options.offsets) files.push_back(*options.offsets);
   const jobs::Job job = jobs::Job::open(options.folder);
-  if (job.manifest().kind == kPictureJob) {
-    check_pictures(files);
-    find_pictures();
-  } else {
-    check_arrays(files);
-  }
+  check_job_files(job, files);
+  if (job.manifest().kind == kPictureJob) find_pictures();
   check_outputs({}, files, {});
   merge_job_deferring(job, files);
   if (!options.is_quiet) fmt::print("{} pieces: {}\n", job.piece_count(), fmt::join(names_of(files), ", "));

@@ -176,7 +176,7 @@ std::string frame_of(const std::string& piece) {
 /// Before anything is written: whether the frames go to files of their own.
 void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   const std::vector<std::string>& pieces = job.manifest().pieces;
-  if (frame_of(pieces.front()) == frame_of(pieces.back())) return;
+  if (!pieces.front().starts_with(kOfFrame) || frame_of(pieces.front()) == frame_of(pieces.back())) return;
   for (const fs::path& file : files) {
     if (number_file(file, 0) != file) continue;
     throw UsageError({"several frames would go to one file", file.string(), "put #### where their numbers go"});
@@ -288,9 +288,13 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
   return part;
 }
 
-void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress) {
+void check_merged_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
   check_pictures(files);
-  if (job.manifest().pieces.front().starts_with(kOfFrame)) check_numbered(job, files);
+  check_numbered(job, files);
+}
+
+void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress) {
+  check_merged_pictures(job, files);
   check_whole(job);
   const std::vector<std::string>& names = job.manifest().pieces;
   for (size_t begin = 0; begin < names.size();) {

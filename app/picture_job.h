@@ -50,6 +50,8 @@ PicturePart decode_part(const jobs::Content& content, const std::filesystem::pat
 std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
                                      const std::vector<PixelWindow>& parts);
 
+/// Throws UsageError for files that are no pictures, and where several frames would go to one.
+void check_merged_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
 /// Puts the pieces of a job of pictures together and writes each picture to the files of these names, with the number
 /// of its frame. Throws RunError where pieces are missing, which names some, InputError where pieces do not belong
 /// together (made by different drivers) or are damaged, UsageError for files that are no pictures and where several

@@ -58,6 +58,14 @@ Manifest manifest_of(const Json& json) {
   return manifest;
 }
 
+/// Names of pieces become those of files, so what a folder of somebody else says must not lead out of it.
+bool has_names_of_pieces(const Manifest& manifest) {
+  constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return !manifest.pieces.empty() && std::ranges::all_of(manifest.pieces, [&](const std::string& name) {
+    return !name.empty() && name.find_first_not_of(kAllowed) == std::string::npos;
+  });
+}
+
 fs::path manifest_file(const fs::path& folder) {
   return folder / "job.json";
 }
@@ -77,7 +85,7 @@ Manifest read_manifest(const fs::path& folder) {
     if (json.at("promin_job") != kFormat) throw InputError({"is a job of another version", file.string(), cure});
     Manifest manifest = manifest_of(json);
     // What was changed by hand is no longer what its pieces are of.
-    if (text_of(manifest) == text) return manifest;
+    if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
   } catch (const nlohmann::json::exception&) {
   }
   throw InputError({"is no manifest of a job, or a damaged one", file.string(), cure});

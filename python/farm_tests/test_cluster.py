@@ -113,6 +113,28 @@ def test_a_seat_whose_nanny_is_given_up_is_filled_again(farm: Farm) -> None:
     assert process.wait(90) == 0 and farm.out.read_bytes() == farm.expected()
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_ctrl_c_lets_pieces_be_made_and_a_second_one_leaves_them(farm: Farm, count: int) -> None:
+    """As a terminal sends it, to the command and its workers alike."""
+    farm.write_scene(40, ms=1500 if count == 1 else 60_000)
+    process = farm.start("render", farm.scene, "-o", farm.out, "--job", farm.job, "--workers", 2)
+    wait_for(lambda: len(farm.events("begun")) >= 2, 60)
+    for _ in range(count):
+        os.killpg(process.pid, signal.SIGINT)
+        time.sleep(0.3)
+    out, err = process.communicate(timeout=40)
+    assert process.returncode == 1 and "resume" in err and "goes on" in err, (out, err)
+    made = 0 if count == 2 else len(farm.events("begun"))
+    assert len(farm.events("done")) == made and not farm.events("failed")
+
+
+def test_a_worker_that_cannot_run_the_farm_says_so() -> None:
+    from promin_farm.crews import _refusal_of
+
+    said = _refusal_of(ModuleNotFoundError("No module named 'promin_farm'"))
+    assert said is not None and "No module named" in said["refused"] and "install" in said["refused"]
+
+
 def test_threads_and_devices_are_dealt_out() -> None:
     from promin_farm.crews import Seat, count_cores, deal_seats
 

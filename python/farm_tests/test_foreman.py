@@ -279,6 +279,20 @@ def test_an_answer_that_is_lost_is_asked_for_again(farm: Farm, answer: dict[str,
     assert tally.done == 10 and tally.repeats == 1 and not tally.failed
 
 
+def test_a_worker_whose_proofs_are_lost_is_done_without(farm: Farm) -> None:
+    farm.write_scene(10)
+    crew = Scripted(farm)
+    asked = []
+
+    def proof(name: str) -> Any:
+        asked.append(name)
+        return {"proof": "x", "name": "b", "ends_at": float("inf")} if name == "b" else None
+
+    crew.proof = proof
+    tally, _ = run(farm, crew)
+    assert tally.done == 10 and 1 < asked.count("a") < 10
+
+
 def test_workers_that_end_before_they_begin_end_the_run(farm: Farm) -> None:
     farm.write_scene(10)
     crew = Scripted(farm, "a")

@@ -96,6 +96,14 @@ def test_slurms_array_tells_the_share(farm: Farm) -> None:
     assert farm.events("done")[:3] == [2, 5, 8]
 
 
+@pytest.mark.parametrize("pieces", [1, 9])
+def test_an_array_with_gaps_makes_all(farm: Farm, pieces: int) -> None:
+    farm.write_scene(pieces)
+    farm.create()
+    farm.run("work", farm.job, SLURM_ARRAY_TASK_ID="4", SLURM_ARRAY_TASK_MIN="0", SLURM_ARRAY_TASK_COUNT="3")
+    assert sorted(farm.events("done")) == list(range(pieces))
+
+
 @pytest.mark.parametrize("words", ["3/3", "1", "-1/2", "a/b", "1/0"])
 def test_a_wrong_share_is_refused(farm: Farm, words: str) -> None:
     farm.write_scene(3)

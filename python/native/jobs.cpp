@@ -129,6 +129,10 @@ void merge(const Job& job, const std::vector<std::string>& outputs, bool is_mixe
   });
 }
 
+void check_outputs(const Job& job, const std::vector<std::string>& outputs) {
+  unlocked([&] { app::check_job_files(job, {outputs.begin(), outputs.end()}); });
+}
+
 /// A job that is read and checked; what opens its pieces has part in it.
 using Plan = std::shared_ptr<app::PlannedJob>;
 
@@ -286,6 +290,7 @@ void bind_jobs(nb::module_& module) {
              job.tell_failed(check(job, piece), {made_on, fingerprint}, why);
            })
       .def("clear_leftovers", &Job::clear_leftovers)
+      .def("check_outputs", &check_outputs)
       .def("merge", &merge, nb::arg("outputs"), nb::arg("is_mixed"), nb::arg("progress").none());
   module.def("fingerprint_of", &fingerprint_of);
   nb::class_<SharedPlan>(module, "PlannedJob")

@@ -202,7 +202,7 @@ class Job:
         self._options: dict[str, str] = dict(record["options"])
         self._files: list[tuple[str, int, str]] = record["files"]
         names: list[str] = record["pieces"]
-        self._pieces = [Piece(i, name, native.file_of(i), _weigh(name)) for i, name in enumerate(names)]
+        self._pieces = tuple(Piece(i, name, native.file_of(i), _weigh(name)) for i, name in enumerate(names))
         self._ledger = _Ledger(Path(folder) / "ledger")
 
     @property
@@ -221,9 +221,9 @@ class Job:
         return self._folder
 
     @property
-    def pieces(self) -> list[Piece]:
+    def pieces(self) -> tuple[Piece, ...]:
         """All of them, by their numbers."""
-        return list(self._pieces)
+        return self._pieces
 
     @property
     def options(self) -> dict[str, str]:
@@ -324,6 +324,11 @@ class Job:
                 raise UsageError(f"pieces of the kind {self._kind!r} are made by a function; give it as make")
             self._plan = _promin.PlannedJob.plan_again(self._native, rays or self._rays)
         return Runner(self, device, make)
+
+    def check_outputs(self, outputs: Sequence[PathLike]) -> None:
+        """Finds before the work what `merge` would refuse these files for: their endings or number, frames that would go to
+        one, and a file that the job's pieces hang on. Raises UsageError, InputError."""
+        self._native.check_outputs([os.fsdecode(output) for output in outputs])
 
     def merge(self, outputs: Sequence[PathLike], *, allow_mixed: bool = False) -> None:
         """Makes the files of all pieces, byte for byte those of a single run; each whole or not at all.

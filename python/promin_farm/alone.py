@@ -89,7 +89,9 @@ def find_share(words: str | None) -> tuple[int, int]:
             return 0, 1
         step = int(env.get("SLURM_ARRAY_TASK_STEP", "1")) or 1
         first = int(env.get("SLURM_ARRAY_TASK_MIN", "0"))
-        return (int(env["SLURM_ARRAY_TASK_ID"]) - first) // step, int(env["SLURM_ARRAY_TASK_COUNT"])
+        tasks = int(env["SLURM_ARRAY_TASK_COUNT"])
+        # A list with gaps has numbers beyond its count; that two tasks then begin with one share costs time alone.
+        return (int(env["SLURM_ARRAY_TASK_ID"]) - first) // step % tasks, tasks
     index, _, count = words.partition("/")
     if index.isdigit() and count.isdigit() and int(index) < int(count):
         return int(index), int(count)

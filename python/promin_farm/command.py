@@ -19,7 +19,7 @@ from promin_farm.alone import Signals, find_share, work
 from promin_farm.audit import audit
 from promin_farm.errors import exit_code_of
 from promin_farm.foreman import Tally
-from promin_farm.run import Options, carry_on
+from promin_farm.run import Options, carry_on, check_outputs
 from promin_farm.settings import Settings
 from promin_farm.page import Page
 from promin_farm.status import describe, to_json
@@ -147,6 +147,9 @@ def _run(job: jobs.Job, options: argparse.Namespace) -> int:
     folder = Path(job.folder)
     settings = Settings.read(folder).with_outputs(options.output)
     settings = replace(settings, allow_mixed=settings.allow_mixed or options.allow_mixed, retries_from=time.time())
+    # Of a resumed job without files there is nothing to check.
+    if settings.outputs:
+        check_outputs(job, settings.outputs)
     settings.write(folder)
     if options.command != "resume" and options.prepare:
         if not options.quiet:

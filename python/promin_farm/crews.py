@@ -135,10 +135,14 @@ class DaskCrew:
         if (member, number) not in self._futures or self._futures[member, number] is not future:
             return None
         del self._futures[member, number]
+        answer: worker.Answer | None = None  # The worker has gone with it; the piece is there or it is not.
         try:
-            answer: worker.Answer | None = future.result(timeout=10) if future.status == "finished" else None
+            if future.status == "finished":
+                answer = future.result(timeout=10)
+            elif future.status == "error":
+                answer = _refusal_of(future.exception(timeout=10))
         except Exception:
-            answer = None  # The worker has gone with it; the piece is there or it is not.
+            pass
         future.release()
         return member, number, answer
 
@@ -154,6 +158,15 @@ class DaskCrew:
             self._client.cancel(futures)
 
 
+def _refusal_of(error: BaseException) -> worker.Answer | None:
+    """The worker's functions raise nothing, so what comes is Dask's: that the worker has died, whose end is followed by
+    itself, or that it cannot run them, as it lacks this package or has another of its versions."""
+    if type(error).__name__ == "KilledWorker":
+        return None
+    words = f"it cannot run this promin-farm ({type(error).__name__}: {error})"
+    return {"refused": f"{words}; install the same package there", "exit_code": 1}
+
+
 def open_local(job: jobs.Job, seats: list[Seat], stack: Any) -> tuple[DaskCrew, str]:
     """A cluster of this machine, which ends with the stack; and a sentence about it."""
     quiet()
@@ -163,7 +176,11 @@ def open_local(job: jobs.Job, seats: list[Seat], stack: Any) -> tuple[DaskCrew, 
     scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="promin-farm-"))
     options = {"nthreads": 1, "memory_limit": 0, "local_directory": scratch, "silence_logs": logging.CRITICAL}
     specification = {
-        i: {"cls": distributed.Nanny, "options": {**options, "env": seat.environment}} for i, seat in enumerate(seats)
+        i: {
+            "cls": distributed.Nanny,
+            "options": {**options, "env": seat.environment, "preload": ["promin_farm.unattended"]},
+        }
+        for i, seat in enumerate(seats)
     }
     scheduler = {
         "cls": distributed.Scheduler,

@@ -30,6 +30,7 @@ _MOST_IN_A_ROW = 10
 _MOST_ALIKE = 3
 """Of pieces that fail in a row at least so many are different before that is the job's fault, not a piece's."""
 _MOST_DEATHS_PROVING = 5
+_MOST_LOST_PROOFS = 5
 _REFUSED_S = 2.0
 _SPACE_AFTER = 4
 """Pieces of which the size of the others is told."""
@@ -86,6 +87,7 @@ class Member:
     ends_at: float = float("inf")
     pieces: list[int] = field(default_factory=list)
     """That it has, in the order in which it got them."""
+    lost_proofs: int = 0
 
 
 @dataclass
@@ -116,14 +118,16 @@ class Foreman:
         settings: Settings,
         tries: dict[int, Tries] | None = None,
         stop: Callable[[], bool] = lambda: False,
+        leave: Callable[[], bool] = lambda: False,
     ) -> None:
-        """tries: what pieces have behind them. stop: True ends the run when the pieces at hand are made."""
+        """tries: what pieces have behind them. stop: True ends the run when the pieces at hand are made; leave: at once."""
         self._job = job
         self._crew = crew
         self._watch = watch
         self._settings = settings
         self._tries = defaultdict(Tries, tries or {})
         self._stop = stop
+        self._leave = leave
         self._members: dict[str, Member] = {}
         self._waiting: deque[int] = deque()
         self._reserved: dict[str, deque[int]] = defaultdict(deque)
@@ -148,6 +152,8 @@ class Foreman:
         while not self._is_over:
             if not self._tally.was_stopped and self._stop():
                 self._stop_sent()
+            if self._leave():
+                break
             self._follow_members()
             if not self._tally.was_stopped:
                 self._send_pieces()
@@ -267,9 +273,12 @@ class Foreman:
             self._take_proof(name, member, answer)
 
     def _take_proof(self, name: str, member: Member, answer: Answer | None) -> None:
-        if answer is None:
+        if answer is None and member.lost_proofs < _MOST_LOST_PROOFS:
+            member.lost_proofs += 1
             self._crew.send(name, PROOF)
-        elif "proof" in answer:
+            return
+        answer = answer or {"refused": f"{_MOST_LOST_PROOFS} of its answers were lost", "exit_code": 1}
+        if "proof" in answer:
             member.state, member.fingerprint, member.name = "ready", answer["proof"], answer["name"]
             member.ends_at = answer["ends_at"]
             self._died_proving = 0

@@ -10,7 +10,7 @@ from typing import Any
 
 from promin import jobs
 
-from promin_farm.crews import _PATIENCE_S, DaskCrew, need, quiet
+from promin_farm.crews import DaskCrew, need, quiet
 
 QUEUES = {"slurm": "SLURMCluster", "pbs": "PBSCluster", "lsf": "LSFCluster"}
 _DEFAULTS = {"cores": 1, "memory": "4GB", "walltime": "01:00:00"}
@@ -27,7 +27,7 @@ def open_queue(job: jobs.Job, queue: str, count: int, config: str | None, stack:
 
     def keep_up() -> None:
         # What has ended leaves its place; asking for the same number starts others.
-        cluster.scale(jobs=0 if count < 1 else count)
+        cluster.scale(jobs=count)
 
     keep_up()
     return DaskCrew(client, job, float("inf"), keep_up), f"{count} jobs of {queue}"

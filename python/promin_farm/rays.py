@@ -19,6 +19,7 @@ _ROWS = 1 << 20
 def prepare_rays(arguments: list[str], folder: Path) -> list[str]:
     """The arguments of `cast` with DIR.rays.npy in place of a name that ends in .zarr. The file's bytes are those of
     the array, so the job is the one of these rays whatever brought them. Raises UsageError and InputError."""
+    folder = folder.absolute()
     target = folder.with_name(f"{folder.name}.rays.npy")
     return [str(_copy(Path(word), target)) if word.rstrip("/").endswith(".zarr") else word for word in arguments]
 
@@ -37,7 +38,10 @@ def _copy(source: Path, target: Path) -> Path:
     step = max(1, _ROWS // array.chunks[0]) * array.chunks[0]
     parts = [slice(begin, begin + step) for begin in range(0, array.shape[0], step)]
     if target.exists():
-        there = np.load(target, mmap_mode="r")
+        try:
+            there = np.load(target, mmap_mode="r")
+        except (OSError, ValueError, EOFError) as error:
+            raise jobs.InputError(f"the copy of the rays is damaged ({error}), {target}; remove it") from error
         if there.shape != array.shape or not all(there[part].tobytes() == array[part].tobytes() for part in parts):
             raise jobs.InputError(f"the rays have changed since the job was begun, {source}; take another folder")
         return target
@@ -50,6 +54,8 @@ def _copy(source: Path, target: Path) -> Path:
             )
             for part in parts:
                 stream.write(np.ascontiguousarray(array[part], "<f4").tobytes())
+            stream.flush()
+            os.fsync(stream.fileno())
         os.replace(temporary, target)
     except OSError as error:
         raise jobs.RunError(f"cannot write ({error.strerror}), {target}; check the disk and permissions") from error

@@ -17,7 +17,7 @@ from promin_farm.crews import DaskCrew, deal_seats, open_local, open_remote
 from promin_farm.foreman import Foreman, Tally
 from promin_farm.page import Page
 from promin_farm.queues import QUEUES, open_queue
-from promin_farm.settings import Settings, claim_what_is_there, frame_of
+from promin_farm.settings import Settings, claim_what_is_there
 from promin_farm.survey import take_survey
 from promin_farm.watch import Progress
 
@@ -40,7 +40,6 @@ class Options:
 def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
     """Makes what is missing, writes the outputs, and returns the exit code. Raises promin's errors."""
     _check(options)
-    check_outputs(job, settings.outputs)
     job.clear_leftovers()
     for round_ in range(_MOST_ROUNDS):
         missing = [piece.number for piece in job.pieces if job.state(piece.number) != "done"]
@@ -61,14 +60,11 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
 
 
 def check_outputs(job: jobs.Job, outputs: list[str]) -> None:
-    """Before the work, which may be long. Raises UsageError and RunError."""
-    endings = (".exr", ".png") if job.kind == "render" else (".npy",)
-    has_frames = frame_of(job.pieces[0]) != frame_of(job.pieces[-1])
+    """Before the work, which may be long. Raises UsageError, InputError and RunError."""
+    job.check_outputs(outputs)
     for output in outputs:
-        if not output.endswith(endings):
-            raise jobs.UsageError(f"an output is none of {', '.join(endings)}, {output}; name it so")
-        if has_frames and "#" not in Path(output).name:
-            raise jobs.UsageError(f"several frames would go to one file, {output}; put #### where their numbers go")
+        if outputs.count(output) > 1:
+            raise jobs.UsageError(f"the same output file is named twice, {output}; name different files")
         if not os.access(Path(output).parent, os.W_OK):
             raise jobs.RunError(f"cannot write to the folder, {Path(output).parent}; make it, or check permissions")
 
@@ -97,7 +93,9 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
     with Signals() as signals, ExitStack() as stack:
         crew, words = _open_crew(job, options, stack)
         watch.say(f"{len(missing)} of {len(job.pieces)} pieces to make, by {words}")
-        foreman = Foreman(job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon)
+        foreman = Foreman(
+            job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon, leave=signals.end_now
+        )
         try:
             tally = foreman.run(missing)
         finally:

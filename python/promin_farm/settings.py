@@ -89,6 +89,8 @@ def claim_group(folder: Path, group: str, fingerprint: str) -> str:
 def claim_what_is_there(job: jobs.Job, settings: Settings, fingerprints: dict[int, str]) -> None:
     """Gives groups the fingerprints that their pieces have, by number: those of a job that other settings or promin
     itself have begun. Raises RunError."""
-    for piece in job.pieces:
-        if piece.number in fingerprints:
-            claim_group(Path(job.folder), group_of(job, piece, settings), fingerprints[piece.number])
+    groups = {
+        (group_of(job, job.pieces[number], settings), fingerprint) for number, fingerprint in fingerprints.items()
+    }
+    for group, fingerprint in sorted(groups):
+        claim_group(Path(job.folder), group, fingerprint)

@@ -19,7 +19,18 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 NEEDED = ["numpy", "nanobind>=2.4", "scikit-build-core>=0.11"]
 FARM_WITH = ["distributed", "dask-jobqueue", "zarr"]
-TESTS_WITH = [*FARM_WITH, "pytest", "hypothesis", "mypy", "scipy", "rtree", "networkx", "shapely", "manifold3d", "trimesh"]
+TESTS_WITH = [
+    *FARM_WITH,
+    "pytest",
+    "hypothesis",
+    "mypy",
+    "scipy",
+    "rtree",
+    "networkx",
+    "shapely",
+    "manifold3d",
+    "trimesh",
+]
 
 
 def main() -> None:

@@ -375,6 +375,32 @@ def test_ctrl_c_ends_a_piece(scenes: Path, tmp_path: Path) -> None:
     assert done.stdout == "['begun', 'stopped'] missing\n", done.stderr
 
 
+def test_files_are_checked_before_the_work(scene: Path, rays: Path, tmp_path: Path) -> None:
+    casts = jobs.create("cast", [str(scene), str(rays)], tmp_path / "cast")
+    lists = jobs.create("cast", [str(scene), str(rays), "--all"], tmp_path / "all")
+    pictures = jobs.create("render", [str(scene), "--size", "8", "8"], tmp_path / "render")
+    casts.check_outputs([tmp_path / "hits.npy"])
+    for job, files, sentence in (
+        (casts, [rays], "the output would overwrite an input"),
+        (casts, ["a.npy", "b.npy"], "the job's answers go to one file, not to 2"),
+        (casts, ["a.exr"], ".npy"),
+        (lists, ["a.npy"], "the job's answers go to two files"),
+        (pictures, ["a.jpg"], "unknown output ending"),
+    ):
+        with pytest.raises(promin.UsageError, match=sentence):
+            job.check_outputs(files)
+    content = rays.read_bytes()
+    make_all(casts)
+    with pytest.raises(promin.UsageError, match="overwrite"):
+        casts.merge([rays])
+    assert rays.read_bytes() == content
+    # Somebody else's folder does not lead out of itself.
+    manifest = tmp_path / "cast" / "job.json"
+    manifest.write_text(manifest.read_text().replace(casts.pieces[0].name, "../../out"))
+    with pytest.raises(promin.InputError, match="damaged"):
+        jobs.open(tmp_path / "cast")
+
+
 def test_wrong_types(tmp_path: Path) -> None:
     with pytest.raises(promin.UsageError, match="give a list of words"):
         jobs.create("render", "scene.gltf", tmp_path / "job")

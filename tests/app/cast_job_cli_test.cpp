@@ -115,6 +115,13 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   expect_failure(cast(words), 2, "the file \"rays.npy\" has changed since");
 }
 
+TEST_F(CastJobCliTest, WhatTheJobIsMadeOfIsNotOverwritten) {
+  const std::string rays = read("rays.npy");
+  expect_done(cast({"--job", "job", "--pieces", "2", "--piece", "0/1"}));
+  expect_failure(run({"merge", "job", "-o", "rays.npy"}), 2, "the output would overwrite an input, rays.npy");
+  EXPECT_TRUE(read("rays.npy") == rays);
+}
+
 TEST_F(CastJobCliTest, WrongUseIsRefused) {
   const std::pair<OptionValues, std::string> cases[] = {
       {{}, "--output is required"},

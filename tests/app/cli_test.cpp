@@ -132,7 +132,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"}, "parallel"},
       {{"render", "square.gltf", "-o", "a.exr", "--builder", "none"}, "--builder takes "},
       {{"render", "square.gltf", "-o", "a.exr", "--device", ""},
-       "--device takes a part of a device's name or its index"},
+       "--device takes a part of a device's name, its index or uuid:"},
       {{"render", "square.gltf", "-o", "a.exr", "--features", "few"}, "--features takes scene or all, not \"few\""},
       {{"render", "square.gltf", "-o", "a.exr", "--light", "lamp"},
        "--light takes studio or headlight or none, not \"lamp\", on the command line; see promin render --help"},

@@ -122,7 +122,7 @@ class Job:
         self.kind: str = self._manifest["kind"]
         self.folder = str(root)
         self.options: dict[str, str] = {}
-        self.pieces = [self._piece(n) for n in range(self._scene["pieces"])]
+        self.pieces = tuple(self._piece(n) for n in range(self._scene["pieces"]))
 
     def _piece(self, number: int) -> Piece:
         if self._scene.get("names") == "frames":
@@ -172,6 +172,15 @@ class Job:
         import numpy as np
 
         return np.full((8, 64, 3), number % 256, np.uint8) if self.kind == "render" else None
+
+    def check_outputs(self, outputs: list[str]) -> None:
+        endings = (".exr", ".png") if self.kind == "render" else (".npy",)
+        frames = {piece.name.split("_")[0] for piece in self.pieces if piece.name.startswith("frame")}
+        for output in outputs:
+            if not str(output).endswith(endings):
+                raise UsageError(f"an output is none of {', '.join(endings)}, {output}; name it so")
+            if len(frames) > 1 and "#" not in Path(output).name:
+                raise UsageError(f"several frames would go to one file, {output}; put #### where their numbers go")
 
     def merge(self, outputs: list[str], *, allow_mixed: bool = False) -> None:
         parts = []
