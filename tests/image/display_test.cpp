@@ -186,8 +186,12 @@ TEST(DisplayTest, DitheringKeepsTheMeanAndBlackAndWhite) {
     }
     const double count = kSide * kSide;
     EXPECT_NEAR(sum / count, code, 0.02) << code;
-    if (code == 17.5 || code == 100.75) EXPECT_NEAR(squares / count, 0.25, 0.01) << "of the noise and of rounding";
-    if (code == 0.0 || code == 255.0) EXPECT_EQ(squares, 0.0);
+    if (code == 17.5 || code == 100.75) {
+      EXPECT_NEAR(squares / count, 0.25, 0.01) << "of the noise and of rounding";
+    }
+    if (code == 0.0 || code == 255.0) {
+      EXPECT_EQ(squares, 0.0);
+    }
   }
   EXPECT_NE(dithered(10.5F, 3, 4, 0), dithered(10.5F, 4, 3, 0));
   EXPECT_NE(dithered(10.5F, 3, 4, 0), dithered(10.5F, 3, 4, 2)) << "channels apart";
