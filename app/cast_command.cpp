@@ -30,9 +30,6 @@
 namespace promin::app {
 namespace {
 
-/// Rays in memory at a time.
-constexpr uint64_t kChunkRays = uint64_t{1} << 20;
-
 /// The file's next rays, at most kChunkRays; none at its end.
 std::vector<Ray> read_chunk(RayReader& reader, uint64_t done) {
   std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));

@@ -21,9 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Rays in memory at a time.
-constexpr uint64_t kChunkRays = uint64_t{1} << 20;
-
 /// By HitQuery.
 constexpr std::array<std::string_view, 4> kQueryNames = {"nearest", "any", "count", "all"};
 
@@ -297,7 +294,6 @@ void check_merged_hits(const jobs::Job& job, const std::vector<fs::path>& files)
 
 void merge_hits(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress,
                 bool is_mixed) {
-  check_merged_hits(job, files);
   check_whole(job);
   const size_t last = job.piece_count() - 1;
   const uint64_t rays = decode(job.read(last), job.file_of(last)).rays.end;

@@ -28,7 +28,8 @@ std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App
 
 /// Throws UsageError for files that are no arrays, and where a command has planned the job for another number of them.
 void check_merged_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
-/// Writes what the pieces of a job of rays are together: hits, or counts, and of --all the offsets to a second file.
+/// Writes what the pieces of a job of rays are together: hits, or counts, and of --all the offsets to a second file;
+/// check_merged_hits has seen these.
 /// Throws UsageError for another number of files, RunError, Cancelled, and InputError where pieces do not belong
 /// together; unless `is_mixed`, that is where they were made by different drivers.
 void merge_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files, const ProgressCallback& progress,

@@ -21,6 +21,8 @@ namespace promin::app {
 inline constexpr uint64_t kPieceRays = uint64_t{1} << 22;
 inline constexpr uint64_t kPieceRaysOfAll = uint64_t{1} << 20;
 inline constexpr uint32_t kMostRayPieces = 1'000'000;
+/// Rays in memory at a time.
+inline constexpr uint64_t kChunkRays = uint64_t{1} << 20;
 
 struct CastOptions {
   TracingOptions tracing;

@@ -163,26 +163,26 @@ std::vector<std::string> keep_arguments(const CLI::App& command) {
 std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<std::string>& arguments,
                                      const fs::path& folder, const Console& console, std::shared_ptr<RaySource> rays) {
   CLI::App program("", "promin");
-  // A share, as it makes no file.
-  const jobs::Share all;
+  // Parses the words to options, by what adds these to a command.
+  const auto parse_to = [&](auto& options, const auto& add_options) -> CLI::App& {
+    CLI::App& command = add_command(program, kind, "");
+    add_options(command, options);
+    parse(program, command, arguments);
+    options.job.folder = folder;
+    // A share, as it makes no file.
+    options.job.share = jobs::Share{};
+    return command;
+  };
   if (kind == kPictureJob) {
     if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave them out"});
     RenderOptions options;
-    CLI::App& command = add_command(program, kind, "");
-    add_render_options(command, options);
-    parse(program, command, arguments);
-    options.job.folder = folder;
-    options.job.share = all;
+    const CLI::App& command = parse_to(options, add_render_options);
     check_render_options(options);
     return plan_pictures(prepare_pictures(options, plan_frames(options), console), command, console);
   }
   if (kind == kRayJob) {
     CastOptions options;
-    CLI::App& command = add_command(program, kind, "");
-    add_cast_options(command, options);
-    parse(program, command, arguments);
-    options.job.folder = folder;
-    options.job.share = all;
+    const CLI::App& command = parse_to(options, add_cast_options);
     check_cast_options(options);
     return plan_rays(options, command, console, std::move(rays));
   }

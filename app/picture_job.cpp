@@ -294,7 +294,6 @@ void check_merged_pictures(const jobs::Job& job, const std::vector<fs::path>& fi
 }
 
 void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress) {
-  check_merged_pictures(job, files);
   check_whole(job);
   const std::vector<std::string>& names = job.manifest().pieces;
   for (size_t begin = 0; begin < names.size();) {
