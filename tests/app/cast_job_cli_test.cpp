@@ -9,17 +9,17 @@
 #include <csignal>
 #include <thread>
 
-#include "cli_fixture.h"
+#include "job_fixture.h"
 
 namespace promin {
 namespace {
 
 using testing::HasSubstr;
 
-class CastJobCliTest : public CliTest {
+class CastJobCliTest : public JobFixture {
  protected:
   void SetUp() override {
-    CliTest::SetUp();
+    JobFixture::SetUp();
     write_rays("rays.npy", make_rays(1000));
   }
 
@@ -37,13 +37,6 @@ class CastJobCliTest : public CliTest {
   ProcessResult cast(OptionValues more) const {
     more.insert(more.begin(), {"cast", "square.gltf", "rays.npy", "--quiet"});
     return run(more);
-  }
-  void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
-  std::vector<std::filesystem::path> pieces() const {
-    std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder() / "job" / "pieces"),
-                                             std::filesystem::directory_iterator());
-    std::ranges::sort(files);
-    return files;
   }
 };
 
@@ -92,12 +85,7 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   expect_done(cast({"-o", "whole.npy"}));
   const OptionValues words = {"--job", "job", "--pieces", "4", "-o", "cut.npy"};
   expect_done(cast(words));
-  const auto files = pieces();
-  std::filesystem::resize_file(files[0], std::filesystem::file_size(files[0]) - 10);
-  std::filesystem::resize_file(files[1], 0);
-  std::string bytes = read("job/pieces/" + files[2].filename().string());
-  bytes[bytes.size() - 5] = static_cast<char>(bytes[bytes.size() - 5] ^ 4);
-  write("job/pieces/" + files[2].filename().string(), bytes);
+  const auto files = damage_pieces();
   EXPECT_THAT(run({"merge", "job", "-o", "cut.npy"}).err, HasSubstr("3 of 4 pieces are missing or bad"));
   const ProcessResult result =
       run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
@@ -174,40 +162,11 @@ TEST_F(CastJobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   EXPECT_FALSE(std::filesystem::exists(folder() / "cut.npy"));
 }
 
-/// Ends the work again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does not say.
 TEST_F(CastJobCliTest, WhateverEndsItTheSameCommandGoesOn) {
-  const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");
-  const int kills = kills_word == nullptr ? 6 : std::atoi(kills_word);
   write_rays("rays.npy", make_rays(100'000));
-  const OptionValues words = {"--job", "job", "--pieces", "40", "-o", "cut.npy"};
   expect_done(cast({"-o", "whole.npy"}));
-  const auto start = std::chrono::steady_clock::now();
-  expect_done(cast(words));
-  const auto whole = std::chrono::steady_clock::now() - start;
-  std::filesystem::remove_all(folder() / "job");
-  std::filesystem::remove(folder() / "cut.npy");
-  int ended = 0;
-  for (int i = 0; i < kills; ++i) {
-    OptionValues all = words;
-    all.insert(all.begin(), {"cast", "square.gltf", "rays.npy", "--quiet"});
-    Process program(PROMIN_EXECUTABLE, all, options_);
-    // At any time of a run, by the golden ratio.
-    const double share = std::fmod(0.618033988749895 * (i + 1), 1.0);
-    std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(whole * share));
-    const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
-    program.send(signal);
-    ended += program.wait().signal == signal ? 1 : 0;
-    // What is there is whole, or nothing.
-    if (std::filesystem::exists(folder() / "cut.npy")) {
-      EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
-      std::filesystem::remove_all(folder() / "job");
-      std::filesystem::remove(folder() / "cut.npy");
-    }
-  }
-  EXPECT_GT(ended, kills / 4);
-  expect_done(cast(words));
-  EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
-  EXPECT_EQ(pieces().size(), 40U);
+  expect_goes_on({"cast", "square.gltf", "rays.npy", "--quiet", "--job", "job", "--pieces", "40", "-o", "cut.npy"},
+                 "cut.npy", "whole.npy", 40);
 }
 
 }  // namespace

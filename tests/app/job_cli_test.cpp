@@ -10,7 +10,7 @@
 #include <memory>
 #include <thread>
 
-#include "cli_fixture.h"
+#include "job_fixture.h"
 
 namespace promin {
 namespace {
@@ -23,18 +23,11 @@ constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, 
   {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45},
   {"time_s": 0.1, "eye": [1, 0.5, 3], "look": [-0.28, 0, -0.96], "up": [0, 1, 0], "fov_deg": 60}]})";
 
-class JobCliTest : public CliTest {
+class JobCliTest : public JobFixture {
  protected:
   ProcessResult render(OptionValues more) const {
     more.insert(more.begin(), {"render", "square.gltf", "--size", "61", "47", "--quiet"});
     return run(more);
-  }
-  void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
-  std::vector<std::filesystem::path> pieces(const std::string& job = "job") const {
-    std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder() / job / "pieces"),
-                                             std::filesystem::directory_iterator());
-    std::ranges::sort(files);
-    return files;
   }
 };
 
@@ -110,12 +103,7 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   expect_done(render({"-o", "whole.exr"}));
   const OptionValues words = {"--job", "job", "--pieces", "4", "-o", "cut.exr"};
   expect_done(render(words));
-  const auto files = pieces();
-  std::filesystem::resize_file(files[0], std::filesystem::file_size(files[0]) - 10);
-  std::filesystem::resize_file(files[1], 0);
-  std::string bytes = read("job/pieces/" + files[2].filename().string());
-  bytes[bytes.size() - 5] = static_cast<char>(bytes[bytes.size() - 5] ^ 4);
-  write("job/pieces/" + files[2].filename().string(), bytes);
+  const auto files = damage_pieces();
   const ProcessResult refused = run({"merge", "job", "-o", "cut.exr"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("3 of 4 pieces are missing or bad"));
@@ -183,40 +171,14 @@ TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   }
 }
 
-/// Ends the work again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does not say.
 TEST_F(JobCliTest, WhateverEndsItTheSameCommandGoesOn) {
-  const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");
-  const int kills = kills_word == nullptr ? 6 : std::atoi(kills_word);
-  const OptionValues words = {"render", "square.gltf", "--size", "160", "120", "--spp",   "16",     "--job",
-                              "job",    "--tiles",     "5",      "5",   "-o",  "cut.exr", "--quiet"};
-  expect_done(run({"render", "square.gltf", "--size", "160", "120", "--spp", "16", "-o", "whole.exr", "--quiet"}));
-  const auto start = std::chrono::steady_clock::now();
-  expect_done(run(words));
-  const auto whole = std::chrono::steady_clock::now() - start;
-  std::filesystem::remove_all(folder() / "job");
-  std::filesystem::remove(folder() / "cut.exr");
-  int ended = 0;
-  for (int i = 0; i < kills; ++i) {
-    Process program(PROMIN_EXECUTABLE, words, options_);
-    // At any time of a run, by the golden ratio.
-    const double share = std::fmod(0.618033988749895 * (i + 1), 1.0);
-    std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(whole * share));
-    const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
-    program.send(signal);
-    const ProcessResult result = program.wait();
-    ended += result.signal == signal ? 1 : 0;
-    // What is there is whole, or nothing.
-    if (std::filesystem::exists(folder() / "cut.exr")) {
-      EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
-      std::filesystem::remove_all(folder() / "job");
-      std::filesystem::remove(folder() / "cut.exr");
-    }
-  }
-  EXPECT_GT(ended, kills / 4);
-  expect_done(run(words));
-  EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
-  // Nothing is left lying about.
-  EXPECT_EQ(pieces().size(), 25U);
+  const OptionValues picture = {"render", "square.gltf", "--size", "160", "120", "--spp", "16", "--quiet"};
+  const auto with = [&](OptionValues words) {
+    words.insert(words.begin(), picture.begin(), picture.end());
+    return words;
+  };
+  expect_done(run(with({"-o", "whole.exr"})));
+  expect_goes_on(with({"--job", "job", "--tiles", "5", "5", "-o", "cut.exr"}), "cut.exr", "whole.exr", 25);
 }
 
 }  // namespace

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "cli_fixture.h"
+
+namespace promin {
+
+/// Commands with --job job.
+class JobFixture : public CliTest {
+ protected:
+  void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
+
+  std::vector<std::filesystem::path> pieces() const {
+    std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder() / "job" / "pieces"),
+                                             std::filesystem::directory_iterator());
+    std::ranges::sort(files);
+    return files;
+  }
+
+  /// Cuts the first piece, empties the second and flips a bit of the third; returns all.
+  std::vector<std::filesystem::path> damage_pieces() const {
+    const auto files = pieces();
+    std::filesystem::resize_file(files[0], std::filesystem::file_size(files[0]) - 10);
+    std::filesystem::resize_file(files[1], 0);
+    const std::string third = "job/pieces/" + files[2].filename().string();
+    std::string bytes = read(third);
+    bytes[bytes.size() - 5] = static_cast<char>(bytes[bytes.size() - 5] ^ 4);
+    write(third, bytes);
+    return files;
+  }
+
+  /// Ends a command that makes `file` by a job again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does
+  /// not say. Whatever is there is as in `whole`, or nothing.
+  void expect_goes_on(const OptionValues& command, const std::string& file, const std::string& whole,
+                      size_t piece_count) const {
+    const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");
+    const int kills = kills_word == nullptr ? 6 : std::atoi(kills_word);
+    const auto start_anew = [&] {
+      std::filesystem::remove_all(folder() / "job");
+      std::filesystem::remove(folder() / file);
+    };
+    const auto start = std::chrono::steady_clock::now();
+    expect_done(run(command));
+    const auto duration = std::chrono::steady_clock::now() - start;
+    start_anew();
+    int ended = 0;
+    for (int i = 0; i < kills; ++i) {
+      Process program(PROMIN_EXECUTABLE, command, options_);
+      // At any time of a run, by the golden ratio.
+      const double share = std::fmod(0.618033988749895 * (i + 1), 1.0);
+      std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(duration * share));
+      const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
+      program.send(signal);
+      ended += program.wait().signal == signal ? 1 : 0;
+      if (std::filesystem::exists(folder() / file)) {
+        EXPECT_TRUE(read(file) == read(whole));
+        start_anew();
+      }
+    }
+    EXPECT_GT(ended, kills / 4);
+    expect_done(run(command));
+    EXPECT_TRUE(read(file) == read(whole));
+    // Nothing is left lying about.
+    EXPECT_EQ(pieces().size(), piece_count);
+  }
+};
+
+}  // namespace promin
