@@ -376,7 +376,8 @@ View Viewer::current_view() const {
   view.filter_width = start_.view.filter_width;
   view.max_depth = switches_.effective_depth();
   view.mode = mode_;
-  if (mode_.debug_view == DebugView::kNone) {
+  // A flight is never at rest, and compiling what refines would take its time.
+  if (mode_.debug_view == DebugView::kNone && !is_replaying()) {
     view.error_target = start_.error_target;
     view.error_target->white = std::exp2(-scene_->display.exposure_ev);
   }

@@ -219,19 +219,20 @@ FilmCounts Film::take_counts() const {
 
 void Film::warm_up() {
   if (is_listed()) put_list({});
-  if (stream_) {
-    device_->run([&](const vk::raii::CommandBuffer& commands) {
-      stream_->record_begin(commands, *buffer_, stream_shape(capacity_, 0));
-      stream_->record_warm_up(commands);
-    });
-  }
   View one_pixel;
   one_pixel.size = uvec2(1);
   one_pixel.max_depth = 0;
   TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, piece_options(one_pixel.max_depth));
-  begin(picture);
   const TileSample piece = picture.next(1.0);
-  run({&piece, 1});
+  device_->run([&](const vk::raii::CommandBuffer& commands) {
+    record_begin(commands, picture);
+    record(commands, piece);
+    // The stream's kernels read what the piece has put into the film's head: before that anything may be there, also a
+    // number of turns for the check of loops that no driver ends within minutes.
+    if (!stream_) return;
+    stream_->record_begin(commands, *buffer_, stream_shape(capacity_, 0));
+    stream_->record_warm_up(commands);
+  });
 }
 
 uint32_t Film::most_layers() const {

@@ -56,7 +56,8 @@ class PathStream {
   /// Records all turns that paths of so many steps take: bounces, and surfaces that they go through.
   void record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape,
                     uint32_t steps) const;
-  /// Records a workgroup of each kernel, after record_begin. They have nothing to do, but drivers compile late.
+  /// Records a workgroup of each kernel, after record_begin and a dispatch whose numbers the film's head has. They have
+  /// nothing to do, but drivers compile late.
   void record_warm_up(const vk::raii::CommandBuffer& commands) const;
 
  private:
