@@ -133,8 +133,10 @@ class Groups {
     find_hands(source);
     if (std::ranges::all_of(hands_, [](Hand hand) { return hand == Hand::kNone; })) return;
     find_neighbors(welded, source);
+    // What a group gives a hand begins none.
+    const std::vector<Hand> own_hands = hands_;
     for (uint32_t corner = 0; corner < of_corner.size(); ++corner) {
-      if (hands_[corner / 3] != Hand::kNone && of_corner[corner] == kNoGroup) grow(corner);
+      if (own_hands[corner / 3] != Hand::kNone && of_corner[corner] == kNoGroup) grow(corner);
     }
     neighbors_ = {};
     inherit(welded);

@@ -4,6 +4,10 @@
 
 from __future__ import annotations
 
+import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeAlias, Union
 
 import numpy as np
@@ -22,6 +26,10 @@ HIT_DTYPE = np.dtype(
 RaysLike: TypeAlias = Union[ArrayLike, "tuple[ArrayLike, ...]"]
 """Rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (..., 3))
 or (origins, directions, tmin, tmax), whose leading shapes are broadcast, with tmin 0 and tmax infinite by default."""
+
+
+_RAYS_A_PART = 2**15
+"""So many rays a thread packs at a time: with what they are made of they lie in its core's cache."""
 
 
 def to_numbers(value: object, what: str) -> NDArray[Any]:
@@ -77,12 +85,37 @@ def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]
             "go together; their leading shapes must broadcast"
         ) from None
     packed = np.empty((*shape, 8), np.float32)
-    with np.errstate(over="ignore", invalid="ignore"):
-        packed[..., 0:3] = np.subtract(origins, center, dtype=np.float64) if is_moved else origins
-        packed[..., 3] = tmin
-        packed[..., 4:7] = directions
-        packed[..., 7] = tmax
+    origins, directions = np.broadcast_to(origins, (*shape, 3)), np.broadcast_to(directions, (*shape, 3))
+    tmin, tmax = np.broadcast_to(tmin, shape), np.broadcast_to(tmax, shape)
+
+    def fill(part: tuple[slice, ...]) -> None:
+        into, begins, along = packed[part], origins[part], directions[part]
+        with np.errstate(over="ignore", invalid="ignore"):
+            for i in range(3):
+                begin = begins[..., i]
+                into[..., i] = np.subtract(begin, center[i], dtype=np.float64) if is_moved else begin
+                into[..., 4 + i] = along[..., i]
+            into[..., 3] = tmin[part]
+            into[..., 7] = tmax[part]
+
+    _for_each_part(shape, fill)
     return packed.reshape(-1, 8), shape
+
+
+def _for_each_part(shape: tuple[int, ...], task: Callable[[tuple[slice, ...]], None]) -> None:
+    """Calls task(part) for parts of an array that together are all of it, cut along its longest axis. Large ones go to
+    threads, as many as there are cores: NumPy lets Python's lock go where it copies."""
+    count = math.prod(shape)
+    if count <= _RAYS_A_PART:
+        task(())
+        return
+    axis = shape.index(max(shape))
+    length = max(1, _RAYS_A_PART * shape[axis] // count)
+    parts = [axis * (slice(None),) + (slice(at, at + length),) for at in range(0, shape[axis], length)]
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        # What a part raises is raised here.
+        for _ in threads.map(task, parts):
+            pass
 
 
 def positions(rays: RaysLike, hits: NDArray[Any]) -> Float64s:

@@ -14,6 +14,7 @@ from conftest import make_box, make_rays
 
 import promin
 from promin import _promin
+from promin._arrays import pack_rays
 
 
 @pytest.mark.parametrize("name", ["showcase.gltf", "obj_materials.obj", "all_primitives.gltf"])
@@ -71,6 +72,30 @@ def test_all_forms_of_rays_give_the_same_hits(box_caster: promin.Caster) -> None
     assert box_caster.cast(np.empty((0, 8))).shape == (0,)
     fan = box_caster.cast((np.zeros(3), rays[:, 4:7].reshape(4, 6, 3)))
     assert fan.shape == (4, 6) and (fan["object"] == 0).all()
+
+
+@pytest.mark.parametrize("center", [(0.0, 0.0, 0.0), (1e5, -3.1, 0.7)])
+@pytest.mark.parametrize("shape", [(), (0,), (7,), (2**15,), (2**15 + 1,), (3, 30011), (70001, 1), (2, 3, 20001)])
+def test_many_rays_are_packed_by_all_cores_as_few_are_by_one(
+    shape: tuple[int, ...], center: tuple[float, float, float]
+) -> None:
+    random = np.random.default_rng(4)
+    rays = random.normal(size=(*shape, 16))[..., ::2] * 10.0 ** random.integers(-50, 50, size=(*shape, 8))
+    taken = np.array(center)
+    lines = rays.reshape(-1, 8)
+    expected = np.empty(lines.shape, np.float32)
+    with np.errstate(over="ignore"):
+        for i in range(0, len(lines), 1000):
+            some = lines[i : i + 1000].copy()
+            some[:, :3] -= taken
+            expected[i : i + 1000] = some
+    packed, leading = pack_rays(rays, taken)
+    assert leading == shape and packed.dtype == np.float32 and packed.tobytes() == expected.tobytes()
+    parts = (rays[..., 0:3], rays[..., 4:7], rays[..., 3], rays[..., 7])
+    assert pack_rays(parts, taken)[0].tobytes() == expected.tobytes()
+    # One origin for all, and one tmin.
+    expected[:, :3], expected[:, 3], expected[:, 7] = np.subtract((1.5, 2.5, 1e9), taken), 0.25, np.inf
+    assert pack_rays(((1.5, 2.5, 1e9), parts[1], 0.25), taken)[0].tobytes() == expected.tobytes()
 
 
 def test_tmin_and_tmax_bound_hits(box_caster: promin.Caster) -> None:

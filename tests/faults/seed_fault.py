@@ -79,6 +79,14 @@ FAULTS = {
         "shading.glsl": [(r"point\.coat = seen_coat\(point\.coat, direction\);",
                           "{ Coat bent = point.coat; bent.normal = point.normal; point.coat = seen_coat(bent, direction); }")]
     },
+    # Of levels (tests/gpu/levels_test.cpp).
+    "levels_of_fronts": {"textures.glsl": [(r" / max\(abs\(facing\), 1\.0 / 64\.0\)", "")]},
+    "levels_a_little_fine": {"textures.glsl": [(r"log2_about\(texels\)\);", "log2_about(texels)) - 0.005;")]},
+    "mirrors_keep_cones": {"path.glsl": [(r"path\.cone_spread = spread;", ";")]},
+    "mirrored_masks_anew": {"follow_paths.comp": [(r"sight_width = load_record[^;]*;", "sight_width = 0.0;")]},
+    "shadows_take_levels": {
+        "camera_stage.comp": [(r"sight_width = 0\.0;\s*sight_spread = 0\.0;", "sight_width = CAMERA.look.w + 0.05;")]
+    },
     # Of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
     "colors_swapped": {"glass.glsl": [(r"color == RED \? -", "color == BLUE ? -")]},

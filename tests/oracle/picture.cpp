@@ -534,7 +534,8 @@ class Tracer {
     on.is_of_metal = way.is_of_metal || is_of_metal;
     on.roughness = std::max(way.roughness, response.mirror_roughness);
     on.cone.width = way.cone.width + way.cone.spread * hit.t * glm::length(ray.direction);
-    const Real cosine = std::abs(glm::dot(point.normal, direction));
+    // An interpolated normal may face away.
+    const Real cosine = std::max(-glm::dot(point.normal, direction), kLeastCosine);
     on.cone.spread += 2 * point.side * curvature_of(point.on_triangle) * on.cone.width / cosine;
     on.error = {error.position, way.error.direction + 2 * (error.normal + response.normal_error)};
     return {next, on};

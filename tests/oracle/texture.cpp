@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "oracle/distance.h"
+#include "oracle/surface.h"
 
 namespace promin::oracle {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr Real kDecodingError = 2.3L * 0.006L / 255;
 /// A device's level errs by this, as its logarithms do, beside what the cone's width and the cosine bring.
 constexpr Real kLevelError = 1e-3L;
-/// The cosine is at least this in a level.
-constexpr Real kLeastCosine = 1.0L / 64;
 
 Texel unpack(uint32_t texel) {
   return Texel(texel & 255U, texel >> 8 & 255U, texel >> 16 & 255U, texel >> 24) / Real(255);
@@ -93,6 +92,47 @@ Vector2 steepness(const TextureSlot& slot, const TrianglePoint& point) {
   return {glm::length(uv.to_b.x * to_p + uv.to_c.x * to_q), glm::length(uv.to_b.y * to_p + uv.to_c.y * to_q)};
 }
 
+/// From which alpha of its texels on what an image cuts is there: as the first mask says that has it. None where
+/// something blends with it.
+Real cutoff_of(const world::Scene& scene, uint32_t image) {
+  Real cutoff = 0;
+  for (const Material& material : scene.materials) {
+    const TextureSlot slot = slots_of(material)[kBaseSlot];
+    if (!slot.exists() || scene.textures[slot.texture].image != image) continue;
+    if (material.alpha_mode == AlphaMode::kBlend) return 0;
+    const bool cuts = material.alpha_mode == AlphaMode::kMask && material.alpha >= material.alpha_cutoff;
+    if (cuts && cutoff == 0) cutoff = Real(material.alpha_cutoff) / material.alpha;
+  }
+  return cutoff;
+}
+
+int64_t alpha_code(const Texel& texel) {
+  return std::llround(255 * texel.a);
+}
+
+/// How many texels have this code of alpha or a larger one.
+Real count_from(const std::vector<Texel>& texels, int64_t code) {
+  return static_cast<Real>(std::ranges::count_if(texels, [=](const Texel& t) { return alpha_code(t) >= code; }));
+}
+
+/// Multiplies alphas, so that as nearly that share of the texels is there as any factor can do; of several the one that
+/// changes least. What was there by its factor is there after rounding, all else is not.
+void keep_share(std::vector<Texel>& texels, int64_t least, Real share) {
+  const Real wanted = share * static_cast<Real>(texels.size());
+  std::array<Real, 3> best{kInfinity, 0, 0};
+  for (int64_t code = 1; code < 256; ++code) {
+    const Real miss = std::abs(count_from(texels, code) - wanted);
+    best = std::min(best, {miss, static_cast<Real>(std::abs(code - least)), static_cast<Real>(code)});
+  }
+  const auto threshold = static_cast<int64_t>(best[2]);
+  for (Texel& texel : texels) {
+    const int64_t code = alpha_code(texel);
+    const auto scaled = static_cast<int64_t>(std::floor(static_cast<Real>(code * least) / threshold + 0.5L));
+    const bool is_there = code >= threshold;
+    texel.a = static_cast<Real>(is_there ? std::clamp<int64_t>(scaled, least, 255) : std::min(scaled, least - 1)) / 255;
+  }
+}
+
 }  // namespace
 
 Real decode_srgb(Real code) {
@@ -117,9 +157,15 @@ Textures::Textures(const world::Scene& scene) : scene_(scene) {
   for (const auto& image : scene.images) {
     Levels& levels = images_.emplace_back();
     if (image->texels.empty()) continue;
+    const Real cutoff = cutoff_of(scene, static_cast<uint32_t>(images_.size() - 1));
+    const auto least = static_cast<int64_t>(std::ceil(255 * cutoff));
+    Real share = 0;
     for (uint32_t number = 0;; ++number) {
-      levels.push_back(make_level(*image, number));
-      if (levels.back().size == uvec2(1)) break;
+      Level& level = levels.emplace_back(make_level(*image, number));
+      if (number == 0) share = count_from(level.texels, least) / static_cast<Real>(level.texels.size());
+      const bool keeps = number > 0 && least > 0 && least < 256 && share > 0 && share < 1;
+      if (keeps) keep_share(level.texels, least, share);
+      if (level.size == uvec2(1)) break;
     }
   }
 }

@@ -17,6 +17,9 @@ using Texel = glm::vec<4, Real>;
 Real decode_srgb(Real code);
 Real encode_srgb(Real light);
 
+/// The cosine between ray and normal is at least this in levels and where cones are mirrored.
+inline constexpr Real kLeastCosine = 1.0L / 64;
+
 /// The cone of a ray: its width where the ray begins, and by how much it grows per length.
 struct Cone {
   Real width = 0;
@@ -55,7 +58,7 @@ struct UvEdges {
 };
 UvEdges uv_edges(const TextureSlot& slot, const TrianglePoint& point);
 
-/// The images of a scene with their levels, decoded.
+/// The images of a scene with their levels, decoded. Levels of masks keep the share of texels that are there.
 class Textures {
  public:
   explicit Textures(const world::Scene& scene);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "oracle/surface.h"
 
@@ -100,6 +102,34 @@ TEST(TextureTest, LevelsAreMeansOverAreasInLinearLight) {
   odd.scene.textures[0].is_minified_linearly = false;
   EXPECT_EQ(odd.red({0.1L, 0.5L}, 1), 50 / 255.0L);
   EXPECT_EQ(odd.red({0.9L, 0.5L}, 1), 50 / 255.0L);
+}
+
+TEST(TextureTest, LevelsOfMasksKeepTheirShare) {
+  // A quarter is there. Of the means of four, 0, 50, 60 and 100, one is to be: 100 becomes 128, the others go along.
+  const uint32_t kAlphas[4][4] = {{0, 0, 200, 0}, {0, 0, 0, 0}, {200, 40, 200, 200}, {0, 0, 0, 0}};
+  Square square({4, 4}, ImageUse::kData, [&](uint32_t x, uint32_t y) { return kAlphas[y][x] << 24; });
+  square.scene.textures[0].is_minified_linearly = false;
+  const auto codes = [&] {
+    const Textures textures(square.scene);
+    std::vector<long> seen;
+    for (const Vector2& place : {Vector2(0.2L, 0.2L), Vector2(0.7L, 0.2L), Vector2(0.2L, 0.7L), Vector2(0.7L, 0.7L)}) {
+      seen.push_back(std::lround(255 * textures.filter(square.slot, place, 1).a));
+    }
+    return seen;
+  };
+  const std::vector<long> means{0, 50, 60, 100};
+  EXPECT_EQ(codes(), means) << "no mask has it";
+  Material mask;
+  mask.model = Unlit{.color_texture = square.slot};
+  mask.alpha_mode = AlphaMode::kMask;
+  square.scene.materials = {mask};
+  EXPECT_EQ(codes(), (std::vector<long>{0, 64, 77, 128}));
+  // A factor of the material's raises what texels need: 0.5 / 0.7 is between 182 and 183 of 255.
+  square.scene.materials[0].alpha = 0.7F;
+  EXPECT_EQ(codes(), (std::vector<long>{0, 92, 110, 183}));
+  square.scene.materials.push_back(mask);
+  square.scene.materials[1].alpha_mode = AlphaMode::kBlend;
+  EXPECT_EQ(codes(), means) << "something blends with it";
 }
 
 TEST(TextureTest, LevelsAreChosenByFilter) {
