@@ -13,6 +13,7 @@
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"
+#include "render/caster_access.h"
 #include "tracing_run.h"
 
 namespace promin::app {
@@ -123,7 +124,9 @@ class RayJob : public PlannedJob {
     arguments_ = keep_arguments(command);
   }
 
-  std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces) override;
+  std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces, const ProgressCallback& progress) override;
+  PieceDifference compare(size_t piece, const jobs::Content& there, const jobs::Content& anew,
+                          const fs::path& file) override;
   void remember() override { rays_->remember(); }
 
  private:
@@ -139,11 +142,14 @@ class RayJob : public PlannedJob {
 
 class RayPieces : public PieceMaker {
  public:
-  RayPieces(RayJob& job, const gpu::Device& device) : job_(job), device_(device), stats_(job.stats_) {
+  RayPieces(RayJob& job, const gpu::Device& device, const ProgressCallback& progress)
+      : job_(job), device_(device), stats_(job.stats_) {
     stats_.device = gpu::info_of(device);
-    CasterOptions options;
+    TunedCasterOptions options;
     choose_tree(job.options_.tracing, options);
-    caster_.emplace(device, job.scene_, options);
+    options.shared_bvh = shared_tree_file(job.options_.job, options.builder);
+    options.progress = progress;
+    caster_.emplace(make_caster(device, world::flatten(job.scene_, world::Purpose::kHits), options));
     std::vector<Ray> rays(std::min(kChunkRays, job.ranges_.front().count()));
     job.rays_->read(0, rays);
     caster_->prepare(job.options_.query(), rays);
@@ -210,8 +216,65 @@ class RayPieces : public PieceMaker {
   std::vector<uint64_t> ends_;
 };
 
-std::unique_ptr<PieceMaker> RayJob::open(const gpu::Device& device, size_t /*pieces*/) {
-  return std::make_unique<RayPieces>(*this, device);
+std::unique_ptr<PieceMaker> RayJob::open(const gpu::Device& device, size_t /*pieces*/,
+                                         const ProgressCallback& progress) {
+  return std::make_unique<RayPieces>(*this, device, progress);
+}
+
+/// A piece's bytes, or a part of them, as what they are. They begin where memory of any type does, or after hits.
+template <typename Value>
+std::span<const Value> values_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const Value*>(bytes.data()), bytes.size() / sizeof(Value)};
+}
+
+/// Hits of a piece with kAll, ray by ray.
+class HitLists {
+ public:
+  HitLists(std::span<const std::byte> bytes, uint64_t rays)
+      : hits_(values_of<Hit>(bytes.first(bytes.size() - rays * sizeof(uint64_t)))),
+        ends_(values_of<uint64_t>(bytes.last(rays * sizeof(uint64_t)))) {}
+
+  /// Throws InputError where the ends are none.
+  std::span<const Hit> of(size_t ray, const fs::path& file) const {
+    const uint64_t begin = ray == 0 ? 0 : ends_[ray - 1];
+    if (begin <= ends_[ray] && ends_[ray] <= hits_.size()) return hits_.subspan(begin, ends_[ray] - begin);
+    throw InputError({"is no piece of hits", file.string(), "remove it and run the job again"});
+  }
+
+ private:
+  std::span<const Hit> hits_;
+  std::span<const uint64_t> ends_;
+};
+
+PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const jobs::Content& anew,
+                                const fs::path& file) {
+  const RayRange& range = ranges_[piece];
+  for (const jobs::Content* content : {&there, &anew}) {
+    const HitPiece told = decode(*content, file);
+    if (told.query == options_.query() && told.rays.begin == range.begin && told.rays.end == range.end) continue;
+    throw InputError({"is not of the rays of the piece", file.string(), "remove it and run the job again"});
+  }
+  HitComparison comparison(scene_);
+  if (options_.query() == HitQuery::kCount) {
+    comparison.compare(values_of<int32_t>(there.bytes), values_of<int32_t>(anew.bytes));
+    return comparison.difference();
+  }
+  std::vector<Ray> rays;
+  for (uint64_t done = 0; done < range.count(); done += rays.size()) {
+    rays.resize(std::min(kChunkRays, range.count() - done));
+    rays_->read(range.begin + done, rays);
+    if (options_.query() == HitQuery::kAll) {
+      const HitLists lists_there(there.bytes, range.count());
+      const HitLists lists_anew(anew.bytes, range.count());
+      for (size_t i = 0; i < rays.size(); ++i) {
+        comparison.compare_lists(rays[i], lists_there.of(done + i, file), lists_anew.of(done + i, file));
+      }
+    } else {
+      comparison.compare(rays, values_of<Hit>(there.bytes).subspan(done, rays.size()),
+                         values_of<Hit>(anew.bytes).subspan(done, rays.size()));
+    }
+  }
+  return comparison.difference();
 }
 
 /// Of files that answers go to.
@@ -258,12 +321,6 @@ class HitFiles {
   }
 
  private:
-  /// The bytes begin where memory of any type does, or after hits.
-  template <typename Value>
-  static std::span<const Value> values_of(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const Value*>(bytes.data()), bytes.size() / sizeof(Value)};
-  }
-
   std::optional<HitWriter> hits_;
   std::optional<CountWriter> counts_;
   std::optional<OffsetWriter> offsets_;

@@ -43,8 +43,13 @@ constexpr std::string_view kNamesFile[] = {"SCENE", "RAYS.npy", "--path", "--env
 /// What each who works on a job chooses for themselves.
 constexpr std::string_view kNotKept[] = {"--output", "--offsets", "--job",   "--piece",
                                          "--stats",  "--device",  "--quiet", "--verbose"};
-/// What a job's arguments have no place for.
-constexpr std::string_view kNotArguments[] = {"--output", "--offsets", "--job", "--piece"};
+/// What a job's arguments have no place for, and who chooses it.
+constexpr std::pair<std::string_view, const char*> kNotArguments[] = {
+    {"--output", "what the files are called is said when pieces are merged"},
+    {"--offsets", "what the files are called is said when pieces are merged"},
+    {"--job", "the folder is said beside them"},
+    {"--piece", "who makes the pieces chooses them"},
+    {"--device", "who makes the pieces chooses it"}};
 
 bool is_among(std::string_view name, std::span<const std::string_view> names) {
   return std::ranges::find(names, name) != names.end();
@@ -65,9 +70,11 @@ void parse(CLI::App& program, const CLI::App& command, const std::vector<std::st
   for (const std::string& word : arguments) words.push_back(word.c_str());
   static_cast<void>(parse_arguments(program, static_cast<int>(words.size()), words.data()));
   for (const auto& [option, values] : given_options(command)) {
-    if (!is_among(option, kNotArguments)) continue;
-    throw UsageError({option + " is none of a job's arguments", "in its arguments",
-                      "leave it out; what the files are called is said when pieces are merged"});
+    for (const auto& [refused, why] : kNotArguments) {
+      if (option != refused) continue;
+      throw UsageError(
+          {option + " is none of a job's arguments", "in its arguments", std::string("leave it out; ") + why});
+    }
   }
 }
 
@@ -98,14 +105,22 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
   const gpu::DeviceHandle device = steps.open_device();
   const std::string driver = driver_of(gpu::info_of(*device));
   check_driver(job, driver);
-  const std::unique_ptr<PieceMaker> maker = planned.open(*device, missing.size());
+  const auto tell_stopped = [&](size_t piece) {
+    console.note(fmt::format("stopped before piece {} of {}; the same command goes on", piece, job.piece_count()));
+  };
+  std::unique_ptr<PieceMaker> maker;
+  try {
+    maker = planned.open(*device, missing.size(), [&](double) { return !while_working.is_pending(); });
+  } catch (const Cancelled&) {
+    tell_stopped(missing.front());
+    return {};
+  }
   Progress progress(console.is_quiet());
   jobs::NextPiece at_hand;
   bool is_whole = true;
   const auto before = [&](const jobs::NextPiece& next) {
     if (while_working.is_pending()) {
-      console.note(
-          fmt::format("stopped before piece {} of {}; the same command goes on", next.number, job.piece_count()));
+      tell_stopped(next.number);
       is_whole = false;
       return false;
     }
@@ -146,6 +161,10 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
     if (stamp_of(source.file) == source.stamp) continue;
     throw InputError({"the file has changed while it was read", source.file.string(), "try again"});
   }
+}
+
+fs::path shared_tree_file(const JobOptions& job, const std::string& builder) {
+  return *job.folder / "trees" / (builder + ".pbvh");
 }
 
 std::vector<std::string> keep_arguments(const CLI::App& command) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arguments.h"
+#include "compare_pieces.h"
 #include "console.h"
 #include "formats/source_file.h"
 #include "job_options.h"
@@ -44,8 +45,14 @@ class PlannedJob {
   /// The words by which plan_job plans it again, from any folder: files have absolute paths, and what does not decide
   /// how pieces are made is left out.
   const std::vector<std::string>& arguments() const { return arguments_; }
-  /// Opens what the device makes pieces with: about so many.
-  virtual std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces) = 0;
+  /// Opens what the device makes pieces with: about so many. The tree is that of shared_tree_file, which may be waited
+  /// for. Throws Cancelled where `progress`, which is asked meanwhile, says so.
+  virtual std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces,
+                                           const ProgressCallback& progress) = 0;
+  /// How far apart a piece that is there and one made anew are, whose file it names in messages. Throws InputError
+  /// where they are not of one piece.
+  virtual PieceDifference compare(size_t piece, const jobs::Content& there, const jobs::Content& anew,
+                                  const std::filesystem::path& file) = 0;
   /// Has the job's folder, now that it is there, keep what would cost others time to find out.
   virtual void remember() {}
 
@@ -59,6 +66,10 @@ class PlannedJob {
 jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given);
 /// Adds the files that a scene was loaded from. Throws InputError where one has changed since.
 void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& sources);
+
+/// Where all who work on a job find the tree of its scene by this builder, which the first of them puts there
+/// (pack_scene_sharing).
+std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder);
 
 /// What PlannedJob::arguments() is of a parsed command.
 std::vector<std::string> keep_arguments(const CLI::App& command);

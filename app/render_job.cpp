@@ -40,7 +40,11 @@ class PictureJob : public PlannedJob {
     arguments_ = keep_arguments(command);
   }
 
-  std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces) override;
+  std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces, const ProgressCallback& progress) override;
+  PieceDifference compare(size_t /*piece*/, const jobs::Content& there, const jobs::Content& anew,
+                          const std::filesystem::path& file) override {
+    return compare_parts(decode_part(there, file), decode_part(anew, file), file);
+  }
 
  private:
   friend class PicturePieces;
@@ -53,13 +57,16 @@ class PictureJob : public PlannedJob {
 
 class PicturePieces : public PieceMaker {
  public:
-  PicturePieces(PictureJob& job, const gpu::Device& device, size_t pieces)
+  PicturePieces(PictureJob& job, const gpu::Device& device, size_t pieces, const ProgressCallback& progress)
       : job_(job), device_(device), stats_(job.run_.stats) {
     stats_.device = gpu::info_of(device);
     const size_t all = job.manifest().pieces.size();
     const uint64_t samples = count_samples(*stats_.view, job.run_.frames.size(), job.run_.options);
     const uint64_t expected = samples / all * std::clamp<size_t>(pieces, 1, all);
-    renderer_.emplace(make_renderer(device, job.run_.scene, make_renderer_options(job.run_.options, expected)));
+    TunedRendererOptions options = make_renderer_options(job.run_.options, expected);
+    options.shared_bvh = shared_tree_file(job.run_.options.job, options.builder);
+    options.progress = progress;
+    renderer_.emplace(make_renderer(device, job.run_.scene, options));
     take_setup(renderer_->setup_stats(), stats_, job.console_);
   }
 
@@ -94,8 +101,9 @@ class PicturePieces : public PieceMaker {
   std::optional<Renderer> renderer_;
 };
 
-std::unique_ptr<PieceMaker> PictureJob::open(const gpu::Device& device, size_t pieces) {
-  return std::make_unique<PicturePieces>(*this, device, pieces);
+std::unique_ptr<PieceMaker> PictureJob::open(const gpu::Device& device, size_t pieces,
+                                             const ProgressCallback& progress) {
+  return std::make_unique<PicturePieces>(*this, device, pieces, progress);
 }
 
 }  // namespace

@@ -3,11 +3,15 @@
 #include "device_scene/pack_scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
+#include <system_error>
 
 #include "bvh/clip_triangle.h"
 #include "bvh/pack_tree.h"
 #include "bvh/read_node.h"
+#include "core/file.h"
+#include "core/file_lock.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/rounding.h"
@@ -47,6 +51,9 @@ using namespace layout;
 
 /// The number of triangles or references that a thread takes at a time.
 constexpr size_t kChunkSize = 16384;
+
+/// So long whoever needs a shared tree waits for another who builds it, who may hang.
+constexpr std::chrono::minutes kMostWait{10};
 
 /// Clips a primitive for builders that split primitives: triangles exactly, other shapes by their boxes.
 Bounds clip(const Primitive& p, const Bounds& window) {
@@ -101,8 +108,6 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.features = geometry_features(scene.objects);
   packed.shown_materials = find_shown_materials(scene.objects, scene.materials.size());
   packed.degenerate_count = collected.degenerate_count;
-  packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
-  packed.kinds = kinds_of(collected.bounded);
   const std::span<const uint32_t> references = packed.references;
   UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
   surfaces.resize(references.size());
@@ -123,6 +128,88 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
   packed.tree_bounds = center_and_radius(tree_bounds);
+}
+
+/// Builds the tree of what a scene has collected.
+void build_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
+                const BuildOptions& options) {
+  const Stopwatch building;
+  const Bvh bvh =
+      build_bvh(builder,
+                {collected.boxes,
+                 [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
+                options);
+  check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
+                "; take the builder sah", Setting::kBuilder);
+  packed.bvh_ms = building.ms();
+  packed.bvh = measure_bvh(builder, bvh);
+  PackedTree tree = pack_tree(bvh);
+  check_at_most(MAX_NODES, tree.nodes.size(), scene, "the scene's tree has", "nodes");
+  packed.nodes = std::move(tree.nodes);
+  packed.stack_size = tree.stack_size;
+  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
+  packed.references = sort_leaves_by_kind(bvh, collected.bounded);
+}
+
+/// Takes the tree of a file. Throws InputError where it is bad or not that of the geometry.
+void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
+  const Stopwatch reading;
+  const auto file = std::make_shared<const BvhFile>(bvh_file);
+  file->check_scene(packed.geometry_hash, packed.bounded_count);
+  packed.bvh_ms = reading.ms();
+  const TreeView& tree = file->tree();
+  packed.bvh = tree.stats;
+  packed.stack_size = tree.stack_size;
+  packed.references.assign(tree.references.begin(), tree.references.end());
+  packed.file = file;
+}
+
+/// Whether the file has the tree. What is wrong with one that is there is added to the warnings.
+bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
+  std::error_code error;
+  if (!std::filesystem::exists(bvh_file, error)) return false;
+  try {
+    read_tree(packed, bvh_file);
+    return true;
+  } catch (const InputError& refusal) {
+    const Problem& problem = refusal.problems().front();
+    packed.warnings = {{problem.what, problem.where, "it is built again"}};
+    return false;
+  }
+}
+
+/// Takes the tree of the file, or builds it and writes the file, which others wait for.
+void share_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
+                const BuildOptions& options, const std::filesystem::path& bvh_file) {
+  const Stopwatch sharing;
+  // Files appear whole, so what is there needs no lock.
+  if (find_shared_tree(packed, bvh_file)) return;
+  const std::filesystem::path folder = bvh_file.parent_path();
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  const FileLock lock(std::filesystem::path(bvh_file).replace_extension(".lock"), kMostWait, options.progress);
+  if (find_shared_tree(packed, bvh_file)) return;
+  clear_leftovers(folder);
+  build_tree(packed, scene, collected, builder, options);
+  try {
+    write_bvh_file(bvh_file, packed.tree());
+  } catch (const RunError& failure) {
+    packed.warnings.push_back(failure.problems().front());
+  }
+  packed.bvh_ms = sharing.ms();
+}
+
+/// Packs a scene with the tree that `make_tree` gives it.
+template <typename MakeTree>
+PackedScene pack(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
+  Collected collected = collect_primitives(scene);
+  PackedScene packed;
+  packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
+  packed.kinds = kinds_of(collected.bounded);
+  packed.geometry_hash = hash_geometry(collected.bounded);
+  make_tree(packed, collected);
+  pack_contents(packed, scene, collected, texture_bytes);
+  return packed;
 }
 
 }  // namespace
@@ -150,45 +237,22 @@ TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& o
 
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options,
                        uint64_t texture_bytes) {
-  Collected collected = collect_primitives(scene);
-
-  const Stopwatch building;
-  const Bvh bvh =
-      build_bvh(builder,
-                {collected.boxes,
-                 [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
-                options);
-  check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
-                "; take the builder sah", Setting::kBuilder);
-  PackedScene packed;
-  packed.bvh_ms = building.ms();
-  packed.bvh = measure_bvh(builder, bvh);
-  PackedTree tree = pack_tree(bvh);
-  check_at_most(MAX_NODES, tree.nodes.size(), scene, "the scene's tree has", "nodes");
-  packed.nodes = std::move(tree.nodes);
-  packed.stack_size = tree.stack_size;
-  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
-  packed.references = sort_leaves_by_kind(bvh, collected.bounded);
-  packed.geometry_hash = hash_geometry(collected.bounded);
-  pack_contents(packed, scene, collected, texture_bytes);
-  return packed;
+  return pack(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
+    build_tree(packed, scene, collected, builder, options);
+  });
 }
 
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {
-  Collected collected = collect_primitives(scene);
+  return pack(scene, texture_bytes,
+              [&](PackedScene& packed, const Collected& /*collected*/) { read_tree(packed, bvh_file); });
+}
 
-  const Stopwatch reading;
-  PackedScene packed;
-  packed.file = std::make_shared<const BvhFile>(bvh_file);
-  packed.geometry_hash = hash_geometry(collected.bounded);
-  packed.file->check_scene(packed.geometry_hash, collected.bounded.size());
-  packed.bvh_ms = reading.ms();
-  const TreeView& tree = packed.file->tree();
-  packed.bvh = tree.stats;
-  packed.stack_size = tree.stack_size;
-  packed.references.assign(tree.references.begin(), tree.references.end());
-  pack_contents(packed, scene, collected, texture_bytes);
-  return packed;
+PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
+                               std::string_view builder, const BuildOptions& options, uint64_t texture_bytes) {
+  return pack(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
+    if (packed.bounded_count < kLeastShared) return build_tree(packed, scene, collected, builder, options);
+    share_tree(packed, scene, collected, builder, options, bvh_file);
+  });
 }
 
 }  // namespace promin

@@ -17,6 +17,7 @@
 #include "core/unset_vector.h"
 #include "device_scene/collect_primitives.h"
 #include "layout.h"
+#include "promin/error.h"
 #include "scene/world_scene.h"
 #include "textures/pack_images.h"
 
@@ -63,8 +64,11 @@ struct PackedScene {
   uint32_t kinds = 0;
   uint64_t geometry_hash = 0;
   BvhStats bvh;
-  /// Time of the builder alone, or of reading and checking the file.
+  /// Time of the builder alone, or of reading and checking the file; of a shared tree that was built here all of it,
+  /// with waiting and writing.
   double bvh_ms = 0.0;
+  /// Of pack_scene_sharing: what was wrong with the file.
+  std::vector<Problem> warnings;
 
   /// The tree, whether its nodes lie here or in the file. It lives as long as this.
   TreeView tree() const;
@@ -83,6 +87,29 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
 /// scene's, and RunError as above.
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene,
                             uint64_t texture_bytes = kDefaultTextureBytes);
+
+/// From so many primitives on a shared tree is kept in its file: the default builder makes smaller ones in a few
+/// milliseconds (docs/jobs.md has figures), and a folder that machines share may take as long for a file.
+inline constexpr size_t kLeastShared = 100'000;
+
+/// Packs a checked scene's objects with a tree that all who work on the scene have in common: that of the file, of the
+/// scene and the builder, which one of them builds and writes while others who ask for it wait. Where the file is
+/// damaged or of another scene, the same; where it cannot be written everyone builds, and warnings tell. Trees of fewer
+/// primitives than kLeastShared are built and have no file. The file's folder is made where it is not there. Throws
+/// what pack_scene does, and Cancelled as the options' progress says, while it waits too.
+PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
+                               std::string_view builder, const BuildOptions& options = {},
+                               uint64_t texture_bytes = kDefaultTextureBytes);
+
+/// Packs with the tree that the options of a Renderer or a Caster ask for.
+template <typename Options>
+PackedScene pack_scene_by(const Options& options, const world::Scene& scene,
+                          uint64_t texture_bytes = kDefaultTextureBytes) {
+  if (options.bvh) return pack_scene_with(*options.bvh, scene, texture_bytes);
+  const BuildOptions how = {.progress = options.progress};
+  if (!options.shared_bvh) return pack_scene(scene, options.builder, how, texture_bytes);
+  return pack_scene_sharing(*options.shared_bvh, scene, options.builder, how, texture_bytes);
+}
 
 /// Applies find_tree_faults to the scene's own tree.
 TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});

@@ -152,8 +152,8 @@ size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
 struct __attribute__((visibility("hidden"))) Caster::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedCasterOptions& options)
       : device(the_device), spirv(options.spirv.begin(), options.spirv.end()) {
-    PackedScene packed = options.bvh ? pack_scene_with(*options.bvh, the_scene)
-                                     : pack_scene(the_scene, options.builder, {.progress = options.progress});
+    PackedScene packed = pack_scene_by(options, the_scene);
+    stats.warnings = packed.warnings;
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
     stats.upload_ms = uploading.ms();

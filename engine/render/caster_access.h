@@ -12,6 +12,8 @@ struct TunedCasterOptions : CasterOptions {
   /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, for cast() alone; empty for promin's
   /// own.
   std::span<const uint32_t> spirv = {};
+  /// A BVH file that is to be had in common with others (pack_scene_sharing). Unless `bvh` names one to take.
+  std::optional<std::filesystem::path> shared_bvh = std::nullopt;
 };
 
 struct CasterAccess {

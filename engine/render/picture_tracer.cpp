@@ -296,7 +296,7 @@ void PictureTracer::render_progressively(const View& view, double budget_ms,
 
 WorkDone PictureTracer::work_done() const {
   const DeviceScene::Uploads& uploads = scene_.device_scene()->uploads();
-  return {.trees_built = options_.bvh ? 0U : 1U,
+  return {.trees_built = scene_.is_tree_built() ? 1U : 0U,
           .geometry_bytes_uploaded = uploads.geometry,
           .shading_bytes_uploaded = uploads.shading,
           .pipelines_compiled = device_.compiled_pipelines().size() - pipelines_before_};

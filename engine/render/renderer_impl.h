@@ -30,6 +30,8 @@ struct TunedRendererOptions : RendererOptions {
   bool avoids_texels = false;
   /// Other shaders with the same bindings; Renderer::explain does not take them.
   PictureShaders shaders = picture_shaders();
+  /// A BVH file that is to be had in common with others (pack_scene_sharing). Unless `bvh` names one to take.
+  std::optional<std::filesystem::path> shared_bvh = std::nullopt;
   /// Changes the packed scene before it is uploaded, for shaders that read another layout of it. Empty: nothing is
   /// changed.
   std::function<PackedScene(PackedScene)> repack = {};
@@ -43,6 +45,8 @@ class SceneOnDevice {
 
   const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
   const PrimitiveNumbers& numbers() const { return numbers_; }
+  /// Whether the tree was built here, not taken from a file.
+  bool is_tree_built() const { return is_tree_built_; }
   size_t material_count() const { return shown_materials_.size(); }
   /// Of each object.
   std::span<const uint32_t> object_materials() const { return object_materials_; }
@@ -61,6 +65,7 @@ class SceneOnDevice {
   FeatureMask features_with(FeatureMask lights, const RenderMode& mode) const;
 
   bool force_all_features_;
+  bool is_tree_built_ = true;
   FeatureMask geometry_features_;
   FeatureMask material_features_;
   FeatureMask light_features_;

@@ -8,9 +8,7 @@ namespace promin {
 namespace {
 
 PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options) {
-  PackedScene packed = options.bvh
-                           ? pack_scene_with(*options.bvh, scene, options.texture_bytes)
-                           : pack_scene(scene, options.builder, {.progress = options.progress}, options.texture_bytes);
+  PackedScene packed = pack_scene_by(options, scene, options.texture_bytes);
   return options.repack ? options.repack(std::move(packed)) : std::move(packed);
 }
 
@@ -21,9 +19,11 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
     : force_all_features_(options.force_all_features) {
   for (const world::Object& object : scene.objects) object_materials_.push_back(object.material);
   PackedScene packed = pack(scene, options);
+  is_tree_built_ = packed.file == nullptr;
   stats.bvh = packed.bvh;
   stats.bvh_ms = packed.bvh_ms;
   stats.degenerate_triangles = packed.degenerate_count;
+  stats.warnings = packed.warnings;
   if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
   geometry_features_ = packed.features;
   shown_materials_ = packed.shown_materials;

@@ -110,10 +110,30 @@ def test_audit_finds_a_machine_that_gives_other_bits(farm: Farm) -> None:
         Path(piece.file).unlink()
     farm.run("work", farm.job, FAKE_SALT="a broken machine")
     said = farm.run("audit", farm.job, "--share", "100%", code=1)
-    assert f"other bits of the same fingerprint: {', '.join(piece.name for piece in job.pieces[:3])}" in said
-    # Where the fingerprints differ so may the bits.
-    said = farm.run("audit", farm.job, "--share", "1", FAKE_FINGERPRINT="two")
-    assert "17 of 20 pieces of other fingerprints have equal bits" in said
+    for piece in job.pieces[:3]:
+        assert f"{piece.name}: other bits of the same fingerprint, 100 % are others: a machine is broken\n" in said
+    assert "an audit has found wrong pieces" in said and "17 of 20 pieces of this fingerprint have equal bits" in said
+    # It is so however little they differ.
+    farm.run("audit", farm.job, "--share", "100%", code=1, FAKE_DIFFERENCE="0.001")
+
+
+def test_audit_holds_other_fingerprints_to_the_bounds(farm: Farm) -> None:
+    farm.write_scene(20)
+    job = farm.create()
+    farm.run("work", farm.job, FAKE_SALT="other bits", FAKE_FINGERPRINT="two")
+    for piece in job.pieces[:16]:
+        Path(piece.file).unlink()
+    for piece in job.pieces[:16]:
+        assert job.runner().run(piece.number)
+    audit = ("audit", farm.job, "--share", "100%")
+    said = farm.run(*audit, FAKE_DIFFERENCE="0.0012")
+    assert f"{job.pieces[16].name}: within the bounds, 0.2 % are others, the rest differs by 0.0012 at most\n" in said
+    assert "16 of 16 pieces of this fingerprint have equal bits" in said
+    assert "of 4 pieces of other fingerprints 0 have equal bits, 4 are within the bounds, 0 beyond" in said
+    assert said.count("\n") == 6
+    said = farm.run(*audit, FAKE_FINGERPRINT="three", FAKE_DIFFERENCE="0.01", code=1)
+    assert f"{job.pieces[16].name}: beyond the bounds, 100 % are others\n" in said
+    assert "of 20 pieces of other fingerprints 16 have equal bits, 0 are within the bounds, 4 beyond" in said
 
 
 def test_an_audit_of_nothing_is_refused(farm: Farm) -> None:
@@ -173,7 +193,7 @@ def test_the_page_has_pictures_timeline_and_failures(farm: Farm) -> None:
 
 
 def test_pictures_are_pngs(tmp_path: Path) -> None:
-    from promin_farm.page import encode_png
+    from promin_farm.pictures import encode_png
 
     pixels = np.arange(5 * 7 * 3, dtype=np.uint8)
     png = encode_png(7, 5, pixels.tobytes())

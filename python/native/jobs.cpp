@@ -219,7 +219,7 @@ class Runner {
     const gpu::Device& open = device_->get();
     made_on_ = app::driver_of(gpu::info_of(open));
     std::unique_ptr<app::PieceMaker> maker;
-    run_watched(nb::none(), [&](const ProgressCallback&) { maker = plan_->open(open, job_.piece_count()); });
+    run_watched(nb::none(), [&](const ProgressCallback& tell) { maker = plan_->open(open, job_.piece_count(), tell); });
     maker_.emplace(std::move(maker));
   }
 
@@ -244,6 +244,27 @@ class Runner {
       hash = hash_of(maker.make(piece, tell));
     });
     return hash;
+  }
+
+  nb::dict compare(size_t piece, const nb::object& progress) {
+    check(job_, piece);
+    app::PieceMaker& maker = maker_->get();
+    bool is_equal = false;
+    app::PieceDifference difference;
+    run_watched(progress, [&](const ProgressCallback& tell) {
+      const auto lock = lock_watched(mutex_, tell);
+      const jobs::Content there = job_.read(piece);
+      const jobs::Content anew = maker.make(piece, tell);
+      is_equal = there.bytes == anew.bytes;
+      if (!is_equal) difference = plan_->compare(piece, there, anew, job_.file_of(piece));
+    });
+    nb::dict record;
+    record["is_equal"] = is_equal;
+    record["is_within"] = is_equal || difference.is_within_bounds();
+    record["largest"] = difference.largest;
+    record["others"] = difference.others;
+    record["count"] = difference.count;
+    return record;
   }
 
   const std::string& made_on() const { return made_on_; }
@@ -301,7 +322,8 @@ void bind_jobs(nb::module_& module) {
       .def(nb::init<std::shared_ptr<OpenDevice>, const SharedPlan&, Job>())
       .def("made_on", &Runner::made_on)
       .def("run", &Runner::run, nb::arg("piece"), nb::arg("fingerprint"), nb::arg("progress").none())
-      .def("recompute", &Runner::recompute, nb::arg("piece"), nb::arg("progress").none());
+      .def("recompute", &Runner::recompute, nb::arg("piece"), nb::arg("progress").none())
+      .def("compare", &Runner::compare, nb::arg("piece"), nb::arg("progress").none());
 }
 
 }  // namespace promin::python

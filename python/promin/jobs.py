@@ -15,6 +15,7 @@ time: processes, machines, the programs. docs/jobs.md has the formats of the fol
 
 from __future__ import annotations
 
+import heapq
 import json
 import math
 import os
@@ -39,6 +40,7 @@ Make = Callable[[int], "tuple[str, bytes]"]
 
 __all__ = [
     "Cancelled",
+    "Comparison",
     "DeviceError",
     "Error",
     "InputError",
@@ -95,6 +97,23 @@ class Receipt:
         return asdict(self)
 
 
+@dataclass(frozen=True)
+class Comparison:
+    """How a piece that is there is beside the same one made anew, perhaps by another device."""
+
+    is_equal: bool
+    """To the bit."""
+    is_within: bool
+    """Equal, or within the bounds between devices: at most 0.5 % of pixels or rays are others."""
+    largest: float
+    """Of those that are no others the largest difference: of a number of a pixel, at most 0.004 (of numbers beyond 1
+    relative to them); or of K of t (docs/glossary.md), at most 16."""
+    others: int
+    """Pixels or rays that differ by more, or show another surface, as where an edge decides by a rounding."""
+    count: int
+    """Of all pixels or rays of the piece, where it is not equal."""
+
+
 class RaySource(Protocol):
     """Rays that are not those of a .npy file. The runners of a job use it on their threads."""
 
@@ -121,11 +140,12 @@ class RaySource(Protocol):
 def create(kind: str, arguments: Sequence[str], folder: PathLike, *, rays: RaySource | None = None) -> Job:
     """Makes the job of a command in a folder, or goes on with the one that is there.
 
-    kind: "render" or "cast". arguments: the words that this command of promin takes, without --output, --offsets, --job
-    and --piece; --pieces (or --tiles) cuts it. The scene and all that a piece hangs on are read and hashed. Files are
-    kept by their absolute paths, in the folder, so that `open` knows the rest. rays: of "cast", takes the place of the
-    file that the words name all the same; whoever opens the job elsewhere passes it again, to `Job.runner`. Raises UsageError for what the command
-    refuses, and where the folder has another job, which says what differs; InputError, RunError."""
+    kind: "render" or "cast". arguments: the words that this command of promin takes, without --output, --offsets,
+    --job, --piece and --device; --pieces (or --tiles) cuts it. The scene and all that a piece hangs on are read and
+    hashed. Files are kept by their absolute paths, in the folder, so that `open` knows the rest. rays: of "cast", takes
+    the place of the file that the words name all the same; whoever opens the job elsewhere passes it again, to
+    `Job.runner`. Raises UsageError for what the command refuses, and where the folder has another job, which says what
+    differs; InputError, RunError."""
     if isinstance(arguments, str):
         raise UsageError(f"arguments are {arguments!r}; give a list of words")
     words = [os.fsdecode(word) if isinstance(word, (str, bytes, os.PathLike)) else str(word) for word in arguments]
@@ -203,7 +223,7 @@ class Job:
         self._files: list[tuple[str, int, str]] = record["files"]
         names: list[str] = record["pieces"]
         self._pieces = tuple(Piece(i, name, native.file_of(i), _weigh(name)) for i, name in enumerate(names))
-        self._ledger = _Ledger(Path(folder) / "ledger")
+        self._ledger = _Ledger(Path(folder) / "ledger", names)
 
     @property
     def id(self) -> str:
@@ -292,12 +312,12 @@ class Job:
         name = self._pieces[number].name
         return Receipt(number, name, sha256, size, 0.0, "", "", self._options.get("version", ""), "", 0)
 
-    def events(self) -> list[dict[str, Any]]:
-        """What the ledger tells, by time: dicts with "event" ("begun", "done", "failed" or "stopped"), "number",
-        "piece", "time_s" (since 1970), "made_on", "fingerprint" and "maker" (HOST-PID); with "done" what a Receipt has,
-        with "failed" the sentence "why". A maker that has begun a piece and tells no more of it has died, or is at
-        it."""
-        return self._ledger.events()
+    def events(self, maker: str | None = None) -> list[dict[str, Any]]:
+        """What the ledger tells, by time, or what one maker tells, in its order: dicts with "event" ("begun", "done",
+        "failed" or "stopped"), "number", "piece", "time_s" (since 1970), "made_on", "fingerprint" and "maker"
+        (HOST-PID); with "done" what a Receipt has, with "failed" the sentence "why". A maker that has begun a piece and
+        tells no more of it has died, or is at it."""
+        return self._ledger.events(maker)
 
     def write(
         self,
@@ -315,9 +335,11 @@ class Job:
     def runner(self, device: DeviceLike = None, make: Make | None = None, *, rays: RaySource | None = None) -> Runner:
         """What makes pieces here: the scene is read and the device opened once.
 
-        device: a Device, a part of a name, an index, or None for the default one. make, rays: as
-        `create_with` and `create` were given them. Raises UsageError where the job would be another one today, as a file or the program has changed, and says which;
-        InputError where the folder does not say how pieces are made, or a file is gone; DeviceError, RunError."""
+        device: a Device, a part of a name, an index, or None for the default one. make, rays: as `create_with` and
+        `create` were given them. The tree of a large scene is that of DIR/trees, where the first who needs it puts it.
+        Raises UsageError where the job would be another one today, as a file or the program has changed, and says
+        which; InputError where the folder does not say how pieces are made, or a file is gone; DeviceError,
+        RunError."""
         make = make or self._make
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
             if self._kind not in ("render", "cast") or self.arguments is None:
@@ -417,6 +439,15 @@ class Runner:
 
         return hashlib.sha256(self._call_make(number)[1]).hexdigest()
 
+    def compare(self, number: int, stop: Stop | None = None) -> Comparison:
+        """Makes a piece anew and compares it with the one on the disk; nothing is written. Devices of one fingerprint
+        give the same bits; those of others are within the bounds. Pieces that a function makes are equal or not. Raises
+        InputError where the piece is not done."""
+        if self._native is not None:
+            return Comparison(**self._native.compare(number, _progress_of(stop)))
+        is_equal = self.recompute(number) == self._job.sha256(number)
+        return Comparison(is_equal, is_equal, 0.0, 0, 0)
+
     def _call_make(self, number: int) -> tuple[str, bytes]:
         assert self._make is not None
         description, data = self._make(number)
@@ -428,17 +459,19 @@ class Runner:
 class _Ledger:
     """Reads what makers tell, and what they have told since the last time; a line that is not whole yet waits."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, pieces: Sequence[str]) -> None:
         self._folder = folder
+        self._pieces = pieces
         self._ends: dict[str, int] = {}
-        self._events: list[dict[str, Any]] = []
+        self._by_maker: dict[str, list[tuple[float, dict[str, Any]]]] = {}
         self._receipts: dict[int, list[dict[str, Any]]] = {}
         self._lock = threading.Lock()
 
-    def events(self) -> list[dict[str, Any]]:
+    def events(self, maker: str | None) -> list[dict[str, Any]]:
         with self._lock:
             self._read()
-            return sorted(self._events, key=lambda event: float(event["time_s"]))
+            lists = self._by_maker.values() if maker is None else [self._by_maker.get(maker, [])]
+            return [event for _, event in heapq.merge(*lists, key=lambda timed: timed[0])]
 
     def find(self, number: int, sha256: str) -> Receipt | None:
         """The last that was told of a piece with these bytes."""
@@ -457,9 +490,11 @@ class _Ledger:
                 text = stream.read()
             whole = text[: text.rfind(b"\n") + 1]
             self._ends[file.name] = begin + len(whole)
-            for event in _parse(whole):
+            told = self._by_maker.setdefault(file.stem, [])
+            for event in _parse(whole, self._pieces):
                 event["maker"] = file.stem
-                self._events.append(event)
+                # A clock that is put back does not change the order in which a maker tells.
+                told.append((max(float(event["time_s"]), told[-1][0] if told else 0.0), event))
                 if event["event"] == "done":
                     self._receipts.setdefault(event["number"], []).append(event)
 
@@ -468,8 +503,8 @@ _OF_ANY = {"event": str, "number": int, "piece": str, "time_s": (int, float), "m
 _OF_RECEIPT = {"sha256": str, "size_bytes": int, "ms": (int, float), "version": str, "host": str, "pid": int}
 
 
-def _parse(text: bytes) -> Iterator[dict[str, Any]]:
-    """The lines that are events; what a disk has damaged is left out."""
+def _parse(text: bytes, pieces: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """The lines that are events of these pieces; what a disk has damaged is left out."""
     for line in text.splitlines():
         try:
             event = json.loads(line)
@@ -478,7 +513,9 @@ def _parse(text: bytes) -> Iterator[dict[str, Any]]:
         if not isinstance(event, dict):
             continue
         fields: dict[str, Any] = {**_OF_ANY, **(_OF_RECEIPT if event.get("event") == "done" else {})}
-        if all(isinstance(event.get(name), kind) for name, kind in fields.items()):
+        if not all(isinstance(event.get(name), kind) for name, kind in fields.items()):
+            continue
+        if 0 <= event["number"] < len(pieces) and event["piece"] == pieces[event["number"]]:
             yield event
 
 

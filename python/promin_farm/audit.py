@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A sample of a job's pieces is made once more, here, and its bits are compared with those that are there."""
+"""A sample of a job's pieces is made once more, here, and compared with what is there: equal bits within a fingerprint,
+within the published bounds across."""
 
 from __future__ import annotations
 
@@ -15,31 +16,47 @@ from promin_farm.survey import take_survey
 
 @dataclass
 class Audit:
-    """What was found."""
+    """What was found, piece by piece."""
 
     fingerprint: str
     """Of this process."""
-    equal: list[str] = field(default_factory=list)
-    """Names of pieces, as of all others."""
-    differing: list[str] = field(default_factory=list)
-    """Of the same fingerprint with other bits, which must not be."""
-    equal_across: list[str] = field(default_factory=list)
-    """Of another fingerprint, with the same bits nevertheless."""
-    differing_across: list[str] = field(default_factory=list)
-    """Of another fingerprint, with other bits."""
+    within: dict[str, jobs.Comparison] = field(default_factory=dict)
+    """By names of pieces, those of this fingerprint, which must have equal bits."""
+    across: dict[str, jobs.Comparison] = field(default_factory=dict)
+    """Those of other fingerprints, which must be within the bounds that are published."""
+
+    @property
+    def is_good(self) -> bool:
+        """Whether all is as it must be."""
+        return all(found.is_equal for found in self.within.values()) and all(
+            found.is_within for found in self.across.values()
+        )
 
     def describe(self) -> str:
-        """A sentence or two."""
-        within = len(self.equal) + len(self.differing)
-        across = len(self.equal_across) + len(self.differing_across)
+        """A line for each piece that has other bits, then how many there are of each kind."""
         lines = []
-        if within or not across:
-            lines.append(f"{len(self.equal)} of {within} pieces of this fingerprint have equal bits")
-        if across:
-            lines.append(f"{len(self.equal_across)} of {across} pieces of other fingerprints have equal bits")
-        if self.differing:
-            lines.append(f"promin-farm: error: other bits of the same fingerprint: {', '.join(self.differing)}")
+        for name, found in self.within.items():
+            if not found.is_equal:
+                lines.append(f"{name}: other bits of the same fingerprint, {_describe(found)}: a machine is broken")
+        for name, found in self.across.items():
+            if not found.is_equal:
+                lines.append(f"{name}: {'within' if found.is_within else 'beyond'} the bounds, {_describe(found)}")
+        if self.within or not self.across:
+            equal = sum(found.is_equal for found in self.within.values())
+            lines.append(f"{equal} of {len(self.within)} pieces of this fingerprint have equal bits")
+        if self.across:
+            equal = sum(found.is_equal for found in self.across.values())
+            good = sum(found.is_within for found in self.across.values())
+            lines.append(
+                f"of {len(self.across)} pieces of other fingerprints {equal} have equal bits, {good - equal} are "
+                f"within the bounds, {len(self.across) - good} beyond"
+            )
         return "\n".join(lines)
+
+
+def _describe(found: jobs.Comparison) -> str:
+    share = f"{100.0 * found.others / max(found.count, 1):.3g} % are others"
+    return f"{share}, the rest differs by {found.largest:.3g} at most" if found.others < found.count else share
 
 
 def parse_share(words: str) -> float:
@@ -72,14 +89,8 @@ def audit(job: jobs.Job, share: str, seed: int, device: str | None) -> Audit:
     runner = job.runner(device)
     found = Audit(runner.fingerprint)
     for number in sample:
-        is_equal = runner.recompute(number) == job.sha256(number)
         receipt = job.receipt(number)
         is_within = receipt is not None and receipt.fingerprint == runner.fingerprint
-        names = {
-            (True, True): found.equal,
-            (True, False): found.differing,
-            (False, True): found.equal_across,
-            (False, False): found.differing_across,
-        }[is_within, is_equal]
-        names.append(job.pieces[number].name)
+        kind = found.within if is_within else found.across
+        kind[job.pieces[number].name] = runner.compare(number)
     return found

@@ -229,6 +229,8 @@ def _verify(options: argparse.Namespace) -> int:
 def _audit(options: argparse.Namespace) -> int:
     job = jobs.open(options.folder)
     report = audit(job, options.share, options.seed, options.device)
-    if not options.quiet or report.differing:
-        print(report.describe(), file=sys.stderr if report.differing else sys.stdout)
-    return 1 if report.differing else 0
+    if not report.is_good:
+        print(f"promin-farm: error: an audit has found wrong pieces, {job.folder}", file=sys.stderr)
+    if not options.quiet or not report.is_good:
+        print(report.describe(), file=sys.stdout if report.is_good else sys.stderr)
+    return 0 if report.is_good else 1

@@ -40,24 +40,6 @@ def claim(file: Path, content: str) -> str:
     return file.read_text()
 
 
-def read_json_lines(file: Path) -> list[dict[str, Any]]:
-    """The objects of a file that has one a line, but for a last line that its writer has not finished; none where there
-    is no such file."""
-    try:
-        text = file.read_bytes()
-    except OSError:
-        return []
-    objects = []
-    for line in text.split(b"\n"):
-        try:
-            value = json.loads(line)
-        except ValueError:
-            continue
-        if isinstance(value, dict):
-            objects.append(value)
-    return objects
-
-
 def read_json(file: Path) -> dict[str, Any] | None:
     """The object that the file holds; None where it is not there or holds none."""
     try:

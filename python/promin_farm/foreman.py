@@ -199,7 +199,7 @@ class Foreman:
 
     def _mourn(self, member: Member) -> None:
         """What it was at counts a death; what it had not begun does not."""
-        at_hand = open_piece(Path(self._job.folder), member.name) if member.name else None
+        at_hand = open_piece(self._job, member.name) if member.name else None
         for number in member.pieces:
             if number == at_hand:
                 self._tries[number].die(member.name)

@@ -5,17 +5,18 @@ and needs nothing but the files in DIR/farm/pictures."""
 
 from __future__ import annotations
 
-import html
 import re
-import struct
 import time
-import zlib
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from promin import jobs
 
 from promin_farm.files import write_whole
+from promin_farm.markup import Markup, element, join, table
+from promin_farm.pictures import write_pictures
 from promin_farm.status import amount, rate_of, slowest
 from promin_farm.survey import Stretch, Survey, take_survey
 from promin_farm.watch import duration
@@ -23,14 +24,11 @@ from promin_farm.watch import duration
 _EVERY_S = 15.0
 _MOST_COST = 0.05
 """Of a run's time the page takes about this part at most."""
-_MOST_PICTURES = 400
 _NEW_PICTURES_S = 2.0
 """So long a page reads pieces for new pictures; the next page has more."""
 _MOST_STRETCHES = 3000
-_PICTURE_PX = 128
 _WIDTH_PX = 1000
 _LANE_PX = 18
-_WINDOW = re.compile(r"(?:(frame\d+)_)?y(\d+)-(\d+)_x(\d+)-(\d+)$")
 
 _STYLE = """
 :root { color-scheme: light dark; --line: #8884; --done: #2a9d6f;
@@ -43,7 +41,8 @@ table { border-collapse: collapse }
 td, th { text-align: left; padding: .2em 1em .2em 0; border-bottom: 1px solid var(--line) }
 .pictures { display: flex; flex-wrap: wrap; gap: 8px } figure { margin: 0 } figcaption { font-size: .75em }
 .mosaic { position: relative; width: 100%; background: var(--line) } .mosaic img { position: absolute; display: block }
-svg { width: 100%; height: auto; display: block } svg text { font: 11px system-ui, sans-serif; fill: currentColor }
+svg { width: 100%; height: auto; display: block }
+svg text { font: 11px system-ui, sans-serif; fill: currentColor; opacity: .75 }
 .done { fill: var(--done) } .failed { fill: var(--failed) } .died { fill: var(--died) } .running { fill: var(--running) }
 """
 
@@ -53,7 +52,6 @@ class Page:
 
     def __init__(self, job: jobs.Job) -> None:
         self._job = job
-        self._folder = Path(job.folder)
         self._next = time.monotonic() + 2.0
 
     def tick(self) -> None:
@@ -69,36 +67,40 @@ class Page:
         """A page that cannot be written is left out: the work goes on without it."""
         try:
             survey = survey or take_survey(self._job)
-            pictures = self._write_pictures(survey)
-            write_whole(self._folder / "index.html", make_page(self._job, survey, pictures))
+            pictures = write_pictures(self._job, survey.done, _NEW_PICTURES_S)
+            write_whole(Path(self._job.folder) / "index.html", make_page(self._job, survey, pictures))
         except (OSError, jobs.Error):
             pass
 
-    def _write_pictures(self, survey: Survey) -> dict[int, str]:
-        """Of pieces that are there, spread over the job: their files, relative to the page."""
-        step = max(1, -(-survey.total // _MOST_PICTURES))
-        pictures = {}
-        until = time.monotonic() + _NEW_PICTURES_S
-        for number in range(0, survey.total, step):
-            if number not in survey.done:
-                continue
-            name = f"farm/pictures/{self._job.pieces[number].name}.png"
-            if not (self._folder / name).exists():
-                if time.monotonic() > until:
-                    continue
-                pixels = self._job.preview(number, _PICTURE_PX)
-                if pixels is None:
-                    return {}
-                rows, columns = pixels.shape[:2]
-                write_whole(self._folder / name, encode_png(columns, rows, pixels.tobytes()))
-            pictures[number] = name
-        return pictures
 
-
-def make_page(job: jobs.Job, survey: Survey, pictures: dict[int, str]) -> str:
+def make_page(job: jobs.Job, survey: Survey, pictures: Mapping[int, str]) -> str:
     """The page's text. pictures: files of pieces by number."""
+    name = Path(job.folder).name
     share = 100.0 * survey.weight_done / max(survey.weight_done + survey.weight_left, 1e-9)
-    refresh = '<meta http-equiv="refresh" content="15">' if survey.running else ""
+    head = [
+        element("meta", charset="utf-8"),
+        element("meta", name="viewport", content="width=device-width"),
+        element("title", f"{share:.0f} % of {name}"),
+        element("style", Markup(_STYLE)),
+    ]
+    if survey.running:
+        head.append(element("meta", http_equiv="refresh", content="15"))
+    body = [
+        element("h1", f"{job.kind} ", element("code", name)),
+        element("div", element("div", style=f"width:{share:.2f}%"), class_="bar"),
+        element("p", _describe_state(job, survey), id="state"),
+        _failures(job, survey),
+        _pictures(job, pictures),
+        _timeline(job, survey),
+        _workers(survey),
+        _slowest(job, survey),
+        element("p", "Job ", element("code", job.id)),
+    ]
+    page = element("html", element("head", *head), element("body", *body), lang="en")
+    return f"<!doctype html>\n{page}\n"
+
+
+def _describe_state(job: jobs.Job, survey: Survey) -> str:
     words = [
         f"{len(survey.done)} of {survey.total} pieces",
         f"{len(survey.running)} running",
@@ -108,81 +110,69 @@ def make_page(job: jobs.Job, survey: Survey, pictures: dict[int, str]) -> str:
         words.append(f"{amount(rate[0])} {rate[1]} a second")
     if survey.time_left_s is not None:
         words.append(f"{duration(survey.time_left_s)} left")
-    sections = [
-        f"<h1>{html.escape(job.kind)} <code>{html.escape(Path(job.folder).name)}</code></h1>",
-        f'<div class="bar"><div style="width:{share:.2f}%"></div></div><p id="state">{", ".join(words)}. '
-        f"{time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime())} UTC.</p>",
-        _failures(job, survey),
-        _pictures(job, pictures),
-        _timeline(job, survey),
-        _workers(survey),
-        _slowest(job, survey),
-        f"<p>Job <code>{job.id}</code></p>",
-    ]
-    return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">{refresh}'
-        f'<meta name="viewport" content="width=device-width"><title>{share:.0f} % of {html.escape(Path(job.folder).name)}'
-        f"</title><style>{_STYLE}</style></head><body>\n" + "\n".join(filter(None, sections)) + "\n</body></html>\n"
-    )
+    return f"{', '.join(words)}. {time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime())} UTC."
 
 
-def encode_png(columns: int, rows: int, rgb: bytes) -> bytes:
-    """8 bits a channel, three channels, row by row from above."""
-
-    def chunk(name: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    lines = b"".join(b"\0" + rgb[3 * columns * y : 3 * columns * (y + 1)] for y in range(rows))
-    head = struct.pack(">IIBBBBB", columns, rows, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(lines, 6)) + chunk(b"IEND", b"")
-
-
-def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    def row(kind: str, cells: Iterable[str]) -> str:
-        return "<tr>" + "".join(f"<{kind}>{html.escape(cell)}</{kind}>" for cell in cells) + "</tr>"
-
-    return "<table>" + row("th", head) + "".join(row("td", cells) for cells in rows) + "</table>"
+def _section(title: str, *content: str) -> Markup:
+    return join([element("h2", title), *content])
 
 
 def _failures(job: jobs.Job, survey: Survey) -> str:
-    if not survey.failed:
-        return ""
     rows = [(job.pieces[n].name, tries.describe()) for n, tries in sorted(survey.failed.items())]
-    return "<h2>Given up</h2>" + _table(("piece", "after"), rows)
+    return _section("Given up", table(("piece", "after"), rows)) if rows else ""
 
 
-def _pictures(job: jobs.Job, pictures: dict[int, str]) -> str:
+@dataclass(frozen=True)
+class _Window:
+    """What of a picture a piece is, by its name."""
+
+    frame: str
+    top: int
+    bottom: int
+    left: int
+    right: int
+
+    @staticmethod
+    def of(piece: jobs.Piece) -> _Window | None:
+        found = re.fullmatch(r"(?:(frame\d+)_)?y(\d+)-(\d+)_x(\d+)-(\d+)", piece.name)
+        return _Window(found[1] or "", *map(int, found.groups()[1:])) if found else None
+
+
+def _pictures(job: jobs.Job, pictures: Mapping[int, str]) -> str:
     if not pictures:
         return ""
-    windows = {number: _WINDOW.match(job.pieces[number].name) for number in pictures}
-    whole = [_WINDOW.match(piece.name) for piece in job.pieces]
-    if all(whole) and not any(window and window[1] for window in whole):
-        return "<h2>Picture</h2>" + _mosaic(windows, whole, pictures)
+    windows = [_Window.of(piece) for piece in job.pieces]
+    places = [window for window in windows if window]
+    if len(places) == len(windows) and not any(window.frame for window in places):
+        return _section("Picture", _mosaic(places, pictures))
     figures = [
-        f'<figure><img src="{html.escape(file)}" alt="" loading="lazy"><figcaption>'
-        f"{html.escape(job.pieces[number].name.partition('_')[0])}</figcaption></figure>"
-        for number, file in pictures.items()
+        element("figure", _image(file, loading="lazy"), element("figcaption", job.pieces[n].name.partition("_")[0]))
+        for n, file in pictures.items()
     ]
-    return f'<h2>Pictures</h2><div class="pictures">{"".join(figures)}</div>'
+    return _section("Pictures", element("div", *figures, class_="pictures"))
 
 
-def _mosaic(
-    windows: dict[int, re.Match[str] | None], whole: list[re.Match[str] | None], pictures: dict[int, str]
-) -> str:
+def _image(file: str, **attributes: object) -> Markup:
+    return element("img", src=file, alt="", **attributes)
+
+
+def _mosaic(places: list[_Window], pictures: Mapping[int, str]) -> Markup:
     """Pieces of one picture where they belong."""
-    places = [tuple(map(int, window.groups()[1:])) for window in whole if window]
-    top, bottom = min(place[0] for place in places), max(place[1] for place in places)
-    left, right = min(place[2] for place in places), max(place[3] for place in places)
-    images = []
-    for number, window in windows.items():
-        assert window
-        y0, y1, x0, x1 = map(int, window.groups()[1:])
-        images.append(
-            f'<img src="{html.escape(pictures[number])}" alt="" style="left:{100 * (x0 - left) / (right - left):.4f}%;'
-            f"top:{100 * (y0 - top) / (bottom - top):.4f}%;width:{100 * (x1 - x0) / (right - left):.4f}%;"
-            f'height:{100 * (y1 - y0) / (bottom - top):.4f}%">'
-        )
-    return f'<div class="mosaic" style="aspect-ratio:{right - left}/{bottom - top}">{"".join(images)}</div>'
+    top, left = min(place.top for place in places), min(place.left for place in places)
+    rows = max(place.bottom for place in places) - top
+    columns = max(place.right for place in places) - left
+
+    def style_of(place: _Window) -> str:
+        shares = {
+            "left": (place.left - left) / columns,
+            "top": (place.top - top) / rows,
+            "width": (place.right - place.left) / columns,
+            "height": (place.bottom - place.top) / rows,
+        }
+        return ";".join(f"{name}:{100.0 * share:.4f}%" for name, share in shares.items())
+
+    images = [_image(file, style=style_of(places[number])) for number, file in pictures.items()]
+    return element("div", *images, class_="mosaic", style=f"aspect-ratio:{columns}/{rows}")
 
 
 def _timeline(job: jobs.Job, survey: Survey) -> str:
@@ -191,49 +181,44 @@ def _timeline(job: jobs.Job, survey: Survey) -> str:
         return ""
     now = time.time()
     begin = min(stretch.begun for stretch in stretches)
-    end = max(stretch.ended or now for stretch in stretches)
-    lanes = sorted(
-        {stretch.worker for stretch in stretches}, key=lambda w: min(s.begun for s in stretches if s.worker == w)
-    )
-    scale = _WIDTH_PX / max(end - begin, 1e-3)
+    length_s = max(stretch.ended or now for stretch in stretches) - begin
+    scale = _WIDTH_PX / max(length_s, 1e-3)
+    # A lane for each process, in the order in which they began.
+    lanes = {worker: i for i, worker in enumerate(dict.fromkeys(stretch.worker for stretch in stretches))}
 
-    def bar(stretch: Stretch) -> str:
-        x = (stretch.begun - begin) * scale
-        width = max(((stretch.ended or now) - stretch.begun) * scale - 0.5, 1.0)
-        words = f"{job.pieces[stretch.number].name}: {stretch.outcome}, {(stretch.ended or now) - stretch.begun:.2f} s"
-        return (
-            f'<rect class="{stretch.outcome}" x="{x:.1f}" y="{lanes.index(stretch.worker) * _LANE_PX + 2}" '
-            f'width="{width:.1f}" height="{_LANE_PX - 4}"><title>{html.escape(words)}</title></rect>'
+    def bar(stretch: Stretch) -> Markup:
+        took_s = (stretch.ended or now) - stretch.begun
+        title = f"{job.pieces[stretch.number].name}: {stretch.outcome}, {took_s:.2f} s"
+        return element(
+            "rect",
+            element("title", title),
+            class_=stretch.outcome,
+            x=f"{(stretch.begun - begin) * scale:.1f}",
+            y=lanes[stretch.worker] * _LANE_PX + 2,
+            width=f"{max(took_s * scale - 0.5, 1.0):.1f}",
+            height=_LANE_PX - 4,
         )
 
-    names = [
-        f'<text x="4" y="{(i + 1) * _LANE_PX - 5}" opacity=".75">{html.escape(lane)}</text>'
-        for i, lane in enumerate(lanes)
-    ]
+    names = [element("text", worker, x=4, y=(lane + 1) * _LANE_PX - 5) for worker, lane in lanes.items()]
     more = f" The last {_MOST_STRETCHES} are shown." if len(survey.stretches) > len(stretches) else ""
-    return (
-        f"<h2>Timeline</h2><p>{duration(end - begin)}, a lane for each process: made, "
-        f"failed (red), ended meanwhile (yellow), running (blue).{more}</p>"
-        f'<svg id="timeline" viewBox="0 0 {_WIDTH_PX} {len(lanes) * _LANE_PX}">{"".join(map(bar, stretches))}'
-        f'{"".join(names)}</svg>'
+    words = "a lane for each process: made, failed (red), ended meanwhile (yellow), running (blue)."
+    return _section(
+        "Timeline",
+        element("p", f"{duration(length_s)}, {words}{more}"),
+        element("svg", *map(bar, stretches), *names, id="timeline", viewBox=f"0 0 {_WIDTH_PX} {len(lanes) * _LANE_PX}"),
     )
 
 
 def _workers(survey: Survey) -> str:
-    counts: dict[str, int] = {}
-    for stretch in survey.stretches:
-        counts[stretch.worker] = counts.get(stretch.worker, 0) + (stretch.outcome == "done")
-    if not counts:
-        return ""
+    made = Counter(stretch.worker for stretch in survey.stretches if stretch.outcome == "done")
     rows = []
-    for worker, count in counts.items():
+    for worker in dict.fromkeys(stretch.worker for stretch in survey.stretches):
         presence = survey.roll.workers.get(worker)
-        rows.append(
-            (worker, str(count), presence.device if presence else "", presence.fingerprint[:16] if presence else "")
-        )
-    return "<h2>Workers</h2>" + _table(("process", "pieces", "device", "fingerprint"), rows)
+        known = (presence.device, presence.fingerprint[:16]) if presence else ("", "")
+        rows.append((worker, str(made[worker]), *known))
+    return _section("Workers", table(("process", "pieces", "device", "fingerprint"), rows)) if rows else ""
 
 
 def _slowest(job: jobs.Job, survey: Survey) -> str:
     rows = [(job.pieces[number].name, f"{ms / 1e3:.2f} s") for number, ms in slowest(survey)]
-    return "<h2>Slowest</h2>" + _table(("piece", "took"), rows) if rows else ""
+    return _section("Slowest", table(("piece", "took"), rows)) if rows else ""

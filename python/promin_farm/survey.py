@@ -13,7 +13,6 @@ from typing import Any
 
 from promin import jobs
 
-from promin_farm.files import read_json_lines
 from promin_farm.presence import Roll
 from promin_farm.settings import Settings
 
@@ -115,55 +114,53 @@ def take_survey(job: jobs.Job) -> Survey:
     survey.weight_done = sum(piece.weight for piece in job.pieces if piece.number in survey.done)
     survey.weight_left = sum(piece.weight for piece in job.pieces) - survey.weight_done
     since = Settings.read(folder).retries_from
-    for file in sorted((folder / "ledger").glob("*.jsonl")):
-        _read_ledger(survey, file, since)
+    at_hand: dict[str, dict[str, Any]] = {}
+    for event in job.events():
+        _take(survey, event, at_hand, since)
+    for worker, begun in at_hand.items():
+        _take_open(survey, worker, begun, since)
     survey.stretches.sort(key=lambda stretch: stretch.begun)
     weights = [piece.weight for piece in job.pieces]
     survey.rate = _rate_of(survey.stretches, weights)
     return survey
 
 
-def open_piece(folder: Path, worker: str) -> int | None:
+def open_piece(job: jobs.Job, worker: str) -> int | None:
     """The piece that a writer of ledgers has begun and not ended."""
-    number = None
-    for line in read_json_lines(folder / "ledger" / f"{worker}.jsonl"):
-        number = int(line["number"]) if line.get("event") == "begun" else None
-    return number
+    events = job.events(worker)
+    return int(events[-1]["number"]) if events and events[-1]["event"] == "begun" else None
 
 
-def _read_ledger(survey: Survey, file: Path, since: float) -> None:
-    """Lines of promin.jobs (docs/jobs.md): begun, then done, failed or stopped; a process makes one piece at a time."""
-    worker = file.stem
-    begun: dict[str, Any] | None = None
-    for line in read_json_lines(file):
-        number, at = line.get("number"), line.get("time_s")
-        if not isinstance(number, int) or not isinstance(at, (int, float)) or not 0 <= number < survey.total:
-            continue
-        start = float(begun["time_s"]) if begun and begun["number"] == number else float(at)
-        event = line.get("event")
-        if event == "begun":
-            if begun:
-                _bury(survey, worker, begun, at, since)
-            begun = line
-            continue
-        begun = None
-        if event == "done":
-            survey.stretches.append(Stretch(number, worker, start, at, "done"))
-            if number in survey.done:
-                survey.receipts[number] = line
-        elif event == "failed":
-            survey.stretches.append(Stretch(number, worker, start, at, "failed"))
-            if at >= since:
-                survey.tries.setdefault(number, Tries()).fail(str(line.get("why", "")))
-    if begun is None:
-        return
+def _take(survey: Survey, event: dict[str, Any], at_hand: dict[str, dict[str, Any]], since: float) -> None:
+    """A process makes one piece at a time, which it tells that it begins, and then what came of it.
+
+    at_hand: what each process has begun last and told no more of."""
+    worker, number, at = str(event["maker"]), int(event["number"]), float(event["time_s"])
+    begun = at_hand.pop(worker, None)
+    start = float(begun["time_s"]) if begun and begun["number"] == number else at
+    if event["event"] == "begun":
+        if begun:
+            _bury(survey, worker, begun, at, since)
+        at_hand[worker] = event
+    elif event["event"] == "done":
+        survey.stretches.append(Stretch(number, worker, start, at, "done"))
+        if number in survey.done:
+            survey.receipts[number] = event
+    elif event["event"] == "failed":
+        survey.stretches.append(Stretch(number, worker, start, at, "failed"))
+        if at >= since:
+            survey.tries.setdefault(number, Tries()).fail(str(event.get("why", "")))
+
+
+def _take_open(survey: Survey, worker: str, begun: dict[str, Any], since: float) -> None:
+    """What is begun and no more is told of: it runs, or its process has ended."""
     at = float(begun["time_s"])
-    if survey.roll.is_alive(worker, at):
-        running = Stretch(int(begun["number"]), worker, at, None, "running")
-        survey.running.append(running)
-        survey.stretches.append(running)
-    else:
+    if not survey.roll.is_alive(worker, at):
         _bury(survey, worker, begun, at, since)
+        return
+    running = Stretch(int(begun["number"]), worker, at, None, "running")
+    survey.running.append(running)
+    survey.stretches.append(running)
 
 
 def _bury(survey: Survey, worker: str, begun: dict[str, Any], at: float, since: float) -> None:

@@ -170,11 +170,119 @@ def test_receipts_and_events(scene: Path, tmp_path: Path) -> None:
         runner.run(2, stop=lambda: True)
     assert job.state(2) == "missing"
     assert [(event["event"], event["number"]) for event in job.events()] == [("begun", 1), ("done", 1)]
+    assert [event["event"] for event in job.events(f"{os.uname().nodename}-{os.getpid()}")] == ["begun", "done"]
+    assert job.events("nobody-1") == []
     # What the ledger cannot tell is left open; half a line waits, and what is no line is left out.
     (ledger,) = (tmp_path / "job/ledger").iterdir()
     ledger.write_bytes(b"\xff{}\n[]\n{}\n" + ledger.read_bytes()[:-1])
     bare = jobs.open(tmp_path / "job").receipt(1)
     assert bare is not None and bare.made_on == "" and bare.sha256 == receipt.sha256 and bare.bytes == receipt.bytes
+
+
+def test_comparisons_of_pictures(scene: Path, tmp_path: Path) -> None:
+    words = [str(scene), "--size", "40", "30", "--aov", "depth,object", "--pieces", "1"]
+    job = jobs.create("render", words, tmp_path / "job")
+    runner = make_all(job)
+    assert runner.compare(0) == jobs.Comparison(True, True, 0.0, 0, 0)
+    description, data = job.read(0)
+
+    def compare_with(change: Callable[[NDArray[np.float32]], None]) -> jobs.Comparison:
+        values = np.frombuffer(data, np.float32).copy()
+        change(values)
+        job.write(0, description, values.tobytes(), fingerprint="another")
+        return runner.compare(0)
+
+    def shift(values: NDArray[np.float32]) -> None:
+        values[: 3 * 1200] += 0.001
+
+    def break_pixels(values: NDArray[np.float32]) -> None:
+        values[: 3 * 6] += 0.1
+
+    def break_more(values: NDArray[np.float32]) -> None:
+        values[: 3 * 7] += 0.1
+
+    shifted = compare_with(shift)
+    assert shifted == jobs.Comparison(False, True, pytest.approx(0.001, rel=0.01), 0, 1200)
+    assert compare_with(break_pixels) == jobs.Comparison(False, True, 0.0, 6, 1200)
+    assert compare_with(break_more) == jobs.Comparison(False, False, 0.0, 7, 1200)
+    job.write(0, description, data[:-4])
+    with pytest.raises(promin.InputError, match="is no part of a picture"):
+        runner.compare(0)
+
+
+@pytest.mark.parametrize("query", ["", "--any", "--count", "--all"])
+def test_comparisons_of_answers(scene: Path, rays: Path, tmp_path: Path, query: str) -> None:
+    words = [str(scene), str(rays), "--pieces", "1", *filter(None, [query])]
+    job = jobs.create("cast", words, tmp_path / "job")
+    runner = make_all(job)
+    assert runner.compare(0).is_equal
+    description, data = job.read(0)
+    counts = np.frombuffer(data, np.int32).copy()
+    hits = np.frombuffer(data[: len(data) // 32 * 32 if query != "--all" else len(data) - 8000], np.int32).copy()
+    if query == "--count":
+        counts[:5] += 1
+        job.write(0, description, counts.tobytes())
+        assert runner.compare(0) == jobs.Comparison(False, True, 0.0, 5, 1000)
+        return
+    tail = data[hits.nbytes :]
+    hits = hits.reshape(-1, 8)
+    met = np.flatnonzero(hits[:, 1] >= 0) if query != "--any" else np.flatnonzero(np.isfinite(hits[:, 0].view("f4")))
+    if query != "--any":
+        hits[met, 0] += 1  # The next number.
+        job.write(0, description, hits.tobytes() + tail)
+        found = runner.compare(0)
+        assert (found.is_equal, found.is_within, found.others, found.count) == (False, True, 0, 1000)
+        assert 0.1 < found.largest < 3.0
+    for count, is_within in ((1, True), (40, False)):
+        hits[met[:count], 0] = np.float32(1e6).view(np.int32)
+        job.write(0, description, hits.tobytes() + tail)
+        found = runner.compare(0)
+        assert found.is_within == is_within and (found.others == count if query != "--all" else found.others >= 1)
+
+
+def test_a_tree_is_built_once(tmp_path: Path, run_promin: RunPromin) -> None:
+    """Of a mesh that is large enough, by several who begin at once; what is damaged is built again."""
+    side = 240
+    x, y = np.meshgrid(np.arange(side + 1), np.arange(side + 1))
+    vertices = np.stack([x, y, 3 * np.sin(0.1 * x) * np.cos(0.07 * y)], -1).reshape(-1, 3)
+    corner = (np.arange(side) * (side + 1))[:, None] + np.arange(side)
+    triangles = [
+        np.stack([corner + a, corner + b, corner + c], -1) for a, b, c in ((0, 1, side + 1), (1, side + 2, side + 1))
+    ]
+    lines = [f"v {a} {b} {c:.6f}" for a, b, c in vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in np.concatenate(triangles).reshape(-1, 3) + 1]
+    (tmp_path / "sheet.obj").write_text("\n".join(lines))
+    words = [str(tmp_path / "sheet.obj"), "--size", "24", "18"]
+    run_promin("render", *words, "-o", tmp_path / "whole.exr")
+    job = jobs.create("render", [*words, "--pieces", "3"], tmp_path / "job")
+    with concurrent.futures.ThreadPoolExecutor(3) as pool:
+        runners = list(pool.map(lambda _: jobs.open(tmp_path / "job").runner(), range(3)))
+    tree = tmp_path / "job/trees/sah.pbvh"
+    stamp, content = tree.stat().st_mtime_ns, tree.read_bytes()
+    for piece, runner in zip(job.pieces, runners):
+        runner.run(piece.number)
+    job.merge([tmp_path / "merged.exr"])
+    assert (tmp_path / "merged.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
+    assert job.runner().recompute(0) == job.sha256(0) and tree.stat().st_mtime_ns == stamp
+    tree.write_bytes(content[:-7])
+    assert job.runner().recompute(0) == job.sha256(0) and tree.read_bytes() == content
+    assert sorted(file.name for file in tree.parent.iterdir()) == ["sah.lock", "sah.pbvh"]
+
+
+def test_events_are_those_of_the_job_in_the_order_of_their_makers(tmp_path: Path) -> None:
+    job = jobs.create_with("bytes", tmp_path / "job", options={}, pieces=["a", "b"])
+
+    def line(event: str, number: int, piece: str, time_s: float) -> str:
+        words = {"event": event, "number": number, "piece": piece, "time_s": time_s, "made_on": "", "fingerprint": ""}
+        return json.dumps(words) + "\n"
+
+    first = [line("begun", 0, "a", 5.0), line("stopped", 0, "a", 3.0), line("begun", 1, "b", 7.0)]
+    (tmp_path / "job/ledger/x-1.jsonl").write_text("".join(first))
+    wrong = [line("begun", 2, "c", 4.0), line("begun", 0, "b", 4.0), line("begun", -1, "b", 4.0)]
+    (tmp_path / "job/ledger/y-1.jsonl").write_text("".join([*wrong, line("begun", 1, "b", 6.0)]))
+    told = [(event["maker"], event["event"], event["number"]) for event in job.events()]
+    # The clock of x was put back meanwhile.
+    assert told == [("x-1", "begun", 0), ("x-1", "stopped", 0), ("y-1", "begun", 1), ("x-1", "begun", 1)]
 
 
 def test_a_stop_ends_a_piece(scenes: Path, tmp_path: Path) -> None:
@@ -252,6 +360,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         ("render", ["box.gltf", "--help"], promin.UsageError, "--help makes no job"),
         ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "--output is none of a job's arguments"),
         ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "--piece is none of a job's arguments"),
+        ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "who makes the pieces chooses it"),
         ("render", ["box.gltf", "--time-limit", "1"], promin.UsageError, "--job and --time-limit contradict"),
         ("render", ["none.gltf"], promin.InputError, "file not found, none.gltf"),
         ("cast", ["box.gltf"], promin.UsageError, "RAYS.npy is required"),

@@ -67,6 +67,21 @@ TEST_F(CastJobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   EXPECT_TRUE(read("merged.npy") == read("whole.npy") && read("merged_offsets.npy") == read("whole_offsets.npy"));
 }
 
+TEST_F(CastJobCliTest, OfALargeSceneAllTakeTheTreeOfTheFirst) {
+  write_sheet("sheet.ply");
+  const auto cast_sheet = [&](OptionValues more) {
+    more.insert(more.begin(), {"cast", "sheet.ply", "rays.npy", "--quiet"});
+    return run(more);
+  };
+  expect_done(cast_sheet({"-o", "whole.npy"}));
+  for (const char* share : {"0/2", "1/2"}) {
+    expect_done(cast_sheet({"--job", "job", "--pieces", "4", "--piece", share}));
+    EXPECT_THAT(trees(), testing::ElementsAre("sah.lock", "sah.pbvh"));
+  }
+  expect_done(run({"merge", "job", "-o", "cut.npy"}));
+  EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
+}
+
 TEST_F(CastJobCliTest, SharesAreMergedAndPiecesWithoutRaysAreWhole) {
   expect_done(cast({"-o", "whole.npy"}));
   expect_done(cast({"--job", "job", "--pieces", "5", "--piece", "1/2"}));

@@ -99,6 +99,71 @@ TEST_F(JobCliTest, SeveralMayBeginAtOnce) {
   EXPECT_TRUE(read("merged.exr") == read("whole.exr"));
 }
 
+TEST_F(JobCliTest, OfALargeSceneAllTakeTheTreeOfTheFirst) {
+  write_sheet("sheet.ply");
+  const OptionValues picture = {"render", "sheet.ply", "--size", "40", "30"};
+  const auto with = [&](OptionValues words) {
+    words.insert(words.begin(), picture.begin(), picture.end());
+    return words;
+  };
+  expect_done(run(with({"-o", "whole.exr"})));
+  std::vector<std::unique_ptr<Process>> programs;
+  for (const char* share : {"0/3", "1/3", "2/3"}) {
+    programs.push_back(std::make_unique<Process>(PROMIN_EXECUTABLE,
+                                                 with({"--job", "job", "--pieces", "6", "--piece", share}), options_));
+  }
+  for (const auto& program : programs) expect_done(program->wait());
+  const std::string tree = read("job/trees/sah.pbvh");
+  EXPECT_THAT(trees(), ElementsAre("sah.lock", "sah.pbvh"));
+  expect_done(run({"merge", "job", "-o", "merged.exr"}));
+  EXPECT_TRUE(read("merged.exr") == read("whole.exr"));
+
+  // Another builder has another tree for the same job, and a file that was given is taken.
+  const auto make_first_again = [&](OptionValues words) {
+    std::filesystem::remove(pieces().front());
+    words.insert(words.end(), {"--job", "job", "--pieces", "6", "-o", "cut.exr"});
+    return run(with(words));
+  };
+  expect_done(make_first_again({"--builder", "median"}));
+  EXPECT_THAT(trees(), ElementsAre("median.lock", "median.pbvh", "sah.lock", "sah.pbvh"));
+  std::filesystem::copy(folder() / "job" / "trees" / "median.pbvh", folder() / "given.pbvh");
+  std::filesystem::remove_all(folder() / "job" / "trees");
+  expect_done(make_first_again({"--bvh", "given.pbvh"}));
+  EXPECT_THAT(trees(), IsEmpty());
+
+  std::filesystem::create_directory(folder() / "job" / "trees");
+  write("job/trees/sah.pbvh", tree.substr(0, tree.size() / 2));
+  const ProcessResult result = make_first_again({});
+  expect_done(result);
+  EXPECT_THAT(result.err, HasSubstr("job/trees/sah.pbvh; it is built again"));
+  EXPECT_TRUE(read("job/trees/sah.pbvh") == tree);
+  EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
+}
+
+TEST_F(JobCliTest, WhoIsKilledAtTheTreeLeavesNothingHalf) {
+  write_sheet("sheet.ply");
+  const OptionValues command = {"render", "sheet.ply", "--size", "40", "30", "--job", "job", "-o", "cut.exr"};
+  expect_done(run(command));
+  const std::string tree = read("job/trees/sah.pbvh");
+  int without = 0;
+  for (int i = 0; i < 6; ++i) {
+    std::filesystem::remove_all(folder() / "job");
+    Process program(PROMIN_EXECUTABLE, command, options_);
+    // While it is built, or written.
+    for (int k = 0; k < 6000 && trees().empty(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(12 * i));
+    program.send(SIGKILL);
+    program.wait();
+    const bool is_there = std::filesystem::exists(folder() / "job" / "trees" / "sah.pbvh");
+    EXPECT_TRUE(!is_there || read("job/trees/sah.pbvh") == tree);
+    without += is_there ? 0 : 1;
+    expect_done(run(command));
+    EXPECT_TRUE(read("job/trees/sah.pbvh") == tree);
+    EXPECT_THAT(trees(), ElementsAre("sah.lock", "sah.pbvh"));
+  }
+  EXPECT_GT(without, 0);
+}
+
 TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   expect_done(render({"-o", "whole.exr"}));
   const OptionValues words = {"--job", "job", "--pieces", "4", "-o", "cut.exr"};

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -10,6 +12,8 @@
 #include <thread>
 
 #include "cli_fixture.h"
+#include "device_scene/pack_scene.h"
+#include "support/ply_builder.h"
 
 namespace promin {
 
@@ -17,6 +21,40 @@ namespace promin {
 class JobFixture : public CliTest {
  protected:
   void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
+
+  /// A mesh whose tree is kept for all who work on a job.
+  void write_sheet(const std::string& file) const {
+    const auto side = static_cast<uint32_t>(std::sqrt(kLeastShared / 2)) + 1;
+    PlyBuilder ply(std::endian::little);
+    ply.header("element vertex " + std::to_string((side + 1) * (side + 1)) +
+               "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+               std::to_string(2 * side * side) + "\nproperty list uchar int vertex_indices\n");
+    for (uint32_t i = 0; i < (side + 1) * (side + 1); ++i) {
+      const double x = i % (side + 1);
+      const double y = i / (side + 1);
+      for (const double value : {x, y, 3.0 * std::sin(0.1 * x) * std::cos(0.07 * y)}) ply.add("float", value);
+    }
+    for (uint32_t i = 0; i < side * side; ++i) {
+      const uint32_t corner = i / side * (side + 1) + i % side;
+      for (const auto& corners : {std::array{corner, corner + 1, corner + side + 1},
+                                  std::array{corner + 1, corner + side + 2, corner + side + 1}}) {
+        ply.add("uchar", 3);
+        for (const uint32_t vertex : corners) ply.add("int", vertex);
+      }
+    }
+    write(file, ply.bytes());
+  }
+
+  /// Names in the folder of the job's trees.
+  std::vector<std::string> trees() const {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder() / "job" / "trees", error)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+  }
 
   std::vector<std::filesystem::path> pieces() const {
     std::vector<std::filesystem::path> files(std::filesystem::directory_iterator(folder() / "job" / "pieces"),

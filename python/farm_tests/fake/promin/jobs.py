@@ -3,11 +3,12 @@
 """A fake of promin.jobs: pieces are files of bytes that follow from a scene, which is a JSON file:
 
     {"pieces": 20, "ms": 5, "bytes": 1000, "names": "y" or "frames", "per_frame": 2, "seed": 1,
-     "crashes": [numbers whose maker is killed], "fails": [numbers that raise]}
+     "gate": a file for which makers wait, "crashes": [numbers whose maker is killed], "fails": [numbers that raise]}
 
 A job of "cast" takes the rays' file as well. Of the environment FAKE_FINGERPRINT is the bits that a process gives,
-FAKE_NO_DEVICE takes its device, FAKE_GPUS are the names of its GPUs, FAKE_SALT changes its bytes as a faulty machine would, FAKE_LOG names a file that is
-told of each piece that is traced."""
+FAKE_DIFFERENCE is how far its pieces are from others' where their bits differ (within the bounds up to 0.004),
+FAKE_NO_DEVICE takes its device, FAKE_GPUS are the names of its GPUs, FAKE_SALT changes its bytes as a faulty machine
+would, FAKE_LOG names a file that is told of each piece that is traced."""
 
 from __future__ import annotations
 
@@ -70,6 +71,15 @@ class Receipt:
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    is_equal: bool
+    is_within: bool
+    largest: float
+    others: int
+    count: int
 
 
 def create(kind: str, arguments: list[str], folder: str | os.PathLike[str]) -> Job:
@@ -165,6 +175,11 @@ class Job:
             return None
         return Receipt(**json.loads(Path(self.pieces[number].file).read_bytes().partition(b"\n")[0])["receipt"])
 
+    def events(self, maker: str | None = None) -> list[dict[str, Any]]:
+        files = sorted((self._root / "ledger").glob(f"{maker or '*'}.jsonl"))
+        events = [{**json.loads(line), "maker": file.stem} for file in files for line in file.read_text().splitlines()]
+        return events if maker else sorted(events, key=lambda event: float(event["time_s"]))
+
     def runner(self, device: str | None = None) -> Runner:
         return Runner(self, device)
 
@@ -249,11 +264,21 @@ class Runner:
     def recompute(self, number: int) -> str:
         return hashlib.sha256(self._trace(number, None)).hexdigest()
 
+    def compare(self, number: int) -> Comparison:
+        if self.recompute(number) == self._job.sha256(number):
+            return Comparison(True, True, 0.0, 0, 0)
+        difference = float(os.environ.get("FAKE_DIFFERENCE", "1"))
+        if difference > 0.004:
+            return Comparison(False, False, 0.0, 100, 100)
+        return Comparison(False, True, difference, 2, 1000)
+
     def _trace(self, number: int, stop: Callable[[], bool] | None) -> bytes:
         scene = self._job._scene
         if "FAKE_LOG" in os.environ:
             with Path(os.environ["FAKE_LOG"]).open("a") as log:
                 log.write(f"{number}\n")
+        while "gate" in scene and not Path(scene["gate"]).exists():
+            time.sleep(0.02)
         until = time.monotonic() + scene.get("ms", 0) / 1e3
         while time.monotonic() < until:
             if stop and stop():
