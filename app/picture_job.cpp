@@ -132,9 +132,7 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
   for (const size_t piece : pieces) {
     const PicturePart part = decode_part(job.read(piece), job.file_of(piece));
     check_same(part, first, job.file_of(piece));
-    whole.largest_claim = std::max(whole.largest_claim, part.error->largest_claim);
-    whole.unmet_pixels += part.error->unmet_pixels;
-    whole.samples += part.error->samples;
+    whole += *part.error;
   }
   return whole;
 }

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "promin/error.h"
 #include "promin/image.h"
@@ -34,7 +33,7 @@ PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFra
   check_explained_pixel(options, stats.view->size);
   const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
   stats.display = choose_display(scene, view.look, view.debug_view);
-  if (stats.view->error_target) stats.view->error_target->white = std::exp2(-stats.display.exposure_ev);
+  if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
   const std::string assumptions =
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);

@@ -23,11 +23,13 @@
 #include "picture_files.h"
 #include "picture_job.h"
 #include "picture_run.h"
+#include "picture_spool.h"
 #include "progress.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "render/renderer_impl.h"
 #include "render_job.h"
+#include "trace/refinement.h"
 #include "tracing_run.h"
 
 namespace promin::app {
@@ -53,23 +55,22 @@ std::string describe_samples(const RunStats& stats) {
   PictureError all = stats.errors.front();
   for (const PictureError& error : std::span(stats.errors).subspan(1)) {
     all.target = std::max(all.target, error.target);
-    all.largest_claim = std::max(all.largest_claim, error.largest_claim);
-    all.unmet_pixels += error.unmet_pixels;
-    all.samples += error.samples;
+    all += error;
   }
   const auto pictures = static_cast<double>(stats.errors.size());
   const std::string unmet =
       all.unmet_pixels == 0 ? ""
                             : fmt::format(" but for {} pixels of at most {:.3g}", all.unmet_pixels, all.largest_claim);
-  return fmt::format("{:.4g} spp, error {:.9g}{}", mean_samples(*stats.view, all) / pictures, all.target, unmet);
+  return fmt::format("{:.4g} spp, error {:.9g}{}{}", mean_samples(*stats.view, all) / pictures, all.target,
+                     stats.view->error_target->display ? " as shown" : "", unmet);
 }
 
 /// The options that give a picture of a time limit again.
 std::string describe_target(const RunStats& stats) {
   const ErrorTarget& target = *stats.view->error_target;
-  return fmt::format("the picture{} of --target-error {:.9g} --min-spp {} --max-spp {}",
+  return fmt::format("the picture{} of --target-error {:.9g} --min-spp {} --max-spp {}{}",
                      stats.frames.empty() ? "" : " of the last frame", stats.errors.back().target, target.min_samples,
-                     target.max_samples);
+                     target.max_samples, target.display ? " --error-in display" : "");
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
@@ -81,11 +82,6 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
                      stats.mrays_per_s(), stats.device.name, fmt::join(names_of(options.pictures), ", "));
 }
 
-/// Whether the whole picture decides what its files begin with, or takes one call: it is not written band by band then.
-bool is_written_whole(const RenderOptions& options) {
-  return options.error.is_given() || options.view.look.averages_exposure;
-}
-
 /// Where the picture tells its exposure itself, that of a path's first frame for all.
 void expose_by_first(const RenderOptions& options, const RenderResult& result, RunStats& stats) {
   const bool is_first = stats.frames.size() <= 1;
@@ -93,49 +89,138 @@ void expose_by_first(const RenderOptions& options, const RenderResult& result, R
   stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object);
 }
 
-/// Traces a frame and writes its pictures, of large ones a band while the next is traced.
-void render_frame(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
-                  const Scene& scene, Renderer& renderer, RunStats& stats,
-                  const std::function<void(double)>& on_progress) {
-  if (planned.number) stats.frames.push_back(*planned.number);
-  const PixelWindow window = window_of(*stats.view);
-  const size_t channels = 3 + describe_aovs(scene, options.aovs, stats.view->depth_kind).channels.size();
-  const auto bands = is_written_whole(options) ? std::vector{window} : cut_bands(window, channels);
-  // From the first band that is written on a signal waits until nothing is left behind.
-  std::optional<DeferredSignals> while_writing;
-  std::optional<PictureFiles> files;
-  std::vector<double> trace_ms(options.tracing.repeat_count, 0.0);
-  const auto rows = static_cast<double>(window.hi.y - window.lo.y);
-  for (const PixelWindow& band : bands) {
-    View view = *stats.view;
-    if (bands.size() > 1) view.crop = band;
-    TracedFrame traced = trace(renderer, view, options, [&](double fraction) {
-      on_progress((band.lo.y - window.lo.y + fraction * (band.hi.y - band.lo.y)) / rows);
-      return !while_writing || !while_writing->is_pending();
-    });
-    check_validation(device, stats);
-    number_as_in_file(scene, traced.result.aovs);
-    stats.rays += traced.result.rays;
-    if (traced.result.error) stats.errors.push_back(*traced.result.error);
-    for (size_t i = 0; i < trace_ms.size(); ++i) trace_ms[i] += traced.trace_ms[i];
-    expose_by_first(options, traced.result, stats);
-    const Stopwatch write;
-    if (!files) {
-      while_writing.emplace();
-      files.emplace(planned.pictures, make_header(options, scene, planned.number, stats));
-    }
-    files->write_rows(std::move(traced.result.image), make_channels(scene, traced.result.aovs, options.aovs));
-    stats.write_ms += write.ms();
-  }
-  const Stopwatch write;
-  files->commit();
-  stats.write_ms += write.ms();
-  if (planned.number) {
-    stats.trace_ms.push_back(median(trace_ms));
-  } else {
-    stats.trace_ms = trace_ms;
-  }
+/// Whether a picture is traced by one call, which needs it whole or makes it as exact as the time allows.
+bool is_traced_whole(const RenderOptions& options) {
+  return options.error.time_limit_s || options.view.look.averages_exposure;
 }
+
+/// Traces a frame and writes its pictures: of large ones a band while the next is traced or, where the files begin with
+/// the error that the whole comes to, once all is traced.
+class FrameRendering {
+ public:
+  FrameRendering(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
+                 const Scene& scene, Renderer& renderer, RunStats& stats, std::function<void(double)> on_progress)
+      : planned_(planned),
+        options_(options),
+        device_(device),
+        scene_(scene),
+        renderer_(renderer),
+        stats_(stats),
+        on_progress_(std::move(on_progress)),
+        window_(window_of(*stats.view)),
+        channels_(describe_aovs(scene, options.aovs, stats.view->depth_kind).channels),
+        bands_(is_traced_whole(options) ? std::vector{window_} : cut_bands(window_, 3 + channels_.size())),
+        trace_ms_(options.tracing.repeat_count, 0.0) {}
+
+  void run() {
+    if (planned_.number) stats_.frames.push_back(*planned_.number);
+    if (options_.error.is_given() && bands_.size() > 1) {
+      write_when_traced();
+    } else {
+      write_while_tracing();
+    }
+    if (planned_.number) {
+      stats_.trace_ms.push_back(median(trace_ms_));
+    } else {
+      stats_.trace_ms = trace_ms_;
+    }
+  }
+
+ private:
+  /// Of the picture's work where it is written when it is traced; few samples and many channels make it more.
+  static constexpr double kWritingShare = 0.05;
+
+  /// Traces the picture, or a part of it.
+  PictureRows trace_part(const std::optional<PixelWindow>& part, const ProgressCallback& on_progress) {
+    View view = *stats_.view;
+    if (part) view.crop = part;
+    TracedFrame traced = trace(renderer_, view, options_, on_progress);
+    RenderResult& result = traced.result;
+    check_validation(device_, stats_);
+    number_as_in_file(scene_, result.aovs);
+    stats_.rays += result.rays;
+    if (result.error && !error_) error_ = PictureError{.target = result.error->target};
+    if (result.error) *error_ += *result.error;
+    for (size_t i = 0; i < trace_ms_.size(); ++i) trace_ms_[i] += traced.trace_ms[i];
+    expose_by_first(options_, result, stats_);
+    return {std::move(result.image), make_channels(scene_, result.aovs, options_.aovs)};
+  }
+
+  void open_files() {
+    if (error_) stats_.errors.push_back(*error_);
+    // From here on a signal waits until nothing is left behind.
+    while_writing_.emplace();
+    files_.emplace(planned_.pictures, make_header(options_, scene_, planned_.number, stats_));
+  }
+
+  void write_while_tracing() {
+    const auto rows = static_cast<double>(window_.hi.y - window_.lo.y);
+    for (const PixelWindow& band : bands_) {
+      PictureRows traced = trace_part(bands_.size() > 1 ? std::optional(band) : std::nullopt, [&](double fraction) {
+        on_progress_((band.lo.y - window_.lo.y + fraction * (band.hi.y - band.lo.y)) / rows);
+        return !while_writing_ || !while_writing_->is_pending();
+      });
+      const Stopwatch write;
+      if (!files_) open_files();
+      files_->write_rows(std::move(traced.image), std::move(traced.channels));
+      stats_.write_ms += write.ms();
+    }
+    commit();
+  }
+
+  void write_when_traced() {
+    std::optional<PictureSpool> spool;
+    {
+      const DeferredSignals while_making;
+      spool.emplace(planned_.pictures.front(), window_, channels_);
+    }
+    double pixels_done = 0.0;
+    const auto pixels = static_cast<double>(area_of(window_));
+    for (const PixelWindow& part : parts_to_refine(window_)) {
+      const auto part_pixels = static_cast<double>(area_of(part));
+      const PictureRows traced = trace_part(part, [&](double fraction) {
+        on_progress_((1.0 - kWritingShare) * (pixels_done + fraction * part_pixels) / pixels);
+        return true;
+      });
+      spool->write(part, traced.image, traced.channels);
+      pixels_done += part_pixels;
+    }
+    const Stopwatch write;
+    open_files();
+    for (size_t i = 0; i < bands_.size(); ++i) {
+      if (while_writing_->is_pending()) throw Cancelled();
+      on_progress_(1.0 - kWritingShare * (1.0 - static_cast<double>(i) / static_cast<double>(bands_.size())));
+      PictureRows rows = spool->read(bands_[i]);
+      files_->write_rows(std::move(rows.image), std::move(rows.channels));
+    }
+    stats_.write_ms += write.ms();
+    commit();
+  }
+
+  void commit() {
+    const Stopwatch write;
+    files_->commit();
+    stats_.write_ms += write.ms();
+  }
+
+  const PlannedFrame& planned_;
+  const RenderOptions& options_;
+  const gpu::Device& device_;
+  const Scene& scene_;
+  Renderer& renderer_;
+  RunStats& stats_;
+  std::function<void(double)> on_progress_;
+  PixelWindow window_;
+  /// Beside R, G and B, without values.
+  std::vector<Channel> channels_;
+  std::vector<PixelWindow> bands_;
+  /// Of each repetition.
+  std::vector<double> trace_ms_;
+  std::optional<PictureError> error_;
+  // In this order: files that are not committed are gone before a signal ends the program.
+  std::optional<DeferredSignals> while_writing_;
+  std::optional<PictureFiles> files_;
+};
 
 /// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
 /// are whole.
@@ -147,9 +232,10 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
     const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
     if (frame.camera) stats.view->camera = *frame.camera;
     try {
-      render_frame(frame, options, device, scene, renderer, stats, [&](double fraction) {
+      const auto on_progress = [&](double fraction) {
         progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
-      });
+      };
+      FrameRendering(frame, options, device, scene, renderer, stats, on_progress).run();
     } catch (const RunError& error) {
       if (name.empty()) throw;
       std::vector<Problem> problems = error.problems();

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 
 #include "arguments.h"
@@ -38,7 +39,8 @@ constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
 constexpr std::string_view kCryptomatte = "cryptomatte";
-constexpr std::array<std::string_view, 2> kDepthKinds = {"ray", "plane"};  // by their values
+constexpr std::array<std::string_view, 2> kErrorSpaces = {"linear", "display"};  // by their values
+constexpr std::array<std::string_view, 2> kDepthKinds = {"ray", "plane"};        // by their values
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
 /// Reads names between commas.
@@ -244,6 +246,10 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
             fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w); });
+  table.add("--error-in", fmt::format("{}", fmt::join(kErrorSpaces, "|")),
+            "The same: what errors are of: linear light, or what is shown, exposed, tone mapped and encoded as sRGB "
+            "[linear]",
+            [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, kErrorSpaces); });
 }
 
 std::optional<ErrorTarget> ErrorOptions::error_target() const {
@@ -258,7 +264,13 @@ ErrorTarget ErrorOptions::target_or(float error) const {
   if (target && !time_limit_s && *target >= 1.0F / 32.0F) result.min_samples = kMinRefinedSamples;
   result.min_samples = min_samples.value_or(std::min(result.min_samples, max_samples.value_or(result.min_samples)));
   result.max_samples = max_samples.value_or(std::max(result.max_samples, result.min_samples));
+  if (space == ErrorSpace::kDisplay) result.display.emplace();
   return result;
+}
+
+void fit_to_display(ErrorTarget& target, const DisplayTransform& display) {
+  target.white = std::exp2(-display.exposure_ev);
+  if (target.display) target.display = display;
 }
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
@@ -368,14 +380,15 @@ void check_job_options(const RenderOptions& options) {
 void check_error_options(const RenderOptions& options) {
   const ErrorOptions& error = options.error;
   if (!error.is_given()) {
-    const bool has_limit = error.min_samples || error.max_samples;
+    const bool has_limit = error.min_samples || error.max_samples || error.space;
     if (options.aovs.error && options.view.debug_view != DebugView::kNone) {
       throw UsageError({"--aov error and --shading contradict each other: a debug shading has no error",
                         "on the command line", "leave one out"});
     }
     if (!has_limit) return;
-    throw UsageError({fmt::format("{} needs an error to aim at", error.min_samples ? "--min-spp" : "--max-spp"),
-                      "on the command line", "give --target-error as well"});
+    const std::string_view name = error.min_samples ? "--min-spp" : error.max_samples ? "--max-spp" : "--error-in";
+    throw UsageError(
+        {fmt::format("{} needs an error to aim at", name), "on the command line", "give --target-error as well"});
   }
   const std::string_view name = error.target ? "--target-error" : "--time-limit";
   if (options.view.samples_per_pixel > 1) {
@@ -385,6 +398,12 @@ void check_error_options(const RenderOptions& options) {
   if (options.view.debug_view != DebugView::kNone) {
     throw UsageError(
         {fmt::format("{} and --shading contradict each other", name), "on the command line", "leave one out"});
+  }
+  if (error.space == ErrorSpace::kDisplay && options.view.look.averages_exposure) {
+    throw UsageError(
+        {"--error-in display and --exposure average contradict each other, which is known when all is "
+         "traced",
+         "on the command line", "give --exposure in stops"});
   }
   check_error_target(*error.error_target());
 }

@@ -90,6 +90,9 @@ struct FrameRange {
   uint32_t last = 0;
 };
 
+/// What errors are of: linear light, or what is shown of it.
+enum class ErrorSpace : uint32_t { kLinear, kDisplay };
+
 /// How exact pictures are to be. What the user leaves open follows from the rest.
 struct ErrorOptions {
   std::optional<float> target;
@@ -97,13 +100,19 @@ struct ErrorOptions {
   std::optional<double> time_limit_s;
   std::optional<uint32_t> min_samples;
   std::optional<uint32_t> max_samples;
+  /// In what errors are measured.
+  std::optional<ErrorSpace> space;
 
   bool is_given() const { return target || time_limit_s; }
   /// Empty where pictures have samples of a fixed number.
   std::optional<ErrorTarget> error_target() const;
-  /// Of this error where none is given.
+  /// Of this error where none is given. How the picture is shown is not known yet (fit_to_display).
   ErrorTarget target_or(float error) const;
 };
+
+/// Gives a target what hangs on how the picture is shown: what is white and, where errors are measured as they are
+/// shown, by what.
+void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
 
 struct RenderOptions {
   TracingOptions tracing;

@@ -61,7 +61,8 @@ Json json_of_bvh(const BvhStats& bvh) {
 
 Json json_of_error(const RunStats& stats, size_t picture) {
   const PictureError& error = stats.errors[picture];
-  return {{"target", error.target},
+  return {{"in", stats.view->error_target->display ? "display" : "linear"},
+          {"target", error.target},
           {"largest_claim", error.largest_claim},
           {"unmet_pixels", error.unmet_pixels},
           {"mean_samples", mean_samples(*stats.view, error)}};
@@ -127,6 +128,7 @@ Metadata describe_picture(const RunStats& stats) {
   const ErrorTarget& target = *stats.view->error_target;
   metadata.emplace_back("promin:min_spp", std::to_string(target.min_samples));
   metadata.emplace_back("promin:max_spp", std::to_string(target.max_samples));
+  if (target.display) metadata.emplace_back("promin:error_in", "display");
   put_error(metadata, stats.errors.back(), pixel_count(*stats.view));
   return metadata;
 }

@@ -379,7 +379,7 @@ View Viewer::current_view() const {
   // A flight is never at rest, and compiling what refines would take its time.
   if (mode_.debug_view == DebugView::kNone && !is_replaying()) {
     view.error_target = start_.error_target;
-    view.error_target->white = std::exp2(-scene_->display.exposure_ev);
+    fit_to_display(*view.error_target, scene_->display);
   }
   return view;
 }

@@ -33,7 +33,7 @@ struct ViewerStart {
   /// LoadOptions::material_variant.
   std::string variant;
   View view;
-  /// Of pictures at rest that show light; its white follows from the scene.
+  /// Of pictures at rest that show light; what hangs on how they are shown follows from the scene.
   ErrorTarget error_target;
   std::optional<std::string> present_mode;
   /// None: the display's refresh interval where the device keeps up with it, else kCpuTargetMs.

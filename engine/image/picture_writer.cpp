@@ -11,10 +11,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <new>
 
 #include "core/file.h"
 #include "core/parallel.h"
+#include "core/scratch_file.h"
 #include "image/dither.h"
 #include "image/open_pictures.h"
 #include "promin/error.h"
@@ -153,7 +155,12 @@ bool has_named_channels(const fs::path& file) {
 class PictureWriter::Impl {
  public:
   Impl(const fs::path& file, const PictureHeader& header)
-      : file_(file), header_(header), is_exr_(has_named_channels(file)), plugin_(open_pictures()), output_(file) {
+      : file_(file),
+        header_(header),
+        is_exr_(has_named_channels(file)),
+        plugin_(open_pictures()),
+        output_(file),
+        scratch_{file} {
     bytes_.descriptor = ::open(output_.temporary().c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
     if (bytes_.descriptor < 0) {
       bytes_.error = errno;
@@ -187,7 +194,8 @@ class PictureWriter::Impl {
     source.attribute_count = is_exr_ ? attributes.size() : 0;
     const ProminPicturesSink sink{&bytes_, OpenFile::write};
     ProminPicturesWriter* begun = nullptr;
-    check_done(plugin_.begin(&source, &sink, &begun, &message_));
+    const ProminPicturesScratch scratch{&scratch_, Scratch::reserve, Scratch::write, Scratch::read};
+    check_done(plugin_.begin(&source, &sink, &scratch, &begun, &message_));
     writer_ = {begun, plugin_.end};
   }
 
@@ -259,6 +267,37 @@ class PictureWriter::Impl {
     int error = 0;
   };
 
+  /// What waits to be written; the contexts of its functions, which are ProminPicturesScratch's, are one of these.
+  struct Scratch {
+    static int reserve(void* context, uint64_t byte_count) {
+      auto& scratch = *static_cast<Scratch*>(context);
+      return scratch.attempt([&] { scratch.file.emplace(scratch.target, byte_count); });
+    }
+    static int write(void* context, uint64_t place, const void* bytes, size_t byte_count) {
+      auto& scratch = *static_cast<Scratch*>(context);
+      return scratch.attempt([&] { scratch.file->write(place, {static_cast<const std::byte*>(bytes), byte_count}); });
+    }
+    static int read(void* context, uint64_t place, void* bytes, size_t byte_count) {
+      auto& scratch = *static_cast<Scratch*>(context);
+      return scratch.attempt([&] { scratch.file->read(place, {static_cast<std::byte*>(bytes), byte_count}); });
+    }
+
+    template <typename Step>
+    int attempt(const Step& step) noexcept {
+      try {
+        step();
+        return 1;
+      } catch (...) {
+        failure = std::current_exception();
+        return 0;
+      }
+    }
+
+    fs::path target;
+    std::optional<ScratchFile> file = std::nullopt;
+    std::exception_ptr failure = nullptr;
+  };
+
   [[noreturn]] void refuse_file() const {
     throw RunError({std::string("cannot write the output file (") + std::strerror(bytes_.error) + ")", file_.string(),
                     "check the disk and permissions"});
@@ -266,6 +305,7 @@ class PictureWriter::Impl {
 
   void check_done(int status) const {
     if (status == PROMIN_PICTURES_DONE) return;
+    if (scratch_.failure) std::rethrow_exception(scratch_.failure);
     if (bytes_.error != 0) refuse_file();
     if (status == PROMIN_PICTURES_OUT_OF_MEMORY) throw std::bad_alloc();
     throw RunError({std::string("cannot encode the picture (") + message_.text + ")", file_.string(),
@@ -278,6 +318,7 @@ class PictureWriter::Impl {
   const PicturesPlugin& plugin_;
   AtomicFile output_;
   OpenFile bytes_;
+  Scratch scratch_;
   ProminPicturesMessage message_{};
   /// Gone before what it writes to.
   std::unique_ptr<ProminPicturesWriter, decltype(PicturesPlugin::end)> writer_{nullptr, nullptr};

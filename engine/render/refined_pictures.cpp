@@ -9,9 +9,6 @@
 namespace promin {
 namespace {
 
-/// The side of the parts of a picture that are refined one after the other.
-constexpr uint32_t kTileSide = 256;
-
 /// It takes so much more time for an error than is foretold.
 constexpr double kCaution = 1.2;
 
@@ -89,15 +86,11 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
 
 RenderResult PictureTracer::render_to_error(const View& view, const ProgressCallback& progress) {
   RenderResult result = begin_refined(view, progress);
-  const PixelWindow window = picture_window(view);
-  const uvec2 tiles = (result.image.size + kTileSide - 1U) / kTileSide;
-  // All tiles take what those before have taken, as far as is known.
+  // All parts take what those before have taken, as far as is known.
   double taken = 0.0;
   double pixels_done = 0.0;
   const auto pixels = static_cast<double>(result.image.pixels.size());
-  for (uint32_t tile = 0; tile < tiles.x * tiles.y; ++tile) {
-    const uvec2 lo = window.lo + kTileSide * uvec2(tile % tiles.x, tile / tiles.x);
-    const PixelWindow part{lo, glm::min(window.hi, lo + kTileSide)};
+  for (const PixelWindow& part : parts_to_refine(picture_window(view))) {
     Refinement refinement(view, part);
     RefinedAovs aovs = begin_refined_aovs(part, view);
     const auto part_pixels = static_cast<double>(refinement.pixel_count());

@@ -295,6 +295,13 @@ class Validation {
           "take a power of two from the least number to 32768");
     check(target.white > 0.0F && std::isfinite(target.white), "what is shown as white is not positive and finite",
           "view.error_target.white", "take 1, or 2 to the power of -EV");
+    if (target.display) {
+      check(std::isfinite(target.display->exposure_ev), "the exposure is not finite",
+            "view.error_target.display.exposure_ev", "take 0, or the stops of the picture's display");
+      check(static_cast<size_t>(target.display->tone_mapping) < tone_mapping_names().size(),
+            "the tone mapping is none of ToneMapping", "view.error_target.display.tone_mapping",
+            "name one that there is");
+    }
     check(view.mode.debug_view == DebugView::kNone, "a debug view has no error", "view.error_target",
           "leave the error target out, or show light");
   }

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "promin/view.h"
+#include "promin/image.h"
 
 namespace promin {
 namespace {
@@ -92,8 +92,29 @@ vec3 estimate_error(const ColorRange& around, uint32_t samples) {
   return estimate;
 }
 
-float relative_claim(const vec3& claim, const vec3& mean, float white) {
-  return std::max({claim.x, claim.y, claim.z}) / std::max({white, mean.x, mean.y, mean.z});
+float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target) {
+  if (!target.display) return std::max({claim.x, claim.y, claim.z}) / std::max({target.white, mean.x, mean.y, mean.z});
+  const vec3 shown = shown_claim(claim, mean, *target.display);
+  return std::max({shown.x, shown.y, shown.z});
+}
+
+vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display) {
+  if (claim == vec3(0.0F)) return claim;
+  const auto shown = [&](const vec3& color) {
+    const vec3 mapped = apply(display, color);
+    return vec3(encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z));
+  };
+  const vec3 middle = shown(mean);
+  vec3 farthest(0.0F);
+  for (int corner = 0; corner < 8; ++corner) {
+    const vec3 side((corner & 1) == 0 ? -1.0F : 1.0F, (corner & 2) == 0 ? -1.0F : 1.0F,
+                    (corner & 4) == 0 ? -1.0F : 1.0F);
+    farthest = glm::max(farthest, glm::abs(shown(mean + side * claim) - middle));
+  }
+  for (int channel = 0; channel < 3; ++channel) {
+    if (!std::isfinite(claim[channel])) farthest[channel] = claim[channel];
+  }
+  return farthest;
 }
 
 }  // namespace promin

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "promin/math.h"
+#include "promin/view.h"
 
 namespace promin {
 
@@ -59,7 +60,13 @@ class PixelEstimate {
 /// no claim: it knows no more of the samples.
 vec3 estimate_error(const ColorRange& around, uint32_t samples);
 
-/// A pixel's largest claim, of white or of its largest channel where that is more: what an error target is about.
-float relative_claim(const vec3& claim, const vec3& mean, float white);
+/// A pixel's largest claim as an error target measures it: of white or of the pixel's largest channel where that is
+/// more, or as it is shown.
+float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target);
+
+/// By how much each channel may be off as it is shown, 0...1, where the light of all is within the claim: what is
+/// farthest from the mean lies in a corner of it, as each channel that is shown rises or falls with each of light, and
+/// tone mappings mix them. What is not finite stays so.
+vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display);
 
 }  // namespace promin

@@ -15,6 +15,9 @@ namespace {
 /// Pixels that a thread takes at a time.
 constexpr size_t kChunk = 1024;
 
+/// The side of the parts in which a picture is refined.
+constexpr uint32_t kPartSide = 256;
+
 constexpr float kFirstError = 0.125F;
 constexpr float kErrorStep = 1.41421356F;
 
@@ -40,20 +43,28 @@ PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size) {
   return {glm::max(window.lo, uvec2(1)) - 1U, glm::min(window.hi + 1U, size)};
 }
 
+std::vector<PixelWindow> parts_to_refine(const PixelWindow& window) {
+  std::vector<PixelWindow> parts;
+  for (uint32_t y = window.lo.y; y < window.hi.y; y += kPartSide) {
+    for (uint32_t x = window.lo.x; x < window.hi.x; x += kPartSide) {
+      parts.push_back({uvec2(x, y), glm::min(window.hi, uvec2(x, y) + kPartSide)});
+    }
+  }
+  return parts;
+}
+
 Refinement::Refinement(const View& view, const PixelWindow& window)
-    : error_(view.error_target->error),
-      white_(view.error_target->white),
-      least_samples_(view.error_target->min_samples),
-      most_samples_(view.error_target->max_samples),
+    : target_(*view.error_target),
       window_(window),
       apron_(with_neighbors(window, view.size)),
       filter_(view),
       estimates_(area_of(apron_)),
       first_ranges_(area_of(apron_)),
       claims_(area_of(window)),
+      errors_(area_of(window)),
       pixels_(area_of(apron_)),
-      end_sample_(least_samples_),
-      total_(kMoreThanFirst * least_samples_ * static_cast<double>(area_of(apron_))) {
+      end_sample_(target_.min_samples),
+      total_(kMoreThanFirst * target_.min_samples * static_cast<double>(area_of(apron_))) {
   std::iota(pixels_.begin(), pixels_.end(), 0U);
 }
 
@@ -114,7 +125,10 @@ void Refinement::judge_stage() {
   for_each_chunk(pixels_.size(), kChunk, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const std::optional<size_t> pixel = window_index(pixels_[i]);
-      if (pixel) claims_[*pixel] = estimates_[pixels_[i]].claim(range_around(first_ranges_, size, pixels_[i]));
+      if (!pixel) continue;
+      const PixelEstimate& estimate = estimates_[pixels_[i]];
+      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]));
+      errors_[*pixel] = promin::claimed_error(claims_[*pixel], estimate.mean(), target_);
     }
   });
 }
@@ -122,8 +136,8 @@ void Refinement::judge_stage() {
 void Refinement::begin_stage_from(uint32_t sample) {
   pixels_.clear();
   handed_out_ = 0;
-  total_ = static_cast<double>(sample_count_) + foretell_samples(error_);
-  for (; sample < most_samples_; sample *= 2) {
+  total_ = static_cast<double>(sample_count_) + foretell_samples(target_.error);
+  for (; sample < target_.max_samples; sample *= 2) {
     for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
       if (estimate(pixel).count() != sample || is_near_enough(pixel)) continue;
       pixels_.push_back(static_cast<uint32_t>(apron_index(pixel)));
@@ -136,9 +150,9 @@ void Refinement::begin_stage_from(uint32_t sample) {
 }
 
 void Refinement::aim(float error) {
-  assert(pixels_.empty() && error <= error_);
-  error_ = error;
-  begin_stage_from(least_samples_);
+  assert(pixels_.empty() && error <= target_.error);
+  target_.error = error;
+  begin_stage_from(target_.min_samples);
 }
 
 double Refinement::foretell_samples(float error) const {
@@ -146,29 +160,25 @@ double Refinement::foretell_samples(float error) const {
   for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
     const double count = estimate(pixel).count();
     // As an edge's claim falls with them.
-    const double ratio = static_cast<double>(relative_claim(pixel) / error);
+    const double ratio = static_cast<double>(errors_[pixel] / error);
     // Of what is not finite nothing is foretold.
     if (!(ratio > 1.0) || std::isinf(ratio)) continue;
     const double wanted = count * std::exp2(std::ceil(std::log2(ratio) * 4.0 / 3.0));
-    samples += std::max(std::min<double>(wanted, most_samples_) - count, 0.0);
+    samples += std::max(std::min<double>(wanted, target_.max_samples) - count, 0.0);
   }
   return samples;
 }
 
 bool Refinement::is_near_enough(size_t pixel) const {
-  return relative_claim(pixel) <= error_;
+  return errors_[pixel] <= target_.error;
 }
 
 void Refinement::add_to(PictureError& whole) const {
   for (size_t pixel = 0; pixel < pixel_count(); ++pixel) {
-    whole.largest_claim = std::max(whole.largest_claim, relative_claim(pixel));
+    whole.largest_claim = std::max(whole.largest_claim, errors_[pixel]);
     whole.unmet_pixels += is_near_enough(pixel) ? 0 : 1;
     whole.samples += estimate(pixel).count();
   }
-}
-
-float Refinement::relative_claim(size_t pixel) const {
-  return promin::relative_claim(claims_[pixel], estimate(pixel).mean(), white_);
 }
 
 }  // namespace promin

@@ -36,6 +36,10 @@ size_t area_of(const PixelWindow& window);
 /// A window and the pixels around it that are in a picture of this size.
 PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size);
 
+/// The parts in which a picture is refined, one after the other, row by row: whoever has them traced each by itself has
+/// the same done as with the whole.
+std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
+
 /// Refines a window of a picture until each of its pixels is within View::error_target or has its most samples: hands
 /// out samples to trace, takes what was seen, doubles the samples of pixels whose claim is too large. Of the pixels
 /// around the window it takes the first samples, for those next to them; so a pixel hangs on what is within one pixel
@@ -65,8 +69,8 @@ class Refinement {
   size_t pixel_count() const { return claims_.size(); }
   const PixelEstimate& estimate(size_t pixel) const { return estimates_[apron_index(pixel)]; }
   const vec3& claim(size_t pixel) const { return claims_[pixel]; }
-  /// Of white or of the pixel's largest channel.
-  float relative_claim(size_t pixel) const;
+  /// The claim as the target measures errors (claimed_error).
+  float claimed_error(size_t pixel) const { return errors_[pixel]; }
   /// Whether the claim is within the error that is asked for; else samples were too few.
   bool is_near_enough(size_t pixel) const;
   /// Adds what the window's pixels have come to, but for the target.
@@ -81,10 +85,7 @@ class Refinement {
   /// done.
   void begin_stage_from(uint32_t sample);
 
-  float error_;
-  float white_;
-  uint32_t least_samples_;
-  uint32_t most_samples_;
+  ErrorTarget target_;
   PixelWindow window_;
   /// The window and the pixels around it that are in the picture.
   PixelWindow apron_;
@@ -95,6 +96,8 @@ class Refinement {
   std::vector<ColorRange> first_ranges_;
   /// By window.
   std::vector<vec3> claims_;
+  /// The same as the target measures them, which takes some time of those that are shown.
+  std::vector<float> errors_;
   /// The stage at hand: pixels by apron, samples [first, end) of each, how many pixels have been handed out.
   std::vector<uint32_t> pixels_;
   uint32_t first_sample_ = 0;

@@ -37,6 +37,14 @@ struct PictureError {
   uint64_t unmet_pixels = 0;
   /// Of the picture's pixels together.
   uint64_t samples = 0;
+
+  /// Adds what another part of the picture has come to, or another picture; the target stays.
+  PictureError& operator+=(const PictureError& other) {
+    largest_claim = largest_claim < other.largest_claim ? other.largest_claim : largest_claim;
+    unmet_pixels += other.unmet_pixels;
+    samples += other.samples;
+    return *this;
+  }
 };
 
 /// A picture and what it took.

@@ -93,7 +93,7 @@ PROMIN_MEMBERS(Panorama, image)
 PROMIN_MEMBERS(Environment, ambient, background, sky, shows_sky, rotation, intensity)
 PROMIN_MEMBERS(DisplayTransform, exposure_ev, tone_mapping, dithers)
 PROMIN_MEMBERS(ExrOptions, is_half, compression, is_multipart)
-PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, max_samples)
+PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, display, max_samples)
 PROMIN_MEMBERS(PixelWindow, lo, hi)
 PROMIN_MEMBERS(RenderMode, debug_view, has_shadows)
 PROMIN_MEMBERS(View, camera, size, crop, samples_per_pixel, error_target, depth_kind, filter, filter_width, max_depth,

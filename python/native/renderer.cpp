@@ -104,7 +104,8 @@ class SharedRenderer {
  public:
   SharedRenderer(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::vector<std::string>& aovs,
                  const std::string& builder, const std::optional<std::string>& bvh, bool has_error_target,
-                 const nb::dict& mode, uint64_t texture_bytes, const nb::object& progress)
+                 const nb::dict& mode, std::optional<uint64_t> expected_samples, uint64_t texture_bytes,
+                 const nb::object& progress)
       : device_(std::move(device)), aovs_(read_aovs(aovs)) {
     named_.objects = scene.objects;
     named_.object_numbers = scene.object_numbers;
@@ -119,6 +120,7 @@ class SharedRenderer {
       options.aovs = aovs_;
       options.has_error_target = has_error_target;
       options.mode = first_mode;
+      if (expected_samples) options.expected_samples = *expected_samples;
       options.texture_bytes = texture_bytes;
       options.progress = tell;
       renderer = std::make_unique<Renderer>(open, scene, options);
@@ -202,9 +204,11 @@ nb::list list_aovs() {
 void bind_renderer(nb::module_& module) {
   nb::class_<SharedRenderer>(module, "Renderer")
       .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::vector<std::string>&, const std::string&,
-                    const std::optional<std::string>&, bool, const nb::dict&, uint64_t, const nb::object&>(),
+                    const std::optional<std::string>&, bool, const nb::dict&, std::optional<uint64_t>, uint64_t,
+                    const nb::object&>(),
            nb::arg("device"), nb::arg("scene"), nb::arg("aovs"), nb::arg("builder"), nb::arg("bvh").none(),
-           nb::arg("has_error_target"), nb::arg("mode"), nb::arg("texture_bytes"), nb::arg("progress").none())
+           nb::arg("has_error_target"), nb::arg("mode"), nb::arg("expected_samples").none(), nb::arg("texture_bytes"),
+           nb::arg("progress").none())
       .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("progress").none())
       .def("set_lights", &SharedRenderer::set_lights)
       .def("set_materials", &SharedRenderer::set_materials)

@@ -74,6 +74,7 @@ class Renderer:
         bvh: str | None,
         has_error_target: bool,
         mode: _Record,
+        expected_samples: int | None,
         texture_bytes: int,
         progress: _Progress,
     ) -> None: ...

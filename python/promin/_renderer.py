@@ -70,6 +70,9 @@ class View:
     """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
     max_spp: int | None = None
     """The samples at which a pixel stops with an error target, a power of two; None: 256."""
+    error_in: str = "linear"
+    """What `target_error` is of: "linear" light, or the "display": what is shown, exposed, tone mapped and encoded as
+    sRGB."""
     filter: str = "box"
     """"box", "tent", "gauss" or "blackman-harris"."""
     filter_width: float | None = None
@@ -102,13 +105,16 @@ class Renderer:
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
         texture_memory: int = 512 << 20,
+        expected_samples: int | None = None,
         progress: Progress = None,
     ) -> None:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
         is built anew. view: that of pictures which are given none; what it takes is compiled at once. light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from
         where a scene without cameras is seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that
-        textures take. The rest as Caster. Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
+        textures take. expected_samples: about how many samples all pictures will have together, over all pixels; where
+        they are few, kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The
+        rest as Caster. Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
         if not isinstance(scene, Scene):
             raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
         self._scene = scene.snapshot()
@@ -118,6 +124,7 @@ class Renderer:
         self._builder = str(builder)
         self._bvh = None if bvh is None else os.fsdecode(bvh)
         self._texture_memory = texture_memory
+        self._expected_samples = None if expected_samples is None else _count(expected_samples, "expected_samples")
         self._aovs = _names(aovs)
         self._view = _of_view(view)
         self._changes: dict[str, Any] = {}
@@ -197,6 +204,7 @@ class Renderer:
         time_limit: float | None = None,
         min_spp: int | None = None,
         max_spp: int | None = None,
+        error_in: str | None = None,
         filter: str | None = None,
         filter_width: float | None = None,
         depth: str | None = None,
@@ -217,6 +225,7 @@ class Renderer:
             "time_limit": time_limit,
             "min_spp": min_spp,
             "max_spp": max_spp,
+            "error_in": error_in,
             "filter": filter,
             "filter_width": filter_width,
             "depth": depth,
@@ -328,6 +337,8 @@ class Renderer:
             described["promin:spp"] = f"{error['samples'] / (rows * columns):.9g}"
             described["promin:min_spp"] = str(target["min_samples"])
             described["promin:max_spp"] = str(target["max_samples"])
+            if target["display"] is not None:
+                described["promin:error_in"] = "display"
             described["promin:error_target"] = f"{error['target']:.9g}"
             described["promin:error_max"] = f"{error['largest_claim']:.9g}"
             described["promin:error_unmet"] = str(error["unmet_pixels"])
@@ -377,6 +388,7 @@ class Renderer:
             self._bvh,
             _has_target(view),
             _mode(view),
+            self._expected_samples,
             self._texture_memory,
             progress,
         )
@@ -470,6 +482,8 @@ def _has_target(view: View) -> bool:
 
 def _check_samples(view: View) -> None:
     """The rules of promin's options about samples."""
+    if view.error_in not in ("linear", "display"):
+        raise UsageError(f'error_in is {view.error_in!r:.80}; give "linear" or "display"')
     if _has_target(view):
         name = "time_limit" if view.target_error is None else "target_error"
         if isinstance(view.spp, (int, np.integer)) and view.spp > 1:
@@ -479,10 +493,12 @@ def _check_samples(view: View) -> None:
     elif view.min_spp is not None or view.max_spp is not None:
         name = "max_spp" if view.min_spp is None else "min_spp"
         raise UsageError(f"{name} needs an error to aim at; give target_error as well")
+    elif view.error_in != "linear":
+        raise UsageError("error_in needs an error to aim at; give target_error as well")
 
 
 def _error_target(view: View, shown: Display) -> dict[str, Any]:
-    """As promin's options --target-error, --time-limit, --min-spp and --max-spp are taken."""
+    """As promin's options --target-error, --time-limit, --min-spp, --max-spp and --error-in are taken."""
     error = 2.0**-16 if view.target_error is None else view.target_error
     least = 4 if view.time_limit is None and isinstance(error, (int, float)) and error >= 1 / 32 else 8
     if view.min_spp is not None:
@@ -490,7 +506,13 @@ def _error_target(view: View, shown: Display) -> dict[str, Any]:
     elif view.max_spp is not None:
         least = min(least, view.max_spp)
     most = max(256, least) if view.max_spp is None else view.max_spp
-    return {"error": error, "min_samples": least, "max_samples": most, "white": 2.0**-shown.exposure_ev}
+    return {
+        "error": error,
+        "min_samples": least,
+        "max_samples": most,
+        "white": 2.0**-shown.exposure_ev,
+        "display": to_dict(shown) if view.error_in == "display" else None,
+    }
 
 
 def _names(aovs: Iterable[str]) -> tuple[str, ...]:
@@ -514,6 +536,16 @@ def _integers(values: Any, count: int, what: str) -> tuple[int, ...]:
         result = ()
     if len(result) != count or any(not 0 <= value < 2**32 for value in result):
         raise UsageError(f"{what} is {values!r:.80}; give {count} whole numbers of pixels")
+    return result
+
+
+def _count(value: object, what: str) -> int:
+    try:
+        result = index(value)  # type: ignore[arg-type]
+    except TypeError:
+        result = -1
+    if not 0 <= result < 2**64:
+        raise UsageError(f"{what} is {value!r:.80}; give a whole number from 0 on")
     return result
 
 

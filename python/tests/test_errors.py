@@ -147,6 +147,7 @@ def test_random_views(renderer: promin.Renderer, data: st.DataObject) -> None:
         "spp",
         "max_depth",
         "target_error",
+        "error_in",
         "time_limit",
         "filter",
         "filter_width",

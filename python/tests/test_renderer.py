@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import pickle
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Callable
@@ -34,6 +37,11 @@ from promin import _promin
             "box.gltf",
             {"size": (40, 30), "target_error": 0.01, "min_spp": 4, "max_spp": 32},
             [*"--size 40 30 --target-error 0.01 --min-spp 4 --max-spp 32".split()],
+        ),
+        (
+            "mirrors.gltf",
+            {"size": (40, 30), "target_error": 0.02, "error_in": "display"},
+            [*"--size 40 30 --target-error 0.02 --error-in display".split()],
         ),
     ],
 )
@@ -243,6 +251,8 @@ def test_what_a_renderer_tells_is_a_copy(box: promin.Scene) -> None:
         (promin.View(min_spp=8), "min_spp needs an error to aim at; give target_error as well"),
         (promin.View(max_spp=8), "max_spp needs an error to aim at; give target_error as well"),
         (promin.View(spp=2, target_error=0.5), "target_error and spp=2 contradict each other"),
+        (promin.View(error_in="display"), "error_in needs an error to aim at; give target_error as well"),
+        (promin.View(target_error=0.5, error_in="log"), "error_in is 'log'; give \"linear\" or \"display\""),
         (promin.View(spp=2, time_limit=0.5), "time_limit and spp=2 contradict each other"),
     ],
 )
@@ -251,6 +261,32 @@ def test_samples_that_contradict_each_other(box: promin.Scene, view: promin.View
     with pytest.raises(promin.UsageError, match=sentence):
         renderer.render(view, size=(4, 4))
     assert renderer.render(size=(4, 4), spp=1, target_error=0.5).error
+
+
+def test_few_expected_samples_take_other_kernels_and_give_the_same_bits(box: promin.Scene, tmp_path: Path) -> None:
+    few = promin.Renderer(box, expected_samples=np.uint32(1000)).render(size=(24, 16))
+    assert (few.rgb == promin.Renderer(box).render(size=(24, 16)).rgb).all()
+    for wrong in (-1, 1.5, 2**64, "many"):
+        with pytest.raises(promin.UsageError, match="expected_samples is .*; give a whole number from 0 on"):
+            promin.Renderer(box, expected_samples=wrong)  # type: ignore[arg-type]
+    # Kernels that have been compiled lie in a cache of the driver's.
+    code = """if True:
+        import sys, promin
+        scene = promin.Scene()
+        scene.add_sphere((0, 0, 0), radius=1)
+        promin.Renderer(scene, expected_samples=eval(sys.argv[1]))
+    """
+    environment = {**os.environ, "MESA_SHADER_CACHE_DIR": str(tmp_path), "MESA_DISK_CACHE_MULTI_FILE": "true"}
+
+    def count_kernels(expected_samples: str) -> int:
+        words = [sys.executable, "-c", code, expected_samples]
+        subprocess.run(words, env=environment, check=True, timeout=300)
+        return sum(file.is_file() for file in tmp_path.rglob("*"))
+
+    kernels = [count_kernels(samples) for samples in ("2**30", "None", "1000", "1000")]
+    if kernels[0] == 0:
+        pytest.skip("the driver is not Mesa's")
+    assert kernels[0] == kernels[1] < kernels[2] == kernels[3]
 
 
 def test_updates_change_pictures_and_are_kept(box: promin.Scene) -> None:

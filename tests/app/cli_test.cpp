@@ -97,6 +97,12 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--time-limit", "1", "--shading", "uv"},
        "--time-limit and --shading contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs an error to aim at"},
+      {{"render", "square.gltf", "-o", "a.exr", "--error-in", "linear"}, "--error-in needs an error to aim at"},
+      {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--error-in", "log"},
+       "--error-in takes linear or display, not \"log\""},
+      {{"render", "square.gltf", "-o", "a.png", "--target-error", "0.1", "--error-in", "display", "--exposure",
+        "average"},
+       "--error-in display and --exposure average contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "error", "--shading", "uv"},
        "--aov error and --shading contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "12"},
@@ -239,6 +245,11 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
     expect_failure(run({"render", "square.gltf", "--size", "300", "300", "-o", output, "--quiet"}), 1, output);
     EXPECT_EQ(read(output), "old");
   }
+  // It waits on disk until it is whole, and before it is traced there is no room for that.
+  const OptionValues large = {"render",         "square.gltf", "--size", "30000",   "20000",
+                              "--target-error", "0.5",         "-o",     "old.exr", "--quiet"};
+  expect_failure(run(large), 1, "cannot keep 7201 MB beside the output file until it can be written");
+  EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
 }
 
@@ -691,6 +702,22 @@ TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
     EXPECT_EQ(read("old.exr"), "old");
     EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
   }
+}
+
+// What waits on disk until the picture is whole has no name there.
+TEST_F(CliTest, AnInterruptLeavesNothingOfAPictureThatWaitsOnDisk) {
+  write("old.exr", "old");
+  Process program(PROMIN_EXECUTABLE,
+                  {"render", "square.gltf", "--size", "4000", "4000", "--target-error", "1e-4", "--max-spp", "32768",
+                   "-o", "old.exr", "--light", "none", "--background", "0", "0", "0"},
+                  options_);
+  for (int i = 0; i < 600 && program.err().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  program.send(SIGINT);
+  const ProcessResult result = program.wait();
+  EXPECT_EQ(result.signal, SIGINT) << result.err;
+  EXPECT_THAT(result.err, MatchesRegex("promin: [0-9]+ %, [0-9:]+ left\n"));
+  EXPECT_EQ(read("old.exr"), "old");
+  EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
 }
 
 TEST_F(CliTest, AovsAreChannelsOfTheExr) {

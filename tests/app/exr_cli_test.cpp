@@ -48,8 +48,9 @@ class ExrCliTest : public CliTest {
     return exr;
   }
 
-  ReadExr render_exr(OptionValues options) const {
-    options.insert(options.begin(), {"render", "square.gltf", "-o", "a.exr", "--size", "40", "30", "--quiet"});
+  ReadExr render_exr(OptionValues options, const uvec2& size = uvec2(40, 30)) const {
+    options.insert(options.begin(), {"render", "square.gltf", "-o", "a.exr", "--quiet", "--size",
+                                     std::to_string(size.x), std::to_string(size.y)});
     const ProcessResult result = run(options);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return read_exr("a.exr");
@@ -99,6 +100,10 @@ TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
   EXPECT_GE(parts.part_count, 5);
   EXPECT_EQ(parts.channels, one.channels);
   EXPECT_EQ(parts.types, one.types);
+  // What waits for its part is read by 16 MiB: positions here in two turns.
+  const ReadExr large = render_exr({"--aov", "position,depth", "--multipart"}, uvec2(1500, 1000));
+  EXPECT_EQ(large.part_count, 3);
+  EXPECT_EQ(large.channels, render_exr({"--aov", "position,depth"}, uvec2(1500, 1000)).channels);
 }
 
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
@@ -163,9 +168,46 @@ TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
     return place == std::string::npos ? 0.0 : std::stod(result.err.substr(place + 5));
   };
   const double of_colors = held_mb({});
-  const double of_all = held_mb({"--aov", "cryptomatte,depth,normal,position,object,albedo"});
+  const OptionValues aovs = {"--aov", "cryptomatte,depth,normal,position,object,albedo"};
+  const double of_all = held_mb(aovs);
   EXPECT_GT(of_colors, 50.0);
   EXPECT_LT(of_all - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
+  // Of a target error it is whole before the first row is written, and waits on disk.
+  OptionValues refined = aovs;
+  refined.insert(refined.end(), {"--target-error", "0.25"});
+  EXPECT_LT(held_mb(refined) - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
+  // And all parts but the first wait for it.
+  OptionValues in_parts = aovs;
+  in_parts.emplace_back("--multipart");
+  EXPECT_LT(held_mb(in_parts) - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
+}
+
+// A job of one piece holds the whole picture; the other waits on disk, as pictures of more than 12 MiB do: these have
+// 55 numbers a pixel.
+TEST_F(ExrCliTest, PicturesOfAnErrorHaveTheBytesOfThoseHeldWhole) {
+  const OptionValues aovs = {
+      "--aov",
+      "cryptomatte,depth,position,normal,shading_normal,albedo,object,samples,error,direct,reflection,background",
+      "--alpha",
+      "--target-error",
+      "0.1",
+      "--dither",
+      "--quiet"};
+  const std::vector<OptionValues> windows = {{"--size", "257", "330"},
+                                             {"--size", "600", "400", "--crop", "41", "70", "553", "326"}};
+  for (size_t i = 0; i < windows.size(); ++i) {
+    OptionValues single = {"render", "square.gltf", "-o", "single.exr", "-o", "single.png"};
+    OptionValues job = {
+        "render", "square.gltf", "-o", "job.exr", "-o", "job.png", "--job", "job" + std::to_string(i), "--pieces", "1"};
+    for (OptionValues* words : {&single, &job}) {
+      words->insert(words->end(), windows[i].begin(), windows[i].end());
+      words->insert(words->end(), aovs.begin(), aovs.end());
+      const ProcessResult result = run(*words);
+      ASSERT_EQ(result.exit_code, 0) << result.err;
+    }
+    EXPECT_TRUE(read("single.exr") == read("job.exr")) << i;
+    EXPECT_TRUE(read("single.png") == read("job.png")) << i;
+  }
 }
 
 // What beauty is the sum of, in the file.

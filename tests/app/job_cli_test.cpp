@@ -34,6 +34,7 @@ class JobCliTest : public JobFixture {
 TEST_F(JobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   for (const OptionValues& how : {OptionValues{"--spp", "4", "--aov", "depth,normal,object,albedo"},
                                   OptionValues{"--target-error", "0.03", "--aov", "samples,error"},
+                                  OptionValues{"--target-error", "0.03", "--error-in", "display"},
                                   OptionValues{"--crop", "5", "3", "40", "41", "--dither"}}) {
     const auto with = [&](OptionValues words) {
       words.insert(words.end(), how.begin(), how.end());

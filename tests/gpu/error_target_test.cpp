@@ -10,10 +10,13 @@
 
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
+#include "promin/display.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "render/renderer_impl.h"
+#include "trace/pixel_estimate.h"
 
 namespace promin::test {
 namespace {
@@ -61,23 +64,42 @@ Scene make_floor() {
 
 class ErrorTargetTest : public DeviceTest {
  protected:
-  /// Holds a picture's claims against one of many samples of a lattice.
-  static void expect_honest(Renderer& renderer, const View& view, const char* name) {
+  /// Holds a picture's claims against one of many samples of a lattice, in linear light and as the picture is shown.
+  static void expect_honest(Renderer& renderer, View view, const char* name, const DisplayTransform& display) {
     View fine = view;
     fine.error_target.reset();
     fine.samples_per_pixel = 1024;
     const Image truth = renderer.render(fine).image;
+    expect_honest(renderer, view, name, truth);
+    view.error_target->display = display;
+    expect_honest(renderer, view, name, truth);
+  }
+
+ private:
+  static vec3 shown(const vec3& color, const DisplayTransform& display) {
+    const vec3 mapped = apply(display, color);
+    return {encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z)};
+  }
+
+  static void expect_honest(Renderer& renderer, const View& view, const char* name, const Image& truth) {
     const RenderResult result = renderer.render(view);
+    const std::optional<DisplayTransform>& display = view.error_target->display;
     size_t refined = 0;
     size_t honest = 0;
     for (size_t i = 0; i < truth.pixels.size(); ++i) {
       if (result.aovs.samples[i] == view.error_target->min_samples) continue;
       ++refined;
-      const vec3 error = glm::abs(result.image.pixels[i] - truth.pixels[i]);
-      honest += glm::all(glm::lessThanEqual(error, result.aovs.error[i])) ? 1 : 0;
+      const vec3& written = result.image.pixels[i];
+      vec3 error = glm::abs(written - truth.pixels[i]);
+      vec3 claim = result.aovs.error[i];
+      if (display) {
+        error = glm::abs(shown(written, *display) - shown(truth.pixels[i], *display));
+        claim = shown_claim(claim, written, *display);
+      }
+      honest += glm::all(glm::lessThanEqual(error, claim)) ? 1 : 0;
     }
     const double share = static_cast<double>(honest) / static_cast<double>(refined);
-    std::printf("%-16s %6.2f spp, %5zu pixels refined, %.2f %% honest\n", name,
+    std::printf("%-16s %-7s %6.2f spp, %5zu pixels refined, %.2f %% honest\n", name, display ? "display" : "linear",
                 static_cast<double>(result.error->samples) / static_cast<double>(truth.pixels.size()), refined,
                 100.0 * share);
     EXPECT_GE(share, 0.95) << name;
@@ -92,17 +114,17 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
     Scene scene = load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / (std::string(name) + ".gltf"));
     light_scene(scene, LightChoice::kAuto);
     Renderer renderer = make_renderer(device(), scene, options);
-    expect_honest(renderer, with_target(view_of(scene, uvec2(48, 36)), 1.0F / 64.0F), name);
+    expect_honest(renderer, with_target(view_of(scene, uvec2(48, 36)), 1.0F / 64.0F), name, display_of(scene));
   }
   Renderer wires = make_renderer(device(), make_wires(), options);
   View view = make_board_view(uvec2(48));
-  expect_honest(wires, with_target(view, 1.0F / 64.0F), "wires");
+  expect_honest(wires, with_target(view, 1.0F / 64.0F), "wires", {.tone_mapping = ToneMapping::kAces});
   Renderer floor = make_renderer(device(), make_floor(), options);
   view.camera = Camera{};
   view.camera.eye = vec3(0.1F, -1.3F, 0.3F);
   view.camera.look = glm::normalize(vec3(0.05F, 1.0F, -0.25F));
   view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 0, 1)), view.camera.look));
-  expect_honest(floor, with_target(view, 1.0F / 64.0F), "a floor's texture");
+  expect_honest(floor, with_target(view, 1.0F / 64.0F), "a floor's texture", {.tone_mapping = ToneMapping::kAgx});
 }
 
 // Of pixels that are estimated to be off at all; what is flat as far as is known, is.
@@ -237,6 +259,7 @@ TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheErrorThatItTells) {
   const world::Scene scene = make_scene_of_everything(20);
   Renderer renderer = make_renderer(device(), scene);
   View view = with_target(make_view(uvec2(60, 40)), 1.0F / 32.0F);
+  view.error_target->display.emplace(DisplayTransform{.tone_mapping = ToneMapping::kNeutral});
   for (const double seconds : {1e-3, 1000.0}) {
     const RenderResult result = renderer.render_within(view, seconds);
     View again = view;
@@ -278,6 +301,9 @@ TEST_F(ErrorTargetTest, WhatIsWrongIsRefused) {
   EXPECT_THROW(renderer.render(with_target(view, 0.1F, 12)), UsageError);
   EXPECT_THROW(renderer.render(with_target(view, 0.1F, 16, 8)), UsageError);
   EXPECT_THROW(renderer.render(with_target(view, 0.1F, 4, 65536)), UsageError);
+  View shown = with_target(view, 0.1F);
+  shown.error_target->display.emplace(DisplayTransform{.exposure_ev = std::nanf("")});
+  EXPECT_THROW(renderer.render(shown), UsageError);
   View normals = with_target(view, 0.1F);
   normals.mode.debug_view = DebugView::kNormals;
   EXPECT_THROW(renderer.render(normals), UsageError);

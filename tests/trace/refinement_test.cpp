@@ -6,8 +6,11 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <vector>
+
+#include "promin/image.h"
 
 namespace promin {
 namespace {
@@ -204,7 +207,7 @@ TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
   const Refined refined = refine(view, discs_and_floor);
   size_t unmet = 0;
   for (size_t i = 0; i < refined.means.size(); ++i) {
-    const float claim = relative_claim(refined.claims[i], refined.means[i], 1.0F);
+    const float claim = claimed_error(refined.claims[i], refined.means[i], ErrorTarget{});
     EXPECT_EQ(refined.are_near_enough[i], claim <= 1.0F / 64.0F);
     if (claim > 1.0F / 64.0F) {
       EXPECT_EQ(refined.counts[i], 256U);
@@ -224,6 +227,51 @@ TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
   const Refined refined = refine(view, dimmed);
   EXPECT_EQ(refined.counts, expected.counts);
   for (size_t i = 0; i < refined.means.size(); ++i) EXPECT_EQ(64.0F * refined.means[i], expected.means[i]);
+}
+
+// Codes of sRGB: steep in the dark, flat in bright light, and without end nowhere.
+TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
+  const DisplayTransform plain;
+  const vec3 shown = shown_claim(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), plain);
+  EXPECT_FLOAT_EQ(shown.x, encode_srgb(0.01F));
+  EXPECT_FLOAT_EQ(shown.y, encode_srgb(0.8F) - encode_srgb(0.79F));
+  EXPECT_EQ(shown.z, 0.0F);
+  // A stop brighter all is twice as bright.
+  const vec3 brighter = shown_claim(vec3(0.01F), vec3(0.2F), {.exposure_ev = 1.0F});
+  EXPECT_NEAR(brighter.x, shown_claim(vec3(0.02F), vec3(0.4F), plain).x, 1e-6F);
+  // What is beyond white without a tone mapping is not with one, and a channel that is sure is not where they are
+  // mixed.
+  const DisplayTransform mapped{.tone_mapping = ToneMapping::kAgx};
+  EXPECT_EQ(shown_claim(vec3(0.0F, 0.0F, 2.0F), vec3(0.5F, 0.5F, 3.0F), plain), vec3(0.0F));
+  const vec3 mixed = shown_claim(vec3(0.0F, 0.0F, 2.0F), vec3(0.5F, 0.5F, 3.0F), mapped);
+  EXPECT_GT(mixed.x, 0.01F);
+  EXPECT_GT(mixed.z, 0.01F);
+  EXPECT_EQ(shown_claim(vec3(0.0F), vec3(0.5F), mapped), vec3(0.0F));
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(shown_claim(vec3(none, 0.0F, 0.0F), vec3(none), plain).x));
+  ErrorTarget target;
+  EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 4.0F), target), 0.5F);
+  target.display = plain;
+  EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), target), shown.x);
+}
+
+TEST(RefinementTest, ErrorsAsTheyAreShownAskForMoreInTheDarkAndForLessInTheLight) {
+  const auto edge_of = [](float dark, float bright) {
+    return [=](const dvec2& p) { return vec3(p.x + 0.31 * p.y < 50.0 ? bright : dark); };
+  };
+  View linear = make_view(1.0F / 64.0F);
+  View shown = linear;
+  shown.error_target->display.emplace();
+  EXPECT_GT(refine(shown, edge_of(0.0F, 0.02F)).samples, refine(linear, edge_of(0.0F, 0.02F)).samples);
+  EXPECT_LT(refine(shown, edge_of(0.7F, 1.0F)).samples, refine(linear, edge_of(0.7F, 1.0F)).samples);
+  // Both are white, however far apart.
+  EXPECT_EQ(refine(shown, edge_of(3.0F, 9.0F)).samples, 8U * 96 * 64);
+  const Refined refined = refine(shown, discs_and_floor);
+  for (size_t i = 0; i < refined.means.size(); ++i) {
+    const float claim = claimed_error(refined.claims[i], refined.means[i], *shown.error_target);
+    ASSERT_EQ(refined.are_near_enough[i], claim <= 1.0F / 64.0F);
+    ASSERT_TRUE(refined.are_near_enough[i] || refined.counts[i] == 256U);
+  }
 }
 
 TEST(RefinementTest, WhatIsFlatTakesTheFirstSamplesAlone) {

@@ -64,6 +64,10 @@ TEST(DescribeCommand, NamesTheErrorThatAPictureHas) {
   const std::string command = describe_command({.file = "s"}, view);
   EXPECT_THAT(command, testing::HasSubstr(" --target-error 0.0883883461 --min-spp 4 --max-spp 64 --max-depth"));
   EXPECT_THAT(command, testing::Not(testing::HasSubstr("--spp 1")));
+  EXPECT_THAT(command, testing::Not(testing::HasSubstr("--error-in")));
+  view.error_target->display.emplace();
+  EXPECT_THAT(describe_command({.file = "s"}, view),
+              testing::HasSubstr(" --max-spp 64 --error-in display --max-depth"));
 }
 
 TEST(DescribeCommand, NamesTheSurroundingsAndTheVariant) {

@@ -15,10 +15,12 @@
 #include "core/stopwatch.h"
 #include "measure/samples.h"
 #include "promin/device.h"
+#include "promin/image.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
 #include "run_program.h"
+#include "trace/pixel_estimate.h"
 
 namespace promin::measure {
 namespace {
@@ -29,6 +31,8 @@ struct HonestyOptions {
   uint32_t truth_samples = 1024;
   uint32_t most_samples = 128;
   uint32_t runs = 3;
+  /// Whether errors and claims are of what is shown.
+  bool is_shown = false;
 };
 
 /// Windows along each side of the picture, and their share of it.
@@ -69,6 +73,7 @@ class HonestyBench {
     view_.camera =
         scene.cameras.empty() ? frame_scene(scene, aspect_ratio, Framing::kThreeQuarter) : scene.cameras.front();
     view_.size = options.size;
+    if (options.is_shown) display_ = display_of(scene);
     view_.max_depth = default_max_depth(scene);
     renderer_.emplace(device, scene, RendererOptions{.with_aovs = true});
     plain_renderer_.emplace(device, scene);
@@ -84,7 +89,7 @@ class HonestyBench {
     const size_t uniform_count = views.size();
     for (const float error : {1.0F / 16.0F, 1.0F / 64.0F, 1.0F / 128.0F}) {
       views.push_back(view_);
-      views.back().error_target = ErrorTarget{.error = error};
+      views.back().error_target = ErrorTarget{.error = error, .display = display_};
     }
     std::vector<RenderResult> results(views.size());
     std::vector<std::function<double()>> contestants;
@@ -126,13 +131,21 @@ class HonestyBench {
     }
   }
 
+  /// A color as errors measure it.
+  vec3 shown(const vec3& color) const {
+    if (!display_) return color;
+    const vec3 mapped = apply(*display_, color);
+    return {encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z)};
+  }
+
   Errors errors_of(const Image& image) const {
     double sum2 = 0.0;
     std::vector<double> worst;
     for (size_t w = 0; w < windows_.size(); ++w) {
       for (uint32_t y = 0; y < truth_[w].size.y; ++y) {
         for (uint32_t x = 0; x < truth_[w].size.x; ++x) {
-          const dvec3 error = dvec3(image.at(windows_[w].lo.x + x, windows_[w].lo.y + y)) - dvec3(truth_[w].at(x, y));
+          const vec3& written = image.at(windows_[w].lo.x + x, windows_[w].lo.y + y);
+          const dvec3 error = dvec3(shown(written)) - dvec3(shown(truth_[w].at(x, y)));
           sum2 += glm::dot(error, error);
           worst.push_back(std::max({std::abs(error.x), std::abs(error.y), std::abs(error.z)}));
         }
@@ -153,8 +166,10 @@ class HonestyBench {
       for (size_t i = 0; i < truth_[w].pixels.size(); ++i) {
         if (result.aovs.samples[i] == view.error_target->min_samples) continue;
         ++refined;
-        const vec3 error = glm::abs(result.image.pixels[i] - truth_[w].pixels[i]);
-        honest += glm::all(glm::lessThanEqual(error, result.aovs.error[i])) ? 1 : 0;
+        const vec3& written = result.image.pixels[i];
+        const vec3 claim = display_ ? shown_claim(result.aovs.error[i], written, *display_) : result.aovs.error[i];
+        const vec3 error = glm::abs(shown(written) - shown(truth_[w].pixels[i]));
+        honest += glm::all(glm::lessThanEqual(error, claim)) ? 1 : 0;
       }
     }
     return static_cast<double>(honest) / static_cast<double>(std::max<size_t>(refined, 1));
@@ -186,6 +201,7 @@ class HonestyBench {
   std::vector<PixelWindow> windows_;
   std::string name_;
   View view_;
+  std::optional<DisplayTransform> display_;
   std::optional<Renderer> renderer_;
   std::optional<Renderer> plain_renderer_;
   std::vector<Image> truth_;
@@ -215,6 +231,8 @@ app::Command add_honesty_command(CLI::App& program) {
             [=](const OptionValues& words) { options->most_samples = words.whole(0, 2, 1024); });
   table.add("--runs", "N", "Turns whose median counts, 1 to 99 [3]",
             [=](const OptionValues& words) { options->runs = words.whole(0, 1, 99); });
+  table.add_flag("--shown", "Errors and claims of what is shown (--error-in display), and not of linear light",
+                 options->is_shown);
   return {&program, [options] { measure_honesty(*options); }};
 }
 

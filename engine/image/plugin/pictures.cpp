@@ -104,8 +104,8 @@ struct Part {
   OIIO::ImageSpec spec;
   /// Places of its channels among the source's.
   std::vector<size_t> channels;
-  /// Rows that wait, as all parts but the first do: a file has its parts one after the other.
-  std::vector<unsigned char> waiting;
+  /// Where its rows wait in the scratch, as those of all parts but the first do.
+  uint64_t scratch_place = 0;
 };
 
 /// The part that a channel belongs to.
@@ -141,7 +141,7 @@ std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
     auto part = std::find_if(parts.begin(), parts.end(),
                              [&](const Part& p) { return p.spec.get_string_attribute("oiio:subimagename") == name; });
     if (part == parts.end()) {
-      parts.push_back({make_exr_spec(source), {}, {}});
+      parts.push_back({make_exr_spec(source), {}});
       part = parts.end() - 1;
       if (!name.empty()) part->spec.attribute("oiio:subimagename", name);
     }
@@ -160,11 +160,12 @@ std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
 int count_exr_threads(const std::vector<Part>& parts) {
   constexpr size_t kMostBytes = size_t{128} << 20;
   constexpr size_t kCopies = 2 * 3;
-  size_t block_bytes = 1;
+  // Of all parts: none gives its blocks back before the file is whole.
+  size_t block_bytes = 0;
   for (const Part& part : parts) {
     const OIIO::string_view compression = part.spec.get_string_attribute("compression");
     const size_t rows = compression == "zip" ? 16 : compression == "piz" ? 32 : 1;
-    block_bytes = std::max<size_t>(block_bytes, rows * part.spec.scanline_bytes(true));
+    block_bytes += rows * part.spec.scanline_bytes(true);
   }
   const size_t threads = kMostBytes / (kCopies * block_bytes);
   if (threads >= std::thread::hardware_concurrency()) return 0;
@@ -184,10 +185,12 @@ std::vector<Part> make_png_parts(const ProminPicturesSource& source) {
 }  // namespace
 
 struct ProminPicturesWriter {
-  ProminPicturesWriter(const ProminPicturesSource& source, const ProminPicturesSink& sink)
+  ProminPicturesWriter(const ProminPicturesSource& source, const ProminPicturesSink& sink,
+                       const ProminPicturesScratch& room)
       : is_exr(std::string_view(source.format) == "openexr"),
         file_name(source.file_name),
         proxy(source.file_name, sink),
+        scratch(room),
         parts(is_exr ? make_exr_parts(source) : make_png_parts(source)) {
     for (const ProminPicturesChannel& channel : std::span(source.channels, source.channel_count)) {
       samples.push_back(channel.sample);
@@ -201,6 +204,12 @@ struct ProminPicturesWriter {
       check(output->open(file_name, parts.front().spec));
       return;
     }
+    uint64_t waiting_bytes = 0;
+    for (Part& part : std::span(parts).subspan(1)) {
+      part.scratch_place = waiting_bytes;
+      waiting_bytes += part.spec.image_bytes(true);
+    }
+    check_scratch(scratch.reserve(scratch.context, waiting_bytes));
     // OpenImageIO 2.4 writes files of several parts by their names, whatever proxy there is.
     std::vector<OIIO::ImageSpec> specs;
     for (const Part& part : parts) specs.push_back(part.spec);
@@ -210,6 +219,10 @@ struct ProminPicturesWriter {
   void check(bool is_done) const {
     if (proxy.is_full()) throw std::runtime_error("the file cannot be written");
     if (!is_done) throw std::runtime_error(first_line(output ? output->geterror() : OIIO::geterror()));
+  }
+
+  static void check_scratch(int is_done) {
+    if (is_done == 0) throw std::runtime_error("what waits to be written cannot be kept");
   }
 
   /// Picks the part's channels of some pixels, as the file keeps them.
@@ -258,22 +271,38 @@ struct ProminPicturesWriter {
       next_row += row_count;
       return;
     }
-    for (Part& part : parts) {
+    for (const Part& part : parts) {
       const std::vector<unsigned char> native = pick(part, pixel_count, pixels);
       if (&part == &parts.front()) {
         write(part, next_row, row_count, native.data());
       } else {
-        part.waiting.insert(part.waiting.end(), native.begin(), native.end());
+        const uint64_t place = part.scratch_place + next_row * part.spec.scanline_bytes(true);
+        check_scratch(scratch.write(scratch.context, place, native.data(), native.size()));
       }
     }
     next_row += row_count;
   }
 
+  /// Writes a part whose rows wait, some at a time.
+  void write_waiting(const Part& part) const {
+    constexpr size_t kMostBytes = size_t{16} << 20;
+    // A multiple of those by which EXRs are compressed.
+    constexpr size_t kLeastRows = 32;
+    const size_t row_bytes = part.spec.scanline_bytes(true);
+    const auto rows = static_cast<uint32_t>(std::max(kMostBytes / row_bytes / kLeastRows, size_t{1}) * kLeastRows);
+    std::vector<unsigned char> native;
+    for (uint32_t row = 0; row < next_row; row += rows) {
+      const uint32_t count = std::min(rows, next_row - row);
+      native.resize(count * row_bytes);
+      check_scratch(scratch.read(scratch.context, part.scratch_place + row * row_bytes, native.data(), native.size()));
+      write(part, row, count, native.data());
+    }
+  }
+
   void finish() {
-    for (Part& part : std::span(parts).subspan(1)) {
+    for (const Part& part : std::span(parts).subspan(1)) {
       check(output->open(file_name, part.spec, OIIO::ImageOutput::AppendSubimage));
-      write(part, 0, next_row, part.waiting.data());
-      part.waiting = {};
+      write_waiting(part);
     }
     check(output->close());
     // Close may have written more.
@@ -283,6 +312,7 @@ struct ProminPicturesWriter {
   bool is_exr;
   std::string file_name;
   SinkProxy proxy;
+  ProminPicturesScratch scratch;
   std::vector<Part> parts;
   std::vector<uint32_t> samples;
   uint32_t next_row = 0;
@@ -336,9 +366,10 @@ uint32_t promin_pictures_interface() {
 }
 
 int promin_pictures_begin(const ProminPicturesSource* source, const ProminPicturesSink* sink,
-                          ProminPicturesWriter** writer, ProminPicturesMessage* message) {
+                          const ProminPicturesScratch* scratch, ProminPicturesWriter** writer,
+                          ProminPicturesMessage* message) {
   *writer = nullptr;
-  return guard(message, [&] { *writer = std::make_unique<ProminPicturesWriter>(*source, *sink).release(); });
+  return guard(message, [&] { *writer = std::make_unique<ProminPicturesWriter>(*source, *sink, *scratch).release(); });
 }
 
 int promin_pictures_write_rows(ProminPicturesWriter* writer, uint32_t row_count, const void* pixels,

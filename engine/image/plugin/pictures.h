@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 4
+#define PROMIN_PICTURES_INTERFACE 5
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -77,6 +77,16 @@ struct ProminPicturesSink {
   int (*write)(void* context, uint64_t place, const void* bytes, size_t byte_count);
 };
 
+/// Room of the caller's for what a writer cannot hand on yet and should not keep in memory: that of an EXR of several
+/// parts, which a file has one after the other. `reserve` comes first, once, with the size of it all; what was written
+/// is read. Each returns 0 where it fails; the picture fails then. Must not throw.
+struct ProminPicturesScratch {
+  void* context;
+  int (*reserve)(void* context, uint64_t byte_count);
+  int (*write)(void* context, uint64_t place, const void* bytes, size_t byte_count);
+  int (*read)(void* context, uint64_t place, void* bytes, size_t byte_count);
+};
+
 /// A picture file that is being written.
 struct ProminPicturesWriter;
 
@@ -97,8 +107,10 @@ struct ProminPicturesInfo {
 uint32_t promin_pictures_interface(void);
 
 /// Begins a file. Where it succeeds, `writer` is to be ended by the caller. Equal sources and pixels give equal bytes.
+/// The sink and the scratch are copied; what they lead to stays until the writer is ended.
 int promin_pictures_begin(const struct ProminPicturesSource* source, const struct ProminPicturesSink* sink,
-                          struct ProminPicturesWriter** writer, struct ProminPicturesMessage* message);
+                          const struct ProminPicturesScratch* scratch, struct ProminPicturesWriter** writer,
+                          struct ProminPicturesMessage* message);
 
 /// Encodes the next rows, from the top: pixel after pixel, the channels in their order without padding, those of
 /// PROMIN_PICTURES_UINT8 a byte each and all others four.
