@@ -67,10 +67,9 @@ std::string describe_samples(const RunStats& stats) {
 
 /// The options that give a picture of a time limit again.
 std::string describe_target(const RunStats& stats) {
-  const ErrorTarget& target = *stats.view->error_target;
-  return fmt::format("the picture{} of --target-error {:.9g} --min-spp {} --max-spp {}{}",
-                     stats.frames.empty() ? "" : " of the last frame", stats.errors.back().target, target.min_samples,
-                     target.max_samples, target.display ? " --error-in display" : "");
+  ErrorTarget target = *stats.view->error_target;
+  target.error = stats.errors.back().target;
+  return fmt::format("the picture{} of {}", stats.frames.empty() ? "" : " of the last frame", describe_options(target));
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
@@ -139,8 +138,10 @@ class FrameRendering {
     check_validation(device_, stats_);
     number_as_in_file(scene_, result.aovs);
     stats_.rays += result.rays;
-    if (result.error && !error_) error_ = PictureError{.target = result.error->target};
-    if (result.error) *error_ += *result.error;
+    if (result.error) {
+      if (!error_) error_.emplace(PictureError{.target = result.error->target});
+      *error_ += *result.error;
+    }
     for (size_t i = 0; i < trace_ms_.size(); ++i) trace_ms_[i] += traced.trace_ms[i];
     expose_by_first(options_, result, stats_);
     return {std::move(result.image), make_channels(scene_, result.aovs, options_.aovs)};

@@ -273,6 +273,11 @@ void fit_to_display(ErrorTarget& target, const DisplayTransform& display) {
   if (target.display) target.display = display;
 }
 
+std::string describe_options(const ErrorTarget& target) {
+  return fmt::format("--target-error {:.9g} --min-spp {} --max-spp {}{}", target.error, target.min_samples,
+                     target.max_samples, target.display ? " --error-in display" : "");
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);

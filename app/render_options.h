@@ -114,6 +114,9 @@ struct ErrorOptions {
 /// shown, by what.
 void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
 
+/// The options that ask for such a target; nine digits bring the error back to the bit.
+std::string describe_options(const ErrorTarget& target);
+
 struct RenderOptions {
   TracingOptions tracing;
   /// Where the user names none, those of name_pictures.

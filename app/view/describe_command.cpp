@@ -20,9 +20,7 @@ std::string quote(const std::string& word) {
 
 std::string samples_of(const View& view) {
   if (!view.error_target) return fmt::format(" --spp {}", view.samples_per_pixel);
-  const ErrorTarget& target = *view.error_target;
-  return fmt::format(" --target-error {:.9g} --min-spp {} --max-spp {}{}", target.error, target.min_samples,
-                     target.max_samples, target.display ? " --error-in display" : "");
+  return " " + describe_options(*view.error_target);
 }
 
 std::string options_of(const EnvironmentOptions& environment) {

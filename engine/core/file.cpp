@@ -233,6 +233,17 @@ void clear_leftovers(const fs::path& folder) {
   }
 }
 
+int write_at(int descriptor, uint64_t place, std::span<const std::byte> bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t written = pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    place += static_cast<uint64_t>(written);
+    bytes = bytes.subspan(static_cast<size_t>(written));
+  }
+  return 0;
+}
+
 void write_file(const fs::path& file, std::initializer_list<std::span<const std::byte>> parts) {
   AtomicFile output(file);
   std::ofstream stream(output.temporary(), std::ios::binary);

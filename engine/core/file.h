@@ -77,6 +77,10 @@ class AtomicFile {
 /// to do so. What cannot be removed stays.
 void clear_leftovers(const std::filesystem::path& folder);
 
+/// Writes all of the bytes at a place of an open file. Returns 0, or the number of the error (errno) that kept it from
+/// it.
+int write_at(int descriptor, uint64_t place, std::span<const std::byte> bytes) noexcept;
+
 /// Writes a whole file atomically, part after part. Throws RunError.
 void write_file(const std::filesystem::path& file, std::initializer_list<std::span<const std::byte>> parts);
 void write_text_file(const std::filesystem::path& file, std::string_view text);

@@ -43,13 +43,8 @@ void ScratchFile::fail(int error) const {
 }
 
 void ScratchFile::write(uint64_t place, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) fail(written < 0 ? errno : ENOSPC);
-    place += static_cast<uint64_t>(written);
-    bytes = bytes.subspan(static_cast<size_t>(written));
-  }
+  const int error = write_at(descriptor_, place, bytes);
+  if (error != 0) fail(error);
 }
 
 void ScratchFile::read(uint64_t place, std::span<std::byte> bytes) const {

@@ -239,19 +239,9 @@ class PictureWriter::Impl {
     /// As ProminPicturesSink::write; the context is one of these.
     static int write(void* context, uint64_t place, const void* bytes, size_t byte_count) {
       auto& file = *static_cast<OpenFile*>(context);
-      const auto* from = static_cast<const char*>(bytes);
-      while (byte_count > 0) {
-        const ssize_t written = pwrite(file.descriptor, from, byte_count, static_cast<off_t>(place));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) {
-          file.error = written < 0 ? errno : ENOSPC;
-          return 0;
-        }
-        from += written;
-        place += static_cast<uint64_t>(written);
-        byte_count -= static_cast<size_t>(written);
-      }
-      return 1;
+      const int error = write_at(file.descriptor, place, {static_cast<const std::byte*>(bytes), byte_count});
+      if (error != 0) file.error = error;
+      return error == 0 ? 1 : 0;
     }
 
     bool close() {

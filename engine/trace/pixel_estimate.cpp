@@ -98,18 +98,19 @@ float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& targ
   return std::max({shown.x, shown.y, shown.z});
 }
 
+vec3 shown_color(const vec3& color, const DisplayTransform& display) {
+  const vec3 mapped = apply(display, color);
+  return {encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z)};
+}
+
 vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display) {
   if (claim == vec3(0.0F)) return claim;
-  const auto shown = [&](const vec3& color) {
-    const vec3 mapped = apply(display, color);
-    return vec3(encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z));
-  };
-  const vec3 middle = shown(mean);
+  const vec3 middle = shown_color(mean, display);
   vec3 farthest(0.0F);
   for (int corner = 0; corner < 8; ++corner) {
     const vec3 side((corner & 1) == 0 ? -1.0F : 1.0F, (corner & 2) == 0 ? -1.0F : 1.0F,
                     (corner & 4) == 0 ? -1.0F : 1.0F);
-    farthest = glm::max(farthest, glm::abs(shown(mean + side * claim) - middle));
+    farthest = glm::max(farthest, glm::abs(shown_color(mean + side * claim, display) - middle));
   }
   for (int channel = 0; channel < 3; ++channel) {
     if (!std::isfinite(claim[channel])) farthest[channel] = claim[channel];

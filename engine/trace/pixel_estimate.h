@@ -64,6 +64,9 @@ vec3 estimate_error(const ColorRange& around, uint32_t samples);
 /// more, or as it is shown.
 float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target);
 
+/// A color as it is shown: exposed, tone mapped and encoded as sRGB, 0...1.
+vec3 shown_color(const vec3& color, const DisplayTransform& display);
+
 /// By how much each channel may be off as it is shown, 0...1, where the light of all is within the claim: what is
 /// farthest from the mean lies in a corner of it, as each channel that is shown rises or falls with each of light, and
 /// tone mappings mix them. What is not finite stays so.

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <thread>
@@ -14,6 +12,7 @@
 #include "cli_fixture.h"
 #include "device_scene/pack_scene.h"
 #include "support/ply_builder.h"
+#include "support/sheet.h"
 
 namespace promin {
 
@@ -24,23 +23,17 @@ class JobFixture : public CliTest {
 
   /// A mesh whose tree is kept for all who work on a job.
   void write_sheet(const std::string& file) const {
-    const auto side = static_cast<uint32_t>(std::sqrt(kLeastShared / 2)) + 1;
+    const Mesh sheet = make_sheet(kLeastShared + kLeastShared / 10);
     PlyBuilder ply(std::endian::little);
-    ply.header("element vertex " + std::to_string((side + 1) * (side + 1)) +
+    ply.header("element vertex " + std::to_string(sheet.positions.size()) +
                "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-               std::to_string(2 * side * side) + "\nproperty list uchar int vertex_indices\n");
-    for (uint32_t i = 0; i < (side + 1) * (side + 1); ++i) {
-      const double x = i % (side + 1);
-      const double y = i / (side + 1);
-      for (const double value : {x, y, 3.0 * std::sin(0.1 * x) * std::cos(0.07 * y)}) ply.add("float", value);
+               std::to_string(sheet.triangles.size()) + "\nproperty list uchar int vertex_indices\n");
+    for (const vec3& position : sheet.positions) {
+      for (int i = 0; i < 3; ++i) ply.add("float", position[i]);
     }
-    for (uint32_t i = 0; i < side * side; ++i) {
-      const uint32_t corner = i / side * (side + 1) + i % side;
-      for (const auto& corners : {std::array{corner, corner + 1, corner + side + 1},
-                                  std::array{corner + 1, corner + side + 2, corner + side + 1}}) {
-        ply.add("uchar", 3);
-        for (const uint32_t vertex : corners) ply.add("int", vertex);
-      }
+    for (const uvec3& triangle : sheet.triangles) {
+      ply.add("uchar", 3);
+      for (int i = 0; i < 3; ++i) ply.add("int", triangle[i]);
     }
     write(file, ply.bytes());
   }

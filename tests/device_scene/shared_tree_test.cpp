@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <future>
@@ -13,6 +12,7 @@
 #include "core/file.h"
 #include "device_scene/pack_scene.h"
 #include "promin/error.h"
+#include "support/sheet.h"
 #include "support/temp_folder.h"
 
 namespace promin {
@@ -22,23 +22,11 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A sheet with bumps, of about so many triangles.
-world::Scene make_sheet(size_t triangle_count) {
-  const auto side = static_cast<uint32_t>(std::sqrt(triangle_count / 2));
-  Mesh mesh;
-  for (uint32_t i = 0; i < (side + 1) * (side + 1); ++i) {
-    const vec2 place(i % (side + 1), i / (side + 1));
-    mesh.positions.emplace_back(place, 3.0F * std::sin(0.1F * place.x) * std::cos(0.07F * place.y));
-  }
-  for (uint32_t i = 0; i < side * side; ++i) {
-    const uint32_t corner = i / side * (side + 1) + i % side;
-    mesh.triangles.emplace_back(corner, corner + 1, corner + side + 1);
-    mesh.triangles.emplace_back(corner + 1, corner + side + 2, corner + side + 1);
-  }
+world::Scene make_scene(size_t triangle_count) {
   world::Scene scene;
   scene.file = "sheet";
   scene.materials.resize(1);
-  scene.objects = {{"", mesh, 0}};
+  scene.objects = {{"", make_sheet(triangle_count), 0}};
   return scene;
 }
 
@@ -66,7 +54,7 @@ class SharedTreeTest : public TempFolder {
 
   /// Its folder is not there yet.
   const fs::path file_ = folder_ / "trees" / "median.pbvh";
-  const world::Scene scene_ = make_sheet(kLeastShared + kLeastShared / 10);
+  const world::Scene scene_ = make_scene(kLeastShared + kLeastShared / 10);
   const PackedScene own_ = pack_scene(scene_, "median");
 };
 
@@ -132,7 +120,7 @@ TEST_F(SharedTreeTest, WhatADeadWriterLeftIsRemoved) {
 }
 
 TEST_F(SharedTreeTest, SmallTreesHaveNoFile) {
-  pack(make_sheet(kLeastShared - kLeastShared / 10));
+  pack(make_scene(kLeastShared - kLeastShared / 10));
   EXPECT_FALSE(fs::exists(file_.parent_path()));
 }
 

@@ -12,7 +12,6 @@
 #include "gpu/test_scenes.h"
 #include "promin/display.h"
 #include "promin/error.h"
-#include "promin/image.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "render/renderer_impl.h"
@@ -76,11 +75,6 @@ class ErrorTargetTest : public DeviceTest {
   }
 
  private:
-  static vec3 shown(const vec3& color, const DisplayTransform& display) {
-    const vec3 mapped = apply(display, color);
-    return {encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z)};
-  }
-
   static void expect_honest(Renderer& renderer, const View& view, const char* name, const Image& truth) {
     const RenderResult result = renderer.render(view);
     const std::optional<DisplayTransform>& display = view.error_target->display;
@@ -93,7 +87,7 @@ class ErrorTargetTest : public DeviceTest {
       vec3 error = glm::abs(written - truth.pixels[i]);
       vec3 claim = result.aovs.error[i];
       if (display) {
-        error = glm::abs(shown(written, *display) - shown(truth.pixels[i], *display));
+        error = glm::abs(shown_color(written, *display) - shown_color(truth.pixels[i], *display));
         claim = shown_claim(claim, written, *display);
       }
       honest += glm::all(glm::lessThanEqual(error, claim)) ? 1 : 0;

@@ -15,7 +15,6 @@
 #include "core/stopwatch.h"
 #include "measure/samples.h"
 #include "promin/device.h"
-#include "promin/image.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
@@ -132,11 +131,7 @@ class HonestyBench {
   }
 
   /// A color as errors measure it.
-  vec3 shown(const vec3& color) const {
-    if (!display_) return color;
-    const vec3 mapped = apply(*display_, color);
-    return {encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z)};
-  }
+  vec3 shown(const vec3& color) const { return display_ ? shown_color(color, *display_) : color; }
 
   Errors errors_of(const Image& image) const {
     double sum2 = 0.0;
