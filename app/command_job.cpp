@@ -35,24 +35,49 @@ constexpr size_t kMostNamed = 5;
 /// Of the file that keeps arguments.
 constexpr int kFormat = 1;
 
-/// What of the options does not reach a bit of a piece; the files that others name are in the manifest by their hashes.
-constexpr std::string_view kNotInManifest[] = {
-    "SCENE",   "RAYS.npy", "--output", "--offsets", "--job", "--piece",    "--pieces",  "--tiles",
-    "--stats", "--device", "--quiet",  "--builder", "--bvh", "--features", "--verbose", "--repeat"};
-constexpr std::string_view kNamesFile[] = {"SCENE", "RAYS.npy", "--path", "--environment", "--bvh"};
-/// What each who works on a job chooses for themselves.
-constexpr std::string_view kNotKept[] = {"--output", "--offsets", "--job",   "--piece",
-                                         "--stats",  "--device",  "--quiet", "--verbose"};
-/// What a job's arguments have no place for, and who chooses it.
-constexpr std::pair<std::string_view, const char*> kNotArguments[] = {
-    {"--output", "what the files are called is said when pieces are merged"},
-    {"--offsets", "what the files are called is said when pieces are merged"},
-    {"--job", "the folder is said beside them"},
-    {"--piece", "who makes the pieces chooses them"},
-    {"--device", "who makes the pieces chooses it"}};
+/// How a job takes an option. What has no row is an ordinary option: it decides about bits, is no file, and is kept.
+struct OptionOfJobs {
+  std::string_view name;
+  /// Whether the manifest has its words. The files that SCENE and others name are there by their hashes.
+  bool is_in_manifest = true;
+  /// Kept by its absolute path, as the job may be planned again from any folder.
+  bool names_file = false;
+  /// Not where each who works on a job chooses for themselves.
+  bool is_kept = true;
+  /// Who says it instead, where a job's arguments have no place for it.
+  const char* said_elsewhere = nullptr;
+};
+constexpr const char* kMergeSays = "what the files are called is said when pieces are merged";
+constexpr OptionOfJobs kOptionsOfJobs[] = {
+    {.name = "SCENE", .is_in_manifest = false, .names_file = true},
+    {.name = "RAYS.npy", .is_in_manifest = false, .names_file = true},
+    {.name = "--bvh", .is_in_manifest = false, .names_file = true},
+    {.name = "--environment", .names_file = true},
+    {.name = "--path", .names_file = true},
+    {.name = "--output", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
+    {.name = "--offsets", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
+    {.name = "--job", .is_in_manifest = false, .is_kept = false, .said_elsewhere = "the folder is said beside them"},
+    {.name = "--piece",
+     .is_in_manifest = false,
+     .is_kept = false,
+     .said_elsewhere = "who makes the pieces chooses them"},
+    {.name = "--device",
+     .is_in_manifest = false,
+     .is_kept = false,
+     .said_elsewhere = "who makes the pieces chooses it"},
+    {.name = "--stats", .is_in_manifest = false, .is_kept = false},
+    {.name = "--quiet", .is_in_manifest = false, .is_kept = false},
+    {.name = "--verbose", .is_in_manifest = false, .is_kept = false},
+    {.name = "--builder", .is_in_manifest = false},
+    {.name = "--features", .is_in_manifest = false},
+    {.name = "--pieces", .is_in_manifest = false},
+    {.name = "--repeat", .is_in_manifest = false},
+    {.name = "--tiles", .is_in_manifest = false}};
 
-bool is_among(std::string_view name, std::span<const std::string_view> names) {
-  return std::ranges::find(names, name) != names.end();
+const OptionOfJobs& option_of_jobs(std::string_view name) {
+  static constexpr OptionOfJobs kOrdinary;
+  const auto* const row = std::ranges::find(kOptionsOfJobs, name, &OptionOfJobs::name);
+  return row != std::end(kOptionsOfJobs) ? *row : kOrdinary;
 }
 
 fs::path arguments_file(const fs::path& folder) {
@@ -70,11 +95,10 @@ void parse(CLI::App& program, const CLI::App& command, const std::vector<std::st
   for (const std::string& word : arguments) words.push_back(word.c_str());
   static_cast<void>(parse_arguments(program, static_cast<int>(words.size()), words.data()));
   for (const auto& [option, values] : given_options(command)) {
-    for (const auto& [refused, why] : kNotArguments) {
-      if (option != refused) continue;
-      throw UsageError(
-          {option + " is none of a job's arguments", "in its arguments", std::string("leave it out; ") + why});
-    }
+    const char* const why = option_of_jobs(option).said_elsewhere;
+    if (why == nullptr) continue;
+    throw UsageError(
+        {option + " is none of a job's arguments", "in its arguments", std::string("leave it out; ") + why});
   }
 }
 
@@ -147,9 +171,10 @@ jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given) 
   manifest.kind = kind;
   manifest.options = {{"version", PROMIN_VERSION}, {"program", std::string(kSourcesHash)}};
   for (const auto& [name, words] : given) {
-    if (is_among(name, kNotInManifest)) continue;
+    const OptionOfJobs& option = option_of_jobs(name);
+    if (!option.is_in_manifest) continue;
     const std::string value = words.empty() ? "given" : fmt::format("{}", fmt::join(words, " "));
-    manifest.options.emplace_back(name, is_among(name, kNamesFile) ? fs::path(value).filename().string() : value);
+    manifest.options.emplace_back(name, option.names_file ? fs::path(value).filename().string() : value);
   }
   return manifest;
 }
@@ -170,10 +195,11 @@ fs::path shared_tree_file(const JobOptions& job, const std::string& builder) {
 std::vector<std::string> keep_arguments(const CLI::App& command) {
   std::vector<std::string> arguments;
   for (const auto& [name, words] : given_options(command)) {
-    if (is_among(name, kNotKept)) continue;
+    const OptionOfJobs& option = option_of_jobs(name);
+    if (!option.is_kept) continue;
     if (name.starts_with('-')) arguments.push_back(name);
     for (const std::string& word : words) {
-      arguments.push_back(is_among(name, kNamesFile) ? fs::absolute(word).lexically_normal().string() : word);
+      arguments.push_back(option.names_file ? fs::absolute(word).lexically_normal().string() : word);
     }
   }
   return arguments;

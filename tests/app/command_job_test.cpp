@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "command_job.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "cast_options.h"
+#include "render_options.h"
+
+namespace promin::app {
+namespace {
+
+/// The command with each option that takes a file given "here", and what it cannot do without.
+std::vector<std::string> arguments_of_files(CLI::App& program, CLI::App& command) {
+  std::vector<std::string> words = {"promin", command.get_name()};
+  for (const CLI::Option* option : command.get_options()) {
+    const bool is_file = option->get_positional() || option->get_type_name().find("FILE") != std::string::npos ||
+                         option->get_type_name().find(".npy") != std::string::npos;
+    if (!is_file) continue;
+    if (!option->get_positional()) words.push_back("--" + option->get_lnames().front());
+    words.emplace_back("here");
+  }
+  std::vector<const char*> argv;
+  for (const std::string& word : words) argv.push_back(word.c_str());
+  EXPECT_TRUE(parse_arguments(program, static_cast<int>(argv.size()), argv.data()));
+  return keep_arguments(command);
+}
+
+// A job is planned again from any folder, so that a new option that takes a file has to be among those that are kept by
+// their absolute paths, or not kept.
+TEST(CommandJobTest, EveryFileIsKeptByItsAbsolutePath) {
+  CLI::App of_pictures("", "promin");
+  RenderOptions pictures;
+  CLI::App& render = add_command(of_pictures, "render", "");
+  add_render_options(render, pictures);
+  CLI::App of_rays("", "promin");
+  CastOptions rays;
+  CLI::App& cast = add_command(of_rays, "cast", "");
+  add_cast_options(cast, rays);
+
+  const std::string here = (std::filesystem::current_path() / "here").string();
+  const std::vector<std::string> of_render = arguments_of_files(of_pictures, render);
+  const std::vector<std::string> of_cast = arguments_of_files(of_rays, cast);
+  EXPECT_THAT(of_render, testing::Not(testing::Contains("here")));
+  EXPECT_THAT(of_cast, testing::Not(testing::Contains("here")));
+  // The scene, --bvh, --environment and --path; the scene, the rays and --bvh.
+  EXPECT_EQ(std::ranges::count(of_render, here), 4) << testing::PrintToString(of_render);
+  EXPECT_EQ(std::ranges::count(of_cast, here), 3) << testing::PrintToString(of_cast);
+}
+
+}  // namespace
+}  // namespace promin::app
