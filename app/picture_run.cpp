@@ -34,7 +34,9 @@ PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFra
   const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
-  const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels));
+  // Errors as they are shown bring it to the bits of an EXR, too.
+  const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||
+                            (stats.view->error_target && stats.view->error_target->display);
   const std::string assumptions =
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
   if (!assumptions.empty()) console.note(assumptions);

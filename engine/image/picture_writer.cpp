@@ -162,10 +162,7 @@ class PictureWriter::Impl {
         output_(file),
         scratch_{file} {
     bytes_.descriptor = ::open(output_.temporary().c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
-    if (bytes_.descriptor < 0) {
-      bytes_.error = errno;
-      refuse_file();
-    }
+    if (bytes_.descriptor < 0) refuse_file(errno);
     std::vector<ProminPicturesChannel> channels = list_channels(header.channels, header.exr);
     if (!is_exr_) {
       channels = {{"R", PROMIN_PICTURES_UINT8}, {"G", PROMIN_PICTURES_UINT8}, {"B", PROMIN_PICTURES_UINT8}};
@@ -224,7 +221,7 @@ class PictureWriter::Impl {
   void commit() {
     check(rows_written_ == header_.size.y, "rows of the picture are missing", "write all before the end");
     check_done(plugin_.finish(writer_.get(), &message_));
-    if (!bytes_.close()) refuse_file();
+    if (!bytes_.close()) refuse_file(bytes_.error);
     output_.commit();
   }
 
@@ -288,16 +285,26 @@ class PictureWriter::Impl {
     std::exception_ptr failure = nullptr;
   };
 
-  [[noreturn]] void refuse_file() const {
-    throw RunError({std::string("cannot write the output file (") + std::strerror(bytes_.error) + ")", file_.string(),
+  [[noreturn]] void refuse_file(int error) const {
+    throw RunError({std::string("cannot write the output file (") + std::strerror(error) + ")", file_.string(),
                     "check the disk and permissions"});
+  }
+
+  /// The error of a disk that the plugin's message names, as a file of several parts is written by its name and not by
+  /// OpenFile; 0 where it names none.
+  int error_in_message() const {
+    for (const int error : {ENOSPC, EFBIG, EDQUOT, EIO}) {
+      if (std::strstr(message_.text, std::strerror(error)) != nullptr) return error;
+    }
+    return 0;
   }
 
   void check_done(int status) const {
     if (status == PROMIN_PICTURES_DONE) return;
     if (scratch_.failure) std::rethrow_exception(scratch_.failure);
-    if (bytes_.error != 0) refuse_file();
+    if (bytes_.error != 0) refuse_file(bytes_.error);
     if (status == PROMIN_PICTURES_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (const int error = error_in_message(); error != 0) refuse_file(error);
     throw RunError({std::string("cannot encode the picture (") + message_.text + ")", file_.string(),
                     "try the other format, .exr or .png"});
   }

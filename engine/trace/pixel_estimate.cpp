@@ -28,6 +28,15 @@ double falloff(uint32_t count) {
   return std::ldexp(kOfRemainder[static_cast<size_t>(log2 % 4)], -3 * (log2 / 4));
 }
 
+/// A channel of which nothing is known is the largest, whichever it is: std::max takes NaN in its first argument alone.
+float largest_claim(const vec3& claim) {
+  float largest = claim.x;
+  for (int channel = 1; channel < 3; ++channel) {
+    if (std::isnan(claim[channel]) || claim[channel] > largest) largest = claim[channel];
+  }
+  return largest;
+}
+
 }  // namespace
 
 ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, size_t index) {
@@ -93,9 +102,8 @@ vec3 estimate_error(const ColorRange& around, uint32_t samples) {
 }
 
 float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target) {
-  if (!target.display) return std::max({claim.x, claim.y, claim.z}) / std::max({target.white, mean.x, mean.y, mean.z});
-  const vec3 shown = shown_claim(claim, mean, *target.display);
-  return std::max({shown.x, shown.y, shown.z});
+  if (!target.display) return largest_claim(claim) / std::max({target.white, mean.x, mean.y, mean.z});
+  return largest_claim(shown_claim(claim, mean, *target.display));
 }
 
 vec3 shown_color(const vec3& color, const DisplayTransform& display) {

@@ -31,7 +31,8 @@ class Device;
 struct PictureError {
   /// The error that was asked for: the one to ask for to have the same picture again.
   float target = 0.0F;
-  /// The largest claim of a pixel, of ErrorTarget::white or of its largest channel where that is more.
+  /// The largest claim of a pixel, of ErrorTarget::white or of its largest channel where that is more, or as it is
+  /// shown (ErrorTarget::display). Claims that are no numbers are left out.
   float largest_claim = 0.0F;
   /// Pixels that have taken the most samples and claim more than the target.
   uint64_t unmet_pixels = 0;

@@ -72,8 +72,8 @@ struct ErrorTarget {
   /// What is shown as white, positive and finite: 2^-EV where pictures are exposed by EV stops.
   float white = 1.0F;
   /// How the picture is shown, where its error is to be measured as it is shown: each channel exposed, tone mapped and
-  /// encoded as sRGB, 0...1. A pixel claims then what is farthest of all that is within its claim, and `white` does not
-  /// count.
+  /// encoded as sRGB, 0...1. A pixel claims then what is farthest from it of the corners of its claim, and `white` does
+  /// not count.
   std::optional<DisplayTransform> display = std::nullopt;
   /// The samples at which a pixel stops, near enough or not, a power of two, at most kMaxRefinedSamples.
   uint32_t max_samples = 256;

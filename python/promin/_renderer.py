@@ -72,7 +72,7 @@ class View:
     """The samples at which a pixel stops with an error target, a power of two; None: 256."""
     error_in: str = "linear"
     """What `target_error` is of: "linear" light, or the "display": what is shown, exposed, tone mapped and encoded as
-    sRGB."""
+    sRGB, by `Renderer.display`, whatever a file is saved with."""
     filter: str = "box"
     """"box", "tent", "gauss" or "blackman-harris"."""
     filter_width: float | None = None

@@ -253,6 +253,33 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
 }
 
+// Where a file system promises no room, what waits finds the disk full while it is written.
+TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
+  write("old.exr", "old");
+  fill_disk(700'000);
+  options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
+  const OptionValues whole = {"--size", "1200", "900", "--target-error", "1"};
+  const OptionValues parts = {"--size", "300", "300", "--aov", "position", "--multipart"};
+  for (const bool promises_room : {true, false}) {
+    if (!promises_room) options_.environment["PROMIN_TEST_PROMISES_NO_ROOM"] = "1";
+    for (const OptionValues& how : {whole, parts}) {
+      // A picture that takes no room itself.
+      OptionValues words = {"render", "square.gltf", "-o", "old.exr", "--quiet", "--light", "none"};
+      words.insert(words.end(), {"--background", "0", "0", "0", "--lights-off", "0"});
+      words.insert(words.end(), how.begin(), how.end());
+      expect_failure(run(words), 1, how == whole ? "cannot keep 13 MB beside" : "cannot keep 2 MB beside");
+      EXPECT_EQ(read("old.exr"), "old");
+      EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
+    }
+  }
+  // There is room for what waits, but not for the file, which OpenImageIO opens itself where it has parts.
+  const OptionValues large = {"render", "square.gltf", "--size",  "300",         "300",           "--aov", "object",
+                              "-o",     "old.exr",     "--quiet", "--multipart", "--compression", "none"};
+  expect_failure(run(large), 1, "cannot write the output file (");
+  EXPECT_EQ(read("old.exr"), "old");
+  EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
+}
+
 // Newer lavapipes keep device memory in a file, to which the limit applies.
 TEST_F(CliTest, AFileSizeLimitIsAFailureWhateverItStops) {
   write("old.exr", "old");
@@ -575,6 +602,10 @@ TEST_F(CliTest, WhatIsAssumedIsSaid) {
   EXPECT_EQ(shown.err,
             "promin: note: assumed: a studio's weaker light around the scene's own, a grey background, an exposure of "
             "+2 EV, tone mapping neutral\n");
+  // Of an EXR errors alone are as it is shown.
+  const ProcessResult refined = run(
+      {"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "--target-error", "0.5", "--error-in", "display"});
+  EXPECT_EQ(refined.err, shown.err);
   const ProcessResult said = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.png", "--light", "none",
                                   "--background", "0", "0", "0", "--exposure", "0", "--tone-mapping", "aces"});
   EXPECT_EQ(said.err, "");
@@ -586,6 +617,33 @@ TEST_F(CliTest, VerboseTellsTheSteps) {
   for (const char* part : {"loaded square.gltf", "BVH by ", "features: ", "upload "}) {
     EXPECT_THAT(result.err, HasSubstr(part));
   }
+}
+
+TEST_F(CliTest, ErrorsAsTheyAreShownAreTold) {
+  const auto told = [&](const OptionValues& how) {
+    OptionValues words = {"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "--stats", "s.json"};
+    words.insert(words.end(), {"--target-error", "0.0625"});
+    words.insert(words.end(), how.begin(), how.end());
+    const ProcessResult result = run(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return std::pair(result.out, nlohmann::json::parse(read("s.json")).at("error").at("in").get<std::string>());
+  };
+  const auto [linear, in_linear] = told({});
+  EXPECT_THAT(linear, testing::AllOf(HasSubstr(" spp, error 0.0625"), testing::Not(HasSubstr(" as shown"))));
+  EXPECT_EQ(in_linear, "linear");
+  EXPECT_EQ(told({"--error-in", "linear"}).first.substr(0, 30), linear.substr(0, 30));
+  const auto [shown, in_shown] = told({"--error-in", "display"});
+  EXPECT_THAT(shown, HasSubstr(" spp, error 0.0625 as shown"));
+  EXPECT_EQ(in_shown, "display");
+  // How the picture is shown decides how exact it has to be: all here is white.
+  const auto [white, in_white] = told({"--error-in", "display", "--exposure", "20", "--tone-mapping", "none"});
+  EXPECT_THAT(white, HasSubstr(", 4 spp, error"));
+  EXPECT_THAT(shown, testing::Not(HasSubstr(", 4 spp, error")));
+  // In linear light it is what is white, of which errors are.
+  EXPECT_THAT(linear, testing::Not(HasSubstr(", 4 spp, error")));
+  EXPECT_THAT(told({"--exposure", "-20"}).first, HasSubstr(", 4 spp, error"));
+  const auto [black, in_black] = told({"--error-in", "display", "--exposure", "-20", "--tone-mapping", "none"});
+  EXPECT_THAT(black, HasSubstr(", 4 spp, error"));
 }
 
 TEST_F(CliTest, StatsHoldWhatTheInterfacePromises) {

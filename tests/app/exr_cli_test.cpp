@@ -100,10 +100,10 @@ TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
   EXPECT_GE(parts.part_count, 5);
   EXPECT_EQ(parts.channels, one.channels);
   EXPECT_EQ(parts.types, one.types);
-  // What waits for its part is read by 16 MiB: positions here in two turns.
-  const ReadExr large = render_exr({"--aov", "position,depth", "--multipart"}, uvec2(1500, 1000));
+  // What waits for its part is read by 16 MiB: positions here in two turns, of a square that fills all rows.
+  const ReadExr large = render_exr({"--aov", "position,depth", "--fov", "20", "--multipart"}, uvec2(1500, 1000));
   EXPECT_EQ(large.part_count, 3);
-  EXPECT_EQ(large.channels, render_exr({"--aov", "position,depth"}, uvec2(1500, 1000)).channels);
+  EXPECT_EQ(large.channels, render_exr({"--aov", "position,depth", "--fov", "20"}, uvec2(1500, 1000)).channels);
 }
 
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
@@ -199,6 +199,8 @@ TEST_F(ExrCliTest, PicturesOfAnErrorHaveTheBytesOfThoseHeldWhole) {
     OptionValues single = {"render", "square.gltf", "-o", "single.exr", "-o", "single.png"};
     OptionValues job = {
         "render", "square.gltf", "-o", "job.exr", "-o", "job.png", "--job", "job" + std::to_string(i), "--pieces", "1"};
+    // Two times, which add nothing.
+    if (i == 1) single.insert(single.end(), {"--repeat", "2"});
     for (OptionValues* words : {&single, &job}) {
       words->insert(words->end(), windows[i].begin(), windows[i].end());
       words->insert(words->end(), aovs.begin(), aovs.end());
@@ -208,6 +210,16 @@ TEST_F(ExrCliTest, PicturesOfAnErrorHaveTheBytesOfThoseHeldWhole) {
     EXPECT_TRUE(read("single.exr") == read("job.exr")) << i;
     EXPECT_TRUE(read("single.png") == read("job.png")) << i;
   }
+}
+
+TEST_F(ExrCliTest, TheHeaderTellsHowErrorsAreMeasured) {
+  const OptionValues target = {"--target-error", "0.0625"};
+  const ReadExr linear = render_exr(target);
+  EXPECT_FALSE(linear.metadata.contains("promin:error_in"));
+  const ReadExr shown = render_exr({"--target-error", "0.0625", "--error-in", "display"});
+  EXPECT_EQ(shown.metadata.at("promin:error_in"), "display");
+  EXPECT_EQ(shown.metadata.at("promin:error_target"), "0.0625");
+  EXPECT_NE(shown.channels, linear.channels);
 }
 
 // What beauty is the sum of, in the file.

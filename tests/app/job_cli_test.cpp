@@ -187,6 +187,16 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   const ProcessResult other_samples = render({"--job", "job", "-o", "cut.exr", "--spp", "2"});
   EXPECT_EQ(other_samples.exit_code, 2);
   EXPECT_THAT(other_samples.err, HasSubstr("the folder has another job: it has no --spp, which is \"2\" now"));
+  const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
+  const auto in = [&](const char* space) {
+    OptionValues words = refined;
+    words.emplace_back(space);
+    return render(words);
+  };
+  expect_done(in("linear"));
+  const ProcessResult other_space = in("display");
+  EXPECT_EQ(other_space.exit_code, 2);
+  EXPECT_THAT(other_space.err, HasSubstr("its --error-in is \"linear\", and \"display\" now"));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);

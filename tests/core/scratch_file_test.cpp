@@ -26,13 +26,39 @@ class ScratchFileTest : public TempFolder {
   ptrdiff_t file_count() const { return std::distance(fs::directory_iterator(folder_), {}); }
 
   std::string failure(const fs::path& target, uint64_t byte_count) const {
+    return failure_of([&] { ScratchFile file(target, byte_count); });
+  }
+
+  template <typename Step>
+  static std::string failure_of(const Step& step) {
     try {
-      ScratchFile file(target, byte_count);
+      step();
     } catch (const RunError& error) {
       return error.what();
     }
     return "";
   }
+};
+
+/// While one exists no file may grow beyond so many bytes.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t most_bytes) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    handler_ = signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{most_bytes, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit old_{};
+  sighandler_t handler_ = SIG_DFL;
 };
 
 std::vector<std::byte> bytes_of(const std::string& text) {
@@ -62,17 +88,28 @@ TEST_F(ScratchFileTest, ReplacesNothing) {
 // Before anything is written: the room is taken at once.
 TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
   EXPECT_THAT(failure(folder_ / "none" / "a.exr", 10), testing::HasSubstr("does not exist"));
-  rlimit old{};
-  getrlimit(RLIMIT_FSIZE, &old);
-  const auto handler = signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{1 << 20, old.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = failure(folder_ / "a.exr", 3 << 20);
-  setrlimit(RLIMIT_FSIZE, &old);
-  signal(SIGXFSZ, handler);
+  const std::string message = [&] {
+    const FileSizeLimit limit(1 << 20);
+    return failure(folder_ / "a.exr", 3 << 20);
+  }();
   EXPECT_THAT(message, testing::StartsWith("cannot keep 4 MB beside the output file until it can be written ("));
   EXPECT_THAT(message, testing::HasSubstr("a.exr; check the disk"));
   EXPECT_EQ(file_count(), 0);
+}
+
+// The system writes then what there is room for, and tells no error before it is asked for the rest.
+TEST_F(ScratchFileTest, ADiskThatFillsIsToldByWhoeverWrites) {
+  ScratchFile file(folder_ / "a.exr", 0);
+  const std::vector<std::byte> bytes(3 << 20, std::byte{7});
+  const std::string message = [&] {
+    const FileSizeLimit limit(1 << 20);
+    return failure_of([&] { file.write(0, bytes); });
+  }();
+  EXPECT_THAT(message, testing::StartsWith("cannot keep 1 MB beside the output file until it can be written ("));
+  // And what was written before is there.
+  std::vector<std::byte> read(1 << 20);
+  file.read(0, read);
+  EXPECT_TRUE(std::equal(read.begin(), read.end(), bytes.begin()));
 }
 
 }  // namespace

@@ -1,16 +1,21 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // A library to preload (LD_PRELOAD) into a program whose file size limit stands for a full disk. The limit is for files
-// in memory too, where newer lavapipes keep device memory; a full disk is not. Such files may grow here.
+// in memory too, where newer lavapipes keep device memory; a full disk is not. Such files may grow here. With
+// PROMIN_TEST_PROMISES_NO_ROOM the file system is one that promises no room, so that what is full is found by writing.
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
+
 namespace {
 
-/// A file of memfd_create has no name, and no other file that a program makes longer lacks one.
+/// A file of memfd_create has no name, and no other file that a program makes longer by ftruncate lacks one.
 bool is_in_memory(int file) {
   struct stat status {};
   return fstat(file, &status) == 0 && status.st_nlink == 0;
@@ -28,7 +33,23 @@ int change_size(int file, off_t bytes) {
   return result;
 }
 
+int promise_room(int file, int mode, off_t place, off_t bytes) {
+  if (std::getenv("PROMIN_TEST_PROMISES_NO_ROOM") == nullptr) {
+    return static_cast<int>(syscall(SYS_fallocate, file, mode, place, bytes));
+  }
+  errno = EOPNOTSUPP;
+  return -1;
+}
+
 }  // namespace
+
+extern "C" int fallocate(int file, int mode, off_t place, off_t bytes) {
+  return promise_room(file, mode, place, bytes);
+}
+
+extern "C" int fallocate64(int file, int mode, off64_t place, off64_t bytes) {
+  return promise_room(file, mode, place, bytes);
+}
 
 extern "C" int ftruncate(int file, off_t bytes) noexcept {
   return change_size(file, bytes);

@@ -247,12 +247,48 @@ TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   EXPECT_GT(mixed.x, 0.01F);
   EXPECT_GT(mixed.z, 0.01F);
   EXPECT_EQ(shown_claim(vec3(0.0F), vec3(0.5F), mapped), vec3(0.0F));
+  // Where light of one channel takes from what is shown of another, red is farthest with less of it and more green.
+  const DisplayTransform reinhard{.tone_mapping = ToneMapping::kReinhard};
+  const vec3 red = glm::abs(shown_color(vec3(0.25F, 0.75F, 0.5F), reinhard) - shown_color(vec3(0.5F), reinhard));
+  EXPECT_EQ(shown_claim(vec3(0.25F, 0.25F, 0.0F), vec3(0.5F), reinhard).x, red.x);
   const float none = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(std::isnan(shown_claim(vec3(none, 0.0F, 0.0F), vec3(none), plain).x));
   ErrorTarget target;
   EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 4.0F), target), 0.5F);
   target.display = plain;
   EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), target), shown.x);
+}
+
+// In whichever channel, and however the others are: of such a pixel nothing is known.
+TEST(RefinementTest, AClaimThatIsNoNumberIsNeverSmallEnough) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const float infinite = std::numeric_limits<float>::infinity();
+  ErrorTarget linear;
+  ErrorTarget shown;
+  shown.display = DisplayTransform{.tone_mapping = ToneMapping::kAgx};
+  for (const ErrorTarget& target : {linear, shown}) {
+    for (int channel = 0; channel < 3; ++channel) {
+      for (const float wrong : {none, infinite}) {
+        vec3 claim(0.001F);
+        vec3 mean(0.5F);
+        claim[channel] = wrong;
+        mean[channel] = infinite;
+        EXPECT_FALSE(claimed_error(claim, mean, target) <= target.error) << channel << " " << wrong;
+      }
+    }
+  }
+  // So it takes all samples.
+  for (int channel = 0; channel < 3; ++channel) {
+    View view = make_view(1.0F / 64.0F);
+    const Refined refined = refine(view, [&](const dvec2& p) {
+      vec3 radiance(0.5F);
+      if (p.x < 1.0 && p.y < 1.0) radiance[channel] = infinite;
+      return radiance;
+    });
+    EXPECT_EQ(refined.counts.front(), view.error_target->max_samples) << channel;
+    EXPECT_FALSE(refined.are_near_enough.front()) << channel;
+    EXPECT_EQ(refined.counts.back(), view.error_target->min_samples) << channel;
+  }
 }
 
 TEST(RefinementTest, ErrorsAsTheyAreShownAskForMoreInTheDarkAndForLessInTheLight) {

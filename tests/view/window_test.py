@@ -244,7 +244,8 @@ def lights_as_render_does(bin_folder, scenes, folder):
         session.quit()
 
     words = ["--light", "headlight", "--background", "environment", "--exposure", "1.25", "--tone-mapping", "aces"]
-    session = Session(bin_folder, scenes, folder, *words, files=files)
+    errors = ("--target-error", "0.0625", "--error-in", "display")
+    session = Session(bin_folder, scenes, folder, *words, *errors, files=files)
     with session as viewer:
         viewer.press("Tab", "p")
         session.take_screenshot(3)
@@ -257,6 +258,14 @@ def lights_as_render_does(bin_folder, scenes, folder):
         viewer.wait_for_line("note: read obj_materials.obj", 1, "scene again")
         session.take_screenshot(4)
         session.expect_same_picture(4, command)
+        # At rest it is refined, to an error of what is shown.
+        viewer.press("p")
+        wait_for(lambda: " --target-error 0.0625 " in session.print_command(), "a refined picture")
+        session.take_screenshot(5)
+        command = session.print_command()
+        expect(" --error-in display " in command, f"not what is shown: {command}")
+        expect("promin-0005.png, 160x96, error 0.0625 as shown\n" in viewer.err, viewer.err)
+        session.expect_same_picture(5, command)
         session.quit()
     pictures = [(folder / f"promin-000{number}.png").read_bytes() for number in (1, 2, 3, 4)]
     expect(len(set(pictures)) == 3 and pictures[2] == pictures[3], "options change nothing, or reading does")
