@@ -130,6 +130,9 @@ TEST(HitComparisonTest, OtherSurfacesAreOthers) {
   EXPECT_EQ(compare_one(make_hit(4, 4.5F), make_hit(7, 4.5F)).others, 1U);
   EXPECT_EQ(compare_one(make_hit(4, 4.5F), Hit()).others, 1U);
   EXPECT_EQ(compare_one(Hit(), Hit()).others, 0U);
+  Hit neighbour = make_hit(4, 4.5F);
+  neighbour.primitive = 1;
+  EXPECT_EQ(compare_one(make_hit(4, 4.5F), neighbour).others, 1U);
   EXPECT_EQ(compare_one(make_hit(4, std::numeric_limits<float>::quiet_NaN()), make_hit(4, 4.5F)).others, 1U);
   // An object that there is not.
   EXPECT_EQ(compare_one(make_hit(5, 4.5F), make_hit(5, 4.500001F)).others, 1U);
