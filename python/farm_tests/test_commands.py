@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import ast
+import dataclasses
 import json
 import shutil
 import struct
@@ -89,6 +90,16 @@ def test_status_in_words_and_as_json(farm: Farm) -> None:
     assert "3 failures, the last: the device was lost at 4" in words
 
 
+def test_of_a_piece_that_is_gone_nothing_is_told(farm: Farm) -> None:
+    farm.write_scene(3)
+    job = farm.create()
+    farm.run("work", farm.job)
+    Path(job.pieces[1].file).unlink()
+    status = farm.status()
+    assert [item["piece"] for item in status["slowest"] if item["piece"] == job.pieces[1].name] == []
+    assert list(status["fingerprints"].values()) == [2] and status["done"] == 2
+
+
 def test_status_of_what_runs_tells_the_time_left(farm: Farm) -> None:
     farm.write_scene(30, ms=150)
     farm.create()
@@ -136,6 +147,20 @@ def test_audit_holds_other_fingerprints_to_the_bounds(farm: Farm) -> None:
     assert "of 20 pieces of other fingerprints 16 have equal bits, 0 are within the bounds, 4 beyond" in said
 
 
+@pytest.mark.parametrize("is_told", [True, False])
+def test_an_audit_counts_pieces_without_a_fingerprint_among_the_others(farm: Farm, is_told: bool) -> None:
+    """Those of promin's programs, and those whose maker was ended before it could tell."""
+    from promin_farm.audit import audit
+
+    farm.write_scene(3)
+    job = farm.create()
+    farm.run("work", farm.job)
+    receipt = dataclasses.replace(job.receipt(0), fingerprint="")
+    job.receipt = lambda number: receipt if is_told else None
+    found = audit(job, "100%", 0, None)
+    assert len(found.across) == 3 and not found.within and found.is_good
+
+
 def test_an_audit_of_nothing_is_refused(farm: Farm) -> None:
     farm.write_scene(3)
     farm.create()
@@ -150,6 +175,8 @@ def test_samples_are_spread_and_the_same_for_a_seed(farm: Farm) -> None:
     first = pick_sample(job, list(range(1000)), 0.01, 0)
     assert len(first) == 10 == len(set(first)) and first == pick_sample(job, list(range(1000)), 0.01, 0)
     assert first != pick_sample(job, list(range(1000)), 0.01, 1) and first != list(range(10))
+    # One at least, and no fewer than the share.
+    assert [len(pick_sample(job, list(range(1000)), share, 0)) for share in (0.0001, 0.0015)] == [1, 2]
 
 
 def make_page(farm: Farm, **values: object) -> str:

@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import signal
+import socket
 import time
 from pathlib import Path
 
@@ -126,6 +128,37 @@ def test_other_bits_are_refused_and_left_alone(farm: Farm) -> None:
     said = farm.run("work", farm.job, code=1, FAKE_FINGERPRINT="two")
     assert "this worker would give other bits" in said and "--allow-mixed" in said
     assert farm.status()["done"] == 3
+
+
+def test_a_survey_of_what_makers_tell(farm: Farm) -> None:
+    """What failed or died before the last `resume` does not count, what was stopped never, and of a maker that begins
+    another piece the last one has died."""
+    from promin_farm.settings import Settings
+    from promin_farm.survey import take_survey
+
+    farm.write_scene(7)
+    job = farm.create()
+    job.runner().run(6)
+    for file in farm.job.glob("ledger/*"):
+        file.unlink()
+    Settings(retries_from=100.0).write(farm.job)
+
+    def tell(pid: int, *events: tuple[str, int, float]) -> None:
+        """By a process of this machine that has ended."""
+        lines = [{"event": e, "number": n, "time_s": t, "fingerprint": "f", "why": "lost"} for e, n, t in events]
+        file = farm.job / "ledger" / f"{socket.gethostname()}-{pid}.jsonl"
+        file.write_text("".join(json.dumps(line) + "\n" for line in lines))
+
+    tell(99999991, ("begun", 0, 10.0), ("failed", 0, 11.0), ("begun", 0, 110.0), ("failed", 0, 111.0))
+    tell(99999992, ("begun", 1, 112.0), ("stopped", 1, 113.0))
+    tell(99999993, ("begun", 2, 20.0), ("begun", 3, 114.0), ("begun", 4, 115.0))
+    tell(99999994, ("begun", 5, 30.0))
+    # It was written, and its maker ended before it could tell.
+    tell(99999995, ("begun", 6, 116.0))
+    survey = take_survey(job)
+    tries = {number: (one.failures, one.deaths) for number, one in sorted(survey.tries.items())}
+    assert tries == {0: (1, 0), 3: (0, 1), 4: (0, 1), 6: (0, 1)}
+    assert survey.done == {6} and not survey.running and not survey.failed and survey.fingerprints == {6: "f"}
 
 
 def test_it_needs_no_dask(farm: Farm) -> None:
