@@ -179,6 +179,16 @@ def test_receipts_and_events(scene: Path, tmp_path: Path) -> None:
     assert bare is not None and bare.made_on == "" and bare.sha256 == receipt.sha256 and bare.bytes == receipt.bytes
 
 
+def test_a_receipt_is_of_the_bytes_that_are_there(tmp_path: Path) -> None:
+    job = jobs.create_with("bytes", tmp_path / "job", options={}, pieces=["a"])
+    job.write(0, "", b"first", fingerprint="one")
+    content = Path(job.pieces[0].file).read_bytes()
+    job.write(0, "", b"other", fingerprint="two")
+    Path(job.pieces[0].file).write_bytes(content)
+    receipt = job.receipt(0)
+    assert receipt is not None and (receipt.fingerprint, receipt.sha256) == ("one", job.sha256(0))
+
+
 def test_comparisons_of_pictures(scene: Path, tmp_path: Path) -> None:
     words = [str(scene), "--size", "40", "30", "--aov", "depth,object", "--pieces", "1"]
     job = jobs.create("render", words, tmp_path / "job")
