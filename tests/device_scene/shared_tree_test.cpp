@@ -8,8 +8,10 @@
 #include <cstring>
 #include <fstream>
 #include <future>
+#include <optional>
 
 #include "core/file.h"
+#include "core/file_lock.h"
 #include "device_scene/pack_scene.h"
 #include "promin/error.h"
 #include "support/sheet.h"
@@ -136,6 +138,18 @@ TEST_F(SharedTreeTest, WhoIsAskedToStopStopsAndLeavesNothing) {
   EXPECT_THROW(pack(scene_, {.progress = [](double) { return false; }}), Cancelled);
   EXPECT_THAT(files(), testing::ElementsAre("median.lock"));
   EXPECT_EQ(pack(scene_).file, nullptr);
+}
+
+TEST_F(SharedTreeTest, WhoWaitsForAnotherMayBeStopped) {
+  fs::create_directory(file_.parent_path());
+  auto held =
+      std::make_optional<FileLock>(file_.parent_path() / "median.lock", std::chrono::seconds(1), ProgressCallback());
+  auto waiting =
+      std::async(std::launch::async, [&] { return pack(scene_, {.progress = [](double) { return false; }}); });
+  const bool is_over = waiting.wait_for(std::chrono::seconds(20)) == std::future_status::ready;
+  held.reset();
+  EXPECT_TRUE(is_over);
+  EXPECT_THROW(waiting.get(), Cancelled);
 }
 
 }  // namespace
