@@ -161,6 +161,7 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
     });
   };
   const size_t made = jobs::run_share(job, share, {driver, ""}, before, make);
+  if (is_whole && while_working.is_pending()) console.note("stopped with the last piece; the same command goes on");
   return is_whole ? std::optional(made) : std::nullopt;
 }
 

@@ -9,11 +9,15 @@
 
 namespace promin {
 
-/// Walks the lines of a text, whether they end in \n or \r\n.
+/// Walks the lines of a text, whether they end in \n or \r\n, without the byte order mark that some editors begin a
+/// file with.
 class TextLines {
  public:
   /// `lines_before` of the file come before the text.
-  explicit TextLines(std::string_view text, uint64_t lines_before = 0) : rest_(text), number_(lines_before) {}
+  explicit TextLines(std::string_view text, uint64_t lines_before = 0) : rest_(text), number_(lines_before) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (lines_before == 0 && rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  }
 
   /// Goes to the next line; false at the end.
   bool advance();

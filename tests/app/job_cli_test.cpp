@@ -247,6 +247,25 @@ TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   }
 }
 
+// There is no next piece then that it is stopped before.
+TEST_F(JobCliTest, ASignalInTheLastPieceIsToldToo) {
+  Process program(PROMIN_EXECUTABLE,
+                  {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job", "job", "--pieces", "1",
+                   "-o", "cut.exr"},
+                  options_);
+  const auto is_begun = [&] {
+    const std::filesystem::path ledgers = folder() / "job" / "ledger";
+    return std::filesystem::is_directory(ledgers) && !std::filesystem::is_empty(ledgers);
+  };
+  for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  program.send(SIGINT);
+  const ProcessResult result = program.wait();
+  EXPECT_EQ(result.signal, SIGINT);
+  EXPECT_THAT(result.err, HasSubstr("stopped with the last piece; the same command goes on"));
+  EXPECT_EQ(pieces().size(), 1U);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "cut.exr"));
+}
+
 TEST_F(JobCliTest, WhateverEndsItTheSameCommandGoesOn) {
   const OptionValues picture = {"render", "square.gltf", "--size", "160", "120", "--spp", "16", "--quiet"};
   const auto with = [&](OptionValues words) {

@@ -74,6 +74,13 @@ TEST_F(ObjTest, LineEndsOfEveryKindWork) {
   EXPECT_THAT(mesh_of(load("\tv  0\t0 0 \nv +1 0 0\nv 0 1e0 0#c\n\n  f 1 2 3")).triangles, SizeIs(1));
 }
 
+// As editors of Windows write it; the first line would be no statement with it.
+TEST_F(ObjTest, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  const LoadedScene scene = load("\xEF\xBB\xBF" + kSquare + "f 1 2 3\n");
+  EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
 TEST_F(ObjTest, PolygonsAreCutIntoTriangles) {
   EXPECT_THAT(mesh_of(load(kSquare + "f 1 2 3 4\n")).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
 }
