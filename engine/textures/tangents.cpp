@@ -72,10 +72,14 @@ class TangentSource {
     return p[c.x] == p[c.y] || p[c.y] == p[c.z] || p[c.z] == p[c.x] ||
            (mesh_.normals.empty() && flat_normals_[triangle] == vec3(0.0F));
   }
+  /// None where the coordinates have no area, and where u or v grows in no direction, as it may on a line.
   Hand hand(uint32_t triangle) const {
     const auto [d1, d2] = uv_edges(triangle);
     const double area = d1.x * d2.y - d1.y * d2.x;
     if (area == 0.0) return Hand::kNone;
+    const dvec3 to_next = edge(3 * triangle, 3 * triangle + 1);
+    const dvec3 to_last = edge(3 * triangle, 3 * triangle + 2);
+    if (d2.y * to_next == d1.y * to_last || d2.x * to_next == d1.x * to_last) return Hand::kNone;
     return area > 0.0 ? Hand::kLeft : Hand::kRight;
   }
   /// The direction in which u grows, up to its length.
@@ -139,7 +143,7 @@ class Groups {
       if (own_hands[corner / 3] != Hand::kNone && of_corner[corner] == kNoGroup) grow(corner);
     }
     neighbors_ = {};
-    inherit(welded);
+    inherit(welded, source);
   }
 
   /// The group of each corner.
@@ -186,9 +190,9 @@ class Groups {
     return true;
   }
 
-  /// Corners that no group came to take one at their vertex, where it has the hand of the triangle; else they are a
-  /// group without a tangent.
-  void inherit(const std::vector<uint32_t>& welded) {
+  /// Corners that no group came to take the first at their vertex, where it has the hand of the triangle or the
+  /// triangle is degenerate; else they are a group without a tangent.
+  void inherit(const std::vector<uint32_t>& welded, const TangentSource& source) {
     std::vector<uint32_t> first(welded.size(), kNoGroup);
     for (uint32_t corner = 0; corner < welded.size(); ++corner) {
       uint32_t& group = first[welded[corner]];
@@ -198,11 +202,13 @@ class Groups {
       if (of_corner[corner] != kNoGroup) continue;
       const uint32_t group = first[welded[corner]];
       Hand& hand = hands_[corner / 3];
-      if (hand == Hand::kNone) hand = group == kNoGroup ? Hand::kLeft : hands[group];
-      if (group != kNoGroup && hands[group] == hand) {
+      const bool takes_any_hand = hand == Hand::kNone || source.is_degenerate(corner / 3);
+      if (group != kNoGroup && (takes_any_hand || hands[group] == hand)) {
+        hand = hands[group];
         of_corner[corner] = group;
         continue;
       }
+      if (hand == Hand::kNone) hand = Hand::kLeft;
       of_corner[corner] = static_cast<uint32_t>(hands.size());
       hands.push_back(hand);
     }

@@ -26,6 +26,7 @@ struct Face {
   bool is_degenerate = false;
   /// Of its coordinates' area; 0 where it has none, until a group gives it one.
   int hand = 0;
+  /// In coordinates, and equations 18 and 19 have a length: where the corners lie on a line one of them may have none.
   bool has_area = false;
   /// In which u grows. Of any length, with what each of its components' computation may be off.
   Vector along{0};
@@ -63,6 +64,7 @@ class Tangents {
           continue;
         }
         CornerTangent& left = corners.emplace_back();
+        left.is_degenerate = at(f).is_degenerate;
         for (int other = 0; other < count(); ++other) {
           for (int k = 0; k < 3; ++k) {
             if (at(other).groups[k] != kNone && vertex(other, k) == vertex(f, i)) {
@@ -100,11 +102,13 @@ class Tangents {
     face.is_degenerate = face.is_degenerate || (mesh_.normals.empty() && across(f) == Vector(0));
     const Vector2 st_b = place(f, 1) - place(f, 0);
     const Vector2 st_c = place(f, 2) - place(f, 0);
+    const Vector b = position(f, 1) - position(f, 0);
+    const Vector c = position(f, 2) - position(f, 0);
     const Real area = st_b.x * st_c.y - st_c.x * st_b.y;
-    face.has_area = area != 0;
-    face.hand = area > 0 ? 1 : (area < 0 ? -1 : 0);
-    const Vector to_b = st_c.y * (position(f, 1) - position(f, 0));
-    const Vector to_c = st_b.y * (position(f, 2) - position(f, 0));
+    const Vector to_b = st_c.y * b;
+    const Vector to_c = st_b.y * c;
+    face.has_area = area != 0 && to_b - to_c != Vector(0) && st_b.x * c - st_c.x * b != Vector(0);
+    face.hand = !face.has_area ? 0 : (area > 0 ? 1 : -1);
     face.along = static_cast<Real>(face.hand) * (to_b - to_c);
     face.along_error = 4 * kDouble * (glm::length(to_b) + glm::length(to_c));
   }

@@ -24,6 +24,8 @@ struct CornerTangent {
   int group = -1;
   /// Of these the groups that other corners of the vertex have, the first first: one of them is to be copied.
   std::vector<int> groups_at_vertex;
+  /// Of these whether the triangle takes no part: then the first is copied with its hand.
+  bool is_degenerate = false;
 };
 
 /// Of each corner, 3 * triangle + (0, 1, 2). Corners are one vertex whose positions, normals and coordinates of the set
