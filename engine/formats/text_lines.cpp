@@ -22,6 +22,11 @@ std::optional<Number> parse_whole(std::string_view word) {
 
 }  // namespace
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
+
 bool TextLines::advance() {
   if (rest_.empty()) return false;
   const size_t end = rest_.find('\n');

@@ -9,15 +9,15 @@
 
 namespace promin {
 
-/// Walks the lines of a text, whether they end in \n or \r\n, without the byte order mark that some editors begin a
-/// file with.
+/// A text without the byte order mark that some editors begin a file with.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// Walks the lines of a text, whether they end in \n or \r\n, without the byte order mark of a file.
 class TextLines {
  public:
   /// `lines_before` of the file come before the text.
-  explicit TextLines(std::string_view text, uint64_t lines_before = 0) : rest_(text), number_(lines_before) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (lines_before == 0 && rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-  }
+  explicit TextLines(std::string_view text, uint64_t lines_before = 0)
+      : rest_(lines_before == 0 ? without_byte_order_mark(text) : text), number_(lines_before) {}
 
   /// Goes to the next line; false at the end.
   bool advance();

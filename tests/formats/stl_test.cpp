@@ -46,6 +46,10 @@ TEST_F(StlTest, CaseAndLineEndsDoNotMatter) {
   EXPECT_EQ(corners_of(mesh_of(load(with_carriage_returns(text)))), kTriangle);
 }
 
+TEST_F(StlTest, AByteOrderMarkDoesNotHideAText) {
+  EXPECT_EQ(corners_of(mesh_of(load("\xEF\xBB\xBFsolid part\n" + kFacet + "endsolid part\n"))), kTriangle);
+}
+
 TEST_F(StlTest, SolidsWithFacetsAreNumbered) {
   const LoadedScene scene =
       load("solid first one\n" + kFacet + kFacet + "endsolid\nsolid empty\nendsolid\nsolid\n" + kFacet + "endsolid\n");

@@ -13,6 +13,7 @@
 
 #include "core/file.h"
 #include "formats/stl/text.h"
+#include "formats/text_lines.h"
 #include "promin/validate.h"
 
 namespace promin {
@@ -40,6 +41,7 @@ bool is_text(std::string_view file) {
   if (file.size() >= kFirstFacet && file.size() == kFirstFacet + kFacetBytes * facet_count(file)) return false;
   std::string_view begin = file.substr(0, kFirstFacet + kFacetBytes);
   if (begin.find('\0') != std::string_view::npos) return false;
+  begin = without_byte_order_mark(begin);
   begin.remove_prefix(std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
   return is_stl_keyword(begin.substr(0, 5), "solid");
 }
