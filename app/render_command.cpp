@@ -61,8 +61,8 @@ std::string describe_samples(const RunStats& stats) {
   const std::string unmet =
       all.unmet_pixels == 0 ? ""
                             : fmt::format(" but for {} pixels of at most {:.3g}", all.unmet_pixels, all.largest_claim);
-  return fmt::format("{:.4g} spp, error {:.9g}{}{}", mean_samples(*stats.view, all) / pictures, all.target,
-                     stats.view->error_target->display ? " as shown" : "", unmet);
+  return fmt::format("{:.4g} spp, {}{}", mean_samples(*stats.view, all) / pictures,
+                     describe_error(all.target, *stats.view->error_target), unmet);
 }
 
 /// The options that give a picture of a time limit again.

@@ -278,6 +278,10 @@ std::string describe_options(const ErrorTarget& target) {
                      target.max_samples, target.display ? " --error-in display" : "");
 }
 
+std::string describe_error(float error, const ErrorTarget& target) {
+  return fmt::format("error {:.9g}{}", error, target.display ? " as shown" : "");
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);

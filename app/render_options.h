@@ -116,6 +116,8 @@ void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
 
 /// The options that ask for such a target; nine digits bring the error back to the bit.
 std::string describe_options(const ErrorTarget& target);
+/// "error 0.015625", or with " as shown": an error that was reached, measured as the target is.
+std::string describe_error(float error, const ErrorTarget& target);
 
 struct RenderOptions {
   TracingOptions tracing;

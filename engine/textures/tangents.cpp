@@ -77,15 +77,13 @@ class TangentSource {
     const auto [d1, d2] = uv_edges(triangle);
     const double area = d1.x * d2.y - d1.y * d2.x;
     if (area == 0.0) return Hand::kNone;
-    const dvec3 to_next = edge(3 * triangle, 3 * triangle + 1);
-    const dvec3 to_last = edge(3 * triangle, 3 * triangle + 2);
-    if (d2.y * to_next == d1.y * to_last || d2.x * to_next == d1.x * to_last) return Hand::kNone;
+    if (growth(triangle, d1.y, d2.y) == dvec3(0.0) || growth(triangle, d1.x, d2.x) == dvec3(0.0)) return Hand::kNone;
     return area > 0.0 ? Hand::kLeft : Hand::kRight;
   }
   /// The direction in which u grows, up to its length.
   dvec3 tangent(uint32_t triangle, Hand hand) const {
     const auto [d1, d2] = uv_edges(triangle);
-    const dvec3 along = d2.y * edge(3 * triangle, 3 * triangle + 1) - d1.y * edge(3 * triangle, 3 * triangle + 2);
+    const dvec3 along = growth(triangle, d1.y, d2.y);
     return hand == Hand::kLeft ? along : -along;
   }
 
@@ -115,6 +113,11 @@ class TangentSource {
   std::pair<dvec2, dvec2> uv_edges(uint32_t triangle) const {
     const dvec2 a = uv(3 * triangle);
     return {uv(3 * triangle + 1) - a, uv(3 * triangle + 2) - a};
+  }
+  /// The direction in which one coordinate grows, up to length and sign, by how the other changes along the edges to
+  /// the next and to the last corner.
+  dvec3 growth(uint32_t triangle, double to_next, double to_last) const {
+    return to_last * edge(3 * triangle, 3 * triangle + 1) - to_next * edge(3 * triangle, 3 * triangle + 2);
   }
   VertexKey key_of(uint32_t vertex, const vec3& n) const {
     const vec3& p = mesh_.positions[vertex];

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "promin/image.h"
 
@@ -30,11 +31,8 @@ double falloff(uint32_t count) {
 
 /// A channel of which nothing is known is the largest, whichever it is: std::max takes NaN in its first argument alone.
 float largest_claim(const vec3& claim) {
-  float largest = claim.x;
-  for (int channel = 1; channel < 3; ++channel) {
-    if (std::isnan(claim[channel]) || claim[channel] > largest) largest = claim[channel];
-  }
-  return largest;
+  if (glm::any(glm::isnan(claim))) return std::numeric_limits<float>::quiet_NaN();
+  return std::max({claim.x, claim.y, claim.z});
 }
 
 }  // namespace

@@ -163,14 +163,11 @@ TEST_F(CastJobCliTest, AFullDiskLeavesWholePieces) {
 
 TEST_F(CastJobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   write_rays("rays.npy", make_rays(200'000));
-  Process program(PROMIN_EXECUTABLE,
-                  {"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "2000", "-o", "cut.npy"}, options_);
   const auto is_begun = [&] {
     return std::filesystem::is_directory(folder() / "job" / "pieces") && pieces().size() > 1;
   };
-  for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  program.send(SIGTERM);
-  const ProcessResult result = program.wait();
+  const ProcessResult result = signal_when(
+      is_begun, SIGTERM, {"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "2000", "-o", "cut.npy"});
   EXPECT_EQ(result.signal, SIGTERM);
   EXPECT_THAT(result.err, HasSubstr("of 2000; the same command goes on"));
   EXPECT_LT(pieces().size(), 2000U);

@@ -228,16 +228,12 @@ TEST_F(JobCliTest, WrongUseIsRefused) {
 TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove_all(folder() / "job");
-    Process program(PROMIN_EXECUTABLE,
-                    {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job", "job", "--tiles", "10",
-                     "10", "-o", "cut.exr"},
-                    options_);
     const auto is_begun = [&] {
       return std::filesystem::is_directory(folder() / "job" / "ledger") && !pieces().empty();
     };
-    for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    program.send(signal);
-    const ProcessResult result = program.wait();
+    const ProcessResult result = signal_when(is_begun, signal,
+                                             {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job",
+                                              "job", "--tiles", "10", "10", "-o", "cut.exr"});
     EXPECT_EQ(result.signal, signal);
     EXPECT_THAT(result.err, HasSubstr("of 100; the same command goes on"));
     EXPECT_GT(pieces().size(), 0U);
@@ -249,17 +245,13 @@ TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
 
 // There is no next piece then that it is stopped before.
 TEST_F(JobCliTest, ASignalInTheLastPieceIsToldToo) {
-  Process program(PROMIN_EXECUTABLE,
-                  {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job", "job", "--pieces", "1",
-                   "-o", "cut.exr"},
-                  options_);
   const auto is_begun = [&] {
     const std::filesystem::path ledgers = folder() / "job" / "ledger";
     return std::filesystem::is_directory(ledgers) && !std::filesystem::is_empty(ledgers);
   };
-  for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  program.send(SIGINT);
-  const ProcessResult result = program.wait();
+  const ProcessResult result = signal_when(is_begun, SIGINT,
+                                           {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job",
+                                            "job", "--pieces", "1", "-o", "cut.exr"});
   EXPECT_EQ(result.signal, SIGINT);
   EXPECT_THAT(result.err, HasSubstr("stopped with the last piece; the same command goes on"));
   EXPECT_EQ(pieces().size(), 1U);

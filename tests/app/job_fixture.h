@@ -56,6 +56,15 @@ class JobFixture : public CliTest {
     return files;
   }
 
+  /// Sends a command a signal as soon as is_begun() says so, within a minute, and waits for its end.
+  template <typename IsBegun>
+  ProcessResult signal_when(const IsBegun& is_begun, int signal, const OptionValues& command) const {
+    Process program(PROMIN_EXECUTABLE, command, options_);
+    for (int i = 0; i < 6000 && !is_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    program.send(signal);
+    return program.wait();
+  }
+
   /// Cuts the first piece, empties the second and flips a bit of the third; returns all.
   std::vector<std::filesystem::path> damage_pieces() const {
     const auto files = pieces();

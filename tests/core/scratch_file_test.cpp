@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <array>
 #include <fstream>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "promin/error.h"
+#include "support/file_size_limit.h"
 #include "support/temp_folder.h"
 
 namespace promin {
@@ -38,27 +37,6 @@ class ScratchFileTest : public TempFolder {
     }
     return "";
   }
-};
-
-/// While one exists no file may grow beyond so many bytes.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t most_bytes) {
-    getrlimit(RLIMIT_FSIZE, &old_);
-    handler_ = signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{most_bytes, old_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &old_);
-    signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit old_{};
-  sighandler_t handler_ = SIG_DFL;
 };
 
 std::vector<std::byte> bytes_of(const std::string& text) {

@@ -5,16 +5,15 @@
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <bit>
-#include <csignal>
 #include <fstream>
 #include <limits>
 #include <tuple>
 
 #include "core/file.h"
 #include "promin/error.h"
+#include "support/file_size_limit.h"
 #include "support/temp_folder.h"
 
 namespace promin {
@@ -123,15 +122,10 @@ TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
     write_image(file, make_ramp(4, 4));
     const std::vector<std::byte> old = read_file(file);
 
-    // A file size limit stands for a full disk.
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit limit{};
-    getrlimit(RLIMIT_FSIZE, &limit);
-    const rlimit small{100, limit.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-    EXPECT_THROW(write_image(file, make_ramp(200, 200), {}, {}, channels, {}, exr), RunError) << name;
-    setrlimit(RLIMIT_FSIZE, &limit);
-    std::signal(SIGXFSZ, old_handler);
+    {
+      const FileSizeLimit limit(100);
+      EXPECT_THROW(write_image(file, make_ramp(200, 200), {}, {}, channels, {}, exr), RunError) << name;
+    }
 
     EXPECT_EQ(read_file(file), old) << name;
     fs::remove(file);

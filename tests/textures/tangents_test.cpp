@@ -404,8 +404,8 @@ struct Precedent {
 };
 
 /// The numbers are those of npm's package `mikktspace` 1.1.1, a WebAssembly of that program, for coordinates (u, 1 - v)
-/// and normals +Z. Each mesh ends in a triangle that stands alone,
-/// because the program leaves edges whose lower vertex is the highest of all unsorted.
+/// and normals +Z. Each mesh ends in a triangle that stands alone, because the program leaves edges whose lower vertex
+/// is the highest of all unsorted.
 std::vector<Precedent> precedents() {
   const std::array<vec4, 3> alone = {vec4(9, 0, 0, 0), vec4(10, 0, 1, 0), vec4(9, 1, 0, -1)};
   const vec4 left(0.0F);
