@@ -121,9 +121,9 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   }
   for (int writer = 1; temporary_.empty() || !live_files().add(temporary_); ++writer) {
     fs::path name = target_.stem();
-    if (writer > 1) name += "." + std::to_string(writer);
+    if (writer > 1) name.concat(".").concat(std::to_string(writer));
     // A folder may be seen by several machines.
-    name += ".tmp" + std::to_string(getpid()) + "-" + host_name();
+    name.concat(".tmp").concat(std::to_string(getpid())).concat("-").concat(host_name());
     name += target_.extension();
     temporary_ = folder / name;
   }

@@ -52,7 +52,6 @@ class Film {
 
   /// Makes room for so many pixels; the device is idle with respect to the film.
   void reserve(uint32_t pixel_count);
-  uint32_t capacity() const { return capacity_; }
 
   /// With FEATURE_LISTED_SAMPLES: puts samples on the film, where a picture of list_window() traces them; makes room
   /// for them. The device is idle with respect to the film.
