@@ -261,14 +261,10 @@ class Job:
         return self._native.arguments()
 
     def state(self, number: int) -> Literal["done", "missing", "bad"]:
-        """What the disk tells of a piece, which is read and hashed: "done", "missing", or "bad" where it is cut, damaged
-        or of another job."""
+        """What the disk tells of a piece, which is read and hashed whenever it is asked: "done", "missing", or "bad"
+        where it is cut, damaged or of another job."""
         state: Any = self._native.state_of(number)[0]
         return state  # type: ignore[no-any-return]
-
-    def verify(self, number: int) -> Literal["done", "missing", "bad"]:
-        """`state`, which hashes the piece whenever it is asked."""
-        return self.state(number)
 
     def why(self, number: int) -> str:
         """What is bad about a piece, "is cut"; empty where nothing is."""

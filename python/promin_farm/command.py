@@ -211,7 +211,7 @@ def _status(options: argparse.Namespace) -> int:
 
 def _verify(options: argparse.Namespace) -> int:
     job = jobs.open(options.folder)
-    states = {piece.number: job.verify(piece.number) for piece in job.pieces}
+    states = {piece.number: job.state(piece.number) for piece in job.pieces}
     bad = [number for number, state in states.items() if state == "bad"]
     for number in bad:
         print(

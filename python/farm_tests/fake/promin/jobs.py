@@ -162,8 +162,6 @@ class Job:
     def state(self, number: int) -> str:
         return self._read(number)[0]
 
-    verify = state
-
     def why(self, number: int) -> str:
         return self._read(number)[1]
 
