@@ -58,7 +58,9 @@ std::vector<Channel> make_channels(const Scene& scene, const Aovs& aovs, const A
 
 AovHeader describe_aovs(const Scene& scene, const AovSet& choice, DepthKind depth_kind) {
   AovHeader header{make_channels(scene, Aovs(), choice), {}};
-  if (choice.depth) header.metadata.emplace_back("promin:depth", depth_kind == DepthKind::kRay ? "ray" : "plane");
+  if (choice.depth) {
+    header.metadata.emplace_back("promin:depth", depth_kind_names()[static_cast<size_t>(depth_kind)]);
+  }
   if (choice.cryptomatte) {
     for (auto& entry : make_cryptomatte(scene, Aovs()).metadata) header.metadata.push_back(std::move(entry));
   }

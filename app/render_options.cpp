@@ -39,8 +39,6 @@ constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
 constexpr std::string_view kCryptomatte = "cryptomatte";
-constexpr std::array<std::string_view, 2> kErrorSpaces = {"linear", "display"};  // by their values
-constexpr std::array<std::string_view, 2> kDepthKinds = {"ray", "plane"};        // by their values
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
 /// Reads names between commas.
@@ -246,10 +244,15 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
             fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w); });
-  table.add("--error-in", fmt::format("{}", fmt::join(kErrorSpaces, "|")),
+  table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
             "The same: what errors are of: linear light, or what is shown, exposed, tone mapped and encoded as sRGB "
             "[linear]",
-            [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, kErrorSpaces); });
+            [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
+}
+
+std::span<const std::string_view> error_space_names() {
+  static constexpr std::array kNames = {std::string_view("linear"), std::string_view("display")};
+  return kNames;
 }
 
 std::optional<ErrorTarget> ErrorOptions::error_target() const {
@@ -325,9 +328,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) { options.aovs = options.aovs | read_aovs(w); });
   table.add_flag("--alpha", "Tell how much of each pixel the scene covers, and leave the background out",
                  options.aovs.alpha);
-  table.add("--depth", fmt::format("{}", fmt::join(kDepthKinds, "|")),
+  table.add("--depth", fmt::format("{}", fmt::join(depth_kind_names(), "|")),
             "The AOV depth: distance from the eye, or from the plane through it across the view [ray]",
-            [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, kDepthKinds); });
+            [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, depth_kind_names()); });
   table.add_flag("--half", "Keep an EXR's colours, normals and shares as halves: off by 1/2048 of them at most",
                  options.exr.is_half);
   table.add("--compression", fmt::format("{}", fmt::join(exr_compression_names(), "|")),

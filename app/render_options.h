@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -92,6 +93,9 @@ struct FrameRange {
 
 /// What errors are of: linear light, or what is shown of it.
 enum class ErrorSpace : uint32_t { kLinear, kDisplay };
+
+/// Names for people, by the value of the ErrorSpace.
+std::span<const std::string_view> error_space_names();
 
 /// How exact pictures are to be. What the user leaves open follows from the rest.
 struct ErrorOptions {

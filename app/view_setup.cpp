@@ -17,7 +17,6 @@ namespace promin::app {
 namespace {
 
 constexpr uint32_t kDefaultHeight = 720;
-constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
 
 std::string list_cameras(const Scene& scene) {
   std::string text;
@@ -88,17 +87,21 @@ void apply_pose(Camera& camera, const PoseOptions& pose, const Console& console)
 
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
   if (options.size) return *options.size;
-  if (camera.resolution != uvec2(0)) return camera.resolution;
-  const float aspect_ratio = camera.aspect_ratio > 0.0F ? camera.aspect_ratio : kDefaultAspectRatio;
-  const double width = std::round(static_cast<double>(kDefaultHeight) * static_cast<double>(aspect_ratio));
-  if (!(width >= 1.0 && width <= kMaxSide)) {
-    throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", aspect_ratio),
-                      scene.file.string(), "give --size"});
-  }
-  return {static_cast<uint32_t>(width), kDefaultHeight};
+  const std::optional<uvec2> size = default_size(camera);
+  if (size) return *size;
+  throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
+                    scene.file.string(), "give --size"});
 }
 
 }  // namespace
+
+std::optional<uvec2> default_size(const Camera& camera) {
+  if (camera.resolution != uvec2(0)) return camera.resolution;
+  const float aspect_ratio = camera.aspect_ratio > 0.0F ? camera.aspect_ratio : kDefaultAspectRatio;
+  const double width = std::round(static_cast<double>(kDefaultHeight) * static_cast<double>(aspect_ratio));
+  if (!(width >= 1.0 && width <= kMaxSide)) return {};
+  return uvec2(static_cast<uint32_t>(width), kDefaultHeight);
+}
 
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console) {
   View view;

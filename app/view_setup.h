@@ -13,6 +13,13 @@
 
 namespace promin::app {
 
+/// Of pictures for which neither the user nor the scene says another.
+inline constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
+
+/// The size of this camera's pictures where the user names none: what its file asks for, else a height of 720 pixels.
+/// Empty where its aspect ratio gives no width that a picture may have.
+std::optional<uvec2> default_size(const Camera& camera);
+
 /// The view that the options ask of this scene. A scene without a camera gets one that frames it. An orthographic
 /// camera with a field of view becomes a perspective one; a note says so. Throws UsageError for an unknown camera,
 /// parallel directions, a crop outside the picture.

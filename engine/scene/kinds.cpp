@@ -32,6 +32,11 @@ std::span<const std::string_view> pixel_filter_names() {
   return kNames;
 }
 
+std::span<const std::string_view> depth_kind_names() {
+  static constexpr std::array kNames = {std::string_view("ray"), std::string_view("plane")};
+  return kNames;
+}
+
 float default_width(PixelFilter filter) {
   static constexpr std::array kWidths = {
 #define PROMIN_PIXEL_FILTER(ENUMERATOR, NAME, WIDTH) static_cast<float>(WIDTH),

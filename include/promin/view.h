@@ -54,6 +54,9 @@ PROMIN_EXPORT float default_width(PixelFilter filter);
 /// the eye; kPlane: from the plane through the eye across the view, as compositors blur by.
 enum class DepthKind : uint32_t { kRay, kPlane };
 
+/// Names for people, by the value of the DepthKind; the first is "ray".
+PROMIN_EXPORT std::span<const std::string_view> depth_kind_names();
+
 /// The least and the largest width of a filter in pixels.
 inline constexpr float kMinFilterWidth = 0.01F;
 /// See kMinFilterWidth.

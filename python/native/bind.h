@@ -18,6 +18,8 @@ void bind_caster(nanobind::module_& module);
 void bind_renderer(nanobind::module_& module);
 /// Adds Job, PlannedJob and Runner.
 void bind_jobs(nanobind::module_& module);
+/// Adds what the command line knows: choices, defaults, options, and what these make of what the user leaves open.
+void bind_command_line(nanobind::module_& module);
 /// Adds functions on picture files, their comparison and their display.
 void bind_pictures(nanobind::module_& module);
 

@@ -18,5 +18,6 @@ NB_MODULE(_promin, module) {
   promin::python::bind_caster(module);
   promin::python::bind_renderer(module);
   promin::python::bind_jobs(module);
+  promin::python::bind_command_line(module);
   promin::python::bind_pictures(module);
 }

@@ -33,7 +33,7 @@ using Placement = std::pair<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, u
 
 void save(const std::string& file, const PictureArray& pixels, const Metadata& metadata,
           const std::optional<Placement>& placement, const nb::list& channels, const nb::dict& display,
-          const nb::dict& exr) {
+          const std::optional<nb::dict>& exr) {
   const Image image = read_image_array(pixels);
   std::vector<Channel> copies;
   for (const nb::handle row : channels) {
@@ -46,7 +46,7 @@ void save(const std::string& file, const PictureArray& pixels, const Metadata& m
                          {placement->second.first, placement->second.second}};
   }
   const DisplayTransform transform = read_display(display);
-  const ExrOptions options = read_exr_options(exr);
+  const ExrOptions options = exr ? read_exr_options(*exr) : ExrOptions();
   run_watched(nb::none(),
               [&](const ProgressCallback&) { write_image(file, image, metadata, crop, copies, transform, options); });
 }
@@ -106,7 +106,7 @@ nb::object write_image_array(Image image) {
 
 void bind_pictures(nb::module_& module) {
   module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
-             nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr"));
+             nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr").none());
   module.def("read_image", &load, nb::arg("file"));
   module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"));
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),

@@ -27,21 +27,6 @@ constexpr std::string_view kLightKinds[] = {"point", "directional", "spot", "hea
 constexpr std::string_view kAttenuations[] = {"none", "inverse_square"};
 constexpr std::string_view kAlphaModes[] = {"opaque", "mask", "blend"};
 constexpr std::string_view kProjections[] = {"perspective", "orthographic"};
-constexpr std::string_view kDepthKinds[] = {"ray", "plane"};
-using Names = std::span<const std::string_view>;
-
-// clang-format off
-// Names of enumerators, by their values.
-Names names_of(LightKind) { return kLightKinds; }
-Names names_of(Attenuation) { return kAttenuations; }
-Names names_of(AlphaMode) { return kAlphaModes; }
-Names names_of(Projection) { return kProjections; }
-Names names_of(DepthKind) { return kDepthKinds; }
-Names names_of(ToneMapping) { return tone_mapping_names(); }
-Names names_of(PixelFilter) { return pixel_filter_names(); }
-Names names_of(DebugView) { return debug_view_names(); }
-Names names_of(ExrCompression) { return exr_compression_names(); }
-// clang-format on
 
 using Model = decltype(Material::model);
 using Sky = decltype(Environment::sky);
@@ -112,15 +97,6 @@ void visit(Visitor&, std::monostate&) {}
 
 template <int N, typename T>
 using Vec = glm::vec<N, T, glm::defaultp>;
-
-/// The place of a name among others; throws UsageError with all of them.
-size_t find_name(Names names, const std::string& name, const std::string& what) {
-  const auto found = std::ranges::find(names, name);
-  if (found != names.end()) return static_cast<size_t>(found - names.begin());
-  std::string all;
-  for (const std::string_view one : names) all += (all.empty() ? "" : ", ") + std::string(one);
-  throw UsageError({"no " + what + " \"" + name + "\"", "", "choose one of: " + all});
-}
 
 template <typename T>
 T read_one(const nb::dict& record);
@@ -223,14 +199,21 @@ class Writer {
     return writer.record_;
   }
 
-  /// A number or text, or an enumerator as its name.
+  /// A number, an enumerator as its name, or a struct as a dict.
   template <typename T>
   void field(const std::string& name, T& value) {
     if constexpr (std::is_enum_v<T>) {
       put(name, nb::cast(std::string(names_of(value)[static_cast<size_t>(value)])));
+    } else if constexpr (std::is_class_v<T>) {
+      put(name, write_one(value));
     } else {
       put(name, nb::cast(value));
     }
+  }
+  void field(const std::string& name, std::string& value) { put(name, nb::cast(value)); }
+  template <typename T>
+  void field(const std::string& name, std::optional<T>& value) {
+    put(name, value ? nb::object(write_one(*value)) : nb::none());
   }
   template <int N, typename T>
   void field(const std::string& name, Vec<N, T>& value) {
@@ -258,7 +241,43 @@ class Writer {
   nb::dict record_;
 };
 
+template <typename T>
+std::optional<T> read_optional(const nb::dict& record, const std::string& name) {
+  if (!record.contains(name.c_str()) || record[name.c_str()].is_none()) return {};
+  T value{};
+  Reader(record).field(name, value);
+  return value;
+}
+
 }  // namespace
+
+// clang-format off
+Names names_of(LightKind) { return kLightKinds; }
+Names names_of(Attenuation) { return kAttenuations; }
+Names names_of(AlphaMode) { return kAlphaModes; }
+Names names_of(Projection) { return kProjections; }
+Names names_of(DepthKind) { return depth_kind_names(); }
+Names names_of(ToneMapping) { return tone_mapping_names(); }
+Names names_of(PixelFilter) { return pixel_filter_names(); }
+Names names_of(DebugView) { return debug_view_names(); }
+Names names_of(ExrCompression) { return exr_compression_names(); }
+// clang-format on
+
+size_t find_name(Names names, const std::string& name, const std::string& what) {
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return static_cast<size_t>(found - names.begin());
+  std::string all;
+  for (const std::string_view one : names) all += (all.empty() ? "" : ", ") + std::string(one);
+  throw UsageError({"no " + what + " \"" + name + "\"", "", "choose one of: " + all});
+}
+
+std::optional<float> read_real(const nb::dict& record, const std::string& name) {
+  return read_optional<float>(record, name);
+}
+
+std::optional<uint32_t> read_whole(const nb::dict& record, const std::string& name) {
+  return read_optional<uint32_t>(record, name);
+}
 
 Light read_light(const nb::dict& record) {
   return read_one<Light>(record);
@@ -304,8 +323,20 @@ ExrOptions read_exr_options(const nb::dict& record) {
   return read_one<ExrOptions>(record);
 }
 
+nb::dict write(const ExrOptions& options) {
+  return Writer::write_one(options);
+}
+
 View read_view(const nb::dict& record) {
   return read_one<View>(record);
+}
+
+nb::dict write(const View& view) {
+  return Writer::write_one(view);
+}
+
+nb::dict write(const ErrorTarget& target) {
+  return Writer::write_one(target);
 }
 
 RenderMode read_mode(const nb::dict& record) {

@@ -4,6 +4,11 @@
 
 #include <nanobind/nanobind.h>
 
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
 #include "promin/camera.h"
 #include "promin/display.h"
 #include "promin/environment.h"
@@ -18,6 +23,26 @@ namespace promin::python {
 // The library's structs as dicts of plain values and back: keys are the members' names, vectors are tuples, enumerators
 // are their names, what may be missing is None. The dataclasses of promin._records have the same fields. Reading throws
 // UsageError where a value is missing or none of the right kind, with the field's name.
+
+using Names = std::span<const std::string_view>;
+
+// Names of enumerators, by their values.
+Names names_of(LightKind);
+Names names_of(Attenuation);
+Names names_of(AlphaMode);
+Names names_of(Projection);
+Names names_of(DepthKind);
+Names names_of(ToneMapping);
+Names names_of(PixelFilter);
+Names names_of(DebugView);
+Names names_of(ExrCompression);
+
+/// The place of a name among others; throws UsageError with all of them, which says what there is none of.
+size_t find_name(Names names, const std::string& name, const std::string& what);
+
+// A field that may be missing or None.
+std::optional<float> read_real(const nanobind::dict& record, const std::string& name);
+std::optional<uint32_t> read_whole(const nanobind::dict& record, const std::string& name);
 
 Light read_light(const nanobind::dict& record);
 nanobind::dict write(const Light& light);
@@ -38,8 +63,11 @@ nanobind::dict write(const DisplayTransform& display);
 
 /// How an EXR is kept.
 ExrOptions read_exr_options(const nanobind::dict& record);
+nanobind::dict write(const ExrOptions& options);
 
 View read_view(const nanobind::dict& record);
+nanobind::dict write(const View& view);
+nanobind::dict write(const ErrorTarget& target);
 RenderMode read_mode(const nanobind::dict& record);
 
 /// One of "sphere", "plane", "cylinder", "cone", "box" and "capsule" by its fields.

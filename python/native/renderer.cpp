@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "bind.h"
+#include "command_line.h"
 #include "device.h"
 #include "in_process.h"
 #include "picture_arrays.h"
@@ -68,15 +69,19 @@ nb::dict write_aovs(Aovs aovs, const AovSet& choice, const uvec2& size) {
   return arrays;
 }
 
-/// Channels with their bits, and entries of an EXR's header.
-nb::tuple write_cryptomatte(Cryptomatte cryptomatte, const uvec2& size) {
+/// Channels with their bits.
+nb::list write_cryptomatte(Cryptomatte cryptomatte, const uvec2& size) {
   nb::list channels;
   for (Channel& channel : cryptomatte.channels) {
     channels.append(nb::make_tuple(channel.name, write_array<uint32_t>(std::move(channel.values), size)));
   }
-  nb::list metadata;
-  for (const auto& [name, value] : cryptomatte.metadata) metadata.append(nb::make_tuple(name, value));
-  return nb::make_tuple(channels, metadata);
+  return channels;
+}
+
+nb::dict write_metadata(const Metadata& metadata) {
+  nb::dict entries;
+  for (const auto& [name, value] : metadata) entries[name.c_str()] = value;
+  return entries;
 }
 
 nb::object write_error(const std::optional<PictureError>& error) {
@@ -128,7 +133,9 @@ class SharedRenderer {
     renderer_.emplace(std::move(renderer));
   }
 
-  nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::object& progress) {
+  /// `display` and the name of the scene's file are for the metadata alone.
+  nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::dict& display,
+                  const std::string& scene_file, const nb::object& progress) {
     const View view = read_view(record);
     Renderer& renderer = renderer_->get();
     RenderResult result;
@@ -140,6 +147,8 @@ class SharedRenderer {
     });
     nb::dict frame;
     const uvec2 size = result.image.size;
+    frame["metadata"] = write_metadata(describe_picture(view, read_display(display), result.error,
+                                                        gpu::info_of(device_->get()), scene_file, named_, aovs_));
     frame["cryptomatte"] = write_cryptomatte(std::move(cryptomatte), size);
     frame["aovs"] = write_aovs(std::move(result.aovs), aovs_, size);
     frame["rgb"] = write_image_array(std::move(result.image));
@@ -209,17 +218,15 @@ void bind_renderer(nb::module_& module) {
            nb::arg("device"), nb::arg("scene"), nb::arg("aovs"), nb::arg("builder"), nb::arg("bvh").none(),
            nb::arg("has_error_target"), nb::arg("mode"), nb::arg("expected_samples").none(), nb::arg("texture_bytes"),
            nb::arg("progress").none())
-      .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("progress").none())
+      .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("display"),
+           nb::arg("scene_file"), nb::arg("progress").none())
       .def("set_lights", &SharedRenderer::set_lights)
       .def("set_materials", &SharedRenderer::set_materials)
       .def("set_environment", &SharedRenderer::set_environment)
       .def("setup", &SharedRenderer::setup);
   module.def("list_aovs", &list_aovs);
   module.def("default_width", [](const std::string& filter) {
-    const auto names = pixel_filter_names();
-    const auto found = std::ranges::find(names, filter);
-    // An unknown one is refused with the view.
-    return found == names.end() ? 1.0F : default_width(static_cast<PixelFilter>(found - names.begin()));
+    return default_width(static_cast<PixelFilter>(find_name(pixel_filter_names(), filter, "filter")));
   });
 }
 

@@ -78,12 +78,7 @@ nb::list write_all(const std::vector<T>& values) {
 }
 
 LightChoice read_choice(const std::string& name) {
-  const auto names = light_choice_names();
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) {
-    throw UsageError({"no light \"" + name + "\"", "", "choose one of: auto, studio, headlight, none"});
-  }
-  return static_cast<LightChoice>(found - names.begin());
+  return static_cast<LightChoice>(find_name(light_choice_names(), name, "light"));
 }
 
 /// A copy with the light that the choice adds.
@@ -95,12 +90,8 @@ Scene light(const Scene& scene, const std::string& choice) {
 
 nb::dict frame(const Scene& scene, float aspect_ratio, const std::string& name) {
   if (name.empty()) return write(frame_scene(scene, aspect_ratio, framing_of(scene)));
-  const auto names = framing_names();
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) {
-    throw UsageError({"no framing \"" + name + "\"", "", "choose one of: three-quarter, front"});
-  }
-  return write(frame_scene(scene, aspect_ratio, static_cast<Framing>(found - names.begin())));
+  const auto framing = static_cast<Framing>(find_name(framing_names(), name, "framing"));
+  return write(frame_scene(scene, aspect_ratio, framing));
 }
 
 nb::object bounds(const Scene& scene) {

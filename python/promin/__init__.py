@@ -30,8 +30,9 @@ from promin._records import (
     TextureSlot,
     Unlit,
 )
-from promin._renderer import CameraLike, Renderer, View
+from promin._renderer import Renderer
 from promin._scene import ObjectInfo, Scene
+from promin._view import CameraLike, View
 
 __all__ = [
     "HIT_DTYPE",

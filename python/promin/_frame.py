@@ -21,7 +21,6 @@ from promin._records import Display, to_dict
 
 _MATTES = {"cryptomatte_object": "CryptoObject", "cryptomatte_material": "CryptoMaterial"}
 """Names of arrays, and of the layers that an EXR keeps them in."""
-_EXR = {"is_half": False, "compression": "zip", "is_multipart": False}
 
 
 @dataclass(frozen=True)
@@ -103,11 +102,11 @@ def cryptomatte_id(name: str) -> np.float32:
     return np.float32(_promin.cryptomatte_id(str(name)))
 
 
-def to_mattes(told: tuple[list[tuple[str, NDArray[np.uint32]]], object]) -> dict[str, NDArray[np.float32]]:
+def to_mattes(channels: list[tuple[str, NDArray[np.uint32]]]) -> dict[str, NDArray[np.float32]]:
     """The arrays that Frame.aovs has of Cryptomatte, of the library's channels; none of none."""
     mattes = {}
     for name, layer in _MATTES.items():
-        planes = [values for channel, values in told[0] if channel.startswith(layer)]
+        planes = [values for channel, values in channels if channel.startswith(layer)]
         if planes:
             stack = np.stack(planes, axis=-1).view(np.float32)
             mattes[name] = stack.reshape(*stack.shape[:2], -1, 2)
@@ -144,7 +143,7 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
 
 def write_image(path: str | os.PathLike[str], rgb: ArrayLike, display: Display = Display()) -> None:
     """Writes linear light (rows, columns, 3) as .exr, or as .png as `display` shows it. Raises UsageError, RunError."""
-    _promin.write_image(os.fsdecode(path), to_picture(rgb), [], None, [], to_dict(display), _EXR)
+    _promin.write_image(os.fsdecode(path), to_picture(rgb), [], None, [], to_dict(display), None)
 
 
 def to_picture(rgb: object) -> NDArray[np.float32]:

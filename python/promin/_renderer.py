@@ -9,10 +9,9 @@ import os
 import threading
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import floor
 from operator import index
 from pathlib import Path
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +23,22 @@ from promin._errors import UsageError
 from promin._frame import Frame, to_mattes
 from promin._records import Camera, Display, Environment, Light, Material, from_dict, to_dict
 from promin._scene import Scene, move_camera, move_light
-
-CameraLike = Union[Camera, str, int, None]
-"""A camera, or the name or number of one of the scene's; None: its first, or one that frames the scene."""
+from promin._view import (
+    CameraLike,
+    View,
+    change_view,
+    check_shading,
+    has_target,
+    limit_of,
+    mode_of,
+    of_view,
+    shows_light,
+    size_of,
+    to_record,
+)
 
 _ASPECT_RATIO = 16 / 9
-_HEIGHT = 720
+"""Of what frames a scene where no size is asked; a test holds it to the command line's."""
 _NO_ID = np.uint32(2**32 - 1)
 """What the AOV `object` is on a miss."""
 
@@ -44,45 +53,6 @@ class _Opened:
     """The scene with its light."""
     aovs: tuple[str, ...]
     """What its pictures tell."""
-
-
-@dataclass(frozen=True)
-class View:
-    """What of a scene is shown, and how well; the defaults are those of `promin render`."""
-
-    camera: CameraLike = None
-    """From where."""
-    size: tuple[int, int] | None = None
-    """Width and height in pixels; None: what the camera asks for, else a height of 720. The vertical field of view
-    holds."""
-    crop: tuple[int, int, int, int] | None = None
-    """x0, y0, x1, y1: the pixels to trace, half-open."""
-    spp: int = 1
-    """Samples a pixel; 1 samples the centre."""
-    max_depth: int | None = None
-    """Bounces; None: 5, or 8 with glass."""
-    target_error: float | None = None
-    """Each pixel takes samples until it claims to be this near (docs/model.md, "Error of a pixel"), in place of
-    `spp`."""
-    time_limit: float | None = None
-    """Seconds: the most exact picture that is complete by about then."""
-    min_spp: int | None = None
-    """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
-    max_spp: int | None = None
-    """The samples at which a pixel stops with an error target, a power of two; None: 256."""
-    error_in: str = "linear"
-    """What `target_error` is of: "linear" light, or the "display": what is shown, exposed, tone mapped and encoded as
-    sRGB, by `Renderer.display`, whatever a file is saved with."""
-    filter: str = "box"
-    """"box", "tent", "gauss" or "blackman-harris"."""
-    filter_width: float | None = None
-    """In pixels; None: the filter's own."""
-    depth: str = "ray"
-    """How the AOV `depth` is measured: "ray" from the eye, or "plane" along the view."""
-    debug_view: str = "full"
-    """"full" is light; or "normals", "uv", "object", "primitive", "depth", "steps"."""
-    shadows: bool = True
-    """Whether lights cast shadows."""
 
 
 class Renderer:
@@ -126,7 +96,7 @@ class Renderer:
         self._texture_memory = texture_memory
         self._expected_samples = None if expected_samples is None else _count(expected_samples, "expected_samples")
         self._aovs = _names(aovs)
-        self._view = _of_view(view)
+        self._view = of_view(view)
         self._changes: dict[str, Any] = {}
         self._make_private()
         self._open(progress=progress)
@@ -215,38 +185,23 @@ class Renderer:
         place of its fields. aovs: None are those that the Renderer was made with. Of a scene file the picture has the
         bits of `promin render` with the same options. Raises UsageError for what breaks the rules of
         include/promin/view.h or contradicts itself, RunError, Cancelled."""
-        given: dict[str, Any] = {
-            "camera": camera,
-            "size": size,
-            "crop": crop,
-            "spp": spp,
-            "max_depth": max_depth,
-            "target_error": target_error,
-            "time_limit": time_limit,
-            "min_spp": min_spp,
-            "max_spp": max_spp,
-            "error_in": error_in,
-            "filter": filter,
-            "filter_width": filter_width,
-            "depth": depth,
-            "debug_view": debug_view,
-            "shadows": shadows,
-        }
-        changes = {key: value for key, value in given.items() if value is not None}
-        whole = dataclasses.replace(self._view if view is None else _of_view(view), **changes)
+        given = locals()  # each field of a view is a keyword of its name
+        whole = change_view(self._view if view is None else of_view(view), given)
         names = self._aovs if aovs is None else _names(aovs)
-        _check_shading(whole, names)
+        check_shading(whole, names)
         opened = self._open(names, whole, progress)
         record, shown = self._describe_view(whole)
-        limit_s = None if whole.time_limit is None else _seconds(whole.time_limit)
-        result = opened.native.render(record, limit_s, progress)
+        path = self._scene.path
+        result = opened.native.render(
+            record, limit_of(whole), to_dict(shown), "" if path is None else Path(path).name, progress
+        )
         placement = None
         if record["crop"] is not None:
             placement = (record["crop"]["lo"], record["size"])
         return Frame(
             rgb=result["rgb"],
             aovs={**self._finish(result["aovs"], names), **to_mattes(result["cryptomatte"])},
-            metadata=self._describe(opened, record, shown, result),
+            metadata=result["metadata"],
             display=shown,
             error=result["error"],
             rays=result["rays"],
@@ -282,69 +237,13 @@ class Renderer:
                 raise
             self._changes.update(new)
 
-    # What a view becomes.
-
     def _describe_view(self, view: View) -> tuple[dict[str, Any], Display]:
-        size = None if view.size is None else _integers(view.size, 2, "size")
-        aspect = size[0] / size[1] if size and size[1] > 0 and size[0] > 0 else _ASPECT_RATIO
-        camera = self.camera(view.camera, aspect)
-        if size is None:
-            size = _integers(camera.resolution, 2, "resolution")
-            if size == (0, 0):
-                size = floor(_HEIGHT * (camera.aspect_ratio or _ASPECT_RATIO) + 0.5), _HEIGHT
-        shown = self.display if view.debug_view == "full" else Display()
-        crop = None if view.crop is None else _integers(view.crop, 4, "crop")
-        depth = self._lit().default_max_depth() if view.max_depth is None else view.max_depth
-        width = _promin.default_width(str(view.filter)) if view.filter_width is None else view.filter_width
-        record: dict[str, Any] = {
-            "camera": move_camera(camera, self._scene.native_center),
-            "size": size,
-            "crop": None if crop is None else {"lo": crop[:2], "hi": crop[2:]},
-            "samples_per_pixel": view.spp,
-            "error_target": None,
-            "depth_kind": view.depth,
-            "filter": view.filter,
-            "filter_width": width,
-            "max_depth": depth,
-            "mode": _mode(view),
-        }
-        _check_samples(view)
-        if _has_target(view):
-            record["error_target"] = _error_target(view, shown)
-        return record, shown
-
-    def _describe(
-        self, opened: _Opened, record: dict[str, Any], shown: Display, result: dict[str, Any]
-    ) -> dict[str, str]:
-        """The metadata that `promin render` gives an EXR."""
-        info = opened.device.info
-        described = {
-            "promin:version": _promin.__version__,
-            "promin:scene": "" if self._scene.path is None else Path(self._scene.path).name,
-            "promin:device": info.name,
-            "promin:driver": info.driver,
-            "promin:size": "{}x{}".format(*record["size"]),
-            "promin:spp": str(record["samples_per_pixel"]),
-            "promin:filter": f"{record['filter']} {record['filter_width']:g}",
-            "promin:max_depth": str(record["max_depth"]),
-            "promin:exposure_ev": f"{shown.exposure_ev:g}",
-            "promin:tone_mapping": shown.tone_mapping,
-        }
-        error = result["error"]
-        if error is not None:
-            target = record["error_target"]
-            rows, columns, _ = result["rgb"].shape
-            described["promin:spp"] = f"{error['samples'] / (rows * columns):.9g}"
-            described["promin:min_spp"] = str(target["min_samples"])
-            described["promin:max_spp"] = str(target["max_samples"])
-            if target["display"] is not None:
-                described["promin:error_in"] = "display"
-            described["promin:error_target"] = f"{error['target']:.9g}"
-            described["promin:error_max"] = f"{error['largest_claim']:.9g}"
-            described["promin:error_unmet"] = str(error["unmet_pixels"])
-        if "depth" in opened.aovs:
-            described["promin:depth"] = record["depth_kind"]
-        return {**described, **dict(result["cryptomatte"][1])}
+        """The view for the native module, and how its picture is shown."""
+        size = size_of(view)
+        aspect_ratio = size[0] / size[1] if size is not None and min(size) > 0 else _ASPECT_RATIO
+        camera = move_camera(self.camera(view.camera, aspect_ratio), self._scene.native_center)
+        shown = self.display if shows_light(view) else Display()
+        return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """The AOVs of these names in the world and by the file's numbers."""
@@ -386,8 +285,8 @@ class Renderer:
             asked,
             self._builder,
             self._bvh,
-            _has_target(view),
-            _mode(view),
+            has_target(view),
+            mode_of(view),
             self._expected_samples,
             self._texture_memory,
             progress,
@@ -453,68 +352,6 @@ class Renderer:
         self._make_private()
 
 
-def _of_view(view: object) -> View:
-    if isinstance(view, View):
-        return view
-    raise UsageError(f"{view!r:.80} is no promin.View")
-
-
-def _mode(view: View) -> dict[str, Any]:
-    """What of the view is compiled in."""
-    return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
-
-
-def _check_shading(view: View, aovs: tuple[str, ...]) -> None:
-    """A debug view is no light: it has no error and no background to leave out."""
-    if view.debug_view == "full":
-        return
-    for name, lacks in (("error", "error"), ("alpha", "background")):
-        if name in aovs:
-            raise UsageError(
-                f'aovs with "{name}" and debug_view="{view.debug_view}" contradict each other: a debug view has no '
-                f"{lacks}; leave one out"
-            )
-
-
-def _has_target(view: View) -> bool:
-    return view.target_error is not None or view.time_limit is not None
-
-
-def _check_samples(view: View) -> None:
-    """The rules of promin's options about samples."""
-    if view.error_in not in ("linear", "display"):
-        raise UsageError(f'error_in is {view.error_in!r:.80}; give "linear" or "display"')
-    if _has_target(view):
-        name = "time_limit" if view.target_error is None else "target_error"
-        if isinstance(view.spp, (int, np.integer)) and view.spp > 1:
-            raise UsageError(
-                f"{name} and spp={view.spp} contradict each other; leave one out; min_spp and max_spp limit the samples"
-            )
-    elif view.min_spp is not None or view.max_spp is not None:
-        name = "max_spp" if view.min_spp is None else "min_spp"
-        raise UsageError(f"{name} needs an error to aim at; give target_error as well")
-    elif view.error_in != "linear":
-        raise UsageError("error_in needs an error to aim at; give target_error as well")
-
-
-def _error_target(view: View, shown: Display) -> dict[str, Any]:
-    """As promin's options --target-error, --time-limit, --min-spp, --max-spp and --error-in are taken."""
-    error = 2.0**-16 if view.target_error is None else view.target_error
-    least = 4 if view.time_limit is None and isinstance(error, (int, float)) and error >= 1 / 32 else 8
-    if view.min_spp is not None:
-        least = view.min_spp
-    elif view.max_spp is not None:
-        least = min(least, view.max_spp)
-    most = max(256, least) if view.max_spp is None else view.max_spp
-    return {
-        "error": error,
-        "min_samples": least,
-        "max_samples": most,
-        "white": 2.0**-shown.exposure_ev,
-        "display": to_dict(shown) if view.error_in == "display" else None,
-    }
-
-
 def _names(aovs: Iterable[str]) -> tuple[str, ...]:
     if isinstance(aovs, str):
         raise UsageError(f"aovs is {aovs!r}; give a tuple of names")
@@ -529,16 +366,6 @@ def _all_of(records: Iterable[Any], kind: type[Any]) -> list[Any]:
     return result
 
 
-def _integers(values: Any, count: int, what: str) -> tuple[int, ...]:
-    try:
-        result = tuple(index(value) for value in values)
-    except TypeError:
-        result = ()
-    if len(result) != count or any(not 0 <= value < 2**32 for value in result):
-        raise UsageError(f"{what} is {values!r:.80}; give {count} whole numbers of pixels")
-    return result
-
-
 def _count(value: object, what: str) -> int:
     try:
         result = index(value)  # type: ignore[arg-type]
@@ -547,9 +374,3 @@ def _count(value: object, what: str) -> int:
     if not 0 <= result < 2**64:
         raise UsageError(f"{what} is {value!r:.80}; give a whole number from 0 on")
     return result
-
-
-def _seconds(value: object) -> float:
-    if isinstance(value, (int, float)) and 0 < value < float("inf"):
-        return float(value)
-    raise UsageError(f"time_limit is {value!r:.80}; give a positive number of seconds")

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "command_line.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <CLI/App.hpp>
+#include <utility>
+#include <vector>
+
+#include "bind.h"
+#include "picture_run.h"
+#include "promin/lighting.h"
+#include "promin/setup_stats.h"
+#include "records.h"
+#include "render_options.h"
+#include "view_setup.h"
+
+namespace nb = nanobind;
+
+namespace promin::python {
+namespace {
+
+nb::list write_names(Names names) {
+  nb::list all;
+  for (const std::string_view name : names) all.append(std::string(name));
+  return all;
+}
+
+/// The words that arguments take, by the names that Python gives these.
+nb::dict list_choices() {
+  nb::dict choices;
+  choices["alpha_mode"] = write_names(names_of(AlphaMode()));
+  choices["attenuation"] = write_names(names_of(Attenuation()));
+  choices["builder"] = write_names(builder_names());
+  choices["compression"] = write_names(names_of(ExrCompression()));
+  choices["debug_view"] = write_names(names_of(DebugView()));
+  choices["depth"] = write_names(names_of(DepthKind()));
+  choices["error_in"] = write_names(app::error_space_names());
+  choices["filter"] = write_names(names_of(PixelFilter()));
+  choices["framing"] = write_names(framing_names());
+  choices["kind"] = write_names(names_of(LightKind()));
+  choices["light"] = write_names(light_choice_names());
+  choices["projection"] = write_names(names_of(Projection()));
+  choices["tone_mapping"] = write_names(names_of(ToneMapping()));
+  return choices;
+}
+
+template <typename Model>
+nb::dict write_default_material() {
+  Material material;
+  material.model = Model();
+  return write(material);
+}
+
+template <typename Sky>
+nb::object write_default_sky() {
+  Environment environment;
+  environment.sky = Sky();
+  return write(environment)["sky"];
+}
+
+/// The library's structs as they are without a word of the user's, and what the command line takes in its place.
+nb::dict list_defaults() {
+  nb::dict defaults;
+  defaults["Camera"] = write(Camera());
+  defaults["Display"] = write(DisplayTransform());
+  defaults["Environment"] = write(Environment());
+  defaults["GradientSky"] = write_default_sky<GradientSky>();
+  defaults["Light"] = write(Light());
+  defaults["MetallicRoughness"] = write_default_material<MetallicRoughness>();
+  defaults["Phong"] = write_default_material<Phong>();
+  defaults["Studio"] = write_default_sky<Studio>();
+  defaults["Unlit"] = write_default_material<Unlit>();
+  defaults["ErrorTarget"] = write(ErrorTarget());
+  defaults["ExrOptions"] = write(ExrOptions());
+  defaults["View"] = write(View());
+  defaults["builder"] = RendererOptions().builder;
+  defaults["texture_memory"] = RendererOptions().texture_bytes;
+  defaults["aspect_ratio"] = app::kDefaultAspectRatio;
+  defaults["height"] = app::default_size(Camera())->y;
+  defaults["coarse_min_spp"] = kMinRefinedSamples;
+  defaults["max_depth_of_glass"] = kMaxDepthOfGlass;
+  return defaults;
+}
+
+/// The options and arguments of `promin render`, by the names that messages have.
+std::vector<std::string> list_options() {
+  CLI::App command("", "render");
+  app::RenderOptions options;
+  app::add_render_options(command, options);
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::vector<std::string>& words = option->get_lnames();
+    names.push_back(words.empty() ? option->get_name(true) : "--" + words.front());
+  }
+  return names;
+}
+
+/// Width and height of a camera's pictures for which no size is asked; None where there are none.
+std::optional<std::pair<uint32_t, uint32_t>> default_size(const nb::dict& camera) {
+  const std::optional<uvec2> size = app::default_size(read_camera(camera));
+  if (!size) return {};
+  return std::pair(size->x, size->y);
+}
+
+/// The ErrorTarget of a view of which `asked` has the fields target_error, time_limit, min_spp, max_spp and error_in,
+/// shown like this, as the command line makes it of its options; None where pixels have samples of a fixed number.
+nb::object error_target(const nb::dict& asked, const nb::dict& display) {
+  app::ErrorOptions options;
+  options.target = read_real(asked, "target_error");
+  options.time_limit_s = read_real(asked, "time_limit");
+  options.min_samples = read_whole(asked, "min_spp");
+  options.max_samples = read_whole(asked, "max_spp");
+  const auto space = nb::cast<std::string>(asked["error_in"]);
+  options.space = static_cast<app::ErrorSpace>(find_name(app::error_space_names(), space, "error_in"));
+  std::optional<ErrorTarget> target = options.error_target();
+  if (!target) return nb::none();
+  app::fit_to_display(*target, read_display(display));
+  return write(*target);
+}
+
+}  // namespace
+
+Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
+                          const gpu::DeviceInfo& device, const std::string& scene_file, const Scene& named,
+                          const AovSet& aovs) {
+  app::RunStats stats;
+  stats.device = device;
+  stats.scene_file = scene_file;
+  stats.view = view;
+  stats.display = display;
+  if (error) stats.errors.push_back(*error);
+  return app::make_metadata(stats, {}, app::describe_aovs(named, aovs, view.depth_kind));
+}
+
+void bind_command_line(nb::module_& module) {
+  module.def("list_choices", &list_choices);
+  module.def("list_defaults", &list_defaults);
+  module.def("list_options", &list_options);
+  module.def("default_size", &default_size, nb::arg("camera"));
+  module.def("error_target", &error_target, nb::arg("asked"), nb::arg("display"));
+}
+
+}  // namespace promin::python

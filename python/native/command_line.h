@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <optional>
+#include <string>
+
+#include "promin/aovs.h"
+#include "promin/device_info.h"
+#include "promin/display.h"
+#include "promin/image.h"
+#include "promin/renderer.h"
+#include "promin/scene.h"
+#include "promin/view.h"
+
+namespace promin::python {
+
+/// What the header of an EXR tells of a picture that `promin render` has written. `named` has the objects and materials
+/// whose names Cryptomatte tells.
+Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
+                          const gpu::DeviceInfo& device, const std::string& scene_file, const Scene& named,
+                          const AovSet& aovs);
+
+}  // namespace promin::python

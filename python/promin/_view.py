@@ -1,0 +1,168 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What is shown of a scene, and the rules of it; what is left open is decided as the command line does."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from operator import index
+from typing import Any, Union
+
+import numpy as np
+
+from promin import _promin
+from promin._errors import UsageError
+from promin._records import Camera, Display, to_dict
+
+CameraLike = Union[Camera, str, int, None]
+"""A camera, or the name or number of one of the scene's; None: its first, or one that frames the scene."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What of a scene is shown, and how well; the defaults are those of `promin render`."""
+
+    # test_tables.py holds these words against the library's tables.
+
+    camera: CameraLike = None
+    """From where."""
+    size: tuple[int, int] | None = None
+    """Width and height in pixels; None: what the camera asks for, else a height of 720. The vertical field of view
+    holds."""
+    crop: tuple[int, int, int, int] | None = None
+    """x0, y0, x1, y1: the pixels to trace, half-open."""
+    spp: int = 1
+    """Samples a pixel; 1 samples the centre."""
+    max_depth: int | None = None
+    """Bounces; None: 5, or 8 with glass."""
+    target_error: float | None = None
+    """Each pixel takes samples until it claims to be this near (docs/model.md, "Error of a pixel"), in place of
+    `spp`."""
+    time_limit: float | None = None
+    """Seconds: the most exact picture that is complete by about then."""
+    min_spp: int | None = None
+    """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
+    max_spp: int | None = None
+    """The samples at which a pixel stops with an error target, a power of two; None: 256."""
+    error_in: str = "linear"
+    """What `target_error` is of: "linear" light, or the "display": what is shown, exposed, tone mapped and encoded as
+    sRGB, by `Renderer.display`, whatever a file is saved with."""
+    filter: str = "box"
+    """"box", "tent", "gauss" or "blackman-harris"."""
+    filter_width: float | None = None
+    """In pixels; None: the filter's own."""
+    depth: str = "ray"
+    """How the AOV `depth` is measured: "ray" from the eye, or "plane" along the view."""
+    debug_view: str = "full"
+    """"full" is light; or "normals", "uv", "object", "primitive", "depth", "steps"."""
+    shadows: bool = True
+    """Whether lights cast shadows."""
+
+
+def of_view(view: object) -> View:
+    if isinstance(view, View):
+        return view
+    raise UsageError(f"{view!r:.80} is no promin.View")
+
+
+def change_view(view: View, given: Mapping[str, Any]) -> View:
+    """The view with what of its fields is given and not None."""
+    names = [field.name for field in dataclasses.fields(View)]
+    return dataclasses.replace(view, **{name: given[name] for name in names if given[name] is not None})
+
+
+def shows_light(view: View) -> bool:
+    return view.debug_view == View.debug_view
+
+
+def has_target(view: View) -> bool:
+    return view.target_error is not None or view.time_limit is not None
+
+
+def mode_of(view: View) -> dict[str, Any]:
+    """What of the view is compiled in."""
+    return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
+
+
+def size_of(view: View) -> tuple[int, ...] | None:
+    return None if view.size is None else _integers(view.size, 2, "size")
+
+
+def limit_of(view: View) -> float | None:
+    """In seconds."""
+    limit = view.time_limit
+    if limit is None or (isinstance(limit, (int, float)) and 0 < limit < float("inf")):
+        return limit if limit is None else float(limit)
+    raise UsageError(f"time_limit is {limit!r:.80}; give a positive number of seconds")
+
+
+def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_depth: int) -> dict[str, Any]:
+    """The view as the native module takes it, from a camera that it takes, shown like this."""
+    size = size_of(view) or _promin.default_size(camera)
+    if size is None:
+        raise UsageError(
+            f"the camera's aspect_ratio of {camera['aspect_ratio']!r:.80} gives no sensible width; give size"
+        )
+    crop = None if view.crop is None else _integers(view.crop, 4, "crop")
+    width = _promin.default_width(str(view.filter)) if view.filter_width is None else view.filter_width
+    _check_samples(view)
+    asked = {
+        "target_error": view.target_error,
+        "time_limit": view.time_limit,
+        "min_spp": view.min_spp,
+        "max_spp": view.max_spp,
+        "error_in": view.error_in,
+    }
+    return {
+        "camera": camera,
+        "size": size,
+        "crop": None if crop is None else {"lo": crop[:2], "hi": crop[2:]},
+        "samples_per_pixel": view.spp,
+        "error_target": _promin.error_target(asked, to_dict(shown)),
+        "depth_kind": view.depth,
+        "filter": view.filter,
+        "filter_width": width,
+        "max_depth": default_max_depth if view.max_depth is None else view.max_depth,
+        "mode": mode_of(view),
+    }
+
+
+def check_shading(view: View, aovs: tuple[str, ...]) -> None:
+    """A debug view is no light: it has no error and no background to leave out."""
+    if shows_light(view):
+        return
+    for name, lacks in (("error", "error"), ("alpha", "background")):
+        if name in aovs:
+            raise UsageError(
+                f'aovs with "{name}" and debug_view="{view.debug_view}" contradict each other: a debug view has no '
+                f"{lacks}; leave one out"
+            )
+
+
+def _check_samples(view: View) -> None:
+    """The rules of promin's options about samples."""
+    spaces = _promin.list_choices()["error_in"]
+    if view.error_in not in spaces:
+        raise UsageError(f"error_in is {view.error_in!r:.80}; give " + " or ".join(f'"{name}"' for name in spaces))
+    if has_target(view):
+        name = "time_limit" if view.target_error is None else "target_error"
+        if isinstance(view.spp, (int, np.integer)) and view.spp > 1:
+            raise UsageError(
+                f"{name} and spp={view.spp} contradict each other; leave one out; min_spp and max_spp limit the samples"
+            )
+        return
+    for name in ("min_spp", "max_spp", "error_in"):
+        if getattr(view, name) != getattr(View, name):
+            raise UsageError(f"{name} needs an error to aim at; give target_error as well")
+
+
+def _integers(values: Any, count: int, what: str) -> tuple[int, ...]:
+    try:
+        result = tuple(index(value) for value in values)
+    except TypeError:
+        result = ()
+    if len(result) != count or any(not 0 <= value < 2**32 for value in result):
+        raise UsageError(f"{what} is {values!r:.80}; give {count} whole numbers of pixels")
+    return result
