@@ -38,7 +38,7 @@ from promin._view import (
 )
 
 _ASPECT_RATIO = 16 / 9
-"""Of what frames a scene where no size is asked; a test holds it to the command line's."""
+"""Of the camera that frames a scene where no size is asked, as `promin render` has it (test_tables.py)."""
 _NO_ID = np.uint32(2**32 - 1)
 """What the AOV `object` is on a miss."""
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from operator import index
 from typing import Any, Union
 
@@ -62,6 +63,7 @@ class View:
 
 
 def of_view(view: object) -> View:
+    """The view itself. Raises UsageError for what is none."""
     if isinstance(view, View):
         return view
     raise UsageError(f"{view!r:.80} is no promin.View")
@@ -87,14 +89,17 @@ def mode_of(view: View) -> dict[str, Any]:
 
 
 def size_of(view: View) -> tuple[int, ...] | None:
+    """In pixels; None: as the camera asks."""
     return None if view.size is None else _integers(view.size, 2, "size")
 
 
 def limit_of(view: View) -> float | None:
-    """In seconds."""
+    """In seconds; None: there is none."""
     limit = view.time_limit
-    if limit is None or (isinstance(limit, (int, float)) and 0 < limit < float("inf")):
-        return limit if limit is None else float(limit)
+    if limit is None:
+        return None
+    if isinstance(limit, (int, float)) and 0 < limit < inf:
+        return float(limit)
     raise UsageError(f"time_limit is {limit!r:.80}; give a positive number of seconds")
 
 
@@ -110,7 +115,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
     _check_samples(view)
     asked = {
         "target_error": view.target_error,
-        "time_limit": view.time_limit,
+        "time_limit": limit_of(view),
         "min_spp": view.min_spp,
         "max_spp": view.max_spp,
         "error_in": view.error_in,

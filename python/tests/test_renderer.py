@@ -43,6 +43,11 @@ from promin import _promin
             {"size": (40, 30), "target_error": 0.02, "error_in": "display"},
             [*"--size 40 30 --target-error 0.02 --error-in display".split()],
         ),
+        (
+            "metallic_roughness.gltf",
+            {"size": (24, 18), "target_error": 0.02, "error_in": "display"},
+            [*"--size 24 18 --target-error 0.02 --error-in display".split()],
+        ),
     ],
 )
 def test_a_file_has_the_bits_of_promin_render(
@@ -252,7 +257,7 @@ def test_what_a_renderer_tells_is_a_copy(box: promin.Scene) -> None:
         (promin.View(max_spp=8), "max_spp needs an error to aim at; give target_error as well"),
         (promin.View(spp=2, target_error=0.5), "target_error and spp=2 contradict each other"),
         (promin.View(error_in="display"), "error_in needs an error to aim at; give target_error as well"),
-        (promin.View(target_error=0.5, error_in="log"), "error_in is 'log'; give \"linear\" or \"display\""),
+        (promin.View(target_error=0.5, error_in="log"), 'error_in is \'log\'; give "linear" or "display"'),
         (promin.View(spp=2, time_limit=0.5), "time_limit and spp=2 contradict each other"),
     ],
 )
@@ -342,6 +347,25 @@ def test_records_have_the_fields_of_the_library(scenes: Path) -> None:
     first = twin.render(view)
     twin.update(lights=twin.lights, materials=twin.materials, environment=twin.environment)
     assert (twin.render(view).rgb == first.rgb).all()
+
+
+def test_no_time_gives_the_first_picture_alone(box: promin.Scene) -> None:
+    renderer = promin.Renderer(box)
+    frame = renderer.render(size=(8, 8), time_limit=1e-9)
+    assert frame.error is not None and frame.metadata["promin:error_target"] == "0.125"
+    assert (renderer.render(size=(8, 8), target_error=frame.error["target"], min_spp=8).rgb == frame.rgb).all()
+    with pytest.raises(promin.UsageError, match="time_limit is 'soon'; give a positive number of seconds"):
+        renderer.render(size=(8, 8), time_limit="soon")  # type: ignore[arg-type]
+
+
+def test_a_camera_may_ask_for_a_size(box: promin.Scene) -> None:
+    renderer = promin.Renderer(box, view=promin.View(debug_view="uv"))
+    for options, size in (({"resolution": (24, 16)}, (24, 16)), ({"aspect_ratio": 0.0125}, (9, 720))):
+        camera = dataclasses.replace(renderer.camera(), **options)
+        assert renderer.render(camera=camera).size == size
+        assert renderer.render(camera=camera, size=(8, 8)).size == (8, 8)
+    with pytest.raises(promin.UsageError, match="aspect_ratio of 1000000.0 gives no sensible width; give size"):
+        renderer.render(camera=promin.Camera(aspect_ratio=1e6))
 
 
 def test_unknown_names_are_refused(box: promin.Scene) -> None:
