@@ -7,7 +7,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "bind.h"
@@ -137,18 +136,21 @@ class SharedRenderer {
   nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::dict& display,
                   const std::string& scene_file, const nb::object& progress) {
     const View view = read_view(record);
+    const DisplayTransform shown = read_display(display);
+    const gpu::DeviceInfo info = gpu::info_of(device_->get());
     Renderer& renderer = renderer_->get();
     RenderResult result;
+    Metadata metadata;
     Cryptomatte cryptomatte;
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
       result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
       if (aovs_.cryptomatte) cryptomatte = make_cryptomatte(named_, result.aovs);
+      metadata = describe_picture(view, shown, result.error, info, scene_file, named_, aovs_);
     });
     nb::dict frame;
     const uvec2 size = result.image.size;
-    frame["metadata"] = write_metadata(describe_picture(view, read_display(display), result.error,
-                                                        gpu::info_of(device_->get()), scene_file, named_, aovs_));
+    frame["metadata"] = write_metadata(metadata);
     frame["cryptomatte"] = write_cryptomatte(std::move(cryptomatte), size);
     frame["aovs"] = write_aovs(std::move(result.aovs), aovs_, size);
     frame["rgb"] = write_image_array(std::move(result.image));
