@@ -34,6 +34,8 @@ def test_wrong_use_is_refused_in_one_line(farm: Farm) -> None:
         ((*base, *out, "--scheduler", "slurm", "--device", "A"), "set PROMIN_DEVICE"),
         ((*base, *out, "--scheduler", "tcp://a:1", "--workers", "2"), "it has its own"),
         ((*base, *out, "--scheduler", "slurm", "--queue-config", "nothing.toml"), "no settings can be read"),
+        ((*base, *out, "--queue-config", "queue.toml"), "--queue-config is of a queue's jobs, and there is no queue"),
+        ((*base, *out, "--scheduler", "tcp://a:1", "--queue-config", "queue.toml"), "give --scheduler slurm, pbs, lsf"),
         (("resume", farm.job, "--nonsense"), "--nonsense is not known"),
         (("audit", farm.job, "--share", "200%"), "give a part, as 1% or 0.01"),
     ):

@@ -80,6 +80,11 @@ def _check(options: Options) -> None:
         raise jobs.UsageError(
             "--device is of this machine's workers, on the command line; set PROMIN_DEVICE where the others start"
         )
+    if options.queue_config and scheduler not in QUEUES:
+        raise jobs.UsageError(
+            "--queue-config is of a queue's jobs, and there is no queue, on the command line; "
+            f"give --scheduler {', '.join(QUEUES)}"
+        )
     if scheduler and "://" in scheduler and options.workers:
         raise jobs.UsageError("--workers is not for a cluster that there is, on the command line; it has its own")
 
