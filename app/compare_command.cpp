@@ -15,10 +15,11 @@
 #include <optional>
 
 #include "core/srgb.h"
-#include "image/read_image.h"
+#include "image/compare_channels.h"
 #include "outputs.h"
 #include "promin/compare.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "rows.h"
 
 namespace promin::app {
@@ -38,13 +39,6 @@ struct CompareOptions {
   double pixels_per_degree = kPixelsPerDegree;
   bool prints_json = false;
 };
-
-/// Throws InputError where one picture has channels that the other lacks.
-void check_channels(const NamedPicture& first, const NamedPicture& second) {
-  if (first.channels == second.channels) return;
-  throw InputError({"the pictures differ in channels", fmt::format("{} against {}", first.channels, second.channels),
-                    "write both with the same --aov"});
-}
 
 PictureEncoding common_encoding(const CompareOptions& options) {
   const PictureEncoding encoding = encoding_of(options.first);
@@ -86,21 +80,58 @@ nlohmann::json number_or_null(double number) {
   return std::isfinite(number) ? nlohmann::json(number) : nlohmann::json(nullptr);
 }
 
-void print_json(const PictureDifference& difference) {
-  const nlohmann::ordered_json json = {{"pixels", difference.pixel_count},
-                                       {"mean", difference.mean},
-                                       {"rmse", difference.rmse},
-                                       {"psnr_db", number_or_null(difference.psnr_db)},
-                                       {"flip", difference.flip},
-                                       {"largest", number_or_null(difference.largest)},
-                                       {"largest_at", {difference.largest_at.x, difference.largest_at.y}},
-                                       {"different", difference.different_count},
-                                       {"non_finite", difference.non_finite_count}};
+void print_json(const PictureDifference& difference, const std::vector<ChannelDifference>& others) {
+  nlohmann::ordered_json json = {{"pixels", difference.pixel_count},
+                                 {"mean", difference.mean},
+                                 {"rmse", difference.rmse},
+                                 {"psnr_db", number_or_null(difference.psnr_db)},
+                                 {"flip", difference.flip},
+                                 {"largest", number_or_null(difference.largest)},
+                                 {"largest_at", {difference.largest_at.x, difference.largest_at.y}},
+                                 {"different", difference.different_count},
+                                 {"non_finite", difference.non_finite_count}};
+  json["channels"] = nlohmann::ordered_json::object();
+  for (const ChannelDifference& other : others) {
+    json["channels"][other.name] = {{"largest", number_or_null(other.largest)},
+                                    {"largest_at", {other.largest_at.x, other.largest_at.y}},
+                                    {"different", other.different_count}};
+  }
   fmt::print("{}\n", json.dump(2));
 }
 
-double percent_different(const PictureDifference& difference) {
+/// Of a picture, or of a channel of it.
+template <typename Difference>
+double percent_different(const Difference& difference) {
   return 100.0 * static_cast<double>(difference.different_count) / static_cast<double>(difference.pixel_count);
+}
+
+template <typename Difference>
+std::string describe_largest(const Difference& difference) {
+  const std::string largest = fmt::format("{:.6g}", difference.largest);
+  if (difference.largest == 0.0) return largest;
+  return largest + fmt::format(", at pixel {} {}", difference.largest_at.x, difference.largest_at.y);
+}
+
+template <typename Difference>
+std::string describe_different(const Difference& difference, double fail) {
+  return fmt::format("{} pixels ({:.4g} %) differ by more than {:g}", difference.different_count,
+                     percent_different(difference), fail);
+}
+
+/// Those that differ, a line each.
+void print_channels(const std::vector<ChannelDifference>& others, double fail) {
+  std::vector<std::string> lines;
+  size_t equal = 0;
+  for (const ChannelDifference& other : others) {
+    if (other.largest == 0.0) {
+      ++equal;
+      continue;
+    }
+    lines.push_back(
+        fmt::format("{}: largest {}; {}", other.name, describe_largest(other), describe_different(other, fail)));
+  }
+  if (equal > 0) lines.push_back(fmt::format("{} beside R, G and B are equal", equal));
+  promin::app::print_rows("channels", lines);
 }
 
 void print_rows(const PictureDifference& difference, double fail) {
@@ -108,16 +139,21 @@ void print_rows(const PictureDifference& difference, double fail) {
   print_row("RMSE", fmt::format("{:.6g}", difference.rmse));
   print_row("PSNR", fmt::format("{:.6g} dB", difference.psnr_db));
   print_row("FLIP", fmt::format("{:.6g}", difference.flip));
-  std::string largest = fmt::format("{:.6g}", difference.largest);
-  if (difference.largest > 0.0) {
-    largest += fmt::format(", at pixel {} {}", difference.largest_at.x, difference.largest_at.y);
-  }
-  print_row("largest", largest);
-  print_row("over", fmt::format("{} pixels ({:.4g} %) differ by more than {:g}", difference.different_count,
-                                percent_different(difference), fail));
+  print_row("largest", describe_largest(difference));
+  print_row("over", describe_different(difference, fail));
   if (difference.non_finite_count > 0) {
     print_row("not finite", fmt::format("{} pixels have a NaN or an infinity", difference.non_finite_count));
   }
+}
+
+/// Throws DifferenceError where more pixels differ than may. `in` says of which channel.
+template <typename Difference>
+void check_limit(const Difference& difference, const std::string& in, const CompareOptions& options) {
+  if (percent_different(difference) <= options.fail_percent) return;
+  throw DifferenceError({fmt::format("{} pixels differ by more than {:g}{}, the most at pixel {} {} by {:.6g}",
+                                     difference.different_count, *options.fail, in, difference.largest_at.x,
+                                     difference.largest_at.y, difference.largest),
+                         fmt::format("{} against {}", options.second.string(), options.first.string()), ""});
 }
 
 void compare(const CompareOptions& options) {
@@ -126,23 +162,22 @@ void compare(const CompareOptions& options) {
     check_outputs({options.first, options.second}, {*options.difference}, std::nullopt);
   }
   const PictureEncoding encoding = common_encoding(options);
-  const NamedPicture first = read_named_picture(options.first);
-  const NamedPicture second = read_named_picture(options.second);
-  check_channels(first, second);
+  const Image first = read_image(options.first);
+  const Image second = read_image(options.second);
   const double fail = options.fail.value_or(0.0);
   const PictureDifference difference = compare_pictures(
-      first.image, second.image, {.encoding = encoding, .fail = fail, .pixels_per_degree = options.pixels_per_degree});
-  if (options.difference) write_difference(*options.difference, first.image, second.image, difference);
+      first, second, {.encoding = encoding, .fail = fail, .pixels_per_degree = options.pixels_per_degree});
+  const std::vector<ChannelDifference> others = compare_other_channels(options.first, options.second, fail);
+  if (options.difference) write_difference(*options.difference, first, second, difference);
   if (options.prints_json) {
-    print_json(difference);
+    print_json(difference, others);
   } else {
     print_rows(difference, fail);
+    print_channels(others, fail);
   }
-  if (!options.fail || percent_different(difference) <= options.fail_percent) return;
-  throw DifferenceError(
-      {fmt::format("{} pixels differ by more than {:g}, the most at pixel {} {} by {:.6g}", difference.different_count,
-                   fail, difference.largest_at.x, difference.largest_at.y, difference.largest),
-       fmt::format("{} against {}", options.second.string(), options.first.string()), ""});
+  if (!options.fail) return;
+  check_limit(difference, "", options);
+  for (const ChannelDifference& other : others) check_limit(other, " in " + other.name, options);
 }
 
 }  // namespace
@@ -153,7 +188,8 @@ Command add_compare_command(CLI::App& program) {
   OptionTable table(command);
   table.add_required("FIRST", "", "A picture: .exr of linear light, .png and others of sRGB",
                      [=](const OptionValues& words) { options->first = words.text(); });
-  table.add_required("SECOND", "", "Another of the same size and channels; R, G and B are compared",
+  table.add_required("SECOND", "",
+                     "Another of the same size and channels; all of them are compared, those of all parts of an EXR",
                      [=](const OptionValues& words) { options->second = words.text(); });
   table.add("-o,--output", "FILE",
             "Write where they differ: .png what a viewer sees (FLIP) in colours from black to white, .exr the absolute "

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/rounding.h"
 #include "core/srgb.h"
+#include "image/difference_of.h"
 #include "image/flip.h"
 #include "promin/error.h"
 
@@ -32,13 +33,6 @@ void check_sizes(const Image& reference, const Image& test) {
   }
 }
 
-/// Of one channel; infinite where only one is a finite number, or both are other ones.
-double difference_of(float a, float b) {
-  if (std::isfinite(a) && std::isfinite(b)) return std::abs(static_cast<double>(a) - static_cast<double>(b));
-  const bool is_same = a == b || (std::isnan(a) && std::isnan(b));
-  return is_same ? 0.0 : std::numeric_limits<double>::infinity();
-}
-
 /// Of a row, so that sums do not hang on the number of threads.
 struct RowDifference {
   double sum = 0.0;
@@ -55,7 +49,8 @@ RowDifference compare_rows(const Image& reference, const Image& test, uint32_t y
     const vec3& a = reference.at(x, y);
     const vec3& b = test.at(x, y);
     double largest = 0.0;
-    for (int i = 0; i < 3; ++i) largest = std::max(largest, difference_of(a[i], b[i]));
+    for (int i = 0; i < 3; ++i)
+      largest = std::max(largest, difference_of(static_cast<double>(a[i]), static_cast<double>(b[i])));
     if (largest > row.largest) {
       row.largest = largest;
       row.largest_x = x;
@@ -64,7 +59,7 @@ RowDifference compare_rows(const Image& reference, const Image& test, uint32_t y
     if (!is_finite(a) || !is_finite(b)) continue;
     ++row.finite;
     for (int i = 0; i < 3; ++i) {
-      const double difference = difference_of(a[i], b[i]);
+      const double difference = difference_of(static_cast<double>(a[i]), static_cast<double>(b[i]));
       row.sum += difference;
       row.squares += difference * difference;
     }

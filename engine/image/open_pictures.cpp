@@ -133,6 +133,8 @@ PicturesPlugin load_plugin() {
   find_function(library, "promin_pictures_open_bytes", file, plugin.open_bytes);
   find_function(library, "promin_pictures_read_rgb", file, plugin.read_rgb);
   find_function(library, "promin_pictures_read_rgba", file, plugin.read_rgba);
+  find_function(library, "promin_pictures_describe_part", file, plugin.describe_part);
+  find_function(library, "promin_pictures_read_rows", file, plugin.read_rows);
   find_function(library, "promin_pictures_close", file, plugin.close);
   return plugin;
 }

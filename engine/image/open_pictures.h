@@ -19,6 +19,8 @@ struct PicturesPlugin {
   decltype(&promin_pictures_open_bytes) open_bytes = nullptr;
   decltype(&promin_pictures_read_rgb) read_rgb = nullptr;
   decltype(&promin_pictures_read_rgba) read_rgba = nullptr;
+  decltype(&promin_pictures_describe_part) describe_part = nullptr;
+  decltype(&promin_pictures_read_rows) read_rows = nullptr;
   decltype(&promin_pictures_close) close = nullptr;
 };
 

@@ -10,15 +10,6 @@
 
 namespace promin {
 
-/// A picture with the names of all channels of its file, in their order, R, G and B among them.
-struct NamedPicture {
-  Image image;
-  std::string channels;
-};
-
-/// Does what read_image does.
-NamedPicture read_named_picture(const std::filesystem::path& file);
-
 /// Does what read_image does, and refuses a picture of more pixels in a row or more rows before its pixels are read.
 Image read_image_within(const std::filesystem::path& file, const uvec2& most);
 

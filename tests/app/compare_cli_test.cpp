@@ -3,6 +3,8 @@
 // `promin compare`.
 #include <gmock/gmock.h>
 
+#include <bit>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/cli_fixture.h"
@@ -27,7 +29,8 @@ class CompareCliTest : public CliTest {
   }
 
   ProcessResult compare(const OptionValues& more) const {
-    OptionValues arguments = {"compare"};
+    // Of so low a resolution FLIP's filters are small, and quick.
+    OptionValues arguments = {"compare", "--pixels-per-degree", "5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
@@ -88,6 +91,87 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   write("text.exr", "no picture");
   expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
+}
+
+/// Two EXRs of the same colours, in one part and in several, of 200 rows: more than are held at a time.
+class ComparePartsCliTest : public CompareCliTest {
+ protected:
+  static constexpr uvec2 kSize{600, 200};
+  static constexpr size_t kPixels = size_t{kSize.x} * kSize.y;
+
+  void SetUp() override {
+    CompareCliTest::SetUp();
+    channels_ = {{"Z", false, std::vector<uint32_t>(kPixels, std::bit_cast<uint32_t>(0.5F))},
+                 {"object", true, std::vector<uint32_t>(kPixels, 7)}};
+    for (const char* letter : {"X", "Y", "Z"}) {
+      for (const char* name : {"N.", "P.", "shading_normal."}) {
+        channels_.push_back({name + std::string(letter), false, std::vector<uint32_t>(kPixels)});
+      }
+    }
+    channels_.front().values.front() = std::bit_cast<uint32_t>(std::numeric_limits<float>::infinity());
+    write_parts("one.exr", false);
+    write_parts("parts.exr", true);
+  }
+
+  void write_parts(const std::string& file, bool is_multipart) const {
+    const Image image{kSize, std::vector<vec3>(kPixels, vec3(0.5F))};
+    write_image(folder() / file, image, {}, std::nullopt, channels_, {}, {.is_multipart = is_multipart});
+  }
+
+  std::vector<Channel> channels_;
+};
+
+TEST_F(ComparePartsCliTest, OnePartEqualsSeveral) {
+  for (const char* first : {"one.exr", "parts.exr"}) {
+    for (const char* second : {"one.exr", "parts.exr"}) {
+      const ProcessResult same = compare({first, second, "--fail", "0"});
+      EXPECT_EQ(same.exit_code, 0) << same.err;
+      EXPECT_THAT(same.out, HasSubstr("channels    11 beside R, G and B are equal\n"));
+    }
+  }
+}
+
+TEST_F(ComparePartsCliTest, EveryPartIsCompared) {
+  channels_[0].values[kPixels - 3] = std::bit_cast<uint32_t>(0.75F);
+  channels_[1].values[5] = 9;
+  for (const bool is_multipart : {false, true}) {
+    write_parts("other.exr", is_multipart);
+    for (const char* first : {"one.exr", "parts.exr"}) {
+      const ProcessResult other = compare({first, "other.exr", "--fail", "0.25"});
+      EXPECT_EQ(other.exit_code, 5);
+      EXPECT_THAT(other.err,
+                  HasSubstr("differ by more than 0.25 in object, the most at pixel 5 0 by 2, other.exr against"));
+      EXPECT_THAT(other.out, HasSubstr("mean        0\n"));
+      EXPECT_THAT(other.out, HasSubstr("Z: largest 0.25, at pixel 597 199; "));
+      EXPECT_THAT(other.out, HasSubstr("object: largest 2, at pixel 5 0; "));
+      EXPECT_THAT(other.out, HasSubstr("9 beside R, G and B are equal\n"));
+    }
+  }
+  EXPECT_EQ(compare({"one.exr", "other.exr", "--fail", "2"}).exit_code, 0);
+  const ProcessResult nearer = compare({"one.exr", "other.exr", "--json", "--fail", "0.125"});
+  EXPECT_EQ(nearer.exit_code, 5);
+  EXPECT_THAT(nearer.err, HasSubstr("differ by more than 0.125 in Z, the most at pixel 597 199 by 0.25"));
+  const json figures = json::parse(nearer.out).at("channels");
+  EXPECT_EQ(figures.size(), 11U);
+  EXPECT_EQ(figures.at("Z"), json({{"largest", 0.25}, {"largest_at", {597, 199}}, {"different", 1}}));
+  EXPECT_EQ(figures.at("N.X").at("different"), 0);
+  // Of an infinity on one side alone there is no difference that is a number.
+  channels_[0].values.front() = 0;
+  write_parts("other.exr", true);
+  const ProcessResult infinite = compare({"one.exr", "other.exr", "--json", "--fail", "1e9"});
+  EXPECT_EQ(infinite.exit_code, 5);
+  EXPECT_THAT(infinite.err, HasSubstr("in Z, the most at pixel 0 0 by inf"));
+  EXPECT_EQ(json::parse(infinite.out)["channels"]["Z"]["largest"], nullptr);
+}
+
+TEST_F(ComparePartsCliTest, PartsThatOneHasAreSaid) {
+  channels_.resize(1);
+  for (const bool is_multipart : {false, true}) {
+    write_parts("other.exr", is_multipart);
+    for (const char* first : {"one.exr", "parts.exr"}) {
+      expect_failure(compare({"other.exr", first}), 3, "the pictures differ in channels, R G B Z against R G B Z ");
+    }
+  }
 }
 
 }  // namespace

@@ -237,6 +237,67 @@ TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
   }
 }
 
+/// A part of an EXR that another program might write, of 40 x 50 pixels.
+struct ForeignPart {
+  std::string name;
+  std::vector<std::string> channels;
+  /// Of each pixel all channels.
+  std::vector<float> values;
+  /// 0 where it lies in rows.
+  int tile_size = 0;
+};
+
+void write_foreign(const std::filesystem::path& file, const std::vector<ForeignPart>& parts) {
+  std::vector<OIIO::ImageSpec> specs;
+  for (const ForeignPart& part : parts) {
+    OIIO::ImageSpec spec(40, 50, static_cast<int>(part.channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = part.channels;
+    spec.y = -7;
+    spec.tile_width = spec.tile_height = part.tile_size;
+    spec.attribute("oiio:subimagename", part.name);
+    specs.push_back(spec);
+  }
+  const auto output = OIIO::ImageOutput::create(file.string());
+  ASSERT_TRUE(output->open(file.string(), static_cast<int>(specs.size()), specs.data())) << output->geterror();
+  for (size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) {
+      ASSERT_TRUE(output->open(file.string(), specs[i], OIIO::ImageOutput::AppendSubimage));
+    }
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, parts[i].values.data())) << output->geterror();
+  }
+  ASSERT_TRUE(output->close());
+}
+
+TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
+  const auto numbers = [](size_t channels) {
+    std::vector<float> values(channels * 40 * 50);
+    std::iota(values.begin(), values.end(), 0.0F);
+    return values;
+  };
+  const ForeignPart rows{"main", {"R", "G", "B", "Z"}, numbers(4)};
+  ForeignPart tiles = rows;
+  tiles.tile_size = 16;
+  write_foreign(folder() / "rows.exr", {rows});
+  write_foreign(folder() / "tiles.exr", {tiles});
+  const ProcessResult same = run({"compare", "rows.exr", "tiles.exr", "--fail", "0"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  tiles.values[4 * (33 * 40 + 39) + 3] += 0.5F;
+  write_foreign(folder() / "tiles.exr", {tiles});
+  EXPECT_THAT(run({"compare", "rows.exr", "tiles.exr"}).out, testing::HasSubstr("Z: largest 0.5, at pixel 39 33; 1 "));
+
+  // A part that has not the name of what it holds goes before its channels' names.
+  const std::vector<ForeignPart> eyes = {{"left", {"R", "G", "B"}, numbers(3)}, {"right", {"R", "G", "B"}, numbers(3)}};
+  std::vector<ForeignPart> other_eyes = eyes;
+  other_eyes[1].values[4] += 0.25F;
+  write_foreign(folder() / "eyes.exr", eyes);
+  write_foreign(folder() / "other_eyes.exr", other_eyes);
+  const ProcessResult second_eye = run({"compare", "eyes.exr", "other_eyes.exr", "--fail", "0"});
+  EXPECT_EQ(second_eye.exit_code, 5);
+  EXPECT_THAT(second_eye.out, testing::HasSubstr("right.G: largest 0.25, at pixel 1 0; 1 "));
+  expect_failure(run({"compare", "rows.exr", "eyes.exr"}), 3,
+                 "the pictures differ in channels, R G B Z against R G B right.R right.G right.B");
+}
+
 TEST_F(ExrCliTest, OptionsOfExrsWantOne) {
   for (const OptionValues& option :
        {OptionValues{"--half"}, {"--multipart"}, {"--compression", "piz"}, {"--depth", "plane"}, {"--aov", "depth"}}) {

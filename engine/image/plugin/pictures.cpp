@@ -25,7 +25,10 @@ struct ProminPicturesReader {
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
   int first_channel = -1;
-  std::string channel_names;
+  /// Of the part that was described last.
+  std::string part_name;
+  std::vector<std::string> channel_names;
+  std::vector<ProminPicturesChannel> channels;
 };
 
 namespace {
@@ -331,15 +334,102 @@ int find_rgb(const OIIO::ImageSpec& spec) {
   return -1;
 }
 
+bool is_flat(const OIIO::ImageSpec& spec) {
+  return spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep;
+}
+
+bool is_exr(const ProminPicturesReader& reader) {
+  return std::string_view(reader.input->format_name()) == "openexr";
+}
+
 ProminPicturesInfo describe(ProminPicturesReader& reader) {
   const OIIO::ImageSpec& spec = reader.input->spec();
-  const bool is_flat = spec.width >= 1 && spec.height >= 1 && spec.depth <= 1 && !spec.deep;
   reader.first_channel = find_rgb(spec);
-  for (const std::string& name : spec.channelnames) {
-    reader.channel_names += reader.channel_names.empty() ? name : " " + name;
+  // What other formats have several of are pictures that follow each other.
+  const int parts = is_exr(reader) ? std::max(spec.get_int_attribute("oiio:subimages", 1), 1) : 1;
+  return {is_flat(spec) ? static_cast<uint64_t>(spec.width) : 0, is_flat(spec) ? static_cast<uint64_t>(spec.height) : 0,
+          is_flat(spec) ? 1U : 0U, reader.first_channel, static_cast<uint32_t>(parts)};
+}
+
+/// Whether a channel's integers are told as such, not as parts of the largest: they say what a thing is, not how light.
+bool is_integer(const ProminPicturesReader& reader, const OIIO::TypeDesc& type) {
+  return is_exr(reader) && type == OIIO::TypeDesc::UINT32;
+}
+
+OIIO::ImageSpec part_spec(ProminPicturesReader& reader, uint32_t part) {
+  if (!reader.input) throw std::runtime_error("the file has no parts");
+  if (!reader.input->seek_subimage(static_cast<int>(part), 0)) {
+    const std::string why = first_line(reader.input->geterror());
+    throw std::runtime_error(why.empty() ? "a part of it cannot be read" : why);
   }
-  return {is_flat ? static_cast<uint64_t>(spec.width) : 0, is_flat ? static_cast<uint64_t>(spec.height) : 0,
-          is_flat ? 1U : 0U, reader.first_channel, reader.channel_names.c_str()};
+  return reader.input->spec();
+}
+
+ProminPicturesPart describe_part(ProminPicturesReader& reader, uint32_t part) {
+  const OIIO::ImageSpec spec = part_spec(reader, part);
+  reader.part_name = spec.get_string_attribute("oiio:subimagename").c_str();
+  reader.channel_names = spec.channelnames;
+  reader.channels.clear();
+  for (int i = 0; i < spec.nchannels; ++i) {
+    const bool has_integers = is_integer(reader, spec.channelformat(i));
+    reader.channels.push_back({reader.channel_names[static_cast<size_t>(i)].c_str(),
+                               static_cast<uint32_t>(has_integers ? PROMIN_PICTURES_UINT32 : PROMIN_PICTURES_FLOAT)});
+  }
+  return {static_cast<uint64_t>(std::max(spec.width, 0)),
+          static_cast<uint64_t>(std::max(spec.height, 0)),
+          is_flat(spec) ? 1U : 0U,
+          reader.part_name.c_str(),
+          reader.channels.data(),
+          reader.channels.size()};
+}
+
+/// Rows of a part as the file keeps them, from `begin` to `end` in the part's own count, and where these begin.
+struct NativeRows {
+  std::vector<unsigned char> bytes;
+  size_t skipped_bytes = 0;
+};
+
+NativeRows read_native(ProminPicturesReader& reader, uint32_t part, const OIIO::ImageSpec& spec, int begin, int end) {
+  OIIO::ImageInput& input = *reader.input;
+  const size_t row_bytes = spec.scanline_bytes(true);
+  NativeRows rows;
+  bool is_read = false;
+  if (spec.tile_height > 0) {
+    // Tiles are read whole.
+    const int first = begin / spec.tile_height * spec.tile_height;
+    const int last = std::min((end + spec.tile_height - 1) / spec.tile_height * spec.tile_height, spec.height);
+    rows.bytes.resize(static_cast<size_t>(last - first) * row_bytes);
+    rows.skipped_bytes = static_cast<size_t>(begin - first) * row_bytes;
+    is_read = input.read_tiles(static_cast<int>(part), 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + last,
+                               spec.z, spec.z + 1, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN, rows.bytes.data());
+  } else {
+    rows.bytes.resize(static_cast<size_t>(end - begin) * row_bytes);
+    is_read = input.read_scanlines(static_cast<int>(part), 0, spec.y + begin, spec.y + end, spec.z, 0, spec.nchannels,
+                                   OIIO::TypeDesc::UNKNOWN, rows.bytes.data());
+  }
+  if (!is_read) throw std::runtime_error(first_line(input.geterror()));
+  return rows;
+}
+
+void read_rows(ProminPicturesReader& reader, uint32_t part, uint32_t first_row, uint32_t row_count, uint32_t* values) {
+  const OIIO::ImageSpec spec = part_spec(reader, part);
+  const auto begin = static_cast<int>(first_row);
+  const auto end = static_cast<int>(first_row + row_count);
+  const NativeRows rows = read_native(reader, part, spec, begin, end);
+  const auto stride = static_cast<OIIO::stride_t>(spec.pixel_bytes(true));
+  const auto channel_count = static_cast<size_t>(spec.nchannels);
+  const auto value_stride = static_cast<OIIO::stride_t>(channel_count * sizeof(uint32_t));
+  const unsigned char* from = rows.bytes.data() + rows.skipped_bytes;
+  for (size_t i = 0; i < channel_count; ++i) {
+    const OIIO::TypeDesc type = spec.channelformat(static_cast<int>(i));
+    // Of integers the same type on both sides: a copy.
+    const OIIO::TypeDesc to = is_integer(reader, type) ? type : OIIO::TypeDesc(OIIO::TypeDesc::FLOAT);
+    const bool is_done =
+        OIIO::convert_image(1, spec.width, end - begin, 1, from, type, stride, OIIO::AutoStride, OIIO::AutoStride,
+                            values + i, to, value_stride, OIIO::AutoStride, OIIO::AutoStride);
+    if (!is_done) throw std::runtime_error("its numbers are of a kind that is not known");
+    from += type.size();
+  }
 }
 
 /// The number of channels that are read for RGBA: grey, grey and alpha, colours, colours and alpha.
@@ -406,7 +496,7 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
     if (std::string_view(format) == "webp") {
       opened->webp = {static_cast<const unsigned char*>(bytes), byte_count};
       const auto [width, height] = read_webp_size(opened->webp);
-      *info = {width, height, 1, -1, opened->channel_names.c_str()};
+      *info = {width, height, 1, -1, 1};
       *reader = opened.release();
       return;
     }
@@ -451,6 +541,16 @@ int promin_pictures_read_rgb(ProminPicturesReader* reader, float* pixels, Promin
       throw std::runtime_error(first_line(reader->input->geterror()));
     }
   });
+}
+
+int promin_pictures_describe_part(ProminPicturesReader* reader, uint32_t part, ProminPicturesPart* info,
+                                  ProminPicturesMessage* message) {
+  return guard(message, [&] { *info = describe_part(*reader, part); });
+}
+
+int promin_pictures_read_rows(ProminPicturesReader* reader, uint32_t part, uint32_t first_row, uint32_t row_count,
+                              void* pixels, ProminPicturesMessage* message) {
+  return guard(message, [&] { read_rows(*reader, part, first_row, row_count, static_cast<uint32_t*>(pixels)); });
 }
 
 void promin_pictures_close(ProminPicturesReader* reader) {

@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 5
+#define PROMIN_PICTURES_INTERFACE 6
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -99,8 +99,20 @@ struct ProminPicturesInfo {
   uint32_t is_flat;
   /// The first of three channels named R, G, B; -1 where there are none.
   int32_t first_rgb_channel;
-  /// Names of all channels with spaces between, the reader's; empty for WebP.
-  const char* channel_names;
+  /// Parts of an EXR, of which the above is said of the first; else 1.
+  uint32_t part_count;
+};
+
+/// A part of an EXR, or the one picture. What it leads to is the reader's, until the next part is described.
+struct ProminPicturesPart {
+  uint64_t width, height;
+  /// 0 for volumes and deep pictures.
+  uint32_t is_flat;
+  /// Empty where the file names none.
+  const char* name;
+  /// Those with integers are of PROMIN_PICTURES_UINT32, and all others of PROMIN_PICTURES_FLOAT.
+  const struct ProminPicturesChannel* channels;
+  size_t channel_count;
 };
 
 /// The PROMIN_PICTURES_INTERFACE that the plugin was built with.
@@ -140,6 +152,15 @@ int promin_pictures_read_rgba(struct ProminPicturesReader* reader, unsigned char
 
 /// Fills the caller's 3 * width * height floats with R, G, B of each pixel, without conversion of colours.
 int promin_pictures_read_rgb(struct ProminPicturesReader* reader, float* pixels, struct ProminPicturesMessage* message);
+
+/// Describes a part by its number from 0; not for what promin_pictures_open_bytes gave.
+int promin_pictures_describe_part(struct ProminPicturesReader* reader, uint32_t part, struct ProminPicturesPart* info,
+                                  struct ProminPicturesMessage* message);
+
+/// Fills four bytes of the caller's for each channel of each pixel of some rows of a part: the integers of an EXR, and
+/// floats of all else, without conversion of colours. EXRs are read fast by multiples of 32 rows.
+int promin_pictures_read_rows(struct ProminPicturesReader* reader, uint32_t part, uint32_t first_row,
+                              uint32_t row_count, void* pixels, struct ProminPicturesMessage* message);
 
 /// Closes what promin_pictures_open gave; nothing happens to null.
 void promin_pictures_close(struct ProminPicturesReader* reader);
