@@ -35,7 +35,7 @@ struct CompareOptions {
   std::optional<fs::path> difference;
   /// Without a limit pictures may differ as they like.
   std::optional<double> fail;
-  double fail_percent = 0.0;
+  std::optional<double> fail_percent;
   double pixels_per_degree = kPixelsPerDegree;
   bool prints_json = false;
 };
@@ -149,7 +149,7 @@ void print_rows(const PictureDifference& difference, double fail) {
 /// Throws DifferenceError where more pixels differ than may. `in` says of which channel.
 template <typename Difference>
 void check_limit(const Difference& difference, const std::string& in, const CompareOptions& options) {
-  if (percent_different(difference) <= options.fail_percent) return;
+  if (percent_different(difference) <= options.fail_percent.value_or(0.0)) return;
   throw DifferenceError({fmt::format("{} pixels differ by more than {:g}{}, the most at pixel {} {} by {:.6g}",
                                      difference.different_count, *options.fail, in, difference.largest_at.x,
                                      difference.largest_at.y, difference.largest),
@@ -157,6 +157,10 @@ void check_limit(const Difference& difference, const std::string& in, const Comp
 }
 
 void compare(const CompareOptions& options) {
+  if (options.fail_percent && !options.fail) {
+    throw UsageError(
+        {"--fail-percent has no limit of which it allows more", "on the command line", "give --fail as well"});
+  }
   if (options.difference) {
     check_pictures({*options.difference});
     check_outputs({options.first, options.second}, {*options.difference}, std::nullopt);

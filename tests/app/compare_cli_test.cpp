@@ -90,6 +90,8 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures differ in channels, R G B against R G B Z");
   write("text.exr", "no picture");
   expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
+  expect_failure(compare({"a.exr", "b.exr", "--fail-percent", "3"}), 2,
+                 "--fail-percent has no limit of which it allows more");
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
 
