@@ -403,7 +403,7 @@ void check_error_options(const RenderOptions& options) {
         {fmt::format("{} needs an error to aim at", name), "on the command line", "give --target-error as well"});
   }
   const std::string_view name = error.target ? "--target-error" : "--time-limit";
-  if (options.view.samples_per_pixel > 1) {
+  if (options.view.samples_per_pixel) {
     throw UsageError({fmt::format("{} and --spp contradict each other", name), "on the command line",
                       "leave one out; --min-spp and --max-spp limit the samples"});
   }

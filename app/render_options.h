@@ -65,7 +65,8 @@ struct LookOptions {
 struct ViewOptions {
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
-  uint32_t samples_per_pixel = View{}.samples_per_pixel;
+  /// View's where it is not given.
+  std::optional<uint32_t> samples_per_pixel = std::nullopt;
   PixelFilter filter = PixelFilter::kBox;
   /// In pixels; the filter's own where it is not given.
   std::optional<float> filter_width = std::nullopt;

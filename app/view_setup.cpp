@@ -113,7 +113,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
     throw UsageError({fmt::format("--crop reaches beyond the picture of {}x{}", view.size.x, view.size.y),
                       "on the command line", "stay within it or give a larger --size"});
   }
-  view.samples_per_pixel = options.samples_per_pixel;
+  view.samples_per_pixel = options.samples_per_pixel.value_or(View{}.samples_per_pixel);
   view.filter = options.filter;
   view.filter_width = options.filter_width.value_or(default_width(options.filter));
   view.max_depth = options.max_depth.value_or(default_max_depth(scene));

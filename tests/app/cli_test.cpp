@@ -94,6 +94,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--target-error takes a number from 1.52588e-05"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--spp", "4"},
        "--target-error and --spp contradict each other"},
+      {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--spp", "1"},
+       "--target-error and --spp contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--time-limit", "1", "--shading", "uv"},
        "--time-limit and --shading contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs an error to aim at"},
