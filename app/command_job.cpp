@@ -44,6 +44,8 @@ struct OptionOfJobs {
   bool names_file = false;
   /// Not where each who works on a job chooses for themselves.
   bool is_kept = true;
+  /// Where it is given this one word it counts as not given, as that is what it is then whatever the scene.
+  std::string_view default_word = "";
   /// Who says it instead, where a job's arguments have no place for it.
   const char* said_elsewhere = nullptr;
 };
@@ -52,7 +54,14 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "SCENE", .is_in_manifest = false, .names_file = true},
     {.name = "RAYS.npy", .is_in_manifest = false, .names_file = true},
     {.name = "--bvh", .is_in_manifest = false, .names_file = true},
+    {.name = "--compression", .default_word = "zip"},
+    {.name = "--depth", .default_word = "ray"},
     {.name = "--environment", .names_file = true},
+    {.name = "--environment-intensity", .default_word = "1"},
+    {.name = "--environment-rotation", .default_word = "0"},
+    {.name = "--error-in", .default_word = "linear"},
+    {.name = "--exposure", .default_word = "auto"},
+    {.name = "--filter", .default_word = "box"},
     {.name = "--path", .names_file = true},
     {.name = "--output", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
     {.name = "--offsets", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
@@ -72,12 +81,18 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "--features", .is_in_manifest = false},
     {.name = "--pieces", .is_in_manifest = false},
     {.name = "--repeat", .is_in_manifest = false},
+    {.name = "--shading", .default_word = "full"},
+    {.name = "--spp", .default_word = "1"},
     {.name = "--tiles", .is_in_manifest = false}};
 
 const OptionOfJobs& option_of_jobs(std::string_view name) {
   static constexpr OptionOfJobs kOrdinary;
   const auto* const row = std::ranges::find(kOptionsOfJobs, name, &OptionOfJobs::name);
   return row != std::end(kOptionsOfJobs) ? *row : kOrdinary;
+}
+
+bool is_default(const OptionOfJobs& option, const std::vector<std::string>& words) {
+  return !option.default_word.empty() && words.size() == 1 && words.front() == option.default_word;
 }
 
 fs::path arguments_file(const fs::path& folder) {
@@ -173,7 +188,7 @@ jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given) 
   manifest.options = {{"version", PROMIN_VERSION}, {"program", std::string(kSourcesHash)}};
   for (const auto& [name, words] : given) {
     const OptionOfJobs& option = option_of_jobs(name);
-    if (!option.is_in_manifest) continue;
+    if (!option.is_in_manifest || is_default(option, words)) continue;
     const std::string value = words.empty() ? "given" : fmt::format("{}", fmt::join(words, " "));
     manifest.options.emplace_back(name, option.names_file ? fs::path(value).filename().string() : value);
   }
@@ -197,7 +212,7 @@ std::vector<std::string> keep_arguments(const CLI::App& command) {
   std::vector<std::string> arguments;
   for (const auto& [name, words] : given_options(command)) {
     const OptionOfJobs& option = option_of_jobs(name);
-    if (!option.is_kept) continue;
+    if (!option.is_kept || is_default(option, words)) continue;
     if (name.starts_with('-')) arguments.push_back(name);
     for (const std::string& word : words) {
       arguments.push_back(option.names_file ? fs::absolute(word).lexically_normal().string() : word);

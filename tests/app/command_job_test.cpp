@@ -53,5 +53,44 @@ TEST(CommandJobTest, EveryFileIsKeptByItsAbsolutePath) {
   EXPECT_EQ(std::ranges::count(of_cast, here), 3) << testing::PrintToString(of_cast);
 }
 
+/// The manifest's options of a picture's job, but for the first two, and what is kept of its arguments.
+std::pair<jobs::Manifest, std::vector<std::string>> plan(const std::vector<std::string>& arguments) {
+  CLI::App program("", "promin");
+  RenderOptions options;
+  CLI::App& render = add_command(program, "render", "");
+  add_render_options(render, options);
+  std::vector<const char*> words = {"promin", "render", "scene.gltf"};
+  for (const std::string& argument : arguments) words.push_back(argument.c_str());
+  EXPECT_TRUE(parse_arguments(program, static_cast<int>(words.size()), words.data()));
+  return {begin_manifest("render", given_options(render)), keep_arguments(render)};
+}
+
+// What the manual has in brackets; the job is that of whoever does not say it.
+TEST(CommandJobTest, DefaultsCountAsNotGiven) {
+  const auto nothing = plan({});
+  const std::vector<std::pair<std::string, std::string>> defaults = {{"--spp", "1"},
+                                                                     {"--filter", "box"},
+                                                                     {"--shading", "full"},
+                                                                     {"--exposure", "auto"},
+                                                                     {"--depth", "ray"},
+                                                                     {"--compression", "zip"},
+                                                                     {"--error-in", "linear"},
+                                                                     {"-s", "1"},
+                                                                     {"--environment-rotation", "0"},
+                                                                     {"--environment-intensity", "1"}};
+  CLI::App program("", "promin");
+  RenderOptions options;
+  CLI::App& render = add_command(program, "render", "");
+  add_render_options(render, options);
+  for (const auto& [name, word] : defaults) {
+    EXPECT_THAT(render.get_option(name)->get_description(), testing::HasSubstr("[" + word)) << name;
+    const auto given = plan({name, word});
+    EXPECT_EQ(given.first.options, nothing.first.options) << name;
+    EXPECT_EQ(given.second, nothing.second) << name;
+  }
+  EXPECT_NE(plan({"--spp", "2"}).first.options, nothing.first.options);
+  EXPECT_NE(plan({"--camera", "0"}).second, nothing.second) << "a camera may have that name";
+}
+
 }  // namespace
 }  // namespace promin::app

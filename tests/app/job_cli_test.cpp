@@ -182,6 +182,13 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
 }
 
+TEST_F(JobCliTest, WhatIsAssumedAnywayMayBeSaid) {
+  ASSERT_EQ(render({"--job", "job", "-o", "cut.exr", "--pieces", "2"}).exit_code, 0);
+  const ProcessResult again = render({"--job", "job", "-o", "again.exr", "--pieces", "2", "--spp", "1", "--filter", "box"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(read("cut.exr") == read("again.exr"));
+}
+
 TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(render({"--job", "job", "-o", "cut.exr"}));
   const ProcessResult other_samples = render({"--job", "job", "-o", "cut.exr", "--spp", "2"});
@@ -196,7 +203,7 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(in("linear"));
   const ProcessResult other_space = in("display");
   EXPECT_EQ(other_space.exit_code, 2);
-  EXPECT_THAT(other_space.err, HasSubstr("its --error-in is \"linear\", and \"display\" now"));
+  EXPECT_THAT(other_space.err, HasSubstr("it has no --error-in, which is \"display\" now"));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);
