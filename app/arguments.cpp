@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -121,6 +122,14 @@ std::vector<const char*> fill_up_alternatives(std::span<const char* const> words
 
 }  // namespace
 
+/// Where an option stands in place of a number, values are missing.
+void OptionValues::refuse_option(size_t i) const {
+  const std::string& word = words_[i];
+  const bool is_option = word.size() > 1 && word[0] == '-' &&
+                         (word[1] == '-' || (std::isalpha(static_cast<unsigned char>(word[1])) != 0 && word != "-inf"));
+  if (is_option) refuse("too few values for " + option_);
+}
+
 void OptionValues::refuse(const std::string& what) const {
   throw UsageError({what, kWhere, cure_for(command_)});
 }
@@ -128,16 +137,21 @@ void OptionValues::refuse(const std::string& what) const {
 uint32_t OptionValues::whole(size_t i, uint32_t min, uint32_t max) const {
   uint32_t number = 0;
   if (!parse_number(words_[i], number) || number < min || number > max) {
+    refuse_option(i);
     refuse(fmt::format("{} takes a whole number from {} to {}, not \"{}\"", option_, min, max, words_[i]));
   }
   return number;
 }
 
-double OptionValues::real(size_t i, double min, double max) const {
+double OptionValues::real(size_t i, double min, double max, std::span<const std::string_view> others) const {
   double number = 0.0;
   // Written so that a NaN is refused.
   if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
-    refuse(fmt::format("{} takes a number from {:g} to {:g}, not \"{}\"", option_, min, max, words_[i]));
+    refuse_option(i);
+    std::string words;
+    for (size_t k = 0; k < others.size(); ++k)
+      words += (k + 1 == others.size() ? " or " : ", ") + std::string(others[k]);
+    refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not \"{}\"", option_, min, max, words, words_[i]));
   }
   return number;
 }

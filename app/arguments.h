@@ -30,8 +30,9 @@ class OptionValues {
   const std::string& text() const { return words_.front(); }
   /// Reads a decimal number in min...max.
   uint32_t whole(size_t i, uint32_t min, uint32_t max) const;
-  /// Reads a number in min...max, both included.
-  double real(size_t i, double min, double max) const;
+  /// Reads a number in min...max, both included. `others` are words that the option takes as well, which the caller has
+  /// looked for.
+  double real(size_t i, double min, double max, std::span<const std::string_view> others = {}) const;
   /// Reads three numbers in -max...max.
   dvec3 vector(double max) const;
   /// Reads one of `choices`.
@@ -43,6 +44,8 @@ class OptionValues {
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
+  void refuse_option(size_t i) const;
+
   std::string command_;
   std::string option_;
   std::vector<std::string> words_;

@@ -19,6 +19,7 @@
 #include "console.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "count_of.h"
 #include "deferred_signals.h"
 #include "outputs.h"
 #include "progress.h"
@@ -218,7 +219,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
   tell_end(stats, console);
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
   if (!console.is_quiet()) {
-    fmt::print("{} rays{} in {:.1f} ms ({:.3g} Mrays/s) on {}: {}\n", reader.count(), answers->summary(),
+    fmt::print("{}{} in {:.1f} ms ({:.3g} Mrays/s) on {}: {}\n", count_of(reader.count(), "ray"), answers->summary(),
                stats.median_trace_ms(), stats.mrays_per_s(), stats.device.name,
                fmt::join(names_of(options.outputs()), ", "));
   }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "count_of.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"
@@ -44,7 +45,7 @@ std::vector<RayRange> cut_rays(uint64_t count, const CastOptions& options) {
   if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
     throw UsageError({fmt::format("{} pieces are more than the {}", pieces,
                                   pieces > kMostRayPieces ? fmt::format("{} that a job has", kMostRayPieces)
-                                                          : fmt::format("{} rays", count)),
+                                                          : count_of(count, "ray")),
                       options.rays.string(), "give another number by --pieces"});
   }
   std::vector<RayRange> ranges;

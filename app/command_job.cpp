@@ -14,6 +14,7 @@
 #include "cast_job.h"
 #include "cast_options.h"
 #include "core/file.h"
+#include "count_of.h"
 #include "deferred_signals.h"
 #include "outputs.h"
 #include "picture_job.h"
@@ -303,12 +304,13 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
   if (!made) return;
   if (options.share) {
     if (!console.is_quiet()) {
-      fmt::print("{} pieces made of {}, in {}\n", *made, job.piece_count(), options.folder->string());
+      fmt::print("{} made of {}, in {}\n", count_of(*made, "piece"), job.piece_count(), options.folder->string());
     }
     return;
   }
   steps.merge(job);
-  if (!console.is_quiet()) fmt::print("{} of {} pieces made now: {}\n", *made, job.piece_count(), steps.outputs);
+  if (!console.is_quiet())
+    fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), steps.outputs);
 }
 
 void check_whole(const jobs::Job& job) {
@@ -316,8 +318,9 @@ void check_whole(const jobs::Job& job) {
   if (missing.empty()) return;
   std::vector<std::string> names;
   for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
-  throw RunError({fmt::format("{} of {} pieces are missing or bad: {}{}", missing.size(), job.piece_count(),
-                              fmt::join(names, ", "), missing.size() > kMostNamed ? ", …" : ""),
+  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(job.piece_count(), "piece"),
+                              verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
+                              missing.size() > kMostNamed ? ", …" : ""),
                   job.file_of(missing.front()).parent_path().string(),
                   "run the job again, which makes what is missing"});
 }

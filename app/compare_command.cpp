@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "core/srgb.h"
+#include "count_of.h"
 #include "image/compare_channels.h"
 #include "outputs.h"
 #include "promin/compare.h"
@@ -114,8 +115,8 @@ std::string describe_largest(const Difference& difference) {
 
 template <typename Difference>
 std::string describe_different(const Difference& difference, double fail) {
-  return fmt::format("{} pixels ({:.4g} %) differ by more than {:g}", difference.different_count,
-                     percent_different(difference), fail);
+  return fmt::format("{} ({:.4g} %) {} by more than {:g}", count_of(difference.different_count, "pixel"),
+                     percent_different(difference), verb_of(difference.different_count, "differs", "differ"), fail);
 }
 
 /// Those that differ, a line each.
@@ -142,7 +143,8 @@ void print_rows(const PictureDifference& difference, double fail) {
   print_row("largest", describe_largest(difference));
   print_row("over", describe_different(difference, fail));
   if (difference.non_finite_count > 0) {
-    print_row("not finite", fmt::format("{} pixels have a NaN or an infinity", difference.non_finite_count));
+    print_row("not finite", fmt::format("{} {} a NaN or an infinity", count_of(difference.non_finite_count, "pixel"),
+                                        verb_of(difference.non_finite_count, "has", "have")));
   }
 }
 
@@ -150,9 +152,10 @@ void print_rows(const PictureDifference& difference, double fail) {
 template <typename Difference>
 void check_limit(const Difference& difference, const std::string& in, const CompareOptions& options) {
   if (percent_different(difference) <= options.fail_percent.value_or(0.0)) return;
-  throw DifferenceError({fmt::format("{} pixels differ by more than {:g}{}, the most at pixel {} {} by {:.6g}",
-                                     difference.different_count, *options.fail, in, difference.largest_at.x,
-                                     difference.largest_at.y, difference.largest),
+  throw DifferenceError({fmt::format("{} {} by more than {:g}{}, the most at pixel {} {} by {:.6g}",
+                                     count_of(difference.different_count, "pixel"),
+                                     verb_of(difference.different_count, "differs", "differ"), *options.fail, in,
+                                     difference.largest_at.x, difference.largest_at.y, difference.largest),
                          fmt::format("{} against {}", options.second.string(), options.first.string()), ""});
 }
 

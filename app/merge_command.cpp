@@ -11,6 +11,7 @@
 #include "cast_options.h"
 #include "command_job.h"
 #include "console.h"
+#include "count_of.h"
 #include "image/open_pictures.h"
 #include "jobs/job.h"
 #include "outputs.h"
@@ -35,7 +36,7 @@ void merge(const MergeOptions& options) {
   if (job.manifest().kind == kPictureJob) find_pictures();
   check_outputs({}, files, {});
   merge_job_deferring(job, files);
-  if (!options.is_quiet) fmt::print("{} pieces: {}\n", job.piece_count(), fmt::join(names_of(files), ", "));
+  if (!options.is_quiet) fmt::print("{}: {}\n", count_of(job.piece_count(), "piece"), fmt::join(names_of(files), ", "));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "console.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "count_of.h"
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "image/open_pictures.h"
@@ -58,9 +59,9 @@ std::string describe_samples(const RunStats& stats) {
     all += error;
   }
   const auto pictures = static_cast<double>(stats.errors.size());
-  const std::string unmet =
-      all.unmet_pixels == 0 ? ""
-                            : fmt::format(" but for {} pixels of at most {:.3g}", all.unmet_pixels, all.largest_claim);
+  const std::string unmet = all.unmet_pixels == 0 ? ""
+                                                  : fmt::format(" but for {} of at most {:.3g}",
+                                                                count_of(all.unmet_pixels, "pixel"), all.largest_claim);
   return fmt::format("{:.4g} spp, {}{}", mean_samples(*stats.view, all) / pictures,
                      describe_error(all.target, *stats.view->error_target), unmet);
 }
@@ -73,7 +74,7 @@ std::string describe_target(const RunStats& stats) {
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
-  const std::string frames = stats.frames.empty() ? "" : fmt::format("{} frames, ", stats.frames.size());
+  const std::string frames = stats.frames.empty() ? "" : count_of(stats.frames.size(), "frame") + ", ";
   const std::string time_of = stats.frames.empty() ? "" : " a frame";
   return fmt::format("{}x{}, {}, {}{:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
                      stats.view->size.y, describe_samples(stats), frames,
@@ -309,14 +310,15 @@ void render(const RenderOptions& given, const CLI::App& command) {
   if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
   if (skipped > 0) {
-    console.note(fmt::format("skipped {} of {} frames, whose pictures are there", skipped, skipped + frames.size()));
+    console.note(
+        fmt::format("skipped {} of {}, whose pictures are there", skipped, count_of(skipped + frames.size(), "frame")));
   }
   if (frames.empty()) return;
+
+  PictureRun run = prepare_pictures(options, std::move(frames), console);
   if (given.pictures.empty() && !options.pictures.empty()) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
   }
-
-  PictureRun run = prepare_pictures(options, std::move(frames), console);
   if (options.job.folder) {
     render_job(std::move(run), command, console);
     return;

@@ -149,7 +149,8 @@ void add_look_options(OptionTable& table, LookOptions& look) {
               look.exposure_ev.reset();
               look.averages_exposure = w.text() == kAverage;
               if (w.text() == kAuto || w.text() == kAverage) return;
-              look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv));
+              constexpr std::array kWords = {kAuto, kAverage};
+              look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv, kWords));
             });
   table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
             "How PNG files and the window show what is brighter than they can [neutral; classic scenes: none]",
@@ -210,8 +211,9 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
       fmt::format("Pictures a second of the path, {} to {}, or its frames as stored [as the path says, else stored]",
                   PathPictures::kMinFps, PathPictures::kMaxFps),
       [&](const OptionValues& w) {
-        const bool is_stored = w.text() == "stored";
-        fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps);
+        constexpr std::array<std::string_view, 1> kWords = {"stored"};
+        const bool is_stored = w.text() == kWords[0];
+        fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps, kWords);
       });
 }
 

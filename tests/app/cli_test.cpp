@@ -125,6 +125,12 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "-s", "-1"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "2x"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--size", "64"}, "too few values for --size"},
+      {{"render", "square.gltf", "--size", "64", "-o", "a.exr"}, "too few values for --size, on the command line;"},
+      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values for --eye"},
+      {{"render", "square.gltf", "-o", "a.exr", "--near", "-inf"}, "--near takes a number from 0"},
+      {{"render", "square.gltf", "-o", "a.exr", "--exposure", "foo"},
+       "--exposure takes a number from -64 to 64, auto or average, not \"foo\""},
+      {{"render", "square.gltf", "-o", "a.exr", "--fps", "foo"}, " or stored, not \"foo\""},
       {{"render", "square.gltf", "-o", "a.exr", "--size", "64", "0"}, "--size takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--max-depth", "1001"}, "--max-depth takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
@@ -529,6 +535,12 @@ TEST_F(CliTest, DitheringHangsOnThePlaceInTheWholePicture) {
   dithered.insert(dithered.end(), {"--crop", "8", "4", "24", "14"});
   const Image crop = render(dithered, "c.png");
   for (uint32_t x = 0; x < 16; ++x) EXPECT_EQ(crop.at(x, 3), noisy.at(x + 8, 7));
+}
+
+TEST_F(CliTest, OfAMissingSceneNothingIsSaidToBeWritten) {
+  const ProcessResult result = run({"render", "nope.gltf"});
+  expect_failure(result, 3, "file not found, nope.gltf");
+  EXPECT_THAT(result.err, testing::StartsWith("promin: error: "));
 }
 
 // Without -o the scene's name, here; what is there is kept.

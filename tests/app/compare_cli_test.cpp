@@ -59,7 +59,7 @@ TEST_F(CompareCliTest, MoreThanTheLimitIsFive) {
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.375"}).exit_code, 0);
   const ProcessResult over = compare({"a.exr", "b.exr", "--fail", "0.25"});
   EXPECT_EQ(over.exit_code, 5);
-  EXPECT_THAT(over.err, HasSubstr("promin: error: 1 pixels differ by more than 0.25, the most at pixel 9 7 by 0.375, "
+  EXPECT_THAT(over.err, HasSubstr("promin: error: 1 pixel differs by more than 0.25, the most at pixel 9 7 by 0.375, "
                                   "b.exr against a.exr"));
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.53"}).exit_code, 0) << "1 of 192";
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.52"}).exit_code, 5);
@@ -142,7 +142,7 @@ TEST_F(ComparePartsCliTest, EveryPartIsCompared) {
       const ProcessResult other = compare({first, "other.exr", "--fail", "0.25"});
       EXPECT_EQ(other.exit_code, 5);
       EXPECT_THAT(other.err,
-                  HasSubstr("differ by more than 0.25 in object, the most at pixel 5 0 by 2, other.exr against"));
+                  HasSubstr("differs by more than 0.25 in object, the most at pixel 5 0 by 2, other.exr against"));
       EXPECT_THAT(other.out, HasSubstr("mean        0\n"));
       EXPECT_THAT(other.out, HasSubstr("Z: largest 0.25, at pixel 597 199; "));
       EXPECT_THAT(other.out, HasSubstr("object: largest 2, at pixel 5 0; "));
@@ -152,7 +152,7 @@ TEST_F(ComparePartsCliTest, EveryPartIsCompared) {
   EXPECT_EQ(compare({"one.exr", "other.exr", "--fail", "2"}).exit_code, 0);
   const ProcessResult nearer = compare({"one.exr", "other.exr", "--json", "--fail", "0.125"});
   EXPECT_EQ(nearer.exit_code, 5);
-  EXPECT_THAT(nearer.err, HasSubstr("differ by more than 0.125 in Z, the most at pixel 597 199 by 0.25"));
+  EXPECT_THAT(nearer.err, HasSubstr("differs by more than 0.125 in Z, the most at pixel 597 199 by 0.25"));
   const json figures = json::parse(nearer.out).at("channels");
   EXPECT_EQ(figures.size(), 11U);
   EXPECT_EQ(figures.at("Z"), json({{"largest", 0.25}, {"largest_at", {597, 199}}, {"different", 1}}));

@@ -80,7 +80,7 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   const ProcessResult again = render_path(options);
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("skipped 2 of 3 frames, whose pictures are there"));
-  EXPECT_THAT(again.out, HasSubstr("1 frames"));
+  EXPECT_THAT(again.out, HasSubstr("1 frame, "));
   EXPECT_EQ(read("a0.png"), "kept");
   EXPECT_THAT(files(), testing::Contains("a1.exr"));
   const ProcessResult nothing = render_path(options);
