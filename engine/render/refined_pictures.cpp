@@ -89,6 +89,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
   // All parts take what those before have taken, as far as is known.
   double taken = 0.0;
   double pixels_done = 0.0;
+  double told = 0.0;
   const auto pixels = static_cast<double>(result.image.pixels.size());
   for (const PixelWindow& part : parts_to_refine(picture_window(view))) {
     Refinement refinement(view, part);
@@ -99,7 +100,9 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
       const double left_of_part = std::max(refinement.foretell_total() - of_part, 0.0);
       const double a_pixel = (taken + of_part + left_of_part) / (pixels_done + part_pixels);
       const double left = left_of_part + a_pixel * (pixels - pixels_done - part_pixels);
-      return progress((taken + of_part) / (taken + of_part + left));
+      // Where more is left than was foretold, it stands still.
+      told = std::max(told, (taken + of_part) / (taken + of_part + left));
+      return progress(told);
     });
     taken += static_cast<double>(refinement.sample_count());
     pixels_done += part_pixels;

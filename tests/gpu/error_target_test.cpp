@@ -249,6 +249,25 @@ TEST_F(ErrorTargetTest, LargePicturesAreRefinedInParts) {
   }
 }
 
+// What is left is foretold anew after each stage, and may grow.
+TEST_F(ErrorTargetTest, ProgressNeverRunsBackwards) {
+  Renderer renderer = make_renderer(device(), make_wires());
+  View view = with_target(make_board_view(uvec2(300)), 1.0F / 64.0F, 4, 64);
+  for (const bool is_shown : {false, true}) {
+    if (is_shown) view.error_target->display.emplace();
+    double last = 0.0;
+    size_t count = 0;
+    renderer.render(view, [&](double fraction) {
+      EXPECT_GE(fraction, last) << (is_shown ? "as shown" : "linear");
+      last = fraction;
+      ++count;
+      return true;
+    });
+    EXPECT_GT(count, 4U);
+    EXPECT_LE(last, 1.0);
+  }
+}
+
 TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheErrorThatItTells) {
   const world::Scene scene = make_scene_of_everything(20);
   Renderer renderer = make_renderer(device(), scene);
