@@ -113,23 +113,6 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
   return numbers;
 }
 
-void check_explain_options(const RenderOptions& options) {
-  const std::pair<bool, std::string_view> others[] = {{!options.pictures.empty(), "--output"},
-                                                      {options.path.has_value(), "--path"},
-                                                      {options.aovs.any(), "--aov"},
-                                                      {options.view.crop.has_value(), "--crop"},
-                                                      {options.view.debug_view != DebugView::kNone, "--shading"},
-                                                      {options.error.target.has_value(), "--target-error"},
-                                                      {options.error.time_limit_s.has_value(), "--time-limit"},
-                                                      {options.tracing.stats.has_value(), "--stats"},
-                                                      {options.tracing.repeat_count > 1, "--repeat"}};
-  for (const auto& [is_given, name] : others) {
-    if (!is_given) continue;
-    throw UsageError(
-        {fmt::format("--explain and {} contradict each other", name), "on the command line", "leave one out"});
-  }
-}
-
 void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
@@ -368,103 +351,105 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
 
 namespace {
 
-void check_job_options(const RenderOptions& options) {
-  const JobOptions& job = options.job;
-  check_has_job(job);
-  if (!job.folder) return;
-  const std::pair<bool, std::string_view> others[] = {{options.explained_pixel.has_value(), "--explain"},
-                                                      {options.error.time_limit_s.has_value(), "--time-limit"},
-                                                      {options.view.look.averages_exposure, "--exposure average"},
-                                                      {options.skips_existing, "--skip-existing"},
-                                                      {options.tracing.stats.has_value(), "--stats"},
-                                                      {options.tracing.repeat_count > 1, "--repeat"}};
-  for (const auto& [is_given, name] : others) {
-    if (!is_given) continue;
-    throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
-  }
-  if (job.pieces && job.tiles) {
-    throw UsageError({"--pieces and --tiles contradict each other", "on the command line", "leave one out"});
-  }
-  if (job.share && !options.pictures.empty()) {
-    throw UsageError({"--piece and --output contradict each other: a share makes no picture", "on the command line",
-                      "leave one out; promin merge writes the picture"});
-  }
+/// An option or what is as one, by its name, and whether it is given.
+using Given = std::pair<bool, std::string_view>;
+
+void refuse_if(bool holds, const std::string& what, const std::string& cure) {
+  if (holds) throw UsageError({what, "on the command line", cure});
 }
 
-void check_error_options(const RenderOptions& options) {
-  const ErrorOptions& error = options.error;
-  if (!error.is_given()) {
-    const bool has_limit = error.min_samples || error.max_samples || error.space;
-    if (options.aovs.error && options.view.debug_view != DebugView::kNone) {
-      throw UsageError({"--aov error and --shading contradict each other: a debug shading has no error",
-                        "on the command line", "leave one out"});
-    }
-    if (!has_limit) return;
-    const std::string_view name = error.min_samples ? "--min-spp" : error.max_samples ? "--max-spp" : "--error-in";
-    throw UsageError(
-        {fmt::format("{} needs an error to aim at", name), "on the command line", "give --target-error as well"});
+/// Refuses the first of the others that is given beside `name`.
+void refuse_beside(std::string_view name, std::initializer_list<Given> others,
+                   const std::string& cure = "leave one out") {
+  for (const auto& [is_given, other] : others) {
+    refuse_if(is_given, fmt::format("{} and {} contradict each other", name, other), cure);
   }
-  const std::string_view name = error.target ? "--target-error" : "--time-limit";
-  if (options.view.samples_per_pixel) {
-    throw UsageError({fmt::format("{} and --spp contradict each other", name), "on the command line",
-                      "leave one out; --min-spp and --max-spp limit the samples"});
-  }
-  if (options.view.debug_view != DebugView::kNone) {
-    throw UsageError(
-        {fmt::format("{} and --shading contradict each other", name), "on the command line", "leave one out"});
-  }
-  if (error.space == ErrorSpace::kDisplay && options.view.look.averages_exposure) {
-    throw UsageError(
-        {"--error-in display and --exposure average contradict each other, which is known when all is "
-         "traced",
-         "on the command line", "give --exposure in stops"});
-  }
-  check_error_target(*error.error_target());
 }
 
 }  // namespace
 
+// All that options of promin render have against each other, in the order in which it is told.
 void check_render_options(const RenderOptions& options) {
+  const ViewOptions& view = options.view;
+  const ErrorOptions& error = options.error;
+  const JobOptions& job = options.job;
+  const bool averages = view.look.averages_exposure;
+  const bool is_debug = view.debug_view != DebugView::kNone;
+  const bool has_depth_kind = view.depth_kind != DepthKind::kRay;
+
   check_tracing_options(options.tracing);
-  if (options.path) check_no_camera(options.view, "--path");
-  if (options.explained_pixel) check_explain_options(options);
-  check_error_options(options);
-  check_job_options(options);
-  if (options.skips_existing && options.pictures.empty()) {
-    throw UsageError({"--skip-existing has no pictures to look for", "on the command line", "give -o as well"});
+  if (options.path) check_no_camera(view, "--path");
+  if (options.explained_pixel) {
+    refuse_beside("--explain", {{!options.pictures.empty(), "--output"},
+                                {options.path.has_value(), "--path"},
+                                {options.aovs.any(), "--aov"},
+                                {view.crop.has_value(), "--crop"},
+                                {is_debug, "--shading"},
+                                {error.target.has_value(), "--target-error"},
+                                {error.time_limit_s.has_value(), "--time-limit"},
+                                {options.tracing.stats.has_value(), "--stats"},
+                                {options.tracing.repeat_count > 1, "--repeat"}});
   }
-  if (options.skips_existing && options.view.look.averages_exposure) {
-    throw UsageError({"--skip-existing and --exposure average contradict each other, which takes the first frame's",
-                      "on the command line", "give --exposure in stops"});
+
+  // An error to aim at.
+  if (error.is_given()) {
+    const std::string_view name = error.target ? "--target-error" : "--time-limit";
+    refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
+                  "leave one out; --min-spp and --max-spp limit the samples");
+    refuse_beside(name, {{is_debug, "--shading"}});
+    refuse_if(error.space == ErrorSpace::kDisplay && averages,
+              "--error-in display and --exposure average contradict each other, which is known when all is traced",
+              "give --exposure in stops");
+    check_error_target(*error.error_target());
+  } else {
+    refuse_if(options.aovs.error && is_debug,
+              "--aov error and --shading contradict each other: a debug shading has no error", "leave one out");
+    for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
+                                         {error.max_samples.has_value(), "--max-spp"},
+                                         {error.space.has_value(), "--error-in"}}) {
+      refuse_if(is_given, fmt::format("{} needs an error to aim at", name), "give --target-error as well");
+    }
   }
-  if (options.frames && !options.path) {
-    throw UsageError({"--frames has no path to choose from", "on the command line", "give --path as well"});
+
+  // A job.
+  check_has_job(job);
+  if (job.folder) {
+    refuse_beside("--job", {{options.explained_pixel.has_value(), "--explain"},
+                            {error.time_limit_s.has_value(), "--time-limit"},
+                            {averages, "--exposure average"},
+                            {options.skips_existing, "--skip-existing"},
+                            {options.tracing.stats.has_value(), "--stats"},
+                            {options.tracing.repeat_count > 1, "--repeat"}});
+    if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
+    refuse_if(job.share && !options.pictures.empty(),
+              "--piece and --output contradict each other: a share makes no picture",
+              "leave one out; promin merge writes the picture");
   }
-  if (options.fps && !options.path) {
-    throw UsageError({"--fps has no path to play", "on the command line", "give --path as well"});
-  }
-  // PNG files take alpha alone.
+
+  // Frames.
+  refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing has no pictures to look for",
+            "give -o as well");
+  refuse_if(options.skips_existing && averages,
+            "--skip-existing and --exposure average contradict each other, which takes the first frame's",
+            "give --exposure in stops");
+  refuse_if(options.frames && !options.path, "--frames has no path to choose from", "give --path as well");
+  refuse_if(options.fps && !options.path, "--fps has no path to play", "give --path as well");
+
+  // What only an EXR holds; PNG files take alpha alone.
   AovSet named = options.aovs;
   named.alpha = false;
-  const ExrOptions& exr = options.exr;
-  const std::pair<bool, std::string_view> of_exr[] = {{named.any(), "--aov"},
-                                                      {options.view.depth_kind != DepthKind::kRay, "--depth"},
-                                                      {exr.is_half, "--half"},
-                                                      {exr.compression != ExrCompression::kZip, "--compression"},
-                                                      {exr.is_multipart, "--multipart"}};
   const auto& pictures = options.pictures;
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
-  for (const auto& [is_given, name] : of_exr) {
-    if (!is_given || has_exr) continue;
-    throw UsageError({fmt::format("{} has no picture to go to", name), "on the command line",
-                      "give -o with the ending .exr as well"});
+  for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
+                                       {has_depth_kind, "--depth"},
+                                       {options.exr.is_half, "--half"},
+                                       {options.exr.compression != ExrCompression::kZip, "--compression"},
+                                       {options.exr.is_multipart, "--multipart"}}) {
+    refuse_if(is_given && !has_exr, fmt::format("{} has no picture to go to", name),
+              "give -o with the ending .exr as well");
   }
-  if (options.view.depth_kind != DepthKind::kRay && !options.aovs.depth) {
-    throw UsageError({"--depth has no AOV to measure", "on the command line", "give --aov depth as well"});
-  }
-  if (options.aovs.alpha && options.view.debug_view != DebugView::kNone) {
-    throw UsageError({"--alpha and --shading contradict each other", "on the command line", "leave one out"});
-  }
+  refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
+  if (options.aovs.alpha) refuse_beside("--alpha", {{is_debug, "--shading"}});
 }
 
 }  // namespace promin::app
