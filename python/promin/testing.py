@@ -121,8 +121,9 @@ def assert_same_picture(
     actual, shows = folder / f"{file.stem}.actual.exr", folder / f"{file.stem}.difference.png"
     write_image(actual, linear)
     write_image(shows, heat(found.flip_map))
+    differing = "1 pixel differs" if found.different_count == 1 else f"{found.different_count} pixels differ"
     raise DifferenceError(
-        f"{found.different_count} pixels differ by more than {fail:g}, the most at pixel {found.largest_at[0]} "
+        f"{differing} by more than {fail:g}, the most at pixel {found.largest_at[0]} "
         f"{found.largest_at[1]} by {found.largest:.6g}, {actual} against {file}; {shows} shows where"
     )
 
