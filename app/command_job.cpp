@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "cast_job.h"
 #include "cast_options.h"
@@ -309,20 +310,29 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
     return;
   }
   steps.merge(job);
-  if (!console.is_quiet())
-    fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), steps.outputs);
+  if (console.is_quiet()) return;
+  fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), steps.outputs);
 }
 
-void check_whole(const jobs::Job& job) {
-  const std::vector<size_t> missing = jobs::find_missing(job);
+void check_done(const jobs::Job& job, std::span<const size_t> pieces) {
+  std::vector<size_t> missing;
+  for (const size_t piece : pieces) {
+    if (job.state_of(piece) != jobs::PieceState::kDone) missing.push_back(piece);
+  }
   if (missing.empty()) return;
   std::vector<std::string> names;
   for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
-  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(job.piece_count(), "piece"),
+  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(pieces.size(), "piece"),
                               verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
                               missing.size() > kMostNamed ? ", …" : ""),
                   job.file_of(missing.front()).parent_path().string(),
                   "run the job again, which makes what is missing"});
+}
+
+void check_whole(const jobs::Job& job) {
+  std::vector<size_t> all(job.piece_count());
+  std::iota(all.begin(), all.end(), size_t{0});
+  check_done(job, all);
 }
 
 void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs) {
@@ -342,9 +352,10 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs)
 }
 
 void merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs, const ProgressCallback& progress,
-               bool is_mixed) {
+               bool is_mixed, const std::optional<std::vector<uint32_t>>& frames) {
   check_job_files(job, outputs);
-  if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress);
+  if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress, frames);
+  if (frames) throw UsageError({"answers to rays have no frames", job.folder().string(), "leave the frames out"});
   merge_hits(job, outputs, progress, is_mixed);
 }
 

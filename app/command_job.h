@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -116,14 +118,17 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
 /// another kind.
 void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
 
-/// Throws RunError where pieces of a job are missing or bad, which names some.
+/// Throws RunError where some of these pieces are missing or bad, and names a few.
+void check_done(const jobs::Job& job, std::span<const size_t> pieces);
+/// The same of all.
 void check_whole(const jobs::Job& job);
 
 /// Makes the files of a job of its pieces: pictures of the kind "render"; of "cast" the hits or counts, and of --all
-/// the offsets as a second file. `is_mixed` is for rays alone (merge_hits). Throws Cancelled, and what check_job_files,
-/// merge_pictures and merge_hits do.
+/// the offsets as a second file. `is_mixed` is for rays alone (merge_hits), `frames` for pictures alone. Throws
+/// Cancelled, and what check_job_files, merge_pictures and merge_hits do.
 void merge_job(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
-               const ProgressCallback& progress, bool is_mixed = false);
+               const ProgressCallback& progress, bool is_mixed = false,
+               const std::optional<std::vector<uint32_t>>& frames = std::nullopt);
 /// The same for a program: a signal ends it, and leaves no file half written.
 void merge_job_deferring(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
 

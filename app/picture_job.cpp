@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "command_job.h"
@@ -125,6 +126,22 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
   }
 }
 
+/// What all parts of a picture have alike.
+PicturePart without_values(const PicturePart& part) {
+  PicturePart same{.frame = part.frame,
+                   .full_size = part.full_size,
+                   .window = part.window,
+                   .part = part.part,
+                   .metadata = part.metadata,
+                   .exr = part.exr,
+                   .display = part.display,
+                   .error = part.error,
+                   .image = {},
+                   .channels = {}};
+  for (const Channel& channel : part.channels) same.channels.push_back({channel.name, channel.is_integer, {}});
+  return same;
+}
+
 /// Of a whole picture, of its parts'.
 std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const size_t> pieces, const PicturePart& first) {
   if (!first.error) return std::nullopt;
@@ -137,10 +154,12 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
   return whole;
 }
 
-/// Writes one picture of its pieces, which lie row by row. A row of them is held at a time.
+/// Writes one picture of its pieces, which lie row by row, to the files of these names with the number of its frame. A
+/// row of pieces is held at a time.
 void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const std::vector<fs::path>& files,
                   const ProgressCallback& progress) {
-  const PicturePart first = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
+  PicturePart part = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
+  const PicturePart first = without_values(part);
   PictureHeader header;
   header.size = size_of(first.window);
   if (header.size != first.full_size) header.crop = CropPlacement{first.window.lo, first.full_size};
@@ -150,12 +169,14 @@ void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const st
   header.display = first.display;
   header.exr = first.exr;
 
-  PictureFiles written(files, header);
+  std::vector<fs::path> numbered;
+  for (const fs::path& file : files) numbered.push_back(first.frame ? number_file(file, *first.frame) : file);
+  PictureFiles written(numbered, header);
   std::optional<RowOfParts> row;
   for (const size_t piece : pieces) {
     const double done = static_cast<double>(piece) / static_cast<double>(job.piece_count());
     if (progress && !progress(done)) throw Cancelled();
-    const PicturePart part = decode_part(job.read(piece), job.file_of(piece));
+    if (piece != pieces.front()) part = decode_part(job.read(piece), job.file_of(piece));
     check_same(part, first, job.file_of(piece));
     if (!row) row.emplace(part);
     row->add(part);
@@ -166,9 +187,44 @@ void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const st
   written.commit();
 }
 
+std::string name_frame(uint32_t frame) {
+  return fmt::format("{}{:06}", kOfFrame, frame);
+}
+
 /// The first word of a piece's name tells frames apart; without frames there is one, and the name's rest differs.
 std::string frame_of(const std::string& piece) {
   return piece.starts_with(kOfFrame) ? piece.substr(0, piece.find('_')) : "";
+}
+
+/// The pieces of each picture that a job makes.
+std::vector<std::vector<size_t>> find_pictures_of(const jobs::Job& job) {
+  const std::vector<std::string>& names = job.manifest().pieces;
+  std::vector<std::vector<size_t>> pictures;
+  for (size_t piece = 0; piece < names.size(); ++piece) {
+    if (piece == 0 || frame_of(names[piece]) != frame_of(names[piece - 1])) pictures.emplace_back();
+    pictures.back().push_back(piece);
+  }
+  return pictures;
+}
+
+/// The same of these frames alone, in their order. Throws UsageError where the job has no such frame.
+std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
+                                                 const std::optional<std::vector<uint32_t>>& frames) {
+  std::vector<std::vector<size_t>> pictures = find_pictures_of(job);
+  if (!frames) return pictures;
+  std::map<std::string, std::vector<size_t>> by_frame;
+  for (std::vector<size_t>& pieces : pictures) {
+    by_frame.emplace(frame_of(job.manifest().pieces[pieces.front()]), std::move(pieces));
+  }
+  std::vector<std::vector<size_t>> chosen;
+  for (const uint32_t frame : *frames) {
+    const auto found = by_frame.find(name_frame(frame));
+    if (found == by_frame.end()) {
+      throw UsageError({fmt::format("there is no frame {}", frame), job.folder().string(), "name frames of the job"});
+    }
+    chosen.push_back(found->second);
+  }
+  return chosen;
 }
 
 /// Before anything is written: whether the frames go to files of their own.
@@ -214,7 +270,7 @@ std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>&
   std::vector<std::string> names;
   for (const std::optional<uint32_t>& frame : frames) {
     for (const PixelWindow& part : parts) {
-      const std::string of_frame = frame ? fmt::format("{}{:06}_", kOfFrame, *frame) : "";
+      const std::string of_frame = frame ? name_frame(*frame) + "_" : "";
       names.push_back(fmt::format("{}y{:05}-{:05}_x{:05}-{:05}", of_frame, part.lo.y, part.hi.y, part.lo.x, part.hi.x));
     }
   }
@@ -291,19 +347,13 @@ void check_merged_pictures(const jobs::Job& job, const std::vector<fs::path>& fi
   check_numbered(job, files);
 }
 
-void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress) {
-  check_whole(job);
-  const std::vector<std::string>& names = job.manifest().pieces;
-  for (size_t begin = 0; begin < names.size();) {
-    std::vector<size_t> pieces;
-    while (begin < names.size() && (pieces.empty() || frame_of(names[begin]) == frame_of(names[pieces.front()]))) {
-      pieces.push_back(begin++);
-    }
-    const std::optional<uint32_t> frame = decode_part(job.read(pieces.front()), job.file_of(pieces.front())).frame;
-    std::vector<fs::path> numbered;
-    for (const fs::path& file : files) numbered.push_back(frame ? number_file(file, *frame) : file);
-    write_merged(job, pieces, numbered, progress);
-  }
+void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress,
+                    const std::optional<std::vector<uint32_t>>& frames) {
+  const std::vector<std::vector<size_t>> pictures = choose_pictures(job, frames);
+  std::vector<size_t> chosen;
+  for (const std::vector<size_t>& pieces : pictures) chosen.insert(chosen.end(), pieces.begin(), pieces.end());
+  check_done(job, chosen);
+  for (const std::vector<size_t>& pieces : pictures) write_merged(job, pieces, files, progress);
 }
 
 }  // namespace promin::app

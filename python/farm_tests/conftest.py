@@ -41,6 +41,12 @@ class Farm:
         blocks = [hashlib.sha256(f"{self.values['seed']} {n} ".encode()).digest() for n in range(self.values["pieces"])]
         return b"".join((block * (size // 32 + 1))[:size] for block in blocks)
 
+    def written(self) -> bytes:
+        """What the output has, or the numbered files of frames one after the other."""
+        if "####" not in self.out.name:
+            return self.out.read_bytes()
+        return b"".join(file.read_bytes() for file in sorted(self.root.glob(self.out.name.replace("####", "*"))))
+
     def create(self) -> Any:
         """The job, without running it."""
         from promin import jobs

@@ -43,7 +43,7 @@ def render_under_fire(
     killed = kill_workers(farm, process, mean_s, most)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 0, (out, err)
-    assert farm.out.read_bytes() == farm.expected()
+    assert farm.written() == farm.expected()
     return killed
 
 

@@ -67,7 +67,7 @@ def test_a_piece_that_is_altered_before_the_assembly_is_made_anew(farm: Farm) ->
     job.merge = harm_and_merge  # type: ignore[method-assign]
     made: list[list[int]] = []
 
-    def make(job: jobs.Job, settings: Settings, options: run.Options, missing: list[int]) -> None:
+    def make(job: jobs.Job, settings: Settings, options: run.Options, missing: list[int], *_: object) -> None:
         made.append(missing)
         for number in missing:
             runner.run(number)

@@ -123,9 +123,10 @@ nb::dict write(const Job& job, size_t piece, const std::string& description, con
   return describe(unlocked([&] { return job.write(check(job, piece), content, ms, {made_on, fingerprint}); }));
 }
 
-void merge(const Job& job, const std::vector<std::string>& outputs, bool is_mixed, const nb::object& progress) {
+void merge(const Job& job, const std::vector<std::string>& outputs, bool is_mixed,
+           const std::optional<std::vector<uint32_t>>& frames, const nb::object& progress) {
   run_watched(progress, [&](const ProgressCallback& tell) {
-    app::merge_job(job, {outputs.begin(), outputs.end()}, tell, is_mixed);
+    app::merge_job(job, {outputs.begin(), outputs.end()}, tell, is_mixed, frames);
   });
 }
 
@@ -312,7 +313,8 @@ void bind_jobs(nb::module_& module) {
            })
       .def("clear_leftovers", &Job::clear_leftovers)
       .def("check_outputs", &check_outputs)
-      .def("merge", &merge, nb::arg("outputs"), nb::arg("is_mixed"), nb::arg("progress").none());
+      .def("merge", &merge, nb::arg("outputs"), nb::arg("is_mixed"), nb::arg("frames").none(),
+           nb::arg("progress").none());
   module.def("fingerprint_of", &fingerprint_of);
   nb::class_<SharedPlan>(module, "PlannedJob")
       .def_static("plan", &plan_job, nb::arg("kind"), nb::arg("arguments"), nb::arg("folder"), nb::arg("rays").none())

@@ -24,6 +24,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from operator import index
 from pathlib import Path
 from typing import Any, Literal, Protocol, Union
 
@@ -348,14 +349,19 @@ class Job:
         one, and a file that the job's pieces hang on. Raises UsageError, InputError."""
         self._native.check_outputs([os.fsdecode(output) for output in outputs])
 
-    def merge(self, outputs: Sequence[PathLike], *, allow_mixed: bool = False) -> None:
+    def merge(
+        self, outputs: Sequence[PathLike], *, allow_mixed: bool = False, frames: Sequence[int] | None = None
+    ) -> None:
         """Makes the files of all pieces, byte for byte those of a single run; each whole or not at all.
 
         outputs: of "render" pictures (.exr, .png), of a camera path with #### for the number; of "cast" one .npy of
         hits or counts, and of --all the offsets after it. allow_mixed: whether answers to rays may be those of several
-        drivers. Raises RunError where pieces are missing or bad, which names some; InputError where they do not belong
-        together, UsageError."""
-        self._native.merge([os.fsdecode(output) for output in outputs], allow_mixed, None)
+        drivers. frames: of a camera path only these, whose pieces alone must be there; None: all. Raises RunError where
+        pieces are missing or bad, which names some; InputError where they do not belong together, UsageError."""
+        chosen = None if frames is None else [index(frame) for frame in frames]
+        if chosen and min(chosen) < 0:
+            raise UsageError(f"frames has {min(chosen)}, of {self.folder}; frames are counted from 0")
+        self._native.merge([os.fsdecode(output) for output in outputs], allow_mixed, chosen, None)
 
     def clear_leftovers(self) -> None:
         """Removes the temporary files of writers on this machine that have ended before they were done."""

@@ -13,6 +13,7 @@ from pathlib import Path
 from promin import jobs
 
 from promin_farm.alone import Signals
+from promin_farm.assembly import Assembly
 from promin_farm.crews import DaskCrew, deal_seats, open_local, open_remote
 from promin_farm.foreman import Foreman, Tally
 from promin_farm.page import Page
@@ -41,15 +42,16 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
     """Makes what is missing, writes the outputs, and returns the exit code. Raises promin's errors."""
     _check(options)
     job.clear_leftovers()
+    assembly = Assembly(job, settings)
     for round_ in range(_MOST_ROUNDS):
         missing = [piece.number for piece in job.pieces if job.state(piece.number) != "done"]
         if missing:
-            exit_code = _make(job, settings, options, missing)
+            exit_code = _make(job, settings, options, missing, assembly)
             if exit_code is not None:
                 return exit_code
         try:
-            if settings.outputs:
-                job.merge(settings.outputs, allow_mixed=settings.allow_mixed)
+            assembly.write_rest()
+            job.clear_leftovers()  # Of workers that were killed while they wrote.
             break
         except (jobs.InputError, jobs.RunError):
             if round_ + 1 == _MOST_ROUNDS or all(job.state(piece.number) == "done" for piece in job.pieces):
@@ -89,13 +91,13 @@ def _check(options: Options) -> None:
         raise jobs.UsageError("--workers is not for a cluster that there is, on the command line; it has its own")
 
 
-def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int]) -> int | None:
+def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int], assembly: Assembly) -> int | None:
     """The exit code of a run that has not made all; None of one that has."""
     survey = take_survey(job)
     claim_what_is_there(job, settings, survey.fingerprints)
     page = Page(job)
-    watch = Progress(job, missing, is_quiet=options.is_quiet, on_tick=page.tick)
-    with Signals() as signals, ExitStack() as stack:
+    watch = Progress(job, missing, is_quiet=options.is_quiet, on_tick=page.tick, on_piece=assembly.piece_done)
+    with Signals() as signals, assembly.writing(missing, signals.end_soon), ExitStack() as stack:
         crew, words = _open_crew(job, options, stack)
         watch.say(f"{len(missing)} of {len(job.pieces)} pieces to make, by {words}")
         foreman = Foreman(

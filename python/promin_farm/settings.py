@@ -72,6 +72,12 @@ def frame_of(piece: jobs.Piece) -> str:
     return str(frame.group()) if frame else ""
 
 
+def frame_number_of(piece: jobs.Piece) -> int | None:
+    """12 of "frame000012"."""
+    frame = frame_of(piece)
+    return int(frame.removeprefix("frame")) if frame else None
+
+
 def owner_file(folder: Path, group: str) -> Path:
     """Holds the fingerprint of a group."""
     return folder / "farm" / "fingerprints" / group

@@ -28,10 +28,13 @@ class Progress:
         is_quiet: bool = False,
         stream: TextIO | None = None,
         on_tick: Callable[[], None] = lambda: None,
+        on_piece: Callable[[int], None] = lambda number: None,
     ) -> None:
+        """on_tick: called often. on_piece: with the number of each piece that is done."""
         self._stream = stream or sys.stderr
         self._is_quiet = is_quiet
         self._on_tick = on_tick
+        self._on_piece = on_piece
         numbers = set(missing)
         self._total = len(job.pieces)
         self._done = self._total - len(numbers)
@@ -49,6 +52,7 @@ class Progress:
         print(f"promin-farm: {sentence}", file=self._stream, flush=True)
 
     def piece_done(self, piece: jobs.Piece, receipt: dict[str, object]) -> None:
+        self._on_piece(piece.number)
         self._done += 1
         self._weight_left -= piece.weight
         now = time.monotonic()

@@ -78,6 +78,19 @@ def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) ->
     run_promin("render", *words, "-o", tmp_path / "whole.##.png")
     job = jobs.create("render", [*words, "--tiles", "2", "1"], tmp_path / "job")
     assert len(job.pieces) == 4
+    runner = job.runner()
+    for number in (1, 2, 3):
+        runner.run(number)
+    # A frame whose pieces are there does not wait for the others.
+    job.merge([tmp_path / "early.##.png"], frames=[1])
+    assert (tmp_path / "early.01.png").read_bytes() == (tmp_path / "whole.01.png").read_bytes()
+    with pytest.raises(promin.RunError, match="1 of 4 pieces is missing or bad: frame000000_"):
+        job.merge([tmp_path / "early.##.png"], frames=[0, 1])
+    with pytest.raises(promin.UsageError, match="there is no frame 2"):
+        job.merge([tmp_path / "early.##.png"], frames=[1, 2])
+    with pytest.raises(promin.UsageError, match="frames has -1"):
+        job.merge([tmp_path / "early.##.png"], frames=[-1])
+    assert not (tmp_path / "early.00.png").exists()
     make_all(job)
     with pytest.raises(promin.UsageError, match="several frames would go to one file"):
         job.merge([tmp_path / "one.png"])
@@ -124,6 +137,8 @@ def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
     words = [str(scene), "rays.chunks", "--pieces", "4"]
     job = jobs.create("cast", words, tmp_path / "job", rays=source)
     make_all(job)
+    with pytest.raises(promin.UsageError, match="answers to rays have no frames"):
+        job.merge([tmp_path / "hits.npy"], frames=[0])
     job.merge([tmp_path / "hits.npy"])
     hits = np.load(tmp_path / "hits.npy")
     assert hits.tobytes() == promin.Caster(promin.Scene.load(scene)).cast(source.rays).tobytes()

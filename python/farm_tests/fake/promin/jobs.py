@@ -195,9 +195,15 @@ class Job:
             if len(frames) > 1 and "#" not in Path(output).name:
                 raise UsageError(f"several frames would go to one file, {output}; put #### where their numbers go")
 
-    def merge(self, outputs: list[str], *, allow_mixed: bool = False) -> None:
+    def merge(self, outputs: list[str], *, allow_mixed: bool = False, frames: Optional[list[int]] = None) -> None:
+        for frame in frames or ():
+            self._write_merged([output.replace("####", f"{frame:04}") for output in outputs], f"frame{frame:06}_")
+        if frames is None:
+            self._write_merged(outputs, "")
+
+    def _write_merged(self, outputs: list[str], prefix: str) -> None:
         parts = []
-        for piece in self.pieces:
+        for piece in (piece for piece in self.pieces if piece.name.startswith(prefix)):
             state, why, content = self._read(piece.number)
             if state != "done":
                 raise InputError(f"{why}, {piece.file}; run the job again")

@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a job's files of its pieces: the frames of a path while the rest is made, everything else at the end."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+
+from promin import jobs
+
+from promin_farm.settings import Settings, frame_number_of
+
+
+class Assembly:
+    """The outputs of one job. A frame is written once, as soon as its pieces are there; what the command does meanwhile
+    is to wait, so a film's files do not take a time of their own after its last piece."""
+
+    def __init__(self, job: jobs.Job, settings: Settings) -> None:
+        self._job = job
+        self._outputs = settings.outputs
+        self._allow_mixed = settings.allow_mixed
+        self._missing: dict[int, set[int]] = defaultdict(set)
+        """Of frames that are not written: the pieces that they wait for."""
+        self._ready: queue.SimpleQueue[int | None]
+        """Frames to write; None ends it."""
+        self._written: set[int] = set()
+        frames = [frame_number_of(piece) for piece in job.pieces]
+        self._frames = {number: frame for number, frame in enumerate(frames) if frame is not None}
+        """By piece."""
+
+    @contextmanager
+    def writing(self, missing: Iterable[int], stop: Callable[[], bool]) -> Iterator[None]:
+        """Within it frames are written on a thread of their own. missing: the pieces that are to be made. stop: whether
+        a frame that is not begun is left, as those are that wait where an error ends the work."""
+        if not self._outputs or not self._frames:
+            yield
+            return
+        self._ready = queue.SimpleQueue()
+        self._missing = {frame: set() for frame in self._frames.values() if frame not in self._written}
+        for number in missing:
+            # What is altered after its frame was written is made anew, the same.
+            if self._frames[number] in self._missing:
+                self._missing[self._frames[number]].add(number)
+        for frame, numbers in self._missing.items():
+            if not numbers:
+                self._ready.put(frame)
+        has_failed = threading.Event()
+        thread = threading.Thread(
+            target=self._write_frames, args=[lambda: has_failed.is_set() or stop()], name="promin-farm frames"
+        )
+        thread.start()
+        try:
+            yield
+        except BaseException:
+            has_failed.set()
+            raise
+        finally:
+            self._ready.put(None)
+            thread.join()
+
+    def piece_done(self, number: int) -> None:
+        """Within `writing`: the piece is there."""
+        frame = self._frames.get(number)
+        if frame not in self._missing:
+            return
+        self._missing[frame].discard(number)
+        if not self._missing[frame]:
+            self._ready.put(frame)
+
+    def write_rest(self) -> None:
+        """All that is not written yet. Raises promin's errors."""
+        if not self._outputs:
+            return
+        if not self._frames:
+            self._job.merge(self._outputs, allow_mixed=self._allow_mixed)
+            return
+        rest = sorted(set(self._frames.values()) - self._written)
+        if rest:
+            self._job.merge(self._outputs, allow_mixed=self._allow_mixed, frames=rest)
+
+    def _write_frames(self, stop: Callable[[], bool]) -> None:
+        while (frame := self._ready.get()) is not None and not stop():
+            try:
+                self._job.merge(self._outputs, allow_mixed=self._allow_mixed, frames=[frame])
+            except jobs.Error:
+                continue  # It is tried again at the end, and told then.
+            self._written.add(frame)
