@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <string>
 
 #include "core/file.h"
@@ -48,6 +49,9 @@ TEST(HardCases, AreAllInTheDocument) {
     EXPECT_NE(document.find("\n| " + std::to_string(row.row) + " | "), std::string::npos)
         << "docs/accuracy.md has no row " << row.row << "; run tools/accuracy";
   }
+  // The one commit, which anybody can check out, of all figures.
+  const std::regex head("\nMeasured at commit [0-9a-f]+ on ");
+  EXPECT_TRUE(std::regex_search(document, head)) << "docs/accuracy.md is of several commits or of changes beside one";
 }
 
 }  // namespace
