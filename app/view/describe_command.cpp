@@ -20,7 +20,7 @@ std::string quote(const std::string& word) {
 
 std::string samples_of(const View& view) {
   if (!view.error_target) return fmt::format(" --spp {}", view.samples_per_pixel);
-  return " " + describe_options(*view.error_target);
+  return fmt::format(" {}", describe_options(*view.error_target));
 }
 
 std::string options_of(const EnvironmentOptions& environment) {
