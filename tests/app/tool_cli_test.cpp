@@ -3,10 +3,6 @@
 
 // The tools' programs end as promin itself does: a sentence, and a code that tells whose fault it is.
 
-#include <limits>
-#include <regex>
-#include <sstream>
-
 #include "cli_fixture.h"
 
 namespace promin {
@@ -31,37 +27,6 @@ TEST_F(ToolCliTest, HelpAndVersionEverywhere) {
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_THAT(version.out, testing::StartsWith(program));
   }
-}
-
-TEST_F(ToolCliTest, HonestyTellsSmallerErrorsOfMoreSamples) {
-  const ProcessResult result =
-      run_tool("promin-honesty", {PROMIN_BOX, "--size", "50", "50", "--truth", "64", "--most", "4", "--runs", "1"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  std::istringstream lines(result.out);
-  std::string line;
-  for (int head = 0; head < 2; ++head) std::getline(lines, line);
-  EXPECT_EQ(line, "|---|---|---|---|---|---|---|---|---|");
-  // Scene, picture, samples a pixel, milliseconds, RMSE, 99.9 % error, share within the claim in percent.
-  const std::regex row(R"(\| box \| (.+) \| ([0-9.]+) \| \d+ \| ([0-9.]+) \| ([0-9.]+) \| ([0-9.]*).*)");
-  std::vector<std::string> pictures;
-  double samples = 0.0;
-  double rmse = std::numeric_limits<double>::infinity();
-  while (std::getline(lines, line)) {
-    SCOPED_TRACE(line);
-    std::smatch cells;
-    ASSERT_TRUE(std::regex_match(line, cells, row));
-    pictures.push_back(cells[1]);
-    EXPECT_GT(std::stod(cells[2]), samples);
-    EXPECT_LE(std::stod(cells[3]), rmse);
-    samples = std::stod(cells[2]);
-    rmse = std::stod(cells[3]);
-    // Of pictures without a target nothing is claimed.
-    ASSERT_EQ(cells[5].length() == 0, pictures.size() <= 3);
-    if (pictures.size() > 3) {
-      EXPECT_GE(std::stod(cells[5]), 80.0);
-    }
-  }
-  EXPECT_THAT(pictures, testing::ElementsAre("1 spp", "2 spp", "4 spp", "error 1/16", "error 1/64", "error 1/128"));
 }
 
 /// tools/contact_sheet.py.
