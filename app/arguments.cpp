@@ -149,8 +149,9 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
   if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
     refuse_option(i);
     std::string words;
-    for (size_t k = 0; k < others.size(); ++k)
+    for (size_t k = 0; k < others.size(); ++k) {
       words += (k + 1 == others.size() ? " or " : ", ") + std::string(others[k]);
+    }
     refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not \"{}\"", option_, min, max, words, words_[i]));
   }
   return number;

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "count_of.h"
+#include "core/count_of.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"

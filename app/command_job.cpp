@@ -10,12 +10,11 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "cast_job.h"
 #include "cast_options.h"
+#include "core/count_of.h"
 #include "core/file.h"
-#include "count_of.h"
 #include "deferred_signals.h"
 #include "outputs.h"
 #include "picture_job.h"
@@ -134,6 +133,18 @@ bool is_input(const jobs::Job& job, const fs::path& file) {
     return input.name == file.filename() && fs::file_size(file, none) == input.size_bytes && !none &&
            jobs::describe_input(file).sha256 == input.sha256;
   });
+}
+
+/// Throws RunError where pieces are missing, of so many that were looked at.
+void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, size_t count) {
+  if (missing.empty()) return;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
+  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(count, "piece"),
+                              verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
+                              missing.size() > kMostNamed ? ", …" : ""),
+                  job.file_of(missing.front()).parent_path().string(),
+                  "run the job again, which makes what is missing"});
 }
 
 /// Makes what is missing of a share. Returns how many pieces it has made, nothing where a signal has ended it before.
@@ -314,25 +325,12 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
   fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), steps.outputs);
 }
 
-void check_done(const jobs::Job& job, std::span<const size_t> pieces) {
-  std::vector<size_t> missing;
-  for (const size_t piece : pieces) {
-    if (job.state_of(piece) != jobs::PieceState::kDone) missing.push_back(piece);
-  }
-  if (missing.empty()) return;
-  std::vector<std::string> names;
-  for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
-  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(pieces.size(), "piece"),
-                              verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
-                              missing.size() > kMostNamed ? ", …" : ""),
-                  job.file_of(missing.front()).parent_path().string(),
-                  "run the job again, which makes what is missing"});
+void check_done(const jobs::Job& job, const std::vector<size_t>& pieces) {
+  refuse_missing(job, jobs::keep_missing(job, pieces), pieces.size());
 }
 
 void check_whole(const jobs::Job& job) {
-  std::vector<size_t> all(job.piece_count());
-  std::iota(all.begin(), all.end(), size_t{0});
-  check_done(job, all);
+  refuse_missing(job, jobs::find_missing(job), job.piece_count());
 }
 
 void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs) {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -119,7 +118,7 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
 void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
 
 /// Throws RunError where some of these pieces are missing or bad, and names a few.
-void check_done(const jobs::Job& job, std::span<const size_t> pieces);
+void check_done(const jobs::Job& job, const std::vector<size_t>& pieces);
 /// The same of all.
 void check_whole(const jobs::Job& job);
 

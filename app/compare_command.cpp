@@ -14,8 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/count_of.h"
 #include "core/srgb.h"
-#include "count_of.h"
 #include "image/compare_channels.h"
 #include "outputs.h"
 #include "promin/compare.h"

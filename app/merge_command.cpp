@@ -11,7 +11,7 @@
 #include "cast_options.h"
 #include "command_job.h"
 #include "console.h"
-#include "count_of.h"
+#include "core/count_of.h"
 #include "image/open_pictures.h"
 #include "jobs/job.h"
 #include "outputs.h"

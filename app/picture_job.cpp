@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "command_job.h"
@@ -126,20 +125,11 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
   }
 }
 
-/// What all parts of a picture have alike.
-PicturePart without_values(const PicturePart& part) {
-  PicturePart same{.frame = part.frame,
-                   .full_size = part.full_size,
-                   .window = part.window,
-                   .part = part.part,
-                   .metadata = part.metadata,
-                   .exr = part.exr,
-                   .display = part.display,
-                   .error = part.error,
-                   .image = {},
-                   .channels = {}};
-  for (const Channel& channel : part.channels) same.channels.push_back({channel.name, channel.is_integer, {}});
-  return same;
+/// What is told of a part, so that its pixels need not be held.
+PicturePart without_values(PicturePart part) {
+  part.image = {};
+  for (Channel& channel : part.channels) channel.values = {};
+  return part;
 }
 
 /// Of a whole picture, of its parts'.
@@ -207,24 +197,27 @@ std::vector<std::vector<size_t>> find_pictures_of(const jobs::Job& job) {
   return pictures;
 }
 
+std::vector<size_t> find_pieces_of(const jobs::Job& job, uint32_t frame) {
+  const std::vector<std::string>& names = job.manifest().pieces;
+  const std::string begin = name_frame(frame) + "_";
+  std::vector<size_t> pieces;
+  for (size_t piece = 0; piece < names.size(); ++piece) {
+    if (names[piece].starts_with(begin)) pieces.push_back(piece);
+  }
+  return pieces;
+}
+
 /// The same of these frames alone, in their order. Throws UsageError where the job has no such frame.
 std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
                                                  const std::optional<std::vector<uint32_t>>& frames) {
-  std::vector<std::vector<size_t>> pictures = find_pictures_of(job);
-  if (!frames) return pictures;
-  std::map<std::string, std::vector<size_t>> by_frame;
-  for (std::vector<size_t>& pieces : pictures) {
-    by_frame.emplace(frame_of(job.manifest().pieces[pieces.front()]), std::move(pieces));
-  }
-  std::vector<std::vector<size_t>> chosen;
+  if (!frames) return find_pictures_of(job);
+  std::vector<std::vector<size_t>> pictures;
   for (const uint32_t frame : *frames) {
-    const auto found = by_frame.find(name_frame(frame));
-    if (found == by_frame.end()) {
-      throw UsageError({fmt::format("there is no frame {}", frame), job.folder().string(), "name frames of the job"});
-    }
-    chosen.push_back(found->second);
+    pictures.push_back(find_pieces_of(job, frame));
+    if (!pictures.back().empty()) continue;
+    throw UsageError({fmt::format("there is no frame {}", frame), job.folder().string(), "name frames of the job"});
   }
-  return chosen;
+  return pictures;
 }
 
 /// Before anything is written: whether the frames go to files of their own.

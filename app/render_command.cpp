@@ -14,9 +14,9 @@
 
 #include "command_job.h"
 #include "console.h"
+#include "core/count_of.h"
 #include "core/file.h"
 #include "core/stopwatch.h"
-#include "count_of.h"
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "image/open_pictures.h"

@@ -49,8 +49,9 @@ RowDifference compare_rows(const Image& reference, const Image& test, uint32_t y
     const vec3& a = reference.at(x, y);
     const vec3& b = test.at(x, y);
     double largest = 0.0;
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
       largest = std::max(largest, difference_of(static_cast<double>(a[i]), static_cast<double>(b[i])));
+    }
     if (largest > row.largest) {
       row.largest = largest;
       row.largest_x = x;

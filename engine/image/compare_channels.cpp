@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "image/difference_of.h"
+#include "image/exr_parts.h"
 #include "image/opened_picture.h"
 
 namespace promin {
@@ -17,8 +18,6 @@ namespace fs = std::filesystem;
 /// Of all parts of a file together, unless so many rows take more.
 constexpr uint64_t kMostBandBytes = uint64_t{4} << 20;
 constexpr uint32_t kLeastRows = 32;
-/// The first part of a file of several.
-constexpr const char* kColors = "rgba";
 
 struct FileChannel {
   std::string name;
@@ -29,17 +28,6 @@ struct FileChannel {
   /// Among the part's channels.
   size_t place = 0;
 };
-
-bool is_color(const std::string& channel) {
-  return channel == "R" || channel == "G" || channel == "B";
-}
-
-/// The part that `--multipart` puts a channel into.
-std::string group_of(const std::string& channel) {
-  const size_t dot = channel.rfind('.');
-  if (dot != std::string::npos) return channel.substr(0, dot);
-  return is_color(channel) || channel == "A" ? kColors : channel;
-}
 
 /// All channels of a file, some rows at a time.
 class ChannelFile {
@@ -52,9 +40,9 @@ class ChannelFile {
       parts_.push_back({uvec2(part.width, part.height), part.channel_count, {}});
       for (size_t i = 0; i < part.channel_count; ++i) {
         const ProminPicturesChannel& channel = part.channels[i];
-        const std::string group = group_of(channel.name);
+        const std::string group = part_of_channel(channel.name);
         // R, G and B of the first part are the picture, whatever the part is called.
-        const bool is_ours = part_count == 1 || group == part_name || (number == 0 && group == kColors);
+        const bool is_ours = part_count == 1 || group == part_name || (number == 0 && group == kColorPart);
         channels_.push_back({is_ours ? channel.name : part_name + "." + channel.name,
                              channel.sample == PROMIN_PICTURES_UINT32, parts_.back().size, number, i});
       }
@@ -143,7 +131,7 @@ std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const Chann
   std::vector<ChannelPair> pairs;
   for (size_t i = 0; i < of_reference.size(); ++i) pairs.push_back({of_reference[i], of_test[i]});
   std::ranges::sort(pairs, {}, &ChannelPair::reference);
-  std::erase_if(pairs, [](const ChannelPair& pair) { return is_color(pair.reference->name); });
+  std::erase_if(pairs, [](const ChannelPair& pair) { return is_color_channel(pair.reference->name); });
   for (const ChannelPair& pair : pairs) {
     if (pair.reference->size == pair.test->size) continue;
     throw InputError({"the pictures differ in size in " + pair.reference->name,

@@ -402,11 +402,14 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
 }
 
 std::vector<size_t> find_missing(const Job& job, const Share& share) {
-  std::vector<size_t> missing;
-  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) {
-    if (job.state_of(piece) != PieceState::kDone) missing.push_back(piece);
-  }
-  return missing;
+  std::vector<size_t> pieces;
+  for (size_t piece = share.index; piece < job.piece_count(); piece += share.count) pieces.push_back(piece);
+  return keep_missing(job, std::move(pieces));
+}
+
+std::vector<size_t> keep_missing(const Job& job, std::vector<size_t> pieces) {
+  std::erase_if(pieces, [&](size_t piece) { return job.state_of(piece) == PieceState::kDone; });
+  return pieces;
 }
 
 }  // namespace promin::jobs

@@ -154,5 +154,7 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
 
 /// The pieces of a share that are not done.
 std::vector<size_t> find_missing(const Job& job, const Share& share = {});
+/// Of these pieces those that are not done.
+std::vector<size_t> keep_missing(const Job& job, std::vector<size_t> pieces);
 
 }  // namespace promin::jobs

@@ -20,6 +20,8 @@ from promin._records import Camera, Display, to_dict
 CameraLike = Union[Camera, str, int, None]
 """A camera, or the name or number of one of the scene's; None: its first, or one that frames the scene."""
 
+_ERROR_SPACES = _promin.list_choices()["error_in"]
+
 
 @dataclass(frozen=True)
 class View:
@@ -148,9 +150,9 @@ def check_shading(view: View, aovs: tuple[str, ...]) -> None:
 
 def _check_samples(view: View) -> None:
     """The rules of promin's options about samples."""
-    spaces = _promin.list_choices()["error_in"]
-    if view.error_in not in spaces:
-        raise UsageError(f"error_in is {view.error_in!r:.80}; give " + " or ".join(f'"{name}"' for name in spaces))
+    if view.error_in not in _ERROR_SPACES:
+        names = " or ".join(f'"{name}"' for name in _ERROR_SPACES)
+        raise UsageError(f"error_in is {view.error_in!r:.80}; give {names}")
     if has_target(view):
         name = "time_limit" if view.target_error is None else "target_error"
         if isinstance(view.spp, (int, np.integer)) and view.spp > 1:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import queue
 import threading
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
@@ -23,14 +22,18 @@ class Assembly:
         self._job = job
         self._outputs = settings.outputs
         self._allow_mixed = settings.allow_mixed
-        self._missing: dict[int, set[int]] = defaultdict(set)
+        self._missing: dict[int, set[int]] = {}
         """Of frames that are not written: the pieces that they wait for."""
         self._ready: queue.SimpleQueue[int | None]
         """Frames to write; None ends it."""
         self._written: set[int] = set()
-        frames = [frame_number_of(piece) for piece in job.pieces]
-        self._frames = {number: frame for number, frame in enumerate(frames) if frame is not None}
-        """By piece."""
+        self._frames: dict[int, int] = {}
+        """By piece; of all or of none."""
+        for piece in job.pieces:
+            frame = frame_number_of(piece)
+            if frame is None:
+                break  # One picture, or rays, of which there may be a million pieces.
+            self._frames[piece.number] = frame
 
     @contextmanager
     def writing(self, missing: Iterable[int], stop: Callable[[], bool]) -> Iterator[None]:

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/count_of.h"
 #include "formats/gltf/json_lookup.h"
 
 namespace promin {
@@ -127,13 +128,9 @@ class ExtensionCensus {
   std::map<std::string, size_t> places_;
 };
 
-std::string say_number(size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 /// "3 materials use".
 std::string say_users(size_t count, const std::string& noun) {
-  return say_number(count, noun) + (count == 1 ? " uses " : " use ");
+  return count_of(count, noun).append(" ").append(verb_of(count, "uses", "use")).append(" ");
 }
 
 void warn_of_unknown(const Extension& extension, LoadReport& report) {

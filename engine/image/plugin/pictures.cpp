@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "image/exr_parts.h"
 #include "image/plugin/webp.h"
 
 struct ProminPicturesReader {
@@ -111,14 +112,6 @@ struct Part {
   uint64_t scratch_place = 0;
 };
 
-/// The part that a channel belongs to.
-std::string part_name(const std::string& channel) {
-  const size_t dot = channel.rfind('.');
-  if (dot != std::string::npos) return channel.substr(0, dot);
-  const bool is_color = channel == "R" || channel == "G" || channel == "B" || channel == "A";
-  return is_color ? "rgba" : channel;
-}
-
 OIIO::ImageSpec make_exr_spec(const ProminPicturesSource& source) {
   OIIO::ImageSpec spec(static_cast<int>(source.width), static_cast<int>(source.height), 0, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", source.compression);
@@ -140,7 +133,7 @@ std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
   std::vector<Part> parts;
   for (size_t i = 0; i < source.channel_count; ++i) {
     const ProminPicturesChannel& channel = source.channels[i];
-    const std::string name = source.is_multipart != 0 ? part_name(channel.name) : "";
+    const std::string name = source.is_multipart != 0 ? promin::part_of_channel(channel.name) : "";
     auto part = std::find_if(parts.begin(), parts.end(),
                              [&](const Part& p) { return p.spec.get_string_attribute("oiio:subimagename") == name; });
     if (part == parts.end()) {

@@ -2,17 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-namespace promin::app {
+namespace promin {
 
 /// "1 pixel", "2 pixels".
 inline std::string count_of(uint64_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+  return std::to_string(count).append(" ").append(noun).append(count == 1 ? "" : "s");
 }
 
 /// The verb of a count: "1 pixel differs", "2 pixels differ".
@@ -20,4 +18,4 @@ inline std::string_view verb_of(uint64_t count, std::string_view of_one, std::st
   return count == 1 ? of_one : of_several;
 }
 
-}  // namespace promin::app
+}  // namespace promin
