@@ -16,6 +16,9 @@ struct Frustum {
   bool is_open;  // whether the side alone is there; false where no shape of the scene is open
 };
 
+// What rounding may move z by within the solid's size, as a multiple of that.
+const float SLAB_DOUBT = 8.0 * UNIT_ROUNDOFF;
+
 bool is_frustum_open(Primitive p) { return has(FEATURE_OPEN_SHAPES) && (p.c.x & SHAPE_IS_OPEN) != 0u; }
 
 // The method is that of Haines et al., Ray Tracing Gems ch. 7, re-centred twice: around the closest approach to the
@@ -47,15 +50,17 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   precise vec3 radial_offset = offset - z * f.axis;
   precise float widening = f.slope * dz;  // growth of the solid's radius per t along the ray
   precise float spread2 = radial2 + widening * widening;
+  precise float widest = radius + abs(f.slope) * half_height;
   precise float inward = -(dot3(radial_offset, radial_direction) + (radius + f.slope * z) * widening);
   precise float t_nearest = spread2 > 0.0 ? inward / spread2 : 0.0;
-  precise float t_base = min(max(t_nearest, slab_entry), slab_exit);
+  // The slab's ends are as uncertain as z; of a ray in an apex's plane they may lie anywhere along it.
+  precise float doubt = SLAB_DOUBT * (half_height + widest) * abs(inverse_dz);
+  precise float t_base = min(max(t_nearest, slab_entry - doubt), slab_exit + doubt);
   // In the solid distance^2 + radius^2 is at most twice the largest radius^2, and since t_nearest it has grown by
   // spread2 t^2; as much again is for rounding. A ray that comes into the slab farther on, as just beyond a rim in its
   // plane, is not in the solid; solved from there, where the side drowns in rounding, it may seem to be, at any t.
   precise float way = t_base - t_nearest;
   precise float growth = spread2 * way * way;
-  precise float widest = radius + abs(f.slope) * half_height;
   precise float most_growth = 4.0 * widest * widest;
   if (growth > most_growth) return NOWHERE;
   precise vec3 base = offset + t_base * ray.direction;

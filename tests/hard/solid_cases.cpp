@@ -514,8 +514,8 @@ void run_mirror_nappe(Lab& lab) {
   }
 }
 
-/// In the plane of a disk and a few roundings beside it, across the disk and past its rim, level or tilted by so little
-/// that the plane is met far beyond the solid or nowhere.
+/// In the plane of a disk, or of an apex, and a few roundings beside it, across the disk and past its rim, level or
+/// tilted by so little that the plane is met far beyond the solid or nowhere.
 std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -538,11 +538,9 @@ std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
 
 void run_cap_planes(Lab& lab) {
   Random random(54);
-  const Form forms[] = {{"cylinder", unit_cylinder},
-                        {"flat cylinder", disk},
-                        {"needle", needle},
-                        {"frustum", frustum},
-                        {"flat frustum", flat_frustum}};
+  const Form forms[] = {{"cylinder", unit_cylinder}, {"flat cylinder", disk},        {"needle", needle},
+                        {"frustum", frustum},        {"flat frustum", flat_frustum}, {"cone 20", cone_of<200>},
+                        {"cone 85", cone_of<850>}};
   for (const Form& form : forms) {
     Tally tally;
     for (const dvec3& axis : axes()) {

@@ -6,6 +6,8 @@
 #include "bvh/builder.h"
 #include "gpu/test_scenes.h"
 #include "hard/hard_case.h"
+#include "hard/random_shapes.h"
+#include "oracle/distance.h"
 #include "support/pipes.h"
 
 namespace promin::hard {
@@ -13,6 +15,8 @@ namespace {
 
 constexpr size_t kRaysPerScene = 250000;
 constexpr size_t kJudged = 4000;
+constexpr int kFarShapes = 10;
+constexpr size_t kRaysPerFarShape = 1000;
 
 struct TreeScene {
   const char* name;
@@ -147,7 +151,35 @@ void run_trees(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{38, "TreesAgainstBruteForce", run_trees}};
+/// Small shapes far from the world's origin, from as far and much farther: how the traversal brings rays near may cost
+/// no more than u S, however far from the origin the whole scene lies.
+void run_far_from_the_origin(Lab& lab) {
+  Random random(55);
+  for (const vec3& center : {vec3(1e3F, -8e2F, 1.2e3F), vec3(1e5F, -1e5F, 1e5F)}) {
+    for (const double distance : {1e2, 1e3, 1e4, 1e5, 1e6}) {
+      Tally tally;
+      for (int i = 0; i < kFarShapes; ++i) {
+        for_each_solid(center, random, [&](const auto& shape) {
+          const auto bound = oracle::bounding_sphere(shape, 0);
+          const auto size = static_cast<double>(bound.radius);
+          std::vector<Ray> rays;
+          for (size_t k = 0; k < kRaysPerFarShape; ++k) {
+            rays.push_back(ray_towards(dvec3(bound.center) + distance * size * random.direction(),
+                                       random_point(dvec3(bound.center), size, random)));
+          }
+          tally.add(lab.cast_and_judge(scene_of({shape}), rays));
+        });
+      }
+      const std::string where = label("at", center.x) + label(", distance / size", distance);
+      lab.expect_at_most("|P - surface| / uS (BK), " + where, 8.0 * lab.rounding_factor(), tally.max_surface_error);
+      lab.expect_at_most("margin of other answers / uS (B2), " + where, 2.0, tally.max_margin);
+      lab.expect_at_most("malformed hits, " + where, 0.0, static_cast<double>(tally.malformed));
+    }
+  }
+}
+
+constexpr std::array kCases{HardCase{38, "TreesAgainstBruteForce", run_trees},
+                            HardCase{55, "TreeFarFromTheOrigin", run_far_from_the_origin}};
 
 }  // namespace
 
