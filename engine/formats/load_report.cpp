@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "formats/utf8.h"
+
 namespace promin {
 namespace {
 
@@ -12,7 +14,8 @@ namespace {
 constexpr size_t kMaxProblems = 50;
 constexpr size_t kMaxWord = 80;
 
-std::string make_visible(std::string text) {
+std::string make_visible(const std::string& words) {
+  std::string text = to_utf8(words);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; }, '?');
   return text;

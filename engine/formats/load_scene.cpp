@@ -14,6 +14,7 @@
 #include "formats/ply/load_ply.h"
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
+#include "formats/utf8.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -45,6 +46,17 @@ void warn_of_tiny_meshes(Scene& scene) {
     if (max_component(bounds.extent()) >= kSmallestMesh) continue;
     scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
   }
+}
+
+/// What else goes into JSON, EXR files and Python.
+void show_names_in_utf8(Scene& scene) {
+  const auto show = [](auto& parts) {
+    for (auto& part : parts) part.name = to_utf8(part.name);
+  };
+  show(scene.objects);
+  show(scene.materials);
+  show(scene.lights);
+  show(scene.cameras);
 }
 
 constexpr SceneFormat kFormats[] = {{".gltf", load_gltf, true}, {".glb", load_gltf, true}, {".obj", load_obj},
@@ -83,6 +95,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
     Scene scene = load_by_format(file, options, report);
     sources = report.sources();
     warn_of_tiny_meshes(scene);
+    show_names_in_utf8(scene);
     if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
     return scene;
   } catch (...) {

@@ -3,6 +3,7 @@
 #include "promin/caster.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -48,7 +49,7 @@ nb::object give(std::vector<Value> values, size_t width) {
 class SharedCaster {
  public:
   SharedCaster(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::string& builder,
-               const std::optional<std::string>& bvh, const nb::object& progress)
+               const std::optional<std::filesystem::path>& bvh, const nb::object& progress)
       : device_(std::move(device)) {
     const gpu::Device& open = device_->get();
     std::unique_ptr<Caster> caster;
@@ -127,8 +128,8 @@ class SharedCaster {
 
 void bind_caster(nb::module_& module) {
   nb::class_<SharedCaster>(module, "Caster")
-      .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::string&, const std::optional<std::string>&,
-                    const nb::object&>(),
+      .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::string&,
+                    const std::optional<std::filesystem::path>&, const nb::object&>(),
            nb::arg("device"), nb::arg("scene"), nb::arg("builder"), nb::arg("bvh").none(), nb::arg("progress").none())
       .def("cast", &SharedCaster::cast, nb::arg("rays").noconvert(), nb::arg("hits").noconvert(),
            nb::arg("progress").none())

@@ -11,13 +11,18 @@
 namespace nb = nanobind;
 
 namespace promin::python {
+
+nb::object to_text(std::string_view text) {
+  return nb::steal(PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
+}
+
 namespace {
 
 void raise(const char* name, const Error& error) {
   nb::list problems;
-  for (const Problem& problem : error.problems()) problems.append(nb::str(problem.sentence().c_str()));
+  for (const Problem& problem : error.problems()) problems.append(to_text(problem.sentence()));
   const nb::object type = nb::module_::import_("promin._errors").attr(name);
-  PyErr_SetObject(type.ptr(), type(nb::str(error.what()), problems).ptr());
+  PyErr_SetObject(type.ptr(), type(to_text(error.what()), problems).ptr());
 }
 
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {

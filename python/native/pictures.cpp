@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -31,7 +32,7 @@ using ChannelArray = nb::ndarray<const uint32_t, nb::ndim<2>, nb::c_contig, nb::
 /// x, y, width and height of the whole picture.
 using Placement = std::pair<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>>;
 
-void save(const std::string& file, const PictureArray& pixels, const Metadata& metadata,
+void save(const std::filesystem::path& file, const PictureArray& pixels, const Metadata& metadata,
           const std::optional<Placement>& placement, const nb::list& channels, const nb::dict& display,
           const std::optional<nb::dict>& exr) {
   const Image image = read_image_array(pixels);
@@ -51,7 +52,7 @@ void save(const std::string& file, const PictureArray& pixels, const Metadata& m
               [&](const ProgressCallback&) { write_image(file, image, metadata, crop, copies, transform, options); });
 }
 
-nb::object load(const std::string& file) {
+nb::object load(const std::filesystem::path& file) {
   Image image;
   run_watched(nb::none(), [&](const ProgressCallback&) { image = read_image(file); });
   return write_image_array(std::move(image));
@@ -111,10 +112,10 @@ void bind_pictures(nb::module_& module) {
   module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"));
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),
              nb::arg("fail"));
-  module.def("has_named_channels", [](const std::string& file) { return has_named_channels(file); });
+  module.def("has_named_channels", [](const std::filesystem::path& file) { return has_named_channels(file); });
   module.def("cryptomatte_id", [](const std::string& name) { return std::bit_cast<float>(cryptomatte_id(name)); });
   module.def("encoding_is_linear",
-             [](const std::string& file) { return encoding_of(file) == PictureEncoding::kLinear; });
+             [](const std::filesystem::path& file) { return encoding_of(file) == PictureEncoding::kLinear; });
 }
 
 }  // namespace promin::python

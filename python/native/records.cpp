@@ -174,8 +174,9 @@ class Reader {
     T result;
     // A number that is cut off, as 1.5 for an integer, is none of the right kind: Python's int() decides.
     if (nb::try_cast<T>(value, result)) return result;
-    const std::string shown = nb::cast<std::string>(nb::str(nb::repr(value)));
-    throw UsageError({name + " is " + shown.substr(0, 80) + ", not " + kind, "", ""});
+    // Cut by characters, in Python: a cut between a character's bytes leaves what is no text.
+    const auto shown = nb::cast<std::string>(nb::str(nb::repr(value))[nb::slice(0, 80)]);
+    throw UsageError({name + " is " + shown + ", not " + kind, "", ""});
   }
 
   const nb::dict& record_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/renderer.h"
 
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -12,6 +13,7 @@
 #include "bind.h"
 #include "command_line.h"
 #include "device.h"
+#include "errors.h"
 #include "in_process.h"
 #include "picture_arrays.h"
 #include "promin/cryptomatte.h"
@@ -79,7 +81,7 @@ nb::list write_cryptomatte(Cryptomatte cryptomatte, const uvec2& size) {
 
 nb::dict write_metadata(const Metadata& metadata) {
   nb::dict entries;
-  for (const auto& [name, value] : metadata) entries[name.c_str()] = value;
+  for (const auto& [name, value] : metadata) entries[name.c_str()] = to_text(value);
   return entries;
 }
 
@@ -107,7 +109,7 @@ nb::dict write_rays(const RayCounts& rays) {
 class SharedRenderer {
  public:
   SharedRenderer(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::vector<std::string>& aovs,
-                 const std::string& builder, const std::optional<std::string>& bvh, bool has_error_target,
+                 const std::string& builder, const std::optional<std::filesystem::path>& bvh, bool has_error_target,
                  const nb::dict& mode, std::optional<uint64_t> expected_samples, uint64_t texture_bytes,
                  const nb::object& progress)
       : device_(std::move(device)), aovs_(read_aovs(aovs)) {
@@ -134,7 +136,7 @@ class SharedRenderer {
 
   /// `display` and the name of the scene's file are for the metadata alone.
   nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::dict& display,
-                  const std::string& scene_file, const nb::object& progress) {
+                  const std::filesystem::path& scene_file, const nb::object& progress) {
     const View view = read_view(record);
     const DisplayTransform shown = read_display(display);
     const gpu::DeviceInfo info = gpu::info_of(device_->get());
@@ -146,7 +148,7 @@ class SharedRenderer {
       const auto lock = lock_watched(mutex_, tell);
       result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
       if (aovs_.cryptomatte) cryptomatte = make_cryptomatte(named_, result.aovs);
-      metadata = describe_picture(view, shown, result.error, info, scene_file, named_, aovs_);
+      metadata = describe_picture(view, shown, result.error, info, scene_file.string(), named_, aovs_);
     });
     nb::dict frame;
     const uvec2 size = result.image.size;
@@ -215,8 +217,8 @@ nb::list list_aovs() {
 void bind_renderer(nb::module_& module) {
   nb::class_<SharedRenderer>(module, "Renderer")
       .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::vector<std::string>&, const std::string&,
-                    const std::optional<std::string>&, bool, const nb::dict&, std::optional<uint64_t>, uint64_t,
-                    const nb::object&>(),
+                    const std::optional<std::filesystem::path>&, bool, const nb::dict&, std::optional<uint64_t>,
+                    uint64_t, const nb::object&>(),
            nb::arg("device"), nb::arg("scene"), nb::arg("aovs"), nb::arg("builder"), nb::arg("bvh").none(),
            nb::arg("has_error_target"), nb::arg("mode"), nb::arg("expected_samples").none(), nb::arg("texture_bytes"),
            nb::arg("progress").none())

@@ -3,6 +3,7 @@
 #include "scene.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -45,7 +46,7 @@ dmat4 read_matrix(const Matrix& matrix) {
   return result;
 }
 
-Scene load(const std::string& file, bool is_strict, const std::string& variant) {
+Scene load(const std::filesystem::path& file, bool is_strict, const std::string& variant) {
   Scene scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
     scene = load_scene(file, {.is_strict = is_strict, .material_variant = variant});

@@ -268,8 +268,8 @@ class Scene:
         if not any(mesh.vertices.dtype == np.float64 for mesh in meshes):
             return np.zeros(3)
         corners = [mesh.corners() for mesh in meshes]
-        low = np.min([c.min(axis=0) for c in corners], axis=0)
-        high = np.max([c.max(axis=0) for c in corners], axis=0)
+        low = np.stack([c.min(axis=0) for c in corners]).min(axis=0)
+        high = np.stack([c.max(axis=0) for c in corners]).max(axis=0)
         return _middle(low, high)
 
     @property

@@ -6,6 +6,7 @@
 
 #include "formats/source_file.h"
 #include "formats/triangulate.h"
+#include "formats/utf8.h"
 #include "support/bad_file.h"
 #include "support/make_png.h"
 #include "support/scene_folder.h"
@@ -97,6 +98,22 @@ TEST_F(ObjTest, ObjectsAndGroupsWithFacesAreNumbered) {
   EXPECT_THAT(names, ElementsAre("", "second", "third one"));
   EXPECT_THAT(counts, ElementsAre(1, 2, 1));
   EXPECT_THAT(mesh_of(scene, 2).positions, SizeIs(3)) << "each object keeps its own vertices";
+}
+
+// In Latin-1, as older programs write them. What quotes them is UTF-8 too, wherever a quoted word is cut.
+TEST_F(ObjTest, NamesAreShownInUtf8) {
+  write("latin.mtl", "newmtl m\xFCller\n");
+  const LoadedScene scene =
+      load("mtllib latin.mtl\no caf\xE9\n" + kSquare + "usemtl m\xFCller\nf 1 2 3\no Kaffee für alle\nf 1 2 3\n");
+  EXPECT_EQ(scene.objects.at(0).name, "caf\uFFFD");
+  EXPECT_EQ(scene.objects.at(1).name, "Kaffee für alle");
+  EXPECT_EQ(scene.materials.at(scene.objects[0].material).name, "m\uFFFDller");
+  for (std::string word : {"", "x"}) {
+    while (word.size() < 100) word += "ü";
+    const std::string said = refusal("f " + word + "\n");
+    EXPECT_THAT(said, HasSubstr("is no corner"));
+    EXPECT_EQ(said, to_utf8(said));
+  }
 }
 
 TEST_F(ObjTest, DegenerateTrianglesKeepTheirNumber) {
