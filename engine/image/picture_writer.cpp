@@ -290,11 +290,18 @@ class PictureWriter::Impl {
                     "check the disk and permissions"});
   }
 
-  /// The error of a disk that the plugin's message names, as a file of several parts is written by its name and not by
-  /// OpenFile; 0 where it names none.
-  int error_in_message() const {
-    for (const int error : {ENOSPC, EFBIG, EDQUOT, EIO}) {
-      if (std::strstr(message_.text, std::strerror(error)) != nullptr) return error;
+  /// Why a file of several parts grows no further; 0 where it does. The plugin writes it by its name and not through
+  /// OpenFile, and whether OpenEXR's words name the disk's error depends on its version: so the disk is asked, for more
+  /// than OpenEXR writes at a time.
+  int find_disk_error() const {
+    if (!header_.exr.is_multipart) return 0;
+    const off_t end = ::lseek(bytes_.descriptor, 0, SEEK_END);
+    if (end < 0) return errno;
+    constexpr size_t kStepBytes = 1 << 20;
+    const std::vector<std::byte> zeros(kStepBytes);
+    for (uint64_t step = 0; step < 64; ++step) {
+      const int error = write_at(bytes_.descriptor, static_cast<uint64_t>(end) + step * kStepBytes, zeros);
+      if (error != 0) return error;
     }
     return 0;
   }
@@ -304,7 +311,7 @@ class PictureWriter::Impl {
     if (scratch_.failure) std::rethrow_exception(scratch_.failure);
     if (bytes_.error != 0) refuse_file(bytes_.error);
     if (status == PROMIN_PICTURES_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (const int error = error_in_message(); error != 0) refuse_file(error);
+    if (const int error = find_disk_error(); error != 0) refuse_file(error);
     throw RunError({std::string("cannot encode the picture (") + message_.text + ")", file_.string(),
                     "try the other format, .exr or .png"});
   }

@@ -127,7 +127,7 @@ def headers_stand_alone(installed):
             return [f"{header}: {done.stderr}"]
         faults = []
         for name in list_file.read_text().replace("\\\n", " ").split()[2:]:
-            file = pathlib.Path(name)
+            file = pathlib.Path(name).absolute()  # a compiler cache may shorten them
             is_ours = file.is_relative_to(include / "promin")
             # Debian 13 has the kernel's headers, which the standard library brings along, in /usr/lib/linux/uapi.
             is_systems = r"/(c\+\+|gcc|clang|glm)/|^/usr/include/(?!vulkan|nlohmann)|^/usr/lib/linux/uapi/"

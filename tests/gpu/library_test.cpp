@@ -115,9 +115,13 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
 }
 
+// In a process of its own (tests/CMakeLists.txt: each suite on a device is), because Mesa 25.0.7 counts memory that it
+// has refused as its own: what it gives out later lies beyond the end of its file, where writing is a bus error.
+class LibraryOutOfMemoryTest : public LibraryTest {};
+
 // A change that there is no memory for is refused while the scene is still as it was. Lavapipe from Mesa 24.3 on has
 // its memory in a file, whose size can be limited; other drivers take the change.
-TEST_F(LibraryTest, AChangeThatFailsChangesNothing) {
+TEST_F(LibraryOutOfMemoryTest, AChangeThatFailsChangesNothing) {
   Renderer renderer(device(), scene_);
   const Image before = renderer.render(view_).image;
   bool is_refused = false;
