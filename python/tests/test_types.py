@@ -36,7 +36,9 @@ def test_mypy_strict(tmp_path: Path) -> None:
 
 def test_stubtest(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
-    run(tmp_path, "-m", "mypy.stubtest", "promin", "--allowlist", Path(__file__).with_name("stubtest_allowlist.txt"))
+    allowed = Path(__file__).with_name("stubtest_allowlist.txt")
+    # What is allowed for one version of NumPy is not there in another.
+    run(tmp_path, "-m", "mypy.stubtest", "promin", "--allowlist", allowed, "--ignore-unused-allowlist")
 
 
 def test_the_native_stub_has_the_names_of_the_module() -> None:
