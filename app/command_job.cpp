@@ -301,7 +301,8 @@ std::string find_driver(const jobs::Job& job) {
   for (size_t piece = 0; piece < job.piece_count(); ++piece) {
     if (job.state_of(piece) != jobs::PieceState::kDone) continue;
     const Json json = Json::parse(job.read(piece).description, nullptr, false);
-    return json.is_object() ? json.value("driver", "") : "";
+    const auto driver = json.is_object() ? json.find("driver") : json.end();
+    return driver != json.end() && driver->is_string() ? driver->get<std::string>() : "";
   }
   return "";
 }
@@ -311,7 +312,11 @@ std::string driver_of(const gpu::DeviceInfo& device) {
 }
 
 void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console) {
-  const jobs::Job job = create_job(planned, *options.folder);
+  const jobs::Job job = [&] {
+    // No signal leaves the temporary files of what is written here.
+    const DeferredSignals while_writing;
+    return create_job(planned, *options.folder);
+  }();
   const std::optional<size_t> made = make_share(job, planned, options.share.value_or(jobs::Share{}), steps, console);
   if (!made) return;
   if (options.share) {
@@ -343,7 +348,7 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs)
     throw InputError({fmt::format("the job is one of \"{}\", and not of promin render or cast", kind),
                       job.folder().string(), "name the folder of promin render --job or promin cast --job"});
   }
-  for (const fs::path& output : outputs) {
+  for (const fs::path& output : kind == kPictureJob ? number_pictures(job, outputs) : outputs) {
     if (!is_input(job, output)) continue;
     throw UsageError({"the output would overwrite an input", output.string(), "name another file"});
   }

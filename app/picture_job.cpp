@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "command_job.h"
 #include "frame_plan.h"
@@ -49,6 +51,14 @@ PictureError error_of(const Json& json) {
           .largest_claim = json.at("largest_claim"),
           .unmet_pixels = json.at("unmet_pixels"),
           .samples = json.at("samples")};
+}
+
+/// One of so many. Throws std::out_of_range.
+template <typename Choice>
+Choice choice_of(const Json& json, size_t count) {
+  const auto number = json.get<int64_t>();
+  if (number < 0 || static_cast<size_t>(number) >= count) throw std::out_of_range("no such choice");
+  return static_cast<Choice>(number);
 }
 
 uvec2 size_of(const PixelWindow& window) {
@@ -116,7 +126,10 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
                        part.window.hi == first.window.hi && part.error.has_value() == first.error.has_value() &&
                        std::ranges::equal(part.channels, first.channels, is_same_channel);
   if (!is_same) throw InputError({"is not of the picture of the other pieces", file.string(), "remove it"});
-  for (size_t i = 0; i < std::min(part.metadata.size(), first.metadata.size()); ++i) {
+  if (part.metadata.size() != first.metadata.size()) {
+    throw InputError({"tells other things than the other pieces", file.string(), "remove it and run the job again"});
+  }
+  for (size_t i = 0; i < part.metadata.size(); ++i) {
     const auto& [name, value] = part.metadata[i];
     if (part.metadata[i] == first.metadata[i] || is_error_metadata(name)) continue;
     throw InputError(
@@ -307,16 +320,19 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
     part.window = window_of(json.at("window"));
     part.part = window_of(json.at("part"));
     part.display.exposure_ev = json.at("exposure_ev");
-    part.display.tone_mapping = json.at("tone_mapping").get<ToneMapping>();
+    part.display.tone_mapping = choice_of<ToneMapping>(json.at("tone_mapping"), tone_mapping_names().size());
     part.display.dithers = json.at("dithers");
     const Json& exr = json.at("exr");
-    part.exr = {exr.at(0).get<bool>(), exr.at(1).get<ExrCompression>(), exr.at(2).get<bool>()};
+    part.exr = {exr.at(0).get<bool>(), choice_of<ExrCompression>(exr.at(1), exr_compression_names().size()),
+                exr.at(2).get<bool>()};
     part.metadata = json.at("metadata").get<Metadata>();
     for (const Json& channel : json.at("channels")) {
       part.channels.push_back({channel.at("name"), channel.at("is_integer"), {}});
     }
     if (json.contains("error")) part.error = error_of(json.at("error"));
   } catch (const nlohmann::json::exception&) {
+    throw bad;
+  } catch (const std::out_of_range&) {
     throw bad;
   }
   if (!is_within(part.part, part.window) || glm::any(glm::greaterThan(part.window.hi, part.full_size))) throw bad;
@@ -333,6 +349,21 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
     from += pixels * sizeof(uint32_t);
   }
   return part;
+}
+
+std::vector<fs::path> number_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
+  std::vector<fs::path> numbered;
+  std::string last;
+  for (const std::string& piece : job.manifest().pieces) {
+    const std::string frame = frame_of(piece);
+    if (frame.empty()) return files;
+    if (frame == last) continue;
+    last = frame;
+    uint32_t number = 0;
+    std::from_chars(frame.data() + kOfFrame.size(), frame.data() + frame.size(), number);
+    for (const fs::path& file : files) numbered.push_back(number_file(file, number));
+  }
+  return numbered;
 }
 
 void check_merged_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {

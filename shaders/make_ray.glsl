@@ -35,7 +35,7 @@ void pad_origin(inout Ray ray) {
   ray.far_origin = far_origin;
 }
 
-// From 7e5 radii of the tree away the padding is as large as the tree, so that every box would be met. A floor may send
+// From 5e5 radii of the tree away the padding is as large as the tree, so that every box would be met. A floor may send
 // a mirror ray or a shadow ray from there. So rays from beyond this many radii start nearer to the tree.
 const float FAR_AWAY = 1024.0;
 // And from beyond this many times the tree's own distance from the world's origin. The new origin is rounded by that

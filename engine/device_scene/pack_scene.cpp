@@ -164,8 +164,9 @@ void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   packed.file = file;
 }
 
-/// Whether the file has the tree. What is wrong with one that is there is added to the warnings.
+/// Whether the file has the tree. The warnings tell what is wrong with one that is there, and no more what was before.
 bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
+  packed.warnings.clear();
   std::error_code error;
   if (!std::filesystem::exists(bvh_file, error)) return false;
   try {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "formats/utf8.h"
+#include "core/utf8.h"
 
 namespace promin {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/rounding.h"
+#include "core/utf8.h"
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
 #include "formats/nff/load_nff.h"
@@ -14,7 +15,6 @@
 #include "formats/ply/load_ply.h"
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
-#include "formats/utf8.h"
 #include "promin/error.h"
 
 namespace promin {

@@ -16,6 +16,7 @@
 
 #include "core/file.h"
 #include "core/stopwatch.h"
+#include "core/utf8.h"
 #include "jobs/sha256.h"
 #include "promin/error.h"
 
@@ -249,6 +250,11 @@ std::string version_of(const Manifest& manifest) {
 }  // namespace
 
 InputFile describe_input(const fs::path& file) {
+  const std::string path = fs::absolute(file).string();
+  if (to_utf8(path) != path) {
+    throw InputError({"the name of the file or of its folder is not UTF-8, in which a job tells what it is made of",
+                      file.string(), "give it another name"});
+  }
   const std::string hash = sha256_of_file(file);
   return {file.filename().string(), fs::file_size(file), hash};
 }

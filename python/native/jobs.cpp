@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -24,6 +25,7 @@
 #include "watched.h"
 
 namespace nb = nanobind;
+namespace fs = std::filesystem;
 
 namespace promin::python {
 namespace {
@@ -69,11 +71,11 @@ std::string hash_of(const jobs::Content& content) {
   return jobs::Sha256().add(content.bytes).finish();
 }
 
-Job create_with(const std::string& folder, const std::string& kind, const Pairs& options,
-                const std::vector<std::string>& files, const std::vector<std::string>& pieces) {
+Job create_with(const fs::path& folder, const std::string& kind, const Pairs& options,
+                const std::vector<fs::path>& files, const std::vector<std::string>& pieces) {
   return unlocked([&] {
     jobs::Manifest manifest{.kind = kind, .options = options, .files = {}, .pieces = pieces};
-    for (const std::string& file : files) manifest.files.push_back(jobs::describe_input(file));
+    for (const fs::path& file : files) manifest.files.push_back(jobs::describe_input(file));
     return Job::create(folder, manifest);
   });
 }
@@ -123,15 +125,13 @@ nb::dict write(const Job& job, size_t piece, const std::string& description, con
   return describe(unlocked([&] { return job.write(check(job, piece), content, ms, {made_on, fingerprint}); }));
 }
 
-void merge(const Job& job, const std::vector<std::string>& outputs, bool is_mixed,
+void merge(const Job& job, const std::vector<fs::path>& outputs, bool is_mixed,
            const std::optional<std::vector<uint32_t>>& frames, const nb::object& progress) {
-  run_watched(progress, [&](const ProgressCallback& tell) {
-    app::merge_job(job, {outputs.begin(), outputs.end()}, tell, is_mixed, frames);
-  });
+  run_watched(progress, [&](const ProgressCallback& tell) { app::merge_job(job, outputs, tell, is_mixed, frames); });
 }
 
-void check_outputs(const Job& job, const std::vector<std::string>& outputs) {
-  unlocked([&] { app::check_job_files(job, {outputs.begin(), outputs.end()}); });
+void check_outputs(const Job& job, const std::vector<fs::path>& outputs) {
+  unlocked([&] { app::check_job_files(job, outputs); });
 }
 
 /// A job that is read and checked; what opens its pieces has part in it.
@@ -179,7 +179,7 @@ std::shared_ptr<app::RaySource> take_rays(const nb::object& source) {
   return source.is_none() ? nullptr : std::make_shared<PythonRays>(source);
 }
 
-SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arguments, const std::string& folder,
+SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arguments, const fs::path& folder,
                     const nb::object& source) {
   Plan plan;
   run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
@@ -208,7 +208,7 @@ std::optional<std::pair<std::string, uint64_t>> stored(const Job& job, size_t pi
   });
 }
 
-Job create(const SharedPlan& shared, const std::string& folder) {
+Job create(const SharedPlan& shared, const fs::path& folder) {
   return unlocked([&] { return app::create_job(*shared.plan, folder); });
 }
 
@@ -292,10 +292,14 @@ std::string fingerprint_of(const OpenDevice& device) {
 void bind_jobs(nb::module_& module) {
   nb::class_<Job>(module, "Job")
       .def_static("create_with", &create_with)
-      .def_static("open", [](const std::string& folder) { return unlocked([&] { return Job::open(folder); }); })
+      .def_static("open", [](const fs::path& folder) { return unlocked([&] { return Job::open(folder); }); })
       .def("describe", [](const Job& job) { return describe(job); })
       .def("arguments", [](const Job& job) { return app::read_arguments(job); })
-      .def("file_of", [](const Job& job, size_t piece) { return job.file_of(check(job, piece)).string(); })
+      .def("file_of",
+           [](const Job& job, size_t piece) {
+             // As os.fsdecode has it: the folder's name need not be UTF-8.
+             return nb::steal<nb::str>(PyUnicode_DecodeFSDefault(job.file_of(check(job, piece)).c_str()));
+           })
       .def("state_of", &state_of)
       .def("sha256",
            [](const Job& job, size_t piece) { return unlocked([&] { return hash_of(job.read(check(job, piece))); }); })
@@ -310,6 +314,10 @@ void bind_jobs(nb::module_& module) {
            [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint,
               const std::string& why) {
              job.tell_failed(check(job, piece), {made_on, fingerprint}, why);
+           })
+      .def("tell_stopped",
+           [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint) {
+             job.tell_stopped(check(job, piece), {made_on, fingerprint});
            })
       .def("clear_leftovers", &Job::clear_leftovers)
       .def("check_outputs", &check_outputs)

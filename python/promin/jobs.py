@@ -415,8 +415,9 @@ class Runner:
     def run(self, number: int, stop: Stop | None = None) -> Receipt:
         """Makes a piece unless it is done, writes it, and returns its receipt, or that of the one that is there.
 
-        stop: is asked about twenty times a second; where it returns True, `run` raises Cancelled and nothing is
-        written. Raises InputError where an input has changed, RunError. The ledger is told of all of it."""
+        stop: is asked about twenty times a second, of pieces that a function makes before and after it; where it
+        returns True, `run` raises Cancelled and nothing is written. Raises InputError where an input has changed,
+        RunError. The ledger is told of all of it."""
         done = self._job.receipt(number)
         if done is not None:
             return done
@@ -426,8 +427,11 @@ class Runner:
         native.tell_begun(number, self.made_on, "")
         begun = time.monotonic()
         try:
-            description, data = self._call_make(number)
+            description, data = self._call_make(number, stop)
             return self._job.write(number, description, data, 1e3 * (time.monotonic() - begun), self.made_on)
+        except Cancelled:
+            native.tell_stopped(number, self.made_on, "")
+            raise
         except Exception as error:
             native.tell_failed(number, self.made_on, "", str(error) or type(error).__name__)
             raise
@@ -439,7 +443,7 @@ class Runner:
             return self._native.recompute(number, _progress_of(stop))
         import hashlib
 
-        return hashlib.sha256(self._call_make(number)[1]).hexdigest()
+        return hashlib.sha256(self._call_make(number, stop)[1]).hexdigest()
 
     def compare(self, number: int, stop: Stop | None = None) -> Comparison:
         """Makes a piece anew and compares it with the one on the disk; nothing is written. Devices of one fingerprint
@@ -447,12 +451,16 @@ class Runner:
         InputError where the piece is not done."""
         if self._native is not None:
             return Comparison(**self._native.compare(number, _progress_of(stop)))
-        is_equal = self.recompute(number) == self._job.sha256(number)
+        is_equal = self.recompute(number, stop) == self._job.sha256(number)
         return Comparison(is_equal, is_equal, 0.0, 0, 0)
 
-    def _call_make(self, number: int) -> tuple[str, bytes]:
+    def _call_make(self, number: int, stop: Stop | None) -> tuple[str, bytes]:
         assert self._make is not None
+        if stop is not None and stop():
+            raise Cancelled("cancelled")
         description, data = self._make(number)
+        if stop is not None and stop():
+            raise Cancelled("cancelled")
         if not isinstance(description, str) or not isinstance(data, bytes):
             raise UsageError(f"make({number}) gives {type(description)} and {type(data)}; return a text and bytes")
         return description, data

@@ -204,6 +204,73 @@ def test_a_receipt_is_of_the_bytes_that_are_there(tmp_path: Path) -> None:
     assert receipt is not None and (receipt.fingerprint, receipt.sha256) == ("one", job.sha256(0))
 
 
+def test_a_function_that_makes_pieces_may_be_stopped(tmp_path: Path) -> None:
+    job = jobs.create_with("bytes", tmp_path / "job", options={}, pieces=["a"])
+    answers = iter([False, True])
+    made = []
+
+    def make(number: int) -> tuple[str, bytes]:
+        made.append(number)
+        return "", b"made"
+
+    runner = job.runner(make=make)
+    with pytest.raises(jobs.Cancelled):
+        runner.run(0, stop=lambda: True)
+    assert not made
+    with pytest.raises(jobs.Cancelled):
+        runner.run(0, stop=lambda: next(answers))
+    assert made == [0] and job.state(0) == "missing"
+    assert [event["event"] for event in job.events()] == ["begun", "stopped"] * 2
+    for ask in (runner.recompute, runner.compare):
+        with pytest.raises(jobs.Cancelled):
+            ask(0, stop=lambda: True)
+
+
+def test_parts_that_say_what_there_is_not_are_refused(scene: Path, tmp_path: Path) -> None:
+    job = jobs.create("render", [str(scene), "--size", "8", "6", "--pieces", "2"], tmp_path / "job")
+    make_all(job)
+    whole, data = job.read(0)
+    for name, value in (("tone_mapping", 77), ("tone_mapping", -1), ("exr", [False, 99, False])):
+        job.write(0, json.dumps({**json.loads(whole), name: value}), data)
+        with pytest.raises(jobs.InputError, match="is no part of a picture"):
+            job.merge([tmp_path / "out.exr"])
+    said = json.loads(whole)
+    said["metadata"] = said["metadata"][:-1]
+    job.write(0, json.dumps(said), data)
+    with pytest.raises(jobs.InputError, match="tells other things than the other pieces"):
+        job.merge([tmp_path / "out.exr"])
+    assert not (tmp_path / "out.exr").exists()
+
+
+def test_no_frame_is_written_over_what_the_job_is_made_of(scene: Path, tmp_path: Path) -> None:
+    panorama = tmp_path / "sky.0001.exr"
+    promin.write_image(panorama, np.ones((4, 8, 3)))
+    kept = panorama.read_bytes()
+    look = {"eye": [0, 0, 5], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 40}
+    frames = [{"time_s": float(i), **look} for i in range(2)]
+    path = tmp_path / "path.json"
+    path.write_text(json.dumps({"format": "promin camera path", "version": 1, "frames": frames}))
+    words = [str(scene), "--size", "8", "6", "--path", str(path), "--environment", str(panorama)]
+    job = jobs.create("render", words, tmp_path / "job")
+    make_all(job)
+    with pytest.raises(jobs.UsageError, match="would overwrite an input, .*sky.0001.exr"):
+        job.merge([tmp_path / "sky.####.exr"])
+    assert panorama.read_bytes() == kept
+
+
+def test_folders_that_are_not_named_in_utf8(scene: Path, tmp_path: Path) -> None:
+    odd = tmp_path / os.fsdecode(b"caf\xe9")
+    odd.mkdir()
+    job = jobs.create("render", [str(scene), "--size", "8", "6", "--pieces", "1"], odd / "job")
+    make_all(job)
+    assert Path(job.pieces[0].file).exists()
+    jobs.open(odd / "job").merge([odd / "out.exr"])
+    assert (odd / "out.exr").exists()
+    moved = Path(shutil.copy(scene, odd))
+    with pytest.raises(jobs.InputError, match="is not UTF-8"):
+        jobs.create_with("bytes", tmp_path / "other", options={}, files=[moved], pieces=["a"])
+
+
 def test_comparisons_of_pictures(scene: Path, tmp_path: Path) -> None:
     words = [str(scene), "--size", "40", "30", "--aov", "depth,object", "--pieces", "1"]
     job = jobs.create("render", words, tmp_path / "job")

@@ -53,15 +53,9 @@ def test_a_cast_lets_other_threads_run() -> None:
     caster = promin.Caster(make_scene(1))
     rays = make_rays(400000)
     ticks = 0
-    is_done = threading.Event()
-
-    def cast() -> None:
-        caster.cast(rays)
-        is_done.set()
-
-    thread = threading.Thread(target=cast)
+    thread = threading.Thread(target=caster.cast, args=(rays,))
     thread.start()
-    while not is_done.is_set():
+    while thread.is_alive():
         ticks += 1
         time.sleep(0.001)
     thread.join()

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "core/utf8.h"
 #include "formats/source_file.h"
 #include "formats/triangulate.h"
-#include "formats/utf8.h"
 #include "support/bad_file.h"
 #include "support/make_png.h"
 #include "support/scene_folder.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/utf8.h"
+#include "core/utf8.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
