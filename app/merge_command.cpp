@@ -32,6 +32,10 @@ void merge(const MergeOptions& options) {
   std::vector<std::filesystem::path> files = options.files;
   if (options.offsets) files.push_back(*options.offsets);
   const jobs::Job job = jobs::Job::open(options.folder);
+  if (options.offsets && job.manifest().kind == kPictureJob) {
+    throw UsageError(
+        {"--offsets is of answers to rays, and the job is of pictures", job.folder().string(), "leave --offsets out"});
+  }
   check_job_files(job, files);
   if (job.manifest().kind == kPictureJob) find_pictures();
   check_outputs({}, files, {});

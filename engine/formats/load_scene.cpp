@@ -74,6 +74,12 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
+  // A pipe might be waited for without end.
+  std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(file, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError({"not a regular file", file.string(), "name the scene's file"});
+  }
   if (!options.material_variant.empty() && !format.has_variants) {
     throw UsageError({std::string("files that end in ") + format.ending + " have no variants of materials",
                       file.string(), "ask for none"});

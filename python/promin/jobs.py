@@ -150,6 +150,11 @@ def create(kind: str, arguments: Sequence[str], folder: PathLike, *, rays: RaySo
     if isinstance(arguments, str):
         raise UsageError(f"arguments are {arguments!r}; give a list of words")
     words = [os.fsdecode(word) if isinstance(word, (str, bytes, os.PathLike)) else str(word) for word in arguments]
+    for word in words:
+        if not _is_utf8(word):
+            raise UsageError(
+                f"the argument {word!r} is not UTF-8, in which a job tells what it is made of; rename the file"
+            )
     name = os.fsdecode(folder)
     plan = _promin.PlannedJob.plan(str(kind), words, name, rays)
     return Job(plan.create(name), name, plan, rays=rays)
@@ -542,6 +547,15 @@ def _receipt_of(event: dict[str, Any]) -> Receipt:
         host=event["host"],
         pid=event["pid"],
     )
+
+
+def _is_utf8(word: str) -> bool:
+    """Whether it holds none of os.fsdecode's stand-ins for other bytes."""
+    try:
+        word.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _weigh(name: str) -> float:

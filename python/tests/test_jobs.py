@@ -267,6 +267,8 @@ def test_folders_that_are_not_named_in_utf8(scene: Path, tmp_path: Path) -> None
     jobs.open(odd / "job").merge([odd / "out.exr"])
     assert (odd / "out.exr").exists()
     moved = Path(shutil.copy(scene, odd))
+    with pytest.raises(jobs.UsageError, match=r"caf.udce9.* is not UTF-8"):
+        jobs.create("render", [str(moved)], tmp_path / "other")
     with pytest.raises(jobs.InputError, match="is not UTF-8"):
         jobs.create_with("bytes", tmp_path / "other", options={}, files=[moved], pieces=["a"])
 

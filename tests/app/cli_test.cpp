@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
@@ -286,6 +287,14 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
   expect_failure(run(large), 1, "cannot write the output file (");
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
+}
+
+// Reading from a pipe that nobody writes to would wait without end.
+TEST_F(CliTest, ScenesAreRegularFiles) {
+  ASSERT_EQ(::mkfifo((folder() / "pipe.obj").c_str(), 0600), 0);
+  expect_failure(run({"info", "pipe.obj"}), 3, "not a regular file, pipe.obj; name the scene's file");
+  std::filesystem::create_directory(folder() / "folder.gltf");
+  expect_failure(run({"info", "folder.gltf"}), 3, "not a regular file, folder.gltf; name the scene's file");
 }
 
 // Newer lavapipes keep device memory in a file, to which the limit applies.

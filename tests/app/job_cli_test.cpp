@@ -75,6 +75,8 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   EXPECT_EQ(one_file.exit_code, 2);
   EXPECT_THAT(one_file.err, HasSubstr("several frames would go to one file, one.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "one.exr"));
+  EXPECT_THAT(run({"merge", "job", "-o", "cut.##.exr", "--offsets", "o.npy"}).err,
+              HasSubstr("--offsets is of answers to rays, and the job is of pictures, job; leave --offsets out"));
   for (const char* number : {"00", "01"}) {
     EXPECT_TRUE(read(std::string("cut.") + number + ".exr") == read(std::string("whole.") + number + ".exr"));
   }
