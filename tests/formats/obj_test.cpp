@@ -100,6 +100,14 @@ TEST_F(ObjTest, ObjectsAndGroupsWithFacesAreNumbered) {
   EXPECT_THAT(mesh_of(scene, 2).positions, SizeIs(3)) << "each object keeps its own vertices";
 }
 
+TEST_F(ObjTest, StatementsGoOnBehindABackslash) {
+  const LoadedScene scene =
+      load("v 0 0 \\\n0\nv 1\\\r\n 0 \\\n 0\nv 0 1 0\n# in C:\\scenes\\\no name\nf 1 \\\n2 3\nv 0 0 1\\");
+  EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2)));
+  EXPECT_EQ(mesh_of(scene).positions.at(1), vec3(1, 0, 0));
+  EXPECT_EQ(scene.objects.at(0).name, "name");
+}
+
 // In Latin-1, as older programs write them. What quotes them is UTF-8 too, wherever a quoted word is cut.
 TEST_F(ObjTest, NamesAreShownInUtf8) {
   write("latin.mtl", "newmtl m\xFCller\n");
@@ -546,7 +554,6 @@ const BadFile kBadObj[] = {
     {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is no corner", ": line 5"},
     {"NoPosition", "f /1 2 3", "is no corner", ": line 5"},
     {"TwoCorners", "f 1 2", "a face has 2 corners", ": line 5"},
-    {"Continuation", "f 1 2 \\\n 3", "is no corner", ": line 5"},
     {"Nan", "v 0 nan 0", "\"nan\" is no number", ": line 5"},
     {"Infinity", "v 0 0 -inf", "\"-inf\" is no number", ": line 5"},
     {"CommaAsPoint", "v 0,5 1 2", "\"0,5\" is no number", ": line 5"},

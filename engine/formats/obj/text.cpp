@@ -23,7 +23,7 @@ class ObjParser {
 
   ObjText parse() {
     while (lines_.advance()) {
-      std::string_view line = lines_.line();
+      std::string_view line = take_statement();
       const std::string_view keyword = take_word(line);
       if (!keyword.empty()) read_statement(keyword, line);
     }
@@ -37,6 +37,20 @@ class ObjParser {
   }
 
  private:
+  /// The line at hand, and those in which it goes on behind a backslash at its end. Comments do not: they may end in
+  /// the path of a folder.
+  std::string_view take_statement() {
+    std::string_view line = lines_.line();
+    if (!line.ends_with('\\') || line.find('#') != std::string_view::npos) return line;
+    joined_.clear();
+    while (line.ends_with('\\')) {
+      joined_.append(line.substr(0, line.size() - 1)).push_back(' ');
+      if (!lines_.advance()) return joined_;
+      line = lines_.line();
+    }
+    return joined_.append(line);
+  }
+
   void read_statement(std::string_view keyword, std::string_view rest) {
     if (keyword == "v") {
       read_vertex(rest);
@@ -131,7 +145,7 @@ class ObjParser {
       return;
     }
     if (!is_group_open_) {
-      out_.groups.push_back({std::string(group_name_), static_cast<uint32_t>(out_.faces.size()), 0});
+      out_.groups.push_back({group_name_, static_cast<uint32_t>(out_.faces.size()), 0});
       is_group_open_ = true;
     }
     ++out_.groups.back().face_count;
@@ -207,9 +221,11 @@ class ObjParser {
   }
 
   TextLines lines_;
+  /// A statement of several lines.
+  std::string joined_;
   LoadReport& report_;
   ObjText out_;
-  std::string_view group_name_;
+  std::string group_name_;
   bool is_group_open_ = false;
   uint32_t material_ = kNoObjIndex;
   std::unordered_map<std::string, uint32_t> materials_;
