@@ -65,6 +65,8 @@ void name_option(Problem& problem) {
   if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
 }
 
+const Problem kDeafOutput{"cannot write", "the standard output", "check where it leads"};
+
 /// For the build alone, which installs what this prints (app/CMakeLists.txt).
 constexpr std::string_view kMakeManual = "--make-manual";
 
@@ -119,7 +121,7 @@ int run_program(const std::string& name, const std::string& help,
   try {
     run_command(name, help, commands, argc, argv);
     if (std::fflush(stdout) != 0) {
-      throw RunError({"cannot write", "the standard output", "check where it leads"});
+      throw RunError(kDeafOutput);
     }
     return kDone;
   } catch (const UsageError& error) {
@@ -135,6 +137,8 @@ int run_program(const std::string& name, const std::string& help,
   } catch (const std::bad_alloc&) {
     return report(kRunFailed, fmt::format("out of memory, in {}; use a smaller picture or scene", name));
   } catch (const std::exception& error) {
+    // What a command prints may fail at any line, by an exception of fmt's.
+    if (std::ferror(stdout) != 0) return report(kRunFailed, message_of(kDeafOutput));
     return report(kRunFailed, fmt::format("unexpected failure ({}), in {}; report it as a bug", error.what(), name));
   }
 }

@@ -344,7 +344,7 @@ class Job:
         RunError."""
         make = make or self._make
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
-            if self._kind not in ("render", "cast") or self.arguments is None:
+            if self._kind not in ("render", "cast"):
                 raise UsageError(f"pieces of the kind {self._kind!r} are made by a function; give it as make")
             self._plan = _promin.PlannedJob.plan_again(self._native, rays or self._rays)
         return Runner(self, device, make)

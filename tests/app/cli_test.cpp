@@ -340,6 +340,7 @@ TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {
 TEST_F(CliTest, AFullStandardOutputIsAFailure) {
   options_.standard_output = "/dev/full";
   expect_failure(run({"info", "square.gltf"}), 1, "the standard output");
+  expect_failure(run({"render", "--help"}), 1, "cannot write, the standard output");
 }
 
 TEST_F(CliTest, WithoutADeviceOnlyInfoWorks) {
