@@ -110,6 +110,9 @@ def test_folders_of_other_versions_are_refused(farm: Farm) -> None:
     settings = farm.job / "farm/farm.json"
     settings.write_text(json.dumps({"promin_farm": 99}))
     assert f"damaged or of another version, {settings}" in farm.run("resume", farm.job, code=3)
+    for wrong in ({"outputs": 5}, {"retries_from": "x"}):
+        settings.write_text(json.dumps({"promin_farm": 1, **wrong}))
+        assert f"damaged or of another version, {settings}" in farm.run("resume", farm.job, code=3)
     settings.unlink()
     manifest = farm.job / "job.json"
     manifest.write_text(manifest.read_text().replace('"fake_job": 1', '"fake_job": 9'))

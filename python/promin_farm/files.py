@@ -51,7 +51,8 @@ def read_json(file: Path) -> dict[str, Any] | None:
 
 def _write_beside(file: Path, content: str | bytes) -> Path:
     temporary = file.with_name(f".{file.name}.{os.getpid()}-{secrets.token_hex(4)}.tmp")
-    data = content.encode() if isinstance(content, str) else content
+    # Names of files in it need not be UTF-8: os.fsdecode's stand-ins become their bytes again.
+    data = content.encode(errors="surrogateescape") if isinstance(content, str) else content
     try:
         with open(temporary, "xb") as stream:
             stream.write(data)

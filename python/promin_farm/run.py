@@ -57,7 +57,11 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
             if round_ + 1 == _MOST_ROUNDS or all(job.state(piece.number) == "done" for piece in job.pieces):
                 raise
     if not options.is_quiet:
-        print(f"{len(job.pieces)} pieces: {', '.join(settings.outputs) or job.folder}")
+        pieces = f"{len(job.pieces)} pieces"
+        if settings.outputs:
+            print(f"{pieces}: {', '.join(settings.outputs)}")
+        else:
+            print(f"{pieces} are in {job.folder}; name the files to make of them by -o")
     return 0
 
 

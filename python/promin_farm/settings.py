@@ -34,17 +34,21 @@ class Settings:
         file = folder / "farm" / "farm.json"
         if not file.exists():
             return Settings()
+        damaged = jobs.InputError(
+            f"the farm's settings are damaged or of another version, {file}; remove the file, and name the outputs "
+            "to resume again by -o"
+        )
         there = read_json(file)
         if there is None or there.get("promin_farm") != FORMAT:
-            raise jobs.InputError(
-                f"the farm's settings are damaged or of another version, {file}; remove the file, and name the outputs "
-                "to resume again by -o"
+            raise damaged
+        try:
+            return Settings(
+                outputs=[str(output) for output in there.get("outputs", [])],
+                allow_mixed=bool(there.get("allow_mixed", False)),
+                retries_from=float(there.get("retries_from", 0.0)),
             )
-        return Settings(
-            outputs=[str(output) for output in there.get("outputs", [])],
-            allow_mixed=bool(there.get("allow_mixed", False)),
-            retries_from=float(there.get("retries_from", 0.0)),
-        )
+        except (TypeError, ValueError):
+            raise damaged from None
 
     def write(self, folder: Path) -> None:
         """Raises RunError."""
