@@ -74,10 +74,10 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
-  // A pipe might be waited for without end.
+  // A pipe might be waited for without end. A folder is refused where it is read.
   std::error_code none;
   const std::filesystem::file_status status = std::filesystem::status(file, none);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+  if (std::filesystem::exists(status) && !is_regular_file(status) && !is_directory(status)) {
     throw InputError({"not a regular file", file.string(), "name the scene's file"});
   }
   if (!options.material_variant.empty() && !format.has_variants) {
