@@ -338,7 +338,8 @@ void check_whole(const jobs::Job& job) {
   refuse_missing(job, jobs::find_missing(job), job.piece_count());
 }
 
-void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs) {
+void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs,
+                     const std::optional<std::vector<uint32_t>>& frames) {
   const std::string& kind = job.manifest().kind;
   if (kind == kPictureJob) {
     check_merged_pictures(job, outputs);
@@ -348,7 +349,7 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs)
     throw InputError({fmt::format("the job is one of \"{}\", and not of promin render or cast", kind),
                       job.folder().string(), "name the folder of promin render --job or promin cast --job"});
   }
-  for (const fs::path& output : kind == kPictureJob ? number_pictures(job, outputs) : outputs) {
+  for (const fs::path& output : kind == kPictureJob ? number_pictures(job, outputs, frames) : outputs) {
     if (!is_input(job, output)) continue;
     throw UsageError({"the output would overwrite an input", output.string(), "name another file"});
   }
@@ -356,7 +357,7 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs)
 
 void merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs, const ProgressCallback& progress,
                bool is_mixed, const std::optional<std::vector<uint32_t>>& frames) {
-  check_job_files(job, outputs);
+  check_job_files(job, outputs, frames);
   if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress, frames);
   if (frames) throw UsageError({"answers to rays have no frames", job.folder().string(), "leave the frames out"});
   merge_hits(job, outputs, progress, is_mixed);

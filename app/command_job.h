@@ -114,8 +114,9 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
 
 /// Before the work: throws UsageError for files that merge_job does not make of this job, and for one that the job's
 /// pieces hang on; the manifest tells these by name, size and hash, not by folder. Throws InputError for a job of
-/// another kind.
-void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
+/// another kind. `frames`: of a path only these are to be made.
+void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
+                     const std::optional<std::vector<uint32_t>>& frames = std::nullopt);
 
 /// Throws RunError where some of these pieces are missing or bad, and names a few.
 void check_done(const jobs::Job& job, const std::vector<size_t>& pieces);

@@ -351,14 +351,12 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
   return part;
 }
 
-std::vector<fs::path> number_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
+std::vector<fs::path> number_pictures(const jobs::Job& job, const std::vector<fs::path>& files,
+                                      const std::optional<std::vector<uint32_t>>& frames) {
   std::vector<fs::path> numbered;
-  std::string last;
-  for (const std::string& piece : job.manifest().pieces) {
-    const std::string frame = frame_of(piece);
+  for (const std::vector<size_t>& pieces : choose_pictures(job, frames)) {
+    const std::string frame = frame_of(job.manifest().pieces[pieces.front()]);
     if (frame.empty()) return files;
-    if (frame == last) continue;
-    last = frame;
     uint32_t number = 0;
     std::from_chars(frame.data() + kOfFrame.size(), frame.data() + frame.size(), number);
     for (const fs::path& file : files) numbered.push_back(number_file(file, number));

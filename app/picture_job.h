@@ -50,9 +50,11 @@ PicturePart decode_part(const jobs::Content& content, const std::filesystem::pat
 std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
                                      const std::vector<PixelWindow>& parts);
 
-/// The files that a job's pictures go to: of a path those of each frame.
+/// The files that a job's pictures go to: of a path those of each frame, or of these. Throws UsageError for a frame
+/// that the job does not have.
 std::vector<std::filesystem::path> number_pictures(const jobs::Job& job,
-                                                   const std::vector<std::filesystem::path>& files);
+                                                   const std::vector<std::filesystem::path>& files,
+                                                   const std::optional<std::vector<uint32_t>>& frames);
 /// Throws UsageError for files that are no pictures, and where several frames would go to one.
 void check_merged_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
 /// Puts the pieces of a job of pictures together and writes each picture, or those of these frames of a path, to the

@@ -74,15 +74,14 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
-  // A pipe might be waited for without end. A folder is refused where it is read.
-  std::error_code none;
-  const std::filesystem::file_status status = std::filesystem::status(file, none);
-  if (std::filesystem::exists(status) && !is_regular_file(status) && !is_directory(status)) {
-    throw InputError({"not a regular file", file.string(), "name the scene's file"});
-  }
   if (!options.material_variant.empty() && !format.has_variants) {
     throw UsageError({std::string("files that end in ") + format.ending + " have no variants of materials",
                       file.string(), "ask for none"});
+  }
+  // A pipe might be waited for without end. A folder is refused where it is read.
+  const std::filesystem::file_status status = find_input(file);
+  if (!is_regular_file(status) && !is_directory(status)) {
+    throw InputError({"not a regular file", file.string(), "name the scene's file"});
   }
   return format.load(options, report);
 }

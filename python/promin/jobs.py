@@ -461,11 +461,9 @@ class Runner:
 
     def _call_make(self, number: int, stop: Stop | None) -> tuple[str, bytes]:
         assert self._make is not None
-        if stop is not None and stop():
-            raise Cancelled("cancelled")
+        _heed(stop)
         description, data = self._make(number)
-        if stop is not None and stop():
-            raise Cancelled("cancelled")
+        _heed(stop)
         if not isinstance(description, str) or not isinstance(data, bytes):
             raise UsageError(f"make({number}) gives {type(description)} and {type(data)}; return a text and bytes")
         return description, data
@@ -564,11 +562,15 @@ def _weigh(name: str) -> float:
     return float(math.prod(ranges)) if ranges else 1.0
 
 
+def _heed(stop: Stop | None) -> None:
+    if stop is not None and stop():
+        raise Cancelled("cancelled")
+
+
 def _progress_of(stop: Stop | None) -> Callable[[float], bool] | None:
     if stop is None:
         return None
-    if stop():
-        raise Cancelled("cancelled")
+    _heed(stop)
     return lambda fraction: not stop()
 
 

@@ -164,8 +164,10 @@ void run_far_from_the_origin(Lab& lab) {
           const auto size = static_cast<double>(bound.radius);
           std::vector<Ray> rays;
           for (size_t k = 0; k < kRaysPerFarShape; ++k) {
-            rays.push_back(ray_towards(dvec3(bound.center) + distance * size * random.direction(),
-                                       random_point(dvec3(bound.center), size, random)));
+            // One after the other, because compilers evaluate arguments in orders of their own.
+            const dvec3 target = random_point(dvec3(bound.center), size, random);
+            const dvec3 origin = dvec3(bound.center) + distance * size * random.direction();
+            rays.push_back(ray_towards(origin, target));
           }
           tally.add(lab.cast_and_judge(scene_of({shape}), rays));
         });
