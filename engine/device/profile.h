@@ -27,7 +27,7 @@ struct TraversalForm {
   /// Steps from node to node that all lanes take together before those at leaves look into them; 0: each lane steps on
   /// until it is at a leaf.
   uint32_t steps_together = 0;
-  /// Whether solids in the leaves of a tree that has triangles too wait until no lane can go on without them.
+  /// Whether solids in the leaves of a tree of more triangles wait until no lane can go on without them.
   bool waits_with_solids = false;
 };
 

@@ -114,7 +114,8 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
       // The size grows in steps, so that scenes of about the same depth share pipelines.
-      stack_size_((packed.stack_size + 7) / 8 * 8) {
+      stack_size_((packed.stack_size + 7) / 8 * 8),
+      is_mostly_solids_(packed.solid_count > packed.bounded_count / 2) {
   const VertexRecords& vertices = packed.surfaces.vertices;
   const Placed surfaces = place(packed.surfaces.surfaces, 0);
   const Placed normals = place(vertices.normals, surfaces.end());

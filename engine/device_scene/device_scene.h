@@ -45,6 +45,8 @@ class DeviceScene {
   /// The index in Scene::lights of each light on the device.
   const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
   uint32_t stack_size() const { return stack_size_; }
+  /// Whether the tree has more solids than triangles.
+  bool is_mostly_solids() const { return is_mostly_solids_; }
   /// The size of all that the scene holds in device memory.
   uint64_t size_bytes() const;
 
@@ -106,6 +108,7 @@ class DeviceScene {
   Environment environment_;
   SceneConstants constants_;
   uint32_t stack_size_;
+  bool is_mostly_solids_;
   bool fetches_texels_ = false;
   Uploads uploads_;
 };

@@ -102,6 +102,11 @@ uint32_t kinds_of(std::span<const Primitive> bounded) {
   return kinds;
 }
 
+uint32_t count_solids(std::span<const Primitive> bounded) {
+  const auto is_solid = [](const Primitive& p) { return p.c.z != layout::KIND_TRIANGLE; };
+  return static_cast<uint32_t>(std::ranges::count_if(bounded, is_solid));
+}
+
 /// Packs what a scene has beside its tree, whose references are there already.
 void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected, uint64_t texture_bytes) {
   packed.numbers = std::move(collected.numbers);
@@ -207,6 +212,7 @@ PackedScene pack(const world::Scene& scene, uint64_t texture_bytes, const MakeTr
   PackedScene packed;
   packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
   packed.kinds = kinds_of(collected.bounded);
+  packed.solid_count = count_solids(collected.bounded);
   packed.geometry_hash = hash_geometry(collected.bounded);
   make_tree(packed, collected);
   pack_contents(packed, scene, collected, texture_bytes);

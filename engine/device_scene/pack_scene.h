@@ -60,6 +60,8 @@ struct PackedScene {
   uint32_t stack_size = 1;
   /// The number of primitives that the tree is built over: all but the unbounded ones and degenerate triangles.
   uint32_t bounded_count = 0;
+  /// How many of these are no triangles.
+  uint32_t solid_count = 0;
   /// See TreeView::kinds.
   uint32_t kinds = 0;
   uint64_t geometry_hash = 0;

@@ -90,7 +90,7 @@ void Film::bind_scene() {
   reserve(capacity_);
   // The device has compiled it already unless the scene has outgrown its texel buffers.
   const auto constants_for = [&](uint32_t packet_size) {
-    const gpu::TraversalForm& form = traversal_form(device_->profile(), packet_size);
+    const gpu::TraversalForm form = traversal_form(device_->profile(), *scene_, packet_size);
     std::vector<gpu::SpecializationConstant> constants =
         traversal_constants(form, features_, scene_->stack_size(), scene_->fetches_texels() && !avoids_texels_);
     constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});

@@ -64,7 +64,7 @@ struct RayKernel::Impl {
     view_constants->write(std::as_bytes(std::span(&values, 1)));
     make_buffers(1, 1);
     std::vector<gpu::SpecializationConstant> constants =
-        traversal_constants(options.traversal.value_or(traversal_form(device.profile(), options.packet_size)),
+        traversal_constants(options.traversal.value_or(traversal_form(device.profile(), *scene, options.packet_size)),
                             options.features, scene->stack_size(), fetches_texels());
     constants.push_back({layout::CONSTANT_PACKET_SIZE, options.packet_size});
     constants.push_back({layout::CONSTANT_ALL_ASK_FOR_ANY, options.query == HitQuery::kNearest ? 0U : 1U});

@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "device/buffer.h"
 #include "device/device.h"
+#include "device_scene/device_scene.h"
 
 namespace promin {
 namespace {
@@ -27,8 +28,10 @@ void Pacer::learn(double units, double time_ms) {
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }
 
-const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, uint32_t packet_size) {
-  return packet_size > 1 ? profile.packet_traversal : profile.ray_traversal;
+gpu::TraversalForm traversal_form(const gpu::DeviceProfile& profile, const DeviceScene& scene, uint32_t packet_size) {
+  gpu::TraversalForm form = packet_size > 1 ? profile.packet_traversal : profile.ray_traversal;
+  form.waits_with_solids = form.waits_with_solids && !scene.is_mostly_solids();
+  return form;
 }
 
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,

@@ -13,6 +13,8 @@
 
 namespace promin {
 
+class DeviceScene;
+
 /// Chooses how much work the next dispatch takes so that it lasts about the target, because drivers kill dispatches of
 /// seconds.
 class Pacer {
@@ -30,8 +32,9 @@ class Pacer {
   double units_;
 };
 
-/// Of the profile's forms the one for packets of so many rays.
-const gpu::TraversalForm& traversal_form(const gpu::DeviceProfile& profile, uint32_t packet_size);
+/// Of the profile's forms the one for packets of so many rays. Where the scene has more solids than triangles its
+/// solids do not wait, as most leaves hold nothing else.
+gpu::TraversalForm traversal_form(const gpu::DeviceProfile& profile, const DeviceScene& scene, uint32_t packet_size);
 
 /// What every pipeline that traces is specialised to.
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,

@@ -23,6 +23,7 @@
 #include "render/caster_access.h"
 #include "render/renderer_impl.h"
 #include "trace/ray_kernel.h"
+#include "trace/tracing_kernel.h"
 
 namespace promin {
 namespace {
@@ -162,6 +163,24 @@ TEST_F(CasterTest, EveryFormOfTraversalGivesTheSameBits) {
       }
     }
   }
+}
+
+TEST_F(CasterTest, SolidsWaitWhereTrianglesAreAtLeastAsMany) {
+  gpu::DeviceProfile profile;
+  profile.ray_traversal = {.steps_together = 2, .waits_with_solids = true};
+  const auto form_of = [&](uint32_t sphere_count, const gpu::DeviceProfile& of) {
+    const world::Scene scene = test::make_scene_of_everything(sphere_count);
+    const PackedScene packed = pack_scene(scene, "sah");
+    return std::pair(traversal_form(of, *upload_scene(device(), packed), 1), packed);
+  };
+  const auto [few, few_packed] = form_of(1, profile);
+  EXPECT_GE(few_packed.bounded_count - few_packed.solid_count, few_packed.solid_count);
+  EXPECT_TRUE(few.waits_with_solids);
+  EXPECT_EQ(few.steps_together, 2U);
+  const auto [many, many_packed] = form_of(few_packed.bounded_count, profile);
+  EXPECT_FALSE(many.waits_with_solids);
+  EXPECT_EQ(many.steps_together, 2U);
+  EXPECT_FALSE(form_of(1, gpu::DeviceProfile{}).first.waits_with_solids);
 }
 
 TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
