@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The pixels that a lane of the camera stage takes together (camera_stage.comp): what it keeps of each, and how they
+// begin.
+
+uvec3 ray_count = uvec3(0u);
+
+// The arrays below have an entry for each pixel of the packet.
+bool is_inside[PACKET_SIZE];
+bool is_lit[PACKET_SIZE];  // the pixel shows a surface
+Path paths[PACKET_SIZE];
+ShadingPoint points[PACKET_SIZE];
+vec3 seen[PACKET_SIZE];  // from the hit, so far
+vec3 own_lights[PACKET_SIZE];  // with FEATURE_LIGHT_AOVS, of that what no source brings
+vec3 contributions[PACKET_SIZE];
+// Where rays pass through surfaces, of the shadow rays:
+LightWay ways[PACKET_SIZE];
+Hit blockers[PACKET_SIZE];  // what they have met last
+uint pass_count = 0u;
+uint refraction_count = 0u;
+uint hit_count = 0u;
+
+// The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
+uvec4 normal_and_depth(Ray ray, Hit hit) {
+  if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
+  SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
+  precise float depth = hit.t * length3(ray.direction);
+  return floatBitsToUint(vec4(surface.normal, depth));
+}
+
+// Prepares those pixels of the packet that lie in the window, with their camera rays. False where none does.
+bool begin_packet() {
+  uint place = PACKET_SIZE * (group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
+  uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);
+  uvec2 corner = BLOCK_SIZE * uvec2(block % blocks_per_row(), block / blocks_per_row());
+  bool is_any_inside = false;
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    uvec2 pixel = corner + pixel_in_block((place + i) % (BLOCK_SIZE * BLOCK_SIZE));
+    is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
+    uint index = pixel.y * window_size().x + pixel.x;
+    if (has(FEATURE_LISTED_SAMPLES)) {
+      // Lanes beyond the last block stay on the film.
+      index = min(first_block() * (BLOCK_SIZE * BLOCK_SIZE) + place + i, window_pixel_count() - 1u);
+      is_inside[i] = block < end_block() && pixels[index].z != NO_LISTED_SAMPLE;
+      packet[i] = listed_ray(index);
+    } else {
+      packet[i] = camera_ray(pixel);
+    }
+    is_any_inside = is_any_inside || is_inside[i];
+    forget_passed(i);
+    if (!is_inside[i]) packet[i].tmax = -1.0;
+    ray_count.x += is_inside[i] ? 1u : 0u;
+    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
+                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, 0.0, 0u, LOG_CAMERA,
+                    PART_BACKGROUND);
+  }
+  passes_backs = true;
+  sight_width = CAMERA.look.w;
+  sight_spread = CAMERA.right.w;
+  return is_any_inside;
+}
