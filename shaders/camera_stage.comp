@@ -77,6 +77,14 @@ vec2 texture_coordinates(Hit hit) {
   return sum;
 }
 
+// The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
+uvec4 normal_and_depth(Ray ray, Hit hit) {
+  if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
+  SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
+  precise float depth = hit.t * length3(ray.direction);
+  return floatBitsToUint(vec4(surface.normal, depth));
+}
+
 // Keeps what the middle sample has met.
 void put_aovs(uint pixel, Ray ray, Hit hit, ShadingPoint point) {
   if (!is_middle_sample()) return;

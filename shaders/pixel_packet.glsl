@@ -20,14 +20,6 @@ uint pass_count = 0u;
 uint refraction_count = 0u;
 uint hit_count = 0u;
 
-// The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
-uvec4 normal_and_depth(Ray ray, Hit hit) {
-  if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
-  SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
-  precise float depth = hit.t * length3(ray.direction);
-  return floatBitsToUint(vec4(surface.normal, depth));
-}
-
 // Prepares those pixels of the packet that lie in the window, with their camera rays. False where none does.
 bool begin_packet() {
   uint place = PACKET_SIZE * (group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);

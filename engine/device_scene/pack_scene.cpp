@@ -3,6 +3,7 @@
 #include "device_scene/pack_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
 #include <system_error>
@@ -95,16 +96,12 @@ uint64_t hash_geometry(std::span<const Primitive> bounded) {
   return hash.value();
 }
 
-/// The value of TreeView::kinds.
-uint32_t kinds_of(std::span<const Primitive> bounded) {
-  uint32_t kinds = 0;
-  for (const Primitive& p : bounded) kinds |= 1U << p.c.z;
-  return kinds;
-}
-
-uint32_t count_solids(std::span<const Primitive> bounded) {
-  const auto is_solid = [](const Primitive& p) { return p.c.z != layout::KIND_TRIANGLE; };
-  return static_cast<uint32_t>(std::ranges::count_if(bounded, is_solid));
+/// Tells of which kinds the primitives are, and how many are no triangles.
+void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
+  std::array<uint32_t, 32> counts{};  // one for each bit of the kinds
+  for (const Primitive& p : bounded) ++counts[p.c.z];
+  for (uint32_t kind = 0; kind < counts.size(); ++kind) packed.kinds |= uint32_t{counts[kind] > 0} << kind;
+  packed.solid_count = static_cast<uint32_t>(bounded.size()) - counts[KIND_TRIANGLE];
 }
 
 /// Packs what a scene has beside its tree, whose references are there already.
@@ -211,8 +208,7 @@ PackedScene pack(const world::Scene& scene, uint64_t texture_bytes, const MakeTr
   Collected collected = collect_primitives(scene);
   PackedScene packed;
   packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
-  packed.kinds = kinds_of(collected.bounded);
-  packed.solid_count = count_solids(collected.bounded);
+  count_kinds(packed, collected.bounded);
   packed.geometry_hash = hash_geometry(collected.bounded);
   make_tree(packed, collected);
   pack_contents(packed, scene, collected, texture_bytes);
