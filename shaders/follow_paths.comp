@@ -48,52 +48,68 @@ uint bounces_of(Path path) { return KEEPS_PROGRESS != 0u ? path.bounces : turn /
 // Adds the sources of the last turn to what is seen.
 vec3 add_contributions(uint path, vec3 seen) {
   uint sources = sources_at(turn - 1u);
-  for (uint source = 0u; source < sources; ++source) {
-    vec3 unshadowed = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).xyz;
-    bool is_blocked = load_word(ask_of_source(path, source)) == ASK_BLOCKED;
-    precise vec3 contribution = is_blocked ? vec3(0.0) : unshadowed;
-    precise vec3 sum = seen + contribution;
-    seen = sum;
-    if (has(FEATURE_RAY_LOG)) log_sum(entry_of_source(source), contribution);
-  }
+  uint source = 0u;
+  do {
+    if (source < sources) {
+      vec3 unshadowed = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).xyz;
+      bool is_blocked = load_word(ask_of_source(path, source)) == ASK_BLOCKED;
+      precise vec3 contribution = is_blocked ? vec3(0.0) : unshadowed;
+      precise vec3 sum = seen + contribution;
+      seen = sum;
+      if (has(FEATURE_RAY_LOG)) log_sum(entry_of_source(source), contribution);
+      ++source;
+    }
+  } while (source < sources);
   return seen;
 }
 
-// Stores what the sources of this turn add where nothing is between, and asks for the shadow rays.
+// Stores what a source of this turn adds where nothing is between, and asks for the shadow ray.
+void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
+  LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
+  LightSample sampled = sample_light(light, point.position);
+  vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
+  store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
+  begin_source_log(first_source(turn) + source);
+  end_source_log(contribution);
+  uint asked = ASK_NOTHING;
+  if (max_abs(contribution) > 0.0) {
+    Ray ray = shadow_ray(point, light);
+    // All begin at one place.
+    store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
+    asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
+    ++shadow_ray_count;
+  }
+  words[ask_of_source(path, source)] = asked;
+}
+
 void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
   uint sources = sources_at(turn);
-  for (uint source = 0u; source < sources; ++source) {
-    LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
-    LightSample sampled = sample_light(light, point.position);
-    vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
-    store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
-    begin_source_log(first_source(turn) + source);
-    end_source_log(contribution);
-    uint asked = ASK_NOTHING;
-    if (max_abs(contribution) > 0.0) {
-      Ray ray = shadow_ray(point, light);
-      // All begin at one place.
-      store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
-      asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
-      ++shadow_ray_count;
+  uint source = 0u;
+  do {
+    if (source < sources) {
+      ask_source(path, source, point, to_eye);
+      ++source;
     }
-    words[ask_of_source(path, source)] = asked;
-  }
+  } while (source < sources);
   // A bounce's last turn may take fewer: the answers to the turn before are no asks.
-  for (uint source = sources; source < sources_of_turn; ++source) words[ask_of_source(path, source)] = ASK_NOTHING;
+  for (; source < sources_of_turn; ++source) words[ask_of_source(path, source)] = ASK_NOTHING;
 }
 
 // Adds all sources to what is seen, where nothing casts shadows.
 vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
-  for (uint source = 0u; source < source_count(); ++source) {
-    LightRecord light = load_light(VIEW.first_index.y + source);
-    LightSample sampled = sample_light(light, point.position);
-    vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
-    precise vec3 sum = seen + contribution;
-    seen = sum;
-    begin_source_log(source);
-    end_source_log(contribution);
-  }
+  uint source = 0u;
+  do {
+    if (source < source_count()) {
+      LightRecord light = load_light(VIEW.first_index.y + source);
+      LightSample sampled = sample_light(light, point.position);
+      vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
+      precise vec3 sum = seen + contribution;
+      seen = sum;
+      begin_source_log(source);
+      end_source_log(contribution);
+      ++source;
+    }
+  } while (source < source_count());
   return seen;
 }
 

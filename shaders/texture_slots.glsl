@@ -35,26 +35,27 @@ uint next_slot_number() {
 
 // Fills `shown`, with 1 where there is no texture, and empties `slot_numbers`. One level after the other, in one place:
 // CPU drivers execute for all lanes what any of them may need, and most materials lack most of the textures that there
-// may be. What has one number is looked up once. The condition is at the top, because lavapipe 22 changes what lanes
-// have that left a loop at its end before others.
+// may be. What has one number is looked up once.
 void look_up_slots(TexturePlace place) {
   [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) shown[i] = vec4(1.0);
   uint number = next_slot_number();
   uint levels_seen = 0u;  // of the slot at hand
   vec4 first = vec4(0.0);
-  while (number != 0u) {
-    Lookup lookup = lookup_of(number, place);
-    uint level = lookup.levels.first + levels_seen;
-    vec4 seen = filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear);
-    vec4 result = mix_level(lookup, level, first, seen);
-    bool is_done = level + 1u >= lookup.levels.end;
-    [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) {
-      bool is_shown = is_done && slot_numbers[i] == number;
-      shown[i] = is_shown ? result : shown[i];
-      slot_numbers[i] = is_shown ? 0u : slot_numbers[i];
+  do {
+    if (number != 0u) {
+      Lookup lookup = lookup_of(number, place);
+      uint level = lookup.levels.first + levels_seen;
+      vec4 seen = filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear);
+      vec4 result = mix_level(lookup, level, first, seen);
+      bool is_done = level + 1u >= lookup.levels.end;
+      [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) {
+        bool is_shown = is_done && slot_numbers[i] == number;
+        shown[i] = is_shown ? result : shown[i];
+        slot_numbers[i] = is_shown ? 0u : slot_numbers[i];
+      }
+      first = seen;
+      levels_seen = is_done ? 0u : levels_seen + 1u;
+      number = next_slot_number();
     }
-    first = seen;
-    levels_seen = is_done ? 0u : levels_seen + 1u;
-    number = next_slot_number();
-  }
+  } while (number != 0u);
 }

@@ -188,9 +188,13 @@ vec4 mix_level(Lookup lookup, uint level, vec4 first, vec4 seen) {
 vec4 look_up(uint number, TexturePlace place) {
   Lookup lookup = lookup_of(number, place);
   vec4 result = vec4(0.0);
-  for (uint level = lookup.levels.first; level < lookup.levels.end; ++level) {
-    result = mix_level(lookup, level, result, filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear));
-  }
+  uint level = lookup.levels.first;
+  do {
+    if (level < lookup.levels.end) {
+      result = mix_level(lookup, level, result, filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear));
+      ++level;
+    }
+  } while (level < lookup.levels.end);
   return result;
 }
 

@@ -3,6 +3,11 @@
 // One traversal for every ray: primary, mirror and shadow. No recursion; the stack has the size that the tree needs.
 // What a ray hits depends neither on the packet nor on the tree.
 // `asks_for_any`: the packet's rays ask for any hit. Where ALL_ASK_FOR_ANY it is true and the compiler knows.
+//
+// Loops have the form do { if (goes_on) { ... } } while (goes_on). CPU drivers execute what is behind a loop's exit for
+// no lane once all have left: with the condition at the top that is the whole body once more. Without the branch older
+// lavapipes give lanes that have left what later turns compute, from loads that answer 0 for them; what a branch
+// changes is theirs to keep.
 
 // Whether the solids of a leaf wait until no lane can go on without them. Where all primitives are solids none do.
 const uint SOLIDS_WAIT = WAITS_WITH_SOLIDS * FEATURE_BIT(FEATURE_TRIANGLES) * uint(TREE_KIND_COUNT > 1u);
@@ -77,28 +82,48 @@ bool is_next_in_leaf(uint kind) {
   return leaf.next < leaf.end && (TREE_KIND_COUNT == 1u || load_primitive_kind(leaf.next) == kind);
 }
 
+// The triangles that come next, up to one that needs a second look.
+void intersect_triangles(bool asks_for_any) {
+  bool is_next = is_next_in_leaf(KIND_TRIANGLE);
+  do {
+    if (is_next) {
+      Primitive p = load_primitive(leaf.next);
+      if (ALL_ASK_FOR_ANY != 0u) {
+        leaf.needs_second_look = glance_at_triangle(p, leaf.next);
+      } else {
+        intersect_packet_with_triangle(p, leaf.next, asks_for_any);
+      }
+      ++leaf.next;
+      is_next = !leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE);
+    }
+  } while (is_next);
+}
+
+// The closed shapes of a kind that come next.
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                        \
+  void intersect_each_##PREFIX(bool asks_for_any) {                                         \
+    bool is_next = is_next_in_leaf(NUMBER);                                                 \
+    do {                                                                                    \
+      if (is_next) {                                                                        \
+        intersect_packet_with_##PREFIX(load_primitive(leaf.next), leaf.next, asks_for_any); \
+        ++leaf.next;                                                                        \
+        is_next = is_next_in_leaf(NUMBER);                                                  \
+      }                                                                                     \
+    } while (is_next);                                                                      \
+  }
+#include "promin/kinds/primitives.def"
+
 // The closed shapes that come next, kind by kind: leaves hold them sorted so.
 void intersect_solids(bool asks_for_any) {
-#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                    \
-  while (has(FEATURE_##FEATURE) && is_next_in_leaf(NUMBER)) {                           \
-    intersect_packet_with_##PREFIX(load_primitive(leaf.next), leaf.next, asks_for_any); \
-    ++leaf.next;                                                                        \
-  }
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  if (has(FEATURE_##FEATURE)) intersect_each_##PREFIX(asks_for_any);
 #include "promin/kinds/primitives.def"
 }
 
 // What is left of a leaf, up to what waits: a triangle that needs a second look, until no lane has another triangle to
 // glance at, and solids.
 void intersect_leaf(bool asks_for_any) {
-  while (has(FEATURE_TRIANGLES) && !leaf.needs_second_look && is_next_in_leaf(KIND_TRIANGLE)) {
-    Primitive p = load_primitive(leaf.next);
-    if (ALL_ASK_FOR_ANY != 0u) {
-      leaf.needs_second_look = glance_at_triangle(p, leaf.next);
-    } else {
-      intersect_packet_with_triangle(p, leaf.next, asks_for_any);
-    }
-    ++leaf.next;
-  }
+  if (has(FEATURE_TRIANGLES)) intersect_triangles(asks_for_any);
   if (leaf.needs_second_look) return;
   if (SOLIDS_WAIT != 0u) {
     leaf.has_solids_next = leaf.next < leaf.end;
@@ -109,11 +134,54 @@ void intersect_leaf(bool asks_for_any) {
 
 // What has no box lies behind the tree's primitives.
 void intersect_unbounded(bool asks_for_any) {
-  for (uint index = first_unbounded(); index < end_unbounded(); ++index) {
-    Primitive p = load_primitive(index);
+  uint index = first_unbounded();
+  do {
+    if (index < end_unbounded()) {
+      Primitive p = load_primitive(index);
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (kind_of(p) == NUMBER) intersect_packet_with_##PREFIX(p, index, asks_for_any);
 #include "promin/kinds/primitives.def"
+      ++index;
+    }
+  } while (index < end_unbounded());
+}
+
+// From an inner node down to a leaf.
+uint step_down(uint current) {
+  do {
+    if (is_inner(current)) {
+      count_steps(1u, 0u);
+      enter_family(meet_children(current));
+      current = take_child(true);
+    }
+  } while (is_inner(current));
+  return current;
+}
+
+// To the next leaf and through it; with STEPS_TOGETHER lanes that have not come to one take part in no leaf. Returns
+// the next child, IN_LEAF where the lane waits, or DONE.
+uint go_through_leaf(uint current, bool asks_for_any) {
+  if (STEPS_TOGETHER == 0u) {
+    current = step_down(current);
+  } else {
+    for (uint i = 0u; i < STEPS_TOGETHER; ++i) current = step_together(current);
+  }
+  if (is_inner(current) || current == DONE) return current;
+  if (current != IN_LEAF) enter_leaf(current);
+  intersect_leaf(asks_for_any);
+  if (waits()) return IN_LEAF;
+  return asks_for_any && !any_takes_part() ? DONE : take_child(true);
+}
+
+// What waits at the leaf at hand.
+void end_waiting(bool asks_for_any) {
+  if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
+    intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
+    leaf.needs_second_look = false;
+  }
+  if (SOLIDS_WAIT != 0u && leaf.has_solids_next) {
+    intersect_solids(asks_for_any);
+    leaf.has_solids_next = false;
   }
 }
 
@@ -123,45 +191,28 @@ void descend(bool asks_for_any) {
   leaf.needs_second_look = false;
   leaf.has_solids_next = false;
   uint current = any_takes_part() ? 0u : DONE;
-  // Loops rather than branches around the parts: CPU drivers execute both sides of a branch under a mask, but leave a
-  // loop as soon as no lane is in it.
-  for (;;) {
-    while (current != DONE && !waits()) {
-      if (STEPS_TOGETHER == 0u) {
-        while (is_inner(current)) {
-          count_steps(1u, 0u);
-          enter_family(meet_children(current));
-          current = take_child(true);
-        }
-      } else {
-        for (uint i = 0u; i < STEPS_TOGETHER; ++i) current = step_together(current);
-        if (is_inner(current)) continue;
+  bool has_waited;
+  do {
+    bool goes_on = current != DONE;
+    do {
+      if (goes_on) {
+        current = go_through_leaf(current, asks_for_any);
+        goes_on = current != DONE && !waits();
       }
-      if (current == DONE) break;
-      if (current != IN_LEAF) enter_leaf(current);
-      intersect_leaf(asks_for_any);
-      current = IN_LEAF;
-      if (waits()) break;
-      current = asks_for_any && !any_takes_part() ? DONE : take_child(true);
-    }
-    if ((ALL_ASK_FOR_ANY == 0u && SOLIDS_WAIT == 0u) || !waits()) break;
-    if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
-      intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
-      leaf.needs_second_look = false;
-    }
-    if (SOLIDS_WAIT != 0u && leaf.has_solids_next) {
-      intersect_solids(asks_for_any);
-      leaf.has_solids_next = false;
-    }
-  }
+    } while (goes_on);
+    has_waited = waits();
+    if (has_waited) end_waiting(asks_for_any);
+  } while (has_waited);
 }
 
 // One octant after the other: the first ray's, then the first's of those that are left.
 void descend_by_octants(bool asks_for_any) {
   float waiting[PACKET_SIZE];
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) waiting[slot] = limits[slot];
-  for (;;) {
+  bool are_some_left;
+  do {
     bool is_chosen = false;
+    are_some_left = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
       vec3 inverse = packet[slot].inverse_direction;
       bool waits = waiting[slot] >= 0.0;
@@ -170,10 +221,10 @@ void descend_by_octants(bool asks_for_any) {
       bool joins = waits && all(equal(lessThan(inverse, vec3(0.0)), lessThan(octant, vec3(0.0))));
       limits[slot] = joins ? waiting[slot] : -1.0;
       waiting[slot] = joins ? -1.0 : waiting[slot];
+      are_some_left = are_some_left || waiting[slot] >= 0.0;
     }
-    if (!is_chosen) break;
     descend(asks_for_any);
-  }
+  } while (are_some_left);
 }
 
 void descend_as_they_are(bool asks_for_any) {
