@@ -20,8 +20,8 @@ vec3 octant;
 bool passes_backs = false;  // with FEATURE_ONE_SIDED
 float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
 float sight_spread = 0.0;   // and how much it grows at a distance of 1
-// Where rays pass through surfaces (PASSES): what a ray has passed counts no more, which is all that is nearer than this, and at this t
-// what has no higher order. By the entry point.
+// Where rays pass through surfaces (PASSES): what a ray has passed counts no more, which is all that is nearer than
+// this, and at this t what has no higher order. By the entry point.
 const uint PASSES = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];

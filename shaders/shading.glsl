@@ -284,9 +284,10 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
 
 #include "faces.glsl"
 
-// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit; `media` are those that the
-// ray is in, and it is bent as this color of light. The point is not returned but written to: of a call that is assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the
-// eighth of every argument, and crash where one of these is built from fewer (propagateNoContraction.cpp).
+// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit; `media` are those that
+// the ray is in, and it is bent as this color of light. The point is not returned but written to: of a call that is
+// assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the eighth of every argument, and crash
+// where one of these is built from fewer (propagateNoContraction.cpp).
 void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, uint color,
                         out ShadingPoint point) {
   Primitive p = load_primitive(hit.primitive);

@@ -76,12 +76,12 @@ struct ExrOptions {
 };
 
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
-/// picture's display window) or .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for
-/// one named "A", by which the pixels are taken as multiplied; a crop is a picture of its own). Equal arguments give equal bytes. Atomic: the picture is written to a temporary file beside the
-/// target and renamed; on failure the target is as it was. Any thread may call it. Throws UsageError for another
-/// ending, for a picture without pixels and where the pixels, a channel's values or the crop do not suit the size;
-/// RunError where the file cannot be written, and where libpromin_pictures.so, the plugin that encodes pictures, is
-/// missing.
+/// picture's display window) or .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for one named
+/// "A", by which the pixels are taken as multiplied; a crop is a picture of its own). Equal arguments give equal bytes.
+/// Atomic: the picture is written to a temporary file beside the target and renamed; on failure the target is as it
+/// was. Any thread may call it. Throws UsageError for another ending, for a picture without pixels and where the
+/// pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be written, and where
+/// libpromin_pictures.so, the plugin that encodes pictures, is missing.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
                                std::span<const Channel> channels = {}, const DisplayTransform& display = {},

@@ -43,8 +43,8 @@ class Device:
 
     def __init__(self, selection: str | int | None = None) -> None:
         """Opens the device that `selection` names: an index of `Device.list()`, "uuid:" with a UUID, or a part of a
-        name, case ignored; without one a GPU before a CPU. Raises DeviceError where none is usable or none matches, and names the package
-        with Mesa's drivers where there is no driver at all."""
+        name, case ignored; without one a GPU before a CPU. Raises DeviceError where none is usable or none matches, and
+        names the package with Mesa's drivers where there is no driver at all."""
         self._selection = _name(selection)
         self._native = _promin.Device.open(self._selection)
 

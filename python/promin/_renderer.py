@@ -80,11 +80,12 @@ class Renderer:
     ) -> None:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
-        is built anew. view: that of pictures which are given none; what it takes is compiled at once. light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from
-        where a scene without cameras is seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that
-        textures take. expected_samples: about how many samples all pictures will have together, over all pixels; where
-        they are few, kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The
-        rest as Caster. Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
+        is built anew. view: that of pictures which are given none; what it takes is compiled at once. light: what
+        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from where a scene
+        without cameras is seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that textures take.
+        expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
+        kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The rest as Caster.
+        Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
         if not isinstance(scene, Scene):
             raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
         self._scene = scene.snapshot()
