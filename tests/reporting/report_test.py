@@ -177,7 +177,14 @@ def check_that_faults_are_found(report):
         change()
         expect(check_report.find_faults(spoilt), f"not noticed: {what}")
 
-    spoilt = None
+    def take_below_zero(what):
+        times = find("rates", "pictures", what=what)["promin_ms"]
+        times.update(interval_lower=-1.0, lower_quartile=-0.5)
+
+    spoilt = copy.deepcopy(report)
+    take_below_zero("mirror stage")
+    expect(not check_report.find_faults(spoilt), "a difference of times below 0 is taken for a fault")
+    spoil(lambda: take_below_zero("picture"), "a time below 0")
     spoil(lambda: spoilt.pop("frames"), "a section is missing")
     spoil(lambda: find("kernels", "rows").update(max_k="much"), "a word instead of a number")
     spoil(lambda: find("kernels", "rows", is_shipped=True).update(max_k=8.5), "K beyond its bound")
