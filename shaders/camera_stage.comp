@@ -12,6 +12,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "bindings.glsl"
 #include "film.glsl"
 #include "stream.glsl"
+#include "stream_records.glsl"
 #include "math.glsl"
 #include "ray_bins.glsl"
 #include "ray.glsl"
@@ -31,6 +32,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "environment.glsl"
 #include "shading.glsl"
 #include "light_way.glsl"
+#define load_sum load_record  // a lane adds once to each of its pixels' sums
 #include "path.glsl"
 #include "tree.glsl"
 #include "group_rows.glsl"
@@ -53,15 +55,11 @@ void put_sample_id(uint pixel, uint order) {
 // centre.
 bool is_middle_sample() { return has(FEATURE_AOVS) && sample_at_hand() == samples_per_pixel() / 2u; }
 
-// Writes the pixel's records: new sums for the first sample, and what it shows for the middle one.
+// Writes what the sample shows to the pixel's records.
 void put_record(Path path, Hit hit) {
   uint order = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
-  bool is_first = sample_at_hand() == 0u;
-  if (has(FEATURE_LIGHT_AOVS) && is_first) clear_parts(path.pixel);
   if (has(FEATURE_SAMPLE_IDS)) put_sample_id(path.pixel, order);
   if (has(FEATURE_LISTED_SAMPLES)) return;
-  if (is_first) pixels[path.pixel] = uvec4(0u, 0u, 0u, NO_ORDER);
-  if (has(FEATURE_SAMPLE_RANGES) && is_first) clear_range(path.pixel);
   if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 

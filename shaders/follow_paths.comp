@@ -30,6 +30,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "lights.glsl"
 #include "environment.glsl"
 #include "shading.glsl"
+// A lane may add twice to a part in a turn, and texels would not tell it of the first.
+#define load_sum(record) uintBitsToFloat(pixels[record])
 #include "path.glsl"
 #include "tree.glsl"
 #include "turns.glsl"

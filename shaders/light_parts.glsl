@@ -8,14 +8,10 @@ uint record_of_part(uint pixel, uint part) {
   return (before + part) * window_pixel_count() + pixel;
 }
 
-void clear_parts(uint pixel) {
-  for (uint part = 0u; part < PART_RECORDS; ++part) pixels[record_of_part(pixel, part)] = uvec4(0u);
-}
-
 void add_to_part(uint pixel, uint part, vec3 light) {
   if (all(equal(light, vec3(0.0)))) return;
   uint record = record_of_part(pixel, part);
-  precise vec3 sum = uintBitsToFloat(pixels[record].xyz) + light;
+  precise vec3 sum = load_sum(record).xyz + light;
   pixels[record].xyz = floatBitsToUint(sum);
 }
 
@@ -23,7 +19,7 @@ void add_to_part(uint pixel, uint part, vec3 light) {
 void add_beyond(Path path, vec3 beyond) {
   if (!has(FEATURE_LIGHT_AOVS)) return;
   uint record = record_of_part(path.pixel, path.part);
-  vec4 part = uintBitsToFloat(pixels[record]);
+  vec4 part = load_sum(record);
   precise vec3 sum = part.xyz + path.weight * beyond;
   // Only surfaces that blend have weighed it, all colours alike.
   precise float share = part.w + (path.part == PART_BACKGROUND ? path.weight.x : 0.0);

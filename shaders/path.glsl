@@ -127,26 +127,22 @@ uint record_of_range(uint pixel, uint end) {
   return (before + end) * window_pixel_count() + pixel;
 }
 
-// Begins a range without samples.
-void clear_range(uint pixel) {
-  pixels[record_of_range(pixel, RANGE_LEAST)] = uvec4(floatBitsToUint(INFINITY));
-  pixels[record_of_range(pixel, RANGE_LARGEST)] = uvec4(floatBitsToUint(-INFINITY));
-}
-
 void extend_range(uint pixel, vec3 sampled) {
   uint least = record_of_range(pixel, RANGE_LEAST);
   uint largest = record_of_range(pixel, RANGE_LARGEST);
-  vec3 lo = uintBitsToFloat(pixels[least].xyz);
-  vec3 hi = uintBitsToFloat(pixels[largest].xyz);
+  bool is_first = sample_at_hand() == 0u;
+  vec3 lo = is_first ? vec3(INFINITY) : load_sum(least).xyz;
+  vec3 hi = is_first ? vec3(-INFINITY) : load_sum(largest).xyz;
   // Most samples are within.
-  if (any(lessThan(sampled, lo))) pixels[least].xyz = floatBitsToUint(min(lo, sampled));
-  if (any(greaterThan(sampled, hi))) pixels[largest].xyz = floatBitsToUint(max(hi, sampled));
+  if (is_first || any(lessThan(sampled, lo))) pixels[least].xyz = floatBitsToUint(min(lo, sampled));
+  if (is_first || any(greaterThan(sampled, hi))) pixels[largest].xyz = floatBitsToUint(max(hi, sampled));
 }
 
-// Adds the path's radiance to its pixel, as one sample.
+// Adds the path's radiance to its pixel, as one sample; the first begins the sum. CPU drivers execute stores for no lane
+// where a branch would clear the sums of the first sample, and each of them costs all samples.
 void finish_path(Path path) {
   precise vec3 sum = path.radiance;
-  if (!has(FEATURE_LISTED_SAMPLES)) sum += uintBitsToFloat(pixels[path.pixel].xyz);
+  if (!has(FEATURE_LISTED_SAMPLES) && sample_at_hand() > 0u) sum += load_sum(path.pixel).xyz;
   pixels[path.pixel].xyz = floatBitsToUint(sum);
   if (has(FEATURE_SAMPLE_RANGES)) extend_range(path.pixel, path.radiance);
 }

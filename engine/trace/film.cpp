@@ -94,6 +94,7 @@ void Film::bind_scene() {
     std::vector<gpu::SpecializationConstant> constants =
         traversal_constants(form, features_, scene_->stack_size(), scene_->fetches_texels() && !avoids_texels_);
     constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});
+    constants.push_back({layout::CONSTANT_FETCHES_FILM_TEXELS, fetches_film_texels() ? 1U : 0U});
     return constants;
   };
   const std::vector<gpu::BoundBuffer> bound = buffers();
@@ -104,9 +105,7 @@ void Film::bind_scene() {
       kernel_.emplace(*device_, shaders_.camera_stage, constants_for(packet_size_), bound);
       return;
     }
-    std::vector<gpu::SpecializationConstant> stream_constants = constants_for(1);
-    stream_constants.push_back({layout::CONSTANT_FETCHES_FILM_TEXELS, fetches_film_texels() ? 1U : 0U});
-    stream_.emplace(*device_, features_, stream_constants, bound, shaders_);
+    stream_.emplace(*device_, features_, constants_for(1), bound, shaders_);
   });
 }
 
@@ -181,6 +180,11 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eTransfer, {}, before, {}, {});
   commands.updateBuffer<layout::ViewConstants>(*view_constants_.handle(), 0, picture.view_constants());
   commands.fillBuffer(*buffer_->handle(), offsetof(layout::FilmHead, ray_counts), kCountersBytes, 0);
+  if (!features_.has_any(layout::FEATURE_LIGHT_AOVS) || !picture.begins_sums()) return;
+  // Most samples add to few of the parts, so the first cannot begin them all, as it does the other sums.
+  const vk::DeviceSize record_bytes = picture.pixel_count() * sizeof(uvec4);
+  commands.fillBuffer(*buffer_->handle(), kPixelsOffset + records_.first_part * record_bytes,
+                      layout::PART_RECORDS * record_bytes, 0);
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {

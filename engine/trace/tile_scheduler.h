@@ -71,6 +71,8 @@ class TileScheduler {
   /// The constants that all pieces share.
   layout::ViewConstants view_constants() const { return make_view_constants(scene_, view_); }
   uint32_t pixel_count() const { return pixel_count_; }
+  /// Whether the first of its pixels' samples are among those that are traced.
+  bool begins_sums() const { return options_.first_sample == 0; }
   bool is_done() const { return first_block_ == block_total_; }
   double fraction_done() const;
 
