@@ -193,7 +193,11 @@ void cast(const CastOptions& options, const CLI::App& command) {
 
   RunStats stats;
   RayReader reader(options.rays);
-  const Scene scene = load_for(tracing, stats, console);
+  std::vector<SourceFile> sources;
+  const Scene scene = load_for(tracing, stats, console, sources);
+  std::vector<std::filesystem::path> outputs = options.outputs();
+  if (tracing.stats) outputs.push_back(*tracing.stats);
+  check_overwrites(files_of(sources), outputs);
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   CasterOptions caster_options;
   choose_tree(tracing, caster_options);

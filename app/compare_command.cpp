@@ -168,9 +168,10 @@ void compare(const CompareOptions& options) {
     check_pictures({*options.difference});
     check_outputs({options.first, options.second}, {*options.difference}, std::nullopt);
   }
-  const PictureEncoding encoding = common_encoding(options);
+  // What is no picture is told as that, not as one of another encoding.
   const Image first = read_image(options.first);
   const Image second = read_image(options.second);
+  const PictureEncoding encoding = common_encoding(options);
   const double fail = options.fail.value_or(0.0);
   const PictureDifference difference = compare_pictures(
       first, second, {.encoding = encoding, .fail = fail, .pixels_per_degree = options.pixels_per_degree});

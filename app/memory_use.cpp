@@ -3,6 +3,9 @@
 #include "memory_use.h"
 
 #include <fmt/format.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -24,6 +27,12 @@ double peak_memory_mb() {
   getrusage(RUSAGE_SELF, &usage);
   // In units of 1024 bytes.
   return 1.024e-3 * static_cast<double>(usage.ru_maxrss);
+}
+
+void give_back_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 }  // namespace promin::app

@@ -3,6 +3,7 @@
 #include "outputs.h"
 
 #include <unistd.h>
+#include <algorithm>
 
 #include <fstream>
 #include <set>
@@ -49,19 +50,22 @@ void check_pictures(const std::vector<fs::path>& pictures) {
   }
 }
 
+void check_overwrites(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+  std::set<fs::path> read;
+  for (const fs::path& input : inputs) read.insert(resolve(input));
+  const auto found = std::ranges::find_if(outputs, [&](const fs::path& file) { return read.contains(resolve(file)); });
+  if (found == outputs.end()) return;
+  throw UsageError({"the output would overwrite an input", found->string(), "name another file"});
+}
+
 void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,
                    const std::optional<fs::path>& stats) {
   std::vector<fs::path> files = outputs;
   if (stats) files.push_back(*stats);
-  std::set<fs::path> read;
-  for (const fs::path& input : inputs) read.insert(resolve(input));
+  check_overwrites(inputs, files);
   std::set<fs::path> written;
   for (const fs::path& file : files) {
-    const fs::path resolved = resolve(file);
-    if (read.contains(resolved)) {
-      throw UsageError({"the output would overwrite an input", file.string(), "name another file"});
-    }
-    if (!written.insert(resolved).second) {
+    if (!written.insert(resolve(file)).second) {
       throw UsageError({"the same output file is named twice", file.string(), "name different files"});
     }
   }

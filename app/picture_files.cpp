@@ -18,14 +18,14 @@ constexpr uint32_t kRowsOfBlock = 16;
 /// Films are traced by so many.
 constexpr uint32_t kLeastRows = 8;
 
-// An AOV's channels, by the type of its values.
+// An AOV's channels, by the type of its values, which are gone then.
 
-void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<uint32_t>& values,
+void add_channels(const std::string& name, std::string_view /*components*/, std::vector<uint32_t> values,
                   std::vector<Channel>& channels) {
-  channels.push_back({name, true, values});
+  channels.push_back({name, true, std::move(values)});
 }
 
-void add_channels(const std::string& name, std::string_view /*components*/, const std::vector<float>& values,
+void add_channels(const std::string& name, std::string_view /*components*/, std::vector<float> values,
                   std::vector<Channel>& channels) {
   Channel channel{name, false, std::vector<uint32_t>(values.size())};
   std::ranges::transform(values, channel.values.begin(), [](float value) { return std::bit_cast<uint32_t>(value); });
@@ -33,7 +33,7 @@ void add_channels(const std::string& name, std::string_view /*components*/, cons
 }
 
 template <typename Vector>
-void add_channels(const std::string& name, std::string_view components, const std::vector<Vector>& values,
+void add_channels(const std::string& name, std::string_view components, std::vector<Vector> values,
                   std::vector<Channel>& channels) {
   for (int axis = 0; axis < Vector::length(); ++axis) {
     Channel channel{name + "." + components[static_cast<size_t>(axis)], false, std::vector<uint32_t>(values.size())};
@@ -45,10 +45,10 @@ void add_channels(const std::string& name, std::string_view components, const st
 
 }  // namespace
 
-std::vector<Channel> make_channels(const Scene& scene, const Aovs& aovs, const AovSet& choice) {
+std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice) {
   std::vector<Channel> channels;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
-  if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, aovs.FIELD, channels);
+  if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, std::move(aovs.FIELD), channels);
 #include "promin/kinds/aovs.def"
   if (choice.cryptomatte) {
     for (Channel& channel : make_cryptomatte(scene, aovs).channels) channels.push_back(std::move(channel));

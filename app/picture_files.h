@@ -15,8 +15,9 @@
 
 namespace promin::app {
 
-/// The channels of an EXR that tell a choice of AOVs, with their values.
-std::vector<Channel> make_channels(const Scene& scene, const Aovs& aovs, const AovSet& choice);
+/// The channels of an EXR that tell a choice of AOVs, with their values. Of a wide picture either takes much memory, so
+/// what is moved here gives its own back as it goes.
+std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice);
 
 /// What the header of an EXR tells of these AOVs, without values.
 struct AovHeader {
@@ -41,10 +42,10 @@ class PictureFiles {
   /// The next rows; returns before they are written, and throws what the rows before came to.
   void write_rows(Image rows, std::vector<Channel> channels);
   void commit();
-
- private:
+  /// Until the rows before are written and no memory is held for them; throws what they came to.
   void wait();
 
+ private:
   std::vector<PictureWriter> writers_;
   Image rows_;
   std::vector<Channel> channels_;

@@ -145,7 +145,9 @@ class FrameRendering {
     }
     for (size_t i = 0; i < trace_ms_.size(); ++i) trace_ms_[i] += traced.trace_ms[i];
     expose_by_first(options_, result, stats_);
-    return {std::move(result.image), make_channels(scene_, result.aovs, options_.aovs)};
+    // Of a wide picture rows with all AOVs take much memory, so there are not three copies of them at a time.
+    if (files_) files_->wait();
+    return {std::move(result.image), make_channels(scene_, std::move(result.aovs), options_.aovs)};
   }
 
   void open_files() {
@@ -272,9 +274,12 @@ bool is_file_there(const std::filesystem::path& file) {
   return std::filesystem::exists(file, error);
 }
 
-/// Whether all pictures of a frame are there.
+/// Whether all pictures of a frame are there: a folder or an empty file is none.
 bool is_there(const PlannedFrame& frame) {
-  return std::ranges::all_of(frame.pictures, is_file_there);
+  return std::ranges::all_of(frame.pictures, [](const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(file, error) && std::filesystem::file_size(file, error) > 0 && !error;
+  });
 }
 
 /// Throws UsageError where a picture is there whose name the user has not given.
@@ -305,7 +310,9 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
   if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames));
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
-  check_outputs(input_files(options), pictures_of(frames), tracing.stats);
+  std::vector<std::filesystem::path> outputs = pictures_of(frames);
+  check_outputs(input_files(options), outputs, tracing.stats);
+  if (tracing.stats) outputs.push_back(*tracing.stats);
   const bool has_pictures = !options.pictures.empty();
   if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
@@ -313,9 +320,13 @@ void render(const RenderOptions& given, const CLI::App& command) {
     console.note(
         fmt::format("skipped {} of {}, whose pictures are there", skipped, count_of(skipped + frames.size(), "frame")));
   }
-  if (frames.empty()) return;
+  if (frames.empty()) {
+    if (tracing.stats) console.note(fmt::format("{} is not written, as nothing was traced", tracing.stats->string()));
+    return;
+  }
 
   PictureRun run = prepare_pictures(options, std::move(frames), console);
+  check_overwrites(files_of(run.sources), outputs);
   if (given.pictures.empty() && !options.pictures.empty()) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
   }

@@ -91,7 +91,7 @@ class PicturePieces : public PieceMaker {
                         .display = stats_.display,
                         .error = traced.result.error,
                         .image = std::move(traced.result.image),
-                        .channels = make_channels(job_.run_.scene, traced.result.aovs, options.aovs)});
+                        .channels = make_channels(job_.run_.scene, std::move(traced.result.aovs), options.aovs)});
   }
 
  private:

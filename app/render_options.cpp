@@ -212,9 +212,9 @@ void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
 }  // namespace
 
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help) {
-  const auto read_power = [](const OptionValues& w) {
+  const auto read_power = [](const OptionValues& w, std::string_view name) {
     const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
-    if (!std::has_single_bit(samples)) w.refuse(fmt::format("the samples are a power of two, not {}", samples));
+    if (!std::has_single_bit(samples)) w.refuse(fmt::format("{} takes a power of two, not {}", name, samples));
     return samples;
   };
   table.add("--target-error", "E", std::string(target_help), [&](const OptionValues& w) {
@@ -224,11 +224,11 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
             fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
                         "--target-error from 1/32 on {}]",
                         kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
-            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w); });
+            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
             fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),
-            [&, read_power](const OptionValues& w) { error.max_samples = read_power(w); });
+            [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
   table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
             "The same: what errors are of: linear light, or what is shown, exposed, tone mapped and encoded as sRGB "
             "[linear]",
@@ -397,6 +397,8 @@ void check_render_options(const RenderOptions& options) {
     refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
                   "leave one out; --min-spp and --max-spp limit the samples");
     refuse_beside(name, {{is_debug, "--shading"}});
+    // Each turn might come to another target, and so to another picture.
+    if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
     refuse_if(error.space == ErrorSpace::kDisplay && averages,
               "--error-in display and --exposure average contradict each other, which is known when all is traced",
               "give --exposure in stops");

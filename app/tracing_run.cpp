@@ -14,11 +14,6 @@
 
 namespace promin::app {
 
-Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console) {
-  std::vector<SourceFile> sources;
-  return load_for(options, stats, console, sources);
-}
-
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources) {
   const Stopwatch load;
@@ -35,6 +30,12 @@ Scene load_for(const TracingOptions& options, RunStats& stats, const Console& co
   return scene;
 }
 
+std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sources) {
+  std::vector<std::filesystem::path> files;
+  for (const SourceFile& source : sources) files.push_back(source.file);
+  return files;
+}
+
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Console& console) {
   gpu::DeviceHandle device = gpu::open_device(options.device);
   stats.device = gpu::info_of(*device);
@@ -43,6 +44,7 @@ gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats
 }
 
 void take_setup(const SetupStats& setup, RunStats& stats, const Console& console) {
+  give_back_memory();
   stats.setup = setup;
   for (const Problem& warning : setup.warnings) console.warn(message_of(warning));
   console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,

@@ -14,11 +14,11 @@ namespace promin::app {
 // The steps that every command which traces a scene takes. Each reports to the console and leaves its times in the
 // stats.
 
-/// Throws InputError.
-Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console);
-/// Does the same, and reports the scene's files as load_scene does.
+/// Reports the scene's files as load_scene does. Throws InputError.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources);
+/// For check_overwrites, which before the scene is loaded knows of none but the scene's own.
+std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sources);
 
 /// Throws DeviceError.
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Console& console);

@@ -32,7 +32,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "environment.glsl"
 #include "shading.glsl"
 #include "light_way.glsl"
-#define load_sum load_record  // a lane adds once to each of its pixels' sums
+// A lane adds once to each of its pixels' sums.
+#define load_sum(record) load_record(record)
 #include "path.glsl"
 #include "tree.glsl"
 #include "group_rows.glsl"

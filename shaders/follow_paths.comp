@@ -84,6 +84,7 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   words[ask_of_source(path, source)] = asked;
 }
 
+// Does so for all sources of this turn.
 void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
   uint sources = sources_at(turn);
   uint source = 0u;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A path is Whitted's recursion, written as a loop: I = sum of (product of weights so far) * what a point sends. Where
 // glass parts it, tree.glsl says in which order.
+// Who includes this has defined `load_sum(record)`, which loads the record of a sum as earlier dispatches have left it,
+// and where the lane may have added to it in this one, with that.
 
 struct Path {
   vec3 origin;     // origin of the next ray
@@ -138,8 +140,8 @@ void extend_range(uint pixel, vec3 sampled) {
   if (is_first || any(greaterThan(sampled, hi))) pixels[largest].xyz = floatBitsToUint(max(hi, sampled));
 }
 
-// Adds the path's radiance to its pixel, as one sample; the first begins the sum. CPU drivers execute stores for no lane
-// where a branch would clear the sums of the first sample, and each of them costs all samples.
+// Adds the path's radiance to its pixel, as one sample; the first begins the sum. CPU drivers execute a branch's stores
+// even where no lane takes it, so a branch that cleared the sums for the first sample would cost every sample.
 void finish_path(Path path) {
   precise vec3 sum = path.radiance;
   if (!has(FEATURE_LISTED_SAMPLES) && sample_at_hand() > 0u) sum += load_sum(path.pixel).xyz;

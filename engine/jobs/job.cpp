@@ -78,9 +78,12 @@ std::string text_of(const Manifest& manifest) {
 /// The manifest of a folder that has one. Throws InputError.
 Manifest read_manifest(const fs::path& folder) {
   const fs::path file = manifest_file(folder);
+  const char* cure = "take another folder, or remove this one";
+  const InputError damaged({"is no manifest of a job, or a damaged one", file.string(), cure});
+  std::error_code none;
+  if (fs::is_empty(file, none)) throw damaged;
   const std::vector<std::byte> bytes = read_file(file);
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const char* cure = "take another folder, or remove this one";
   try {
     const Json json = Json::parse(text);
     if (json.at("promin_job") != kFormat) throw InputError({"is a job of another version", file.string(), cure});
@@ -89,7 +92,7 @@ Manifest read_manifest(const fs::path& folder) {
     if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
   } catch (const nlohmann::json::exception&) {
   }
-  throw InputError({"is no manifest of a job, or a damaged one", file.string(), cure});
+  throw damaged;
 }
 
 std::string shown(const std::string& value) {

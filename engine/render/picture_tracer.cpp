@@ -159,8 +159,6 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
     trace_window(*film_, band, view, range, result, [&](double fraction) {
       return !on_progress || on_progress((range.first + fraction * (range.end - range.first)) / samples);
     });
-    // What is told of all samples together is read once.
-    if (!wanted_.cryptomatte && range.end < samples) continue;
     read = read_film(*film_, size);
     if (wanted_.cryptomatte) tally_samples(read, range.end - range.first, tally);
   }

@@ -57,7 +57,8 @@ PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 /// Whether a file of this ending holds channels beside R, G and B: .exr.
 PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
-/// How an EXR is compressed, always without loss; by blocks of 16 rows, kZips by rows.
+/// How an EXR is compressed, always without loss: kZip by blocks of 16 rows, kPiz of 32, kRle and kZips by rows. Where
+/// 16 rows have more than 8 MiB, kZip is kZips.
 enum class ExrCompression : uint32_t { kNone, kRle, kZips, kZip, kPiz };
 
 /// Names for people, by the value of the ExrCompression.

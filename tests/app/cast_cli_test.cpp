@@ -245,6 +245,10 @@ TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
   refused({"--all", "--offsets", "rays.npy"}, "overwrite an input");
   refused({"--all", "--offsets", "none/o.npy"}, "folder", 1);
   EXPECT_THAT(files(), ElementsAre("rays.npy"));
+  write("made.obj", "mtllib made.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("made.mtl", "newmtl m\n");
+  expect_failure(run({"cast", "made.obj", "rays.npy", "-o", "hits.npy", "--stats", "made.mtl"}), 2,
+                 "overwrite an input, made.mtl");
 }
 
 TEST_F(CastTest, AFullDiskLeavesTheOldFile) {

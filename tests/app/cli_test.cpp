@@ -99,6 +99,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--target-error and --spp contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--time-limit", "1", "--shading", "uv"},
        "--time-limit and --shading contradict each other"},
+      {{"render", "square.gltf", "-o", "a.exr", "--time-limit", "1", "--repeat", "2"},
+       "--time-limit and --repeat contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs an error to aim at"},
       {{"render", "square.gltf", "-o", "a.exr", "--error-in", "linear"}, "--error-in needs an error to aim at"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--error-in", "log"},
@@ -109,7 +111,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "error", "--shading", "uv"},
        "--aov error and --shading contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "12"},
-       "the samples are a power of two, not 12"},
+       "--min-spp takes a power of two, not 12"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "16", "--max-spp", "8"},
        "--min-spp 16 is more than --max-spp 8"},
       {{"render", "square.gltf", "--spq=3"}, "unknown option --spq,"},
@@ -229,6 +231,16 @@ TEST_F(CliTest, APanoramaLightsAndIsSeen) {
   EXPECT_EQ(image.at(0, 0), vec3(1.0F));
   // The grey of OBJ, 0.8, under light of 1 from everywhere.
   EXPECT_NEAR(image.at(32, 18).x, 0.8F, 1e-3F);
+}
+
+// Only the loaded scene tells of the files beside its own.
+TEST_F(CliTest, FilesThatASceneIsMadeOfAreNotOverwritten) {
+  write("made.obj", "mtllib made.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+  write("made.mtl", "newmtl m\nKd 1 0 0\n");
+  const std::string materials = read("made.mtl");
+  expect_failure(run({"render", "made.obj", "-o", "a.exr", "--stats", "made.mtl"}), 2,
+                 "the output would overwrite an input, made.mtl");
+  EXPECT_EQ(read("made.mtl"), materials);
 }
 
 TEST_F(CliTest, UnwritableOutputsAreFoundBeforeTheWork) {

@@ -86,6 +86,16 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   const ProcessResult nothing = render_path(options);
   EXPECT_EQ(nothing.exit_code, 0);
   EXPECT_THAT(nothing.err, HasSubstr("skipped 3 of 3 frames"));
+  // An empty file is no picture, nor is a folder.
+  write("a1.png", "");
+  OptionValues with_stats = options;
+  with_stats.insert(with_stats.end(), {"--stats", "s.json"});
+  EXPECT_THAT(render_path(with_stats).err, HasSubstr("skipped 2 of 3 frames"));
+  EXPECT_THAT(files(), testing::Contains("s.json"));
+  EXPECT_THAT(render_path(with_stats).err, HasSubstr("s.json is not written, as nothing was traced"));
+  std::filesystem::remove(folder() / "a2.exr");
+  std::filesystem::create_directory(folder() / "a2.exr");
+  expect_failure(render_path(options), 1, "is a folder, a2.exr");
 }
 
 TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {

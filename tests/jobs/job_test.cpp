@@ -219,6 +219,8 @@ TEST_F(JobTest, AManifestThatWasChangedByHandIsDamaged) {
   text.replace(text.find(" \"options\""), 1, "  ");
   write(job_folder_ / "job.json", text);
   EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
+  write(job_folder_ / "job.json", "");
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
 }
 
 TEST_F(JobTest, LeftoversOfTheDeadAreCleared) {

@@ -150,19 +150,35 @@ std::vector<Part> make_exr_parts(const ProminPicturesSource& source) {
   return parts;
 }
 
+/// The rows that are compressed together.
+size_t rows_of_block(OIIO::string_view compression) {
+  return compression == "zip" ? 16 : compression == "piz" ? 32 : 1;
+}
+
+/// The bytes of a block of rows of all parts: none gives its blocks back before the file is whole.
+size_t count_block_bytes(const std::vector<Part>& parts, OIIO::string_view compression) {
+  size_t row_bytes = 0;
+  for (const Part& part : parts) row_bytes += part.spec.scanline_bytes(true);
+  return rows_of_block(compression) * row_bytes;
+}
+
+/// Of wide pictures with many channels "zip" becomes "zips", the same for single rows: blocks would take more memory
+/// than all else, or be compressed by one thread. Such files are hardly larger, as a row of a channel alone is about as
+/// long as the 32 KiB that the compressor looks back. It must not depend on the machine, as the file's bytes hang on
+/// it.
+void fit_compression(std::vector<Part>& parts) {
+  constexpr size_t kMostBytes = size_t{8} << 20;
+  const std::string compression = parts.front().spec.get_string_attribute("compression");
+  if (compression != "zip" || count_block_bytes(parts, compression) <= kMostBytes) return;
+  for (Part& part : parts) part.spec.attribute("compression", "zips");
+}
+
 /// How many threads compress an EXR, as OpenImageIO takes it: 0 is one for each core, -1 none but the caller's. OpenEXR
-/// holds two blocks of rows for each thread, and of each three copies: of wide pictures with many channels that is more
-/// than all else.
+/// holds two blocks of rows for each thread, and of each three copies.
 int count_exr_threads(const std::vector<Part>& parts) {
   constexpr size_t kMostBytes = size_t{128} << 20;
   constexpr size_t kCopies = 2 * 3;
-  // Of all parts: none gives its blocks back before the file is whole.
-  size_t block_bytes = 0;
-  for (const Part& part : parts) {
-    const OIIO::string_view compression = part.spec.get_string_attribute("compression");
-    const size_t rows = compression == "zip" ? 16 : compression == "piz" ? 32 : 1;
-    block_bytes += rows * part.spec.scanline_bytes(true);
-  }
+  const size_t block_bytes = count_block_bytes(parts, parts.front().spec.get_string_attribute("compression"));
   const size_t threads = kMostBytes / (kCopies * block_bytes);
   if (threads >= std::thread::hardware_concurrency()) return 0;
   return threads == 0 ? -1 : static_cast<int>(threads);
@@ -191,8 +207,11 @@ struct ProminPicturesWriter {
     for (const ProminPicturesChannel& channel : std::span(source.channels, source.channel_count)) {
       samples.push_back(channel.sample);
     }
-    // It is heeded when an output is made.
-    if (is_exr) OIIO::attribute("exr_threads", count_exr_threads(parts));
+    // The number of threads is heeded when an output is made.
+    if (is_exr) {
+      fit_compression(parts);
+      OIIO::attribute("exr_threads", count_exr_threads(parts));
+    }
     output = OIIO::ImageOutput::create(source.format);
     check(output != nullptr);
     if (parts.size() == 1) {
