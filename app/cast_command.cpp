@@ -195,9 +195,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
   RayReader reader(options.rays);
   std::vector<SourceFile> sources;
   const Scene scene = load_for(tracing, stats, console, sources);
-  std::vector<std::filesystem::path> outputs = options.outputs();
-  if (tracing.stats) outputs.push_back(*tracing.stats);
-  check_overwrites(files_of(sources), outputs);
+  check_overwrites(files_of(sources), options.outputs(), tracing.stats);
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   CasterOptions caster_options;
   choose_tree(tracing, caster_options);

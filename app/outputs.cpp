@@ -3,8 +3,8 @@
 #include "outputs.h"
 
 #include <unistd.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
@@ -33,6 +33,11 @@ void check_writable(const fs::path& file) {
   }
 }
 
+std::vector<fs::path> all_outputs(std::vector<fs::path> outputs, const std::optional<fs::path>& stats) {
+  if (stats) outputs.push_back(*stats);
+  return outputs;
+}
+
 }  // namespace
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
@@ -50,19 +55,20 @@ void check_pictures(const std::vector<fs::path>& pictures) {
   }
 }
 
-void check_overwrites(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+void check_overwrites(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,
+                      const std::optional<fs::path>& stats) {
+  const std::vector<fs::path> files = all_outputs(outputs, stats);
   std::set<fs::path> read;
   for (const fs::path& input : inputs) read.insert(resolve(input));
-  const auto found = std::ranges::find_if(outputs, [&](const fs::path& file) { return read.contains(resolve(file)); });
-  if (found == outputs.end()) return;
+  const auto found = std::ranges::find_if(files, [&](const fs::path& file) { return read.contains(resolve(file)); });
+  if (found == files.end()) return;
   throw UsageError({"the output would overwrite an input", found->string(), "name another file"});
 }
 
 void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,
                    const std::optional<fs::path>& stats) {
-  std::vector<fs::path> files = outputs;
-  if (stats) files.push_back(*stats);
-  check_overwrites(inputs, files);
+  check_overwrites(inputs, outputs, stats);
+  const std::vector<fs::path> files = all_outputs(outputs, stats);
   std::set<fs::path> written;
   for (const fs::path& file : files) {
     if (!written.insert(resolve(file)).second) {

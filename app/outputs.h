@@ -15,9 +15,11 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
 /// Throws UsageError for a picture of an ending that write_image does not know.
 void check_pictures(const std::vector<std::filesystem::path>& pictures);
 
-/// Throws UsageError where an output is also an input.
+/// Throws UsageError where an output is also an input. check_outputs does so with the inputs that are known before the
+/// work; a loaded scene tells of more (files_of).
 void check_overwrites(const std::vector<std::filesystem::path>& inputs,
-                      const std::vector<std::filesystem::path>& outputs);
+                      const std::vector<std::filesystem::path>& outputs,
+                      const std::optional<std::filesystem::path>& stats);
 
 /// Finds before the work what would make it useless: the same file twice, or an input as an output (UsageError), a
 /// missing folder or one that cannot be written (RunError). No file is changed, but for what runs that were killed have

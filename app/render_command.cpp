@@ -310,9 +310,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
   if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames));
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
-  std::vector<std::filesystem::path> outputs = pictures_of(frames);
-  check_outputs(input_files(options), outputs, tracing.stats);
-  if (tracing.stats) outputs.push_back(*tracing.stats);
+  check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const bool has_pictures = !options.pictures.empty();
   if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
@@ -326,7 +324,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
   }
 
   PictureRun run = prepare_pictures(options, std::move(frames), console);
-  check_overwrites(files_of(run.sources), outputs);
+  check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
   if (given.pictures.empty() && !options.pictures.empty()) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
   }
