@@ -21,6 +21,7 @@
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
+#include "merge_job.h"
 #include "outputs.h"
 #include "progress.h"
 #include "promin/caster.h"

@@ -10,7 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "command_job.h"
 #include "core/count_of.h"
+#include "job_words.h"
+#include "merge_job.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"

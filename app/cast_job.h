@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "cast_options.h"
-#include "command_job.h"
+#include "console.h"
+#include "jobs/job.h"
+#include "planned_job.h"
+#include "promin/progress.h"
 #include "promin/ray.h"
 #include "promin/scene.h"
 #include "ray_source.h"

@@ -42,4 +42,8 @@ void check_has_job(const JobOptions& job) {
   throw UsageError({fmt::format("{} has no job to cut", name), "on the command line", "give --job as well"});
 }
 
+std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder) {
+  return *job.folder / "trees" / (builder + ".pbvh");
+}
+
 }  // namespace promin::app

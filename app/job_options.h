@@ -31,4 +31,8 @@ void add_job_options(OptionTable& table, JobOptions& job, const std::string& pie
 /// Throws UsageError where one of --pieces, --tiles and --piece has no job to cut.
 void check_has_job(const JobOptions& job);
 
+/// Where all who work on a job find the tree of its scene by this builder, which the first of them puts there
+/// (pack_scene_sharing).
+std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder);
+
 }  // namespace promin::app

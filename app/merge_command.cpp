@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "cast_options.h"
-#include "command_job.h"
 #include "console.h"
 #include "core/count_of.h"
 #include "image/open_pictures.h"
 #include "jobs/job.h"
+#include "merge_job.h"
 #include "outputs.h"
 #include "picture_job.h"
 #include "promin/error.h"

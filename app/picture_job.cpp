@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "command_job.h"
 #include "frame_plan.h"
+#include "merge_job.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "promin/error.h"

@@ -20,6 +20,7 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "image/open_pictures.h"
+#include "merge_job.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/file.h"
+#include "job_words.h"
 #include "picture_job.h"
 #include "promin/error.h"
 

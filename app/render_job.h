@@ -4,8 +4,9 @@
 
 #include <memory>
 
-#include "command_job.h"
+#include "console.h"
 #include "picture_run.h"
+#include "planned_job.h"
 
 namespace promin::app {
 

@@ -20,6 +20,8 @@
 #include "in_process.h"
 #include "jobs/job.h"
 #include "jobs/sha256.h"
+#include "merge_job.h"
+#include "planned_job.h"
 #include "promin/error.h"
 #include "ray_source.h"
 #include "watched.h"

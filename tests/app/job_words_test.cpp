@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "command_job.h"
+#include "job_words.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "arguments.h"
 #include "cast_options.h"
 #include "render_options.h"
 
@@ -33,7 +34,7 @@ std::vector<std::string> arguments_of_files(CLI::App& program, CLI::App& command
 
 // A job is planned again from any folder, so that a new option that takes a file has to be among those that are kept by
 // their absolute paths, or not kept.
-TEST(CommandJobTest, EveryFileIsKeptByItsAbsolutePath) {
+TEST(JobWordsTest, EveryFileIsKeptByItsAbsolutePath) {
   CLI::App of_pictures("", "promin");
   RenderOptions pictures;
   CLI::App& render = add_command(of_pictures, "render", "");
@@ -66,7 +67,7 @@ std::pair<jobs::Manifest, std::vector<std::string>> plan(const std::vector<std::
 }
 
 // What the manual has in brackets; the job is that of whoever does not say it.
-TEST(CommandJobTest, DefaultsCountAsNotGiven) {
+TEST(JobWordsTest, DefaultsCountAsNotGiven) {
   const auto nothing = plan({});
   const std::vector<std::pair<std::string, std::string>> defaults = {{"--spp", "1"},
                                                                      {"--filter", "box"},

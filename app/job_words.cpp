@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "job_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "arguments.h"
+#include "promin/error.h"
+#include "sources_hash.h"
+
+namespace promin::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How a job takes an option. What has no row is an ordinary option: it decides about bits, is no file, and is kept.
+struct OptionOfJobs {
+  std::string_view name;
+  /// Whether the manifest has its words. The files that SCENE and others name are there by their hashes.
+  bool is_in_manifest = true;
+  /// Kept by its absolute path, as the job may be planned again from any folder.
+  bool names_file = false;
+  /// Not where each who works on a job chooses for themselves.
+  bool is_kept = true;
+  /// Where it is given this one word it counts as not given, as that is what it is then whatever the scene.
+  std::string_view default_word = "";
+  /// Who says it instead, where a job's arguments have no place for it.
+  const char* said_elsewhere = nullptr;
+};
+constexpr const char* kMergeSays = "what the files are called is said when pieces are merged";
+constexpr OptionOfJobs kOptionsOfJobs[] = {
+    {.name = "SCENE", .is_in_manifest = false, .names_file = true},
+    {.name = "RAYS.npy", .is_in_manifest = false, .names_file = true},
+    {.name = "--bvh", .is_in_manifest = false, .names_file = true},
+    {.name = "--compression", .default_word = "zip"},
+    {.name = "--depth", .default_word = "ray"},
+    {.name = "--environment", .names_file = true},
+    {.name = "--environment-intensity", .default_word = "1"},
+    {.name = "--environment-rotation", .default_word = "0"},
+    {.name = "--error-in", .default_word = "linear"},
+    {.name = "--exposure", .default_word = "auto"},
+    {.name = "--filter", .default_word = "box"},
+    {.name = "--path", .names_file = true},
+    {.name = "--output", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
+    {.name = "--offsets", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
+    {.name = "--job", .is_in_manifest = false, .is_kept = false, .said_elsewhere = "the folder is said beside them"},
+    {.name = "--piece",
+     .is_in_manifest = false,
+     .is_kept = false,
+     .said_elsewhere = "who makes the pieces chooses them"},
+    {.name = "--device",
+     .is_in_manifest = false,
+     .is_kept = false,
+     .said_elsewhere = "who makes the pieces chooses it"},
+    {.name = "--stats", .is_in_manifest = false, .is_kept = false},
+    {.name = "--quiet", .is_in_manifest = false, .is_kept = false},
+    {.name = "--verbose", .is_in_manifest = false, .is_kept = false},
+    {.name = "--builder", .is_in_manifest = false},
+    {.name = "--features", .is_in_manifest = false},
+    {.name = "--pieces", .is_in_manifest = false},
+    {.name = "--repeat", .is_in_manifest = false},
+    {.name = "--shading", .default_word = "full"},
+    {.name = "--spp", .default_word = "1"},
+    {.name = "--tiles", .is_in_manifest = false}};
+
+const OptionOfJobs& option_of_jobs(std::string_view name) {
+  static constexpr OptionOfJobs kOrdinary;
+  const auto* const row = std::ranges::find(kOptionsOfJobs, name, &OptionOfJobs::name);
+  return row != std::end(kOptionsOfJobs) ? *row : kOrdinary;
+}
+
+bool is_default(const OptionOfJobs& option, const std::vector<std::string>& words) {
+  return !option.default_word.empty() && words.size() == 1 && words.front() == option.default_word;
+}
+
+}  // namespace
+
+jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given) {
+  jobs::Manifest manifest;
+  manifest.kind = kind;
+  manifest.options = {{"version", PROMIN_VERSION}, {"program", std::string(kSourcesHash)}};
+  for (const auto& [name, words] : given) {
+    const OptionOfJobs& option = option_of_jobs(name);
+    if (!option.is_in_manifest || is_default(option, words)) continue;
+    const std::string value = words.empty() ? "given" : fmt::format("{}", fmt::join(words, " "));
+    manifest.options.emplace_back(name, option.names_file ? fs::path(value).filename().string() : value);
+  }
+  return manifest;
+}
+
+void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& sources) {
+  for (const SourceFile& source : sources) {
+    if (!source.stamp) continue;
+    manifest.files.push_back(jobs::describe_input(source.file));
+    if (stamp_of(source.file) == source.stamp) continue;
+    throw InputError({"the file has changed while it was read", source.file.string(), "try again"});
+  }
+}
+
+std::vector<std::string> keep_arguments(const CLI::App& command) {
+  std::vector<std::string> arguments;
+  for (const auto& [name, words] : given_options(command)) {
+    const OptionOfJobs& option = option_of_jobs(name);
+    if (!option.is_kept || is_default(option, words)) continue;
+    if (name.starts_with('-')) arguments.push_back(name);
+    for (const std::string& word : words) {
+      arguments.push_back(option.names_file ? fs::absolute(word).lexically_normal().string() : word);
+    }
+  }
+  return arguments;
+}
+
+void check_job_words(const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (word != "-h" && word != "--help" && word != "--version") continue;
+    throw UsageError({word + " makes no job", "in its arguments", "leave it out"});
+  }
+}
+
+void check_job_words(const GivenOptions& given) {
+  for (const auto& [option, words] : given) {
+    const char* const why = option_of_jobs(option).said_elsewhere;
+    if (why == nullptr) continue;
+    throw UsageError(
+        {option + " is none of a job's arguments", "in its arguments", std::string("leave it out; ") + why});
+  }
+}
+
+}  // namespace promin::app

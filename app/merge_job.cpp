@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "merge_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+
+#include "cast_job.h"
+#include "core/count_of.h"
+#include "deferred_signals.h"
+#include "picture_job.h"
+#include "promin/error.h"
+
+namespace promin::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Missing pieces that a message names.
+constexpr size_t kMostNamed = 5;
+
+/// Whether a file is, by all that the manifest tells, one that the job's pieces hang on.
+bool is_input(const jobs::Job& job, const fs::path& file) {
+  return std::ranges::any_of(job.manifest().files, [&](const jobs::InputFile& input) {
+    std::error_code none;
+    return input.name == file.filename() && fs::file_size(file, none) == input.size_bytes && !none &&
+           jobs::describe_input(file).sha256 == input.sha256;
+  });
+}
+
+/// Throws RunError where pieces are missing, of so many that were looked at.
+void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, size_t count) {
+  if (missing.empty()) return;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
+  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(count, "piece"),
+                              verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
+                              missing.size() > kMostNamed ? ", …" : ""),
+                  job.file_of(missing.front()).parent_path().string(),
+                  "run the job again, which makes what is missing"});
+}
+
+}  // namespace
+
+void check_done(const jobs::Job& job, const std::vector<size_t>& pieces) {
+  refuse_missing(job, jobs::keep_missing(job, pieces), pieces.size());
+}
+
+void check_whole(const jobs::Job& job) {
+  refuse_missing(job, jobs::find_missing(job), job.piece_count());
+}
+
+void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs,
+                     const std::optional<std::vector<uint32_t>>& frames) {
+  const std::string& kind = job.manifest().kind;
+  if (kind == kPictureJob) {
+    check_merged_pictures(job, outputs);
+  } else if (kind == kRayJob) {
+    check_merged_hits(job, outputs);
+  } else {
+    throw InputError({fmt::format("the job is one of \"{}\", and not of promin render or cast", kind),
+                      job.folder().string(), "name the folder of promin render --job or promin cast --job"});
+  }
+  for (const fs::path& output : kind == kPictureJob ? number_pictures(job, outputs, frames) : outputs) {
+    if (!is_input(job, output)) continue;
+    throw UsageError({"the output would overwrite an input", output.string(), "name another file"});
+  }
+}
+
+void merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs, const ProgressCallback& progress,
+               bool is_mixed, const std::optional<std::vector<uint32_t>>& frames) {
+  check_job_files(job, outputs, frames);
+  if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress, frames);
+  if (frames) throw UsageError({"answers to rays have no frames", job.folder().string(), "leave the frames out"});
+  merge_hits(job, outputs, progress, is_mixed);
+}
+
+void merge_job_deferring(const jobs::Job& job, const std::vector<fs::path>& outputs) {
+  const DeferredSignals while_writing;
+  try {
+    merge_job(job, outputs, [&](double) { return !while_writing.is_pending(); });
+  } catch (const Cancelled&) {
+    // What the signal's sender wants is an end, and has it now.
+  }
+}
+
+}  // namespace promin::app
