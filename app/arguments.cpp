@@ -134,11 +134,16 @@ void OptionValues::refuse(const std::string& what) const {
   throw UsageError({what, kWhere, cure_for(command_)});
 }
 
+std::string OptionValues::quote(size_t i) const {
+  if (whole_word_.empty()) return fmt::format("\"{}\"", words_[i]);
+  return fmt::format("\"{}\" in \"{}\"", words_[i], whole_word_);
+}
+
 uint32_t OptionValues::whole(size_t i, uint32_t min, uint32_t max) const {
   uint32_t number = 0;
   if (!parse_number(words_[i], number) || number < min || number > max) {
     refuse_option(i);
-    refuse(fmt::format("{} takes a whole number from {} to {}, not \"{}\"", option_, min, max, words_[i]));
+    refuse(fmt::format("{} takes a whole number from {} to {}, not {}", option_, min, max, quote(i)));
   }
   return number;
 }
@@ -152,7 +157,7 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
     for (size_t k = 0; k < others.size(); ++k) {
       words += (k + 1 == others.size() ? " or " : ", ") + std::string(others[k]);
     }
-    refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not \"{}\"", option_, min, max, words, words_[i]));
+    refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not {}", option_, min, max, words, quote(i)));
   }
   return number;
 }

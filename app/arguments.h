@@ -38,17 +38,26 @@ class OptionValues {
   /// Reads one of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
 
-  /// Splits the words into parts, each to be read as a word of the same option.
-  OptionValues with(std::vector<std::string> words) const { return {command_, option_, std::move(words)}; }
+  /// Splits the only word into parts, each to be read as a word of the same option. What refuses a part tells the
+  /// whole.
+  OptionValues with(std::vector<std::string> parts) const {
+    OptionValues values(command_, option_, std::move(parts));
+    values.whole_word_ = text();
+    return values;
+  }
 
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
   void refuse_option(size_t i) const;
+  /// As messages quote it.
+  std::string quote(size_t i) const;
 
   std::string command_;
   std::string option_;
   std::vector<std::string> words_;
+  /// What the words are parts of, where they are.
+  std::string whole_word_;
 };
 
 /// The options of a command, one row each. The last of a repeated option holds.

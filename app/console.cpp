@@ -6,6 +6,7 @@
 
 #include <cstdio>
 
+#include "core/utf8.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -20,7 +21,7 @@ Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
 
 void Console::print(const std::string& text, Verbosity least) const {
   // fmt::print would throw where the stream is closed, and that is no reason to fail.
-  if (verbosity_ >= least) std::fputs(fmt::format("{}: {}\n", program_, text).c_str(), stderr);
+  if (verbosity_ >= least) std::fputs(fmt::format("{}: {}\n", program_, to_one_line(text)).c_str(), stderr);
 }
 
 }  // namespace promin::app

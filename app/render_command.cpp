@@ -67,11 +67,14 @@ std::string describe_samples(const RunStats& stats) {
                      describe_error(all.target, *stats.view->error_target), unmet);
 }
 
-/// The options that give a picture of a time limit again.
-std::string describe_target(const RunStats& stats) {
+/// Tells the options that give the pictures of a time limit again, each frame's.
+void tell_targets(const RunStats& stats, const Console& console) {
   ErrorTarget target = *stats.view->error_target;
-  target.error = stats.errors.back().target;
-  return fmt::format("the picture{} of {}", stats.frames.empty() ? "" : " of the last frame", describe_options(target));
+  for (size_t i = 0; i < stats.errors.size(); ++i) {
+    target.error = stats.errors[i].target;
+    const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames[i]);
+    console.note(fmt::format("the picture{} of {}", name, describe_options(target)));
+  }
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
@@ -351,7 +354,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
   pictures.get();
   render_frames(run.frames, options, *device, scene, renderer, stats, console);
 
-  if (options.error.time_limit_s) console.note(describe_target(stats));
+  if (options.error.time_limit_s) tell_targets(stats, console);
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();
   tell_end(stats, console);

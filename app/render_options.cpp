@@ -218,7 +218,9 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
     return samples;
   };
   table.add("--target-error", "E", std::string(target_help), [&](const OptionValues& w) {
-    error.target = static_cast<float>(w.real(0, static_cast<double>(kMinTargetError), 1.0));
+    // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
+    const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
+    error.target = std::max(static_cast<float>(w.real(0, least, 1.0)), kMinTargetError);
   });
   table.add("--min-spp", "N",
             fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
@@ -262,12 +264,12 @@ void fit_to_display(ErrorTarget& target, const DisplayTransform& display) {
 }
 
 std::string describe_options(const ErrorTarget& target) {
-  return fmt::format("--target-error {:.9g} --min-spp {} --max-spp {}{}", target.error, target.min_samples,
+  return fmt::format("--target-error {} --min-spp {} --max-spp {}{}", target.error, target.min_samples,
                      target.max_samples, target.display ? " --error-in display" : "");
 }
 
 std::string describe_error(float error, const ErrorTarget& target) {
-  return fmt::format("error {:.9g}{}", error, target.display ? " as shown" : "");
+  return fmt::format("error {}{}", error, target.display ? " as shown" : "");
 }
 
 void add_render_options(CLI::App& command, RenderOptions& options) {

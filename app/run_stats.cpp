@@ -108,8 +108,8 @@ void put_error(Metadata& metadata, const PictureError& error, uint64_t pixel_cou
   const double samples = static_cast<double>(error.samples) / static_cast<double>(pixel_count);
   put(std::string(kSamplesEntry), fmt::format("{:.9g}", samples));
   const std::string entries(kErrorEntries);
-  put(entries + "target", fmt::format("{:.9g}", error.target));
-  put(entries + "max", fmt::format("{:.9g}", error.largest_claim));
+  put(entries + "target", fmt::format("{}", error.target));
+  put(entries + "max", fmt::format("{}", error.largest_claim));
   put(entries + "unmet", std::to_string(error.unmet_pixels));
 }
 

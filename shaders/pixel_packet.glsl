@@ -42,9 +42,13 @@ bool begin_packet() {
     forget_passed(i);
     if (!is_inside[i]) packet[i].tmax = -1.0;
     ray_count.x += is_inside[i] ? 1u : 0u;
-    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction), vec3(1.0), vec3(0.0), index, NO_ENVIRONMENT,
-                    CAMERA.look.w, CAMERA.right.w, 0u, 0u, -1.0, 0u, CAMERA.first_glass.yz, 0u, 0.0, 0u, LOG_CAMERA,
-                    PART_BACKGROUND);
+    paths[i] = Path(packet[i].origin, normalize3(packet[i].direction),
+                    vec3(1.0), vec3(0.0),                  // weight and radiance
+                    index, NO_ENVIRONMENT,                 // pixel and roughness
+                    CAMERA.look.w, CAMERA.right.w,         // width and spread of the cone
+                    0u, 0u, -1.0, 0u,                      // no bounces, no layers, nothing passed
+                    CAMERA.first_glass.yz, 0u, 0.0, 0u,    // media; no rays, nothing skipped
+                    LOG_CAMERA, PART_BACKGROUND);          // kind and part
   }
   passes_backs = true;
   sight_width = CAMERA.look.w;

@@ -9,7 +9,7 @@ namespace {
 
 /// Nine digits bring a float back to the bit; of an angle in degrees they are within half of a float's last place.
 std::string words_of(const vec3& v) {
-  return fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z);
+  return fmt::format("{} {} {}", v.x, v.y, v.z);
 }
 
 std::string quote(const std::string& word) {
@@ -41,7 +41,7 @@ std::string options_of(const LookOptions& look) {
     options += fmt::format(" --background {}",
                            look.background->is_environment ? "environment" : words_of(look.background->color));
   }
-  if (look.exposure_ev) options += fmt::format(" --exposure {:.9g}", *look.exposure_ev);
+  if (look.exposure_ev) options += fmt::format(" --exposure {}", *look.exposure_ev);
   if (look.tone_mapping) {
     options += fmt::format(" --tone-mapping {}", tone_mapping_names()[static_cast<size_t>(*look.tone_mapping)]);
   }
@@ -73,7 +73,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
       fmt::format("promin render {} -o view.exr --size {} {}{} --max-depth {}", quote(scene.file.string()), view.size.x,
                   view.size.y, samples_of(view), view.max_depth);
   if (view.filter != PixelFilter::kBox || view.filter_width != default_width(view.filter)) {
-    command += fmt::format(" --filter {} --filter-width {:.9g}", pixel_filter_names()[static_cast<size_t>(view.filter)],
+    command += fmt::format(" --filter {} --filter-width {}", pixel_filter_names()[static_cast<size_t>(view.filter)],
                            view.filter_width);
   }
   if (view.mode.debug_view != DebugView::kNone) {
@@ -89,7 +89,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   if (camera.projection == Projection::kPerspective) {
     command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));
   }
-  command += fmt::format(" --near {:.9g}", camera.near);
+  command += fmt::format(" --near {}", camera.near);
   // No other picture depends on the tree.
   if (view.mode.debug_view != DebugView::kSteps) return command;
   return command + (scene.bvh ? " --bvh " + quote(scene.bvh->string()) : " --builder " + scene.builder);

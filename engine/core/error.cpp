@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/error.h"
 
+#include <utility>
+
+#include "core/utf8.h"
+
 namespace promin {
 namespace {
 
@@ -19,7 +23,7 @@ std::string Problem::sentence() const {
   std::string text = what;
   if (!where.empty()) text += ", " + where;
   if (!cure.empty()) text += "; " + cure;
-  return text;
+  return to_one_line(std::move(text));
 }
 
 Error::Error(const std::vector<Problem>& problems)

@@ -3,7 +3,6 @@
 #include "formats/load_report.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/utf8.h"
 
@@ -15,10 +14,7 @@ constexpr size_t kMaxProblems = 50;
 constexpr size_t kMaxWord = 80;
 
 std::string make_visible(const std::string& words) {
-  std::string text = to_utf8(words);
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; }, '?');
-  return text;
+  return to_one_line(to_utf8(words));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "core/parallel.h"
 #include "image/difference_of.h"
@@ -18,6 +19,8 @@ namespace fs = std::filesystem;
 /// Of all parts of a file together, unless so many rows take more.
 constexpr uint64_t kMostBandBytes = uint64_t{4} << 20;
 constexpr uint32_t kLeastRows = 32;
+/// Channels that a message names, of each file.
+constexpr size_t kMostNamed = 5;
 
 struct FileChannel {
   std::string name;
@@ -32,7 +35,7 @@ struct FileChannel {
 /// All channels of a file, some rows at a time.
 class ChannelFile {
  public:
-  explicit ChannelFile(const fs::path& file) : picture_(file) {
+  explicit ChannelFile(const fs::path& file) : file_(file), picture_(file) {
     const uint32_t part_count = picture_.info().part_count;
     for (uint32_t number = 0; number < part_count; ++number) {
       const ProminPicturesPart part = picture_.describe_part(number);
@@ -49,14 +52,9 @@ class ChannelFile {
     }
   }
 
+  const fs::path& file() const { return file_; }
   /// In the file's order.
   const std::vector<FileChannel>& channels() const { return channels_; }
-
-  std::string list_names() const {
-    std::string names;
-    for (const FileChannel& channel : channels_) names += (names.empty() ? "" : " ") + channel.name;
-    return names;
-  }
 
   uint32_t row_count() const {
     uint32_t count = 0;
@@ -97,6 +95,7 @@ class ChannelFile {
     std::vector<uint32_t> values;
   };
 
+  fs::path file_;
   OpenedPicture picture_;
   std::vector<Part> parts_;
   std::vector<FileChannel> channels_;
@@ -116,6 +115,19 @@ std::vector<const FileChannel*> sort_by_name(const ChannelFile& file) {
   return sorted;
 }
 
+/// Those without a fellow of the same name, both lists by name: "only b.exr has Z", or nothing where there is none.
+std::string name_missing(const fs::path& file, const std::vector<const FileChannel*>& channels,
+                         const std::vector<const FileChannel*>& others) {
+  std::vector<const FileChannel*> missing;
+  std::ranges::set_difference(channels, others, std::back_inserter(missing), {}, &FileChannel::name,
+                              &FileChannel::name);
+  if (missing.empty()) return "";
+  std::string names = "only " + file.string() + " has";
+  for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names += " " + missing[i]->name;
+  if (missing.size() > kMostNamed) names += " and " + std::to_string(missing.size() - kMostNamed) + " more";
+  return names;
+}
+
 std::string name_size(const uvec2& size) {
   return std::to_string(size.x) + "x" + std::to_string(size.y);
 }
@@ -124,9 +136,12 @@ std::string name_size(const uvec2& size) {
 std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const ChannelFile& test) {
   const std::vector<const FileChannel*> of_reference = sort_by_name(reference);
   const std::vector<const FileChannel*> of_test = sort_by_name(test);
-  if (!std::ranges::equal(of_reference, of_test, {}, &FileChannel::name, &FileChannel::name)) {
-    throw InputError({"the pictures differ in channels", reference.list_names() + " against " + test.list_names(),
-                      "write both with the same --aov"});
+  const std::string in_reference = name_missing(reference.file(), of_reference, of_test);
+  const std::string in_test = name_missing(test.file(), of_test, of_reference);
+  if (!in_reference.empty() || !in_test.empty()) {
+    const std::string between = in_reference.empty() || in_test.empty() ? "" : "; ";
+    throw InputError(
+        {"the pictures differ in channels", in_reference + between + in_test, "write both with the same --aov"});
   }
   std::vector<ChannelPair> pairs;
   for (size_t i = 0; i < of_reference.size(); ++i) pairs.push_back({of_reference[i], of_test[i]});

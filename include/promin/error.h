@@ -35,7 +35,7 @@ struct PROMIN_EXPORT Problem {
   /// What `where` or `cure` would have changed.
   Setting setting = Setting::kNone;
 
-  /// "WHAT, WHERE; CURE" without the parts that are empty.
+  /// "WHAT, WHERE; CURE" without the parts that are empty, in one line: control characters are question marks.
   std::string sentence() const;
 };
 

@@ -56,6 +56,10 @@ void expect_displayed(const Image& picture, const Image& png, const DisplayTrans
   }
 }
 
+TEST_F(CliTest, NamesOfFilesDriveNoTerminal) {
+  expect_failure(run({"info", "no\nsuch\033[2J.gltf"}), 3, "no?such?[2J.gltf");
+}
+
 TEST_F(CliTest, HelpAndVersionEverywhere) {
   for (const OptionValues& command : {OptionValues{}, OptionValues{"render"}, OptionValues{"cast"},
                                       OptionValues{"compare"}, OptionValues{"info"}, OptionValues{"devices"}}) {

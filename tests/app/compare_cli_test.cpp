@@ -87,7 +87,7 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   expect_failure(compare({"a.exr", "small.exr"}), 3, "the pictures differ in size, 16x12 against 16x11");
   const Channel depth{"Z", false, std::vector<uint32_t>(16 * 12)};
   write_image(folder() / "deep.exr", read_image(folder() / "a.exr"), {}, std::nullopt, {&depth, 1});
-  expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures differ in channels, R G B against R G B Z");
+  expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures differ in channels, only deep.exr has Z");
   write("text.exr", "no picture");
   expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
   expect_failure(compare({"a.exr", "b.exr", "--fail-percent", "3"}), 2,
@@ -171,7 +171,9 @@ TEST_F(ComparePartsCliTest, PartsThatOneHasAreSaid) {
   for (const bool is_multipart : {false, true}) {
     write_parts("other.exr", is_multipart);
     for (const char* first : {"one.exr", "parts.exr"}) {
-      expect_failure(compare({"other.exr", first}), 3, "the pictures differ in channels, R G B Z against R G B Z ");
+      expect_failure(
+          compare({"other.exr", first}), 3,
+          std::string("the pictures differ in channels, only ") + first + " has N.X N.Y N.Z P.X P.Y and 5 more");
     }
   }
 }

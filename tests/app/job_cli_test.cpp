@@ -219,7 +219,7 @@ TEST_F(JobCliTest, WrongUseIsRefused) {
       {{"-o", "a.exr", "--job", "job", "--pieces", "4", "--tiles", "2", "2"}, "--pieces and --tiles contradict"},
       {{"-o", "a.exr", "--job", "job", "--pieces", "48"}, "1 columns and 48 rows of pieces are more than the 61x47"},
       {{"-o", "a.exr", "--job", "job", "--piece", "0/4"}, "--piece and --output contradict each other"},
-      {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\""},
+      {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\" in \"4/4\""},
       {{"--job", "job", "--piece", "4"}, "--piece takes I/N, as 0/4, not \"4\""},
       {{"-o", "a.exr", "--job", "job", "--time-limit", "1"}, "--job and --time-limit contradict each other"},
       {{"-o", "a.exr", "--job", "job", "--stats", "s.json"}, "--job and --stats contradict each other"},

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli_fixture.h"
 #include "frame_plan.h"
@@ -107,6 +108,22 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
   EXPECT_EQ(render_path({"--frames", "2", "--quiet"}).exit_code, 0) << "another frame";
 }
 
+TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
+  const ProcessResult limited = render_path({"--frames", "1-2", "-o", "limited#.exr", "--time-limit", "0.2"});
+  ASSERT_EQ(limited.exit_code, 0) << limited.err;
+  for (const std::string number : {"1", "2"}) {
+    const std::string before = "the picture of frame " + number + " of ";
+    const size_t place = limited.err.find(before);
+    ASSERT_NE(place, std::string::npos) << limited.err;
+    std::istringstream line(limited.err.substr(place + before.size()));
+    OptionValues again = {"--frames", number, "-o", "again.exr"};
+    std::string word;
+    while (again.size() < 10 && line >> word) again.push_back(word);
+    ASSERT_EQ(render_path(again).exit_code, 0) << limited.err;
+    EXPECT_EQ(read("again.exr"), read("limited" + number + ".exr")) << limited.err;
+  }
+}
+
 TEST_F(PathCliTest, FpsTakesThePathByTime) {
   EXPECT_EQ(render_path({"--fps", "10", "-o", "t#.exr", "--quiet"}).exit_code, 0);
   EXPECT_THAT(files(), UnorderedElementsAre("path.json", "t0.exr", "t1.exr", "t2.exr", "t3.exr"));
@@ -154,7 +171,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
       {{"-o", "f#.exr", "--near", "1"}, "--path and a camera"},
       {{"-o", "f#.exr", "--frames", "1-3"}, "there is no frame 3, path.json; the path has the frames 0-2"},
       {{"-o", "f#.exr", "--frames", "2-1"}, "--frames is empty"},
-      {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number"},
+      {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number from 0 to 9999999, not \"\" in \"1-\""},
       {{"-o", "f#.exr", "--frames", "-1"}, "--frames takes a whole number"},
       {{"-o", "f#.exr", "--fps", "0"}, "--fps takes"},
       {{"-o", "f#.exr", "--fps", "often"}, "--fps takes"},

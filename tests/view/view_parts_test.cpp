@@ -28,7 +28,7 @@ TEST(DescribeCommand, NamesTheViewForAShell) {
   view.camera.yfov = 0.7F;
   const std::string command = describe_command({.file = "it's a scene.gltf"}, view);
   EXPECT_THAT(command, testing::StartsWith("promin render 'it'\\''s a scene.gltf' -o view.exr --size 640 360 --spp 4"));
-  EXPECT_THAT(command, testing::HasSubstr("--eye 0.100000001 -2 1.00000001e-07 --look 0 0 -1 --up 0 1 0 --fov "));
+  EXPECT_THAT(command, testing::HasSubstr("--eye 0.1 -2 1e-07 --look 0 0 -1 --up 0 1 0 --fov "));
 }
 
 TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
@@ -49,10 +49,9 @@ TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
                    .background = BackgroundChoice{.color = vec3(0.1F, 0.0F, 1.0F)},
                    .exposure_ev = -1.1F,
                    .tone_mapping = ToneMapping::kAces};
-  EXPECT_THAT(
-      describe_command({.file = "s", .look = look}, view),
-      testing::HasSubstr(" --light headlight --background 0.100000001 0 1 --exposure -1.10000002 --tone-mapping "
-                         "aces --eye "));
+  EXPECT_THAT(describe_command({.file = "s", .look = look}, view),
+              testing::HasSubstr(" --light headlight --background 0.1 0 1 --exposure -1.1 --tone-mapping "
+                                 "aces --eye "));
   look = {.background = BackgroundChoice{.is_environment = true}, .texture_memory_mib = 64};
   EXPECT_THAT(describe_command({.file = "s", .look = look}, view),
               testing::HasSubstr(" --background environment --texture-memory 64 --eye"));
@@ -62,7 +61,7 @@ TEST(DescribeCommand, NamesTheErrorThatAPictureHas) {
   View view;
   view.error_target = ErrorTarget{.error = 0.125F / 1.41421356F, .min_samples = 4, .max_samples = 64};
   const std::string command = describe_command({.file = "s"}, view);
-  EXPECT_THAT(command, testing::HasSubstr(" --target-error 0.0883883461 --min-spp 4 --max-spp 64 --max-depth"));
+  EXPECT_THAT(command, testing::HasSubstr(" --target-error 0.088388346 --min-spp 4 --max-spp 64 --max-depth"));
   EXPECT_THAT(command, testing::Not(testing::HasSubstr("--spp 1")));
   EXPECT_THAT(command, testing::Not(testing::HasSubstr("--error-in")));
   view.error_target->display.emplace();
