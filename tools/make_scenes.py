@@ -1,21 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the scenes in scenes/; run again, it writes the same bytes. With --sphereflake one sphereflake of any size."""
+"""Writes the scenes in scenes/; run again, it writes the same bytes. With --sphereflake one sphereflake of any size,
+with --fine scenes of more detail than pixels."""
 
 import argparse
 import pathlib
 
-from scenegen.features import SCENES
+from scenegen import features, fine
 from scenegen.showcase import showcase
 from scenegen.sphereflake import sphereflake
 from scenegen.wavefront import write_obj_scene
 
 
-def write_all(folder):
+def write_each(scenes, folder):
     folder.mkdir(parents=True, exist_ok=True)
-    for scene in SCENES:
+    for scene in scenes:
         scene().write(folder / f"{scene.__name__}.gltf")
+
+
+def write_all(folder):
+    write_each(features.SCENES, folder)
     sphereflake(2).write(folder / "sphereflake.gltf")
     showcase().write(folder / "showcase.gltf", separate_buffer=True)
     write_obj_scene(folder)
@@ -24,6 +29,7 @@ def write_all(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sphereflake", type=int, metavar="LEVEL", help="1 + 9 + ... + 9^LEVEL spheres (4: 7381)")
+    parser.add_argument("--fine", action="store_true", help="textures.gltf and wires.gltf, which need -o FOLDER")
     parser.add_argument("--endless-ground", action="store_true", help="a plane under the sphereflake, no square")
     parser.add_argument(
         "-o",
@@ -32,7 +38,11 @@ def main():
         help="with --sphereflake the .gltf file, otherwise the folder (default: scenes/ of this repository)",
     )
     arguments = parser.parse_args()
-    if arguments.sphereflake is None:
+    if arguments.fine:
+        if arguments.output is None or arguments.sphereflake is not None:
+            parser.error("--fine needs -o FOLDER, and no --sphereflake")
+        write_each(fine.SCENES, arguments.output)
+    elif arguments.sphereflake is None:
         write_all(arguments.output or pathlib.Path(__file__).resolve().parent.parent / "scenes")
     elif arguments.output is None or not 0 <= arguments.sphereflake <= 7:
         parser.error("--sphereflake takes a level of 0 to 7 and needs -o FILE.gltf")

@@ -72,6 +72,24 @@ TEST_F(ScenesTest, EverySceneLoadsWithoutWarning) {
   }
 }
 
+TEST_F(ScenesTest, FineScenesHaveWhatTheyAreNamedFor) {
+  ASSERT_NO_FATAL_FAILURE(run_make_scenes({"--fine", "-o", folder_}));
+  EXPECT_EQ(scene_files(folder_).size(), 2U);
+  const Scene textures = load_scene(folder_ / "textures.gltf");
+  EXPECT_THAT(textures.warnings, testing::IsEmpty());
+  EXPECT_EQ(textures.images.size(), 2U);
+  const Scene wires = load_scene(folder_ / "wires.gltf");
+  EXPECT_THAT(wires.warnings, testing::IsEmpty());
+  std::vector<float> radii;
+  for (const world::Object& object : world::flatten(wires).objects) {
+    if (const auto* wire = std::get_if<world::Cylinder>(&object.shape)) radii.push_back(wire->radius);
+  }
+  ASSERT_EQ(radii.size(), 48U);
+  // Of a picture of 360 rows, which shows a height of 2.
+  EXPECT_FLOAT_EQ(radii.front(), 0.5F / 8.0F * 2.0F / 360.0F);
+  EXPECT_FLOAT_EQ(radii.back(), 0.5F * 2.0F / 360.0F);
+}
+
 TEST_F(ScenesTest, SphereflakeHasNineSpheresOnEachSphere) {
   fs::create_directories(folder_);
   const fs::path file = folder_ / "flake.gltf";

@@ -6,6 +6,7 @@ import base64
 import json
 import math
 import struct
+import zlib
 
 from . import meshes
 from .vectors import look_rotation, sub
@@ -26,6 +27,18 @@ def shortest(x):
     if wanted == int(wanted) and abs(wanted) < 1e6:
         return int(wanted)
     return next(n for n in (float(f"{wanted:.{digits}g}") for digits in range(1, 10)) if to_float32(n) == wanted)
+
+
+def _png(rows):
+    """A PNG file of rows of RGB bytes."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", len(rows[0]) // 3, len(rows), 8, 2, 0, 0, 0)
+    lines = b"".join(b"\0" + row for row in rows)
+    data = zlib.compress(lines, 9)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
 def _numbers(values):
@@ -80,6 +93,8 @@ class Gltf:
             attributes["NORMAL"] = self._vectors(mesh.normals)
         if mesh.colors:
             attributes["COLOR_0"] = self._vectors(mesh.colors)
+        if mesh.uvs:
+            attributes["TEXCOORD_0"] = self._vectors(mesh.uvs)
         primitive = {"attributes": attributes, "indices": self._indices(mesh.indices), "material": material}
         if mode != TRIANGLES:
             primitive["mode"] = mode
@@ -106,6 +121,14 @@ class Gltf:
         factors = {"metallicFactor": shortest(metallic), "roughnessFactor": shortest(roughness)}
         pbr = {"baseColorFactor": _numbers((*base_color, 1.0)), **factors}
         return self._append("materials", {"name": name, "pbrMetallicRoughness": pbr})
+
+    def textured(self, name, rows):
+        """Metallic-roughness, dull, in the colours of a repeated texture: rows of RGB bytes, codes of sRGB."""
+        uri = "data:image/png;base64," + base64.b64encode(_png(rows)).decode()
+        texture = self._append("textures", {"source": self._append("images", {"name": name, "uri": uri})})
+        index = self.metallic_roughness(name, (1.0, 1.0, 1.0), 0.0, 1.0)
+        self._root["materials"][index]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}
+        return index
 
     def glass(self, name, base_color=(1.0, 1.0, 1.0), ior=1.5, roughness=0.0, absorbed=None):
         """A thin wall, or with `absorbed`, a colour and the length of way after which it is left, a volume."""

@@ -19,6 +19,7 @@ class Mesh:
     indices: list
     normals: list = field(default_factory=list)
     colors: list = field(default_factory=list)
+    uvs: list = field(default_factory=list)
 
 
 def rectangle(width, depth):
@@ -32,6 +33,18 @@ def box(width, height, depth):
     positions = list(itertools.product((-x, x), (-y, y), (-z, z)))
     quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     return Mesh(positions, [i for a, b, c, d in quads for i in (a, b, c, a, c, d)])
+
+
+def tiled(mesh, tile_size):
+    """The sharp triangles of a mesh, each with texture coordinates along the two axes that it faces least."""
+    positions, uvs = [], []
+    for corners in zip(*[iter(mesh.indices)] * 3):
+        a, b, c = (mesh.positions[i] for i in corners)
+        normal = [abs(x) for x in cross(sub(b, a), sub(c, a))]
+        u, v = ((2, 1), (0, 2), (0, 1))[normal.index(max(normal))]
+        positions += [a, b, c]
+        uvs += [(p[u] / tile_size, -p[v] / tile_size) for p in (a, b, c)]
+    return Mesh(positions, list(range(len(positions))), uvs=uvs)
 
 
 def frustum(height, radius_bottom, radius_top, sides):
