@@ -23,6 +23,10 @@ std::string cure_for(const std::string& command) {
   return fmt::format("see {} --help", command);
 }
 
+std::string ask_for(std::string_view near) {
+  return fmt::format("did you mean {}?", near);
+}
+
 /// "promin render" of the command "render".
 std::string path_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : app.get_parent()->get_name() + " " + app.get_name();
@@ -56,6 +60,15 @@ std::string nearest_option(const std::string& name, const CLI::App& command) {
   return std::string(nearest_name(name, known));
 }
 
+std::string nearest_command(const std::string& name, const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  return std::string(nearest_name(name, known));
+}
+
 /// CLI11 collects what it does not know: options, commands and words too many.
 void refuse_leftovers(const CLI::App& program) {
   std::vector<std::string> leftovers = program.remaining(true);
@@ -68,13 +81,14 @@ void refuse_leftovers(const CLI::App& program) {
   if (option != leftovers.end()) {
     const std::string name = option->substr(0, option->find('='));
     const std::string near = nearest_option(name, command);
-    throw UsageError({"unknown option " + name, kWhere, near.empty() ? cure : "did you mean " + near + "?"});
+    throw UsageError({"unknown option " + name, kWhere, near.empty() ? cure : ask_for(near)});
   }
   // A program without commands is one itself.
   const bool lacks_command =
       &command == &program && !program.get_subcommands([](const CLI::App*) { return true; }).empty();
-  const std::string what = lacks_command ? "unknown command " : "unexpected argument ";
-  throw UsageError({what + leftovers.front(), kWhere, cure});
+  if (!lacks_command) throw UsageError({"unexpected argument " + leftovers.front(), kWhere, cure});
+  const std::string near = nearest_command(leftovers.front(), program);
+  throw UsageError({"unknown command " + leftovers.front(), kWhere, near.empty() ? cure : ask_for(near)});
 }
 
 /// As messages have it.
@@ -130,12 +144,12 @@ void OptionValues::refuse_option(size_t i) const {
   if (is_option) refuse("too few values for " + option_);
 }
 
-void OptionValues::refuse(const std::string& what) const {
-  throw UsageError({what, kWhere, cure_for(command_)});
+void OptionValues::refuse(const std::string& what, std::string_view near) const {
+  throw UsageError({what, kWhere, near.empty() ? cure_for(command_) : ask_for(near)});
 }
 
 std::string OptionValues::quote(size_t i) const {
-  if (whole_word_.empty()) return fmt::format("\"{}\"", words_[i]);
+  if (whole_word_.empty() || whole_word_ == words_[i]) return fmt::format("\"{}\"", words_[i]);
   return fmt::format("\"{}\" in \"{}\"", words_[i], whole_word_);
 }
 
@@ -168,7 +182,8 @@ dvec3 OptionValues::vector(double max) const {
 
 const std::string& OptionValues::choice(std::span<const std::string_view> choices) const {
   if (std::find(choices.begin(), choices.end(), text()) == choices.end()) {
-    refuse(fmt::format("{} takes {}, not \"{}\"", option_, fmt::join(choices, " or "), text()));
+    refuse(fmt::format("{} takes {}, not \"{}\"", option_, fmt::join(choices, " or "), text()),
+           nearest_name(text(), choices));
   }
   return text();
 }

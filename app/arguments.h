@@ -46,7 +46,8 @@ class OptionValues {
     return values;
   }
 
-  [[noreturn]] void refuse(const std::string& what) const;
+  /// `near` is a word that the user may have meant.
+  [[noreturn]] void refuse(const std::string& what, std::string_view near = {}) const;
 
  private:
   void refuse_option(size_t i) const;

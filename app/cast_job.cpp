@@ -12,8 +12,9 @@
 
 #include "command_job.h"
 #include "core/count_of.h"
+#include "fingerprint.h"
 #include "job_words.h"
-#include "merge_job.h"
+#include "missing_pieces.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"

@@ -14,6 +14,7 @@
 #include "core/count_of.h"
 #include "core/file.h"
 #include "deferred_signals.h"
+#include "fingerprint.h"
 #include "job_words.h"
 #include "picture_job.h"
 #include "progress.h"
@@ -36,12 +37,12 @@ fs::path arguments_file(const fs::path& folder) {
 
 /// Parses what the command of this name takes.
 void parse(CLI::App& program, const CLI::App& command, const std::vector<std::string>& arguments) {
-  check_job_words(arguments);
+  check_asks_for_work(arguments);
   const std::string name = command.get_name();
   std::vector<const char*> words = {"promin", name.c_str()};
   for (const std::string& word : arguments) words.push_back(word.c_str());
   static_cast<void>(parse_arguments(program, static_cast<int>(words.size()), words.data()));
-  check_job_words(given_options(command));
+  check_is_kept(given_options(command));
 }
 
 /// Another driver's pieces have other bits.
@@ -171,10 +172,6 @@ std::string find_driver(const jobs::Job& job) {
     return driver != json.end() && driver->is_string() ? driver->get<std::string>() : "";
   }
   return "";
-}
-
-std::string driver_of(const gpu::DeviceInfo& device) {
-  return fmt::format("{}, {}", device.name, device.driver);
 }
 
 void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console) {

@@ -38,11 +38,8 @@ std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& cons
 /// The arguments that create_job has kept; nothing where it has not.
 std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job);
 
-/// What the pieces of a job that are there were made on; empty where there is none.
+/// What the pieces of a job that are there were made on, as driver_of tells it; empty where there is none.
 std::string find_driver(const jobs::Job& job);
-
-/// The device and its driver, in the words that find_driver has.
-std::string driver_of(const gpu::DeviceInfo& device);
 
 /// What differs about commands with --job.
 struct JobSteps {

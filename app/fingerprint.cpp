@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fingerprint.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -67,6 +69,10 @@ std::vector<Ray> make_rays() {
 }
 
 }  // namespace
+
+std::string driver_of(const gpu::DeviceInfo& device) {
+  return fmt::format("{}, {}", device.name, device.driver);
+}
 
 std::string fingerprint_of(const gpu::Device& device) {
   const gpu::DeviceInfo& info = gpu::info_of(device);

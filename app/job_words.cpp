@@ -116,14 +116,14 @@ std::vector<std::string> keep_arguments(const CLI::App& command) {
   return arguments;
 }
 
-void check_job_words(const std::vector<std::string>& words) {
+void check_asks_for_work(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word != "-h" && word != "--help" && word != "--version") continue;
     throw UsageError({word + " makes no job", "in its arguments", "leave it out"});
   }
 }
 
-void check_job_words(const GivenOptions& given) {
+void check_is_kept(const GivenOptions& given) {
   for (const auto& [option, words] : given) {
     const char* const why = option_of_jobs(option).said_elsewhere;
     if (why == nullptr) continue;

@@ -10,7 +10,7 @@
 #include "formats/source_file.h"
 #include "jobs/job.h"
 
-// How a job takes the options of a command: what its manifest says of them, what is kept to plan it again.
+// What a job keeps of its command: of its options and inputs what the manifest says, and what plans it again.
 namespace CLI {
 class App;
 }
@@ -29,9 +29,9 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
 /// What PlannedJob::arguments() is of a parsed command.
 std::vector<std::string> keep_arguments(const CLI::App& command);
 
-/// Throws UsageError for words that ask for something else than work, and for options that have no place among a job's
-/// arguments, as whoever works on it chooses them; it says where.
-void check_job_words(const std::vector<std::string>& words);
-void check_job_words(const GivenOptions& given);
+/// Throws UsageError for words of a job's arguments that ask for help or the version.
+void check_asks_for_work(const std::vector<std::string>& words);
+/// Throws UsageError for options that are none of a job's arguments, as they are chosen elsewhere, which it says.
+void check_is_kept(const GivenOptions& given);
 
 }  // namespace promin::app

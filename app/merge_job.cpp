@@ -3,13 +3,11 @@
 #include "merge_job.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
 
 #include "cast_job.h"
-#include "core/count_of.h"
 #include "deferred_signals.h"
 #include "picture_job.h"
 #include "promin/error.h"
@@ -18,9 +16,6 @@ namespace promin::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Missing pieces that a message names.
-constexpr size_t kMostNamed = 5;
 
 /// Whether a file is, by all that the manifest tells, one that the job's pieces hang on.
 bool is_input(const jobs::Job& job, const fs::path& file) {
@@ -31,27 +26,7 @@ bool is_input(const jobs::Job& job, const fs::path& file) {
   });
 }
 
-/// Throws RunError where pieces are missing, of so many that were looked at.
-void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, size_t count) {
-  if (missing.empty()) return;
-  std::vector<std::string> names;
-  for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names.push_back(job.manifest().pieces[missing[i]]);
-  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(count, "piece"),
-                              verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
-                              missing.size() > kMostNamed ? ", …" : ""),
-                  job.file_of(missing.front()).parent_path().string(),
-                  "run the job again, which makes what is missing"});
-}
-
 }  // namespace
-
-void check_done(const jobs::Job& job, const std::vector<size_t>& pieces) {
-  refuse_missing(job, jobs::keep_missing(job, pieces), pieces.size());
-}
-
-void check_whole(const jobs::Job& job) {
-  refuse_missing(job, jobs::find_missing(job), job.piece_count());
-}
 
 void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs,
                      const std::optional<std::vector<uint32_t>>& frames) {

@@ -20,11 +20,6 @@ namespace promin::app {
 void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
                      const std::optional<std::vector<uint32_t>>& frames = std::nullopt);
 
-/// Throws RunError where some of these pieces are missing or bad, and names a few.
-void check_done(const jobs::Job& job, const std::vector<size_t>& pieces);
-/// The same of all.
-void check_whole(const jobs::Job& job);
-
 /// Makes the files of a job of its pieces: pictures of the kind "render"; of "cast" the hits or counts, and of --all
 /// the offsets as a second file. `is_mixed` is for rays alone (merge_hits), `frames` for pictures alone. Throws
 /// Cancelled, and what check_job_files, merge_pictures and merge_hits do.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/utf8.h"
 #include "deferred_signals.h"
 #include "promin/error.h"
 #include "promin/image.h"
@@ -42,7 +43,7 @@ std::vector<fs::path> all_outputs(std::vector<fs::path> outputs, const std::opti
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
   std::vector<std::string> names;
-  for (const std::filesystem::path& file : files) names.push_back(file.string());
+  for (const std::filesystem::path& file : files) names.push_back(to_one_line(file.string()));
   return names;
 }
 

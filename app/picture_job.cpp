@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "frame_plan.h"
-#include "merge_job.h"
+#include "missing_pieces.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "promin/error.h"

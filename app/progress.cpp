@@ -29,7 +29,12 @@ Progress::Progress(bool is_quiet, std::string program)
     : is_quiet_(is_quiet), program_(std::move(program)), is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
+  clear();
+}
+
+void Progress::clear() {
   if (has_bar_) std::fputs("\r\033[K", stderr);
+  has_bar_ = false;
 }
 
 void Progress::update(double fraction, const std::string& at) {

@@ -22,6 +22,8 @@ class Progress {
 
   /// Shows the fraction of the whole work that is done, 0...1, and its current step, which may be empty.
   void update(double fraction, const std::string& at = {});
+  /// Takes the bar away, until the next update.
+  void clear();
   /// A callback for work that reports only its fraction.
   ProgressCallback callback() {
     return [this](double fraction) {

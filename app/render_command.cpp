@@ -51,30 +51,26 @@ PictureHeader make_header(const RenderOptions& options, const Scene& scene, cons
   return header;
 }
 
-/// The samples of a pixel and, with an error target, how exact that is; of several frames the worst.
+/// The samples of a pixel and, with an error target, how exact that is, of several frames together.
 std::string describe_samples(const RunStats& stats) {
   if (stats.errors.empty()) return fmt::format("{} spp", stats.view->samples_per_pixel);
   PictureError all = stats.errors.front();
-  for (const PictureError& error : std::span(stats.errors).subspan(1)) {
-    all.target = std::max(all.target, error.target);
-    all += error;
-  }
+  for (const PictureError& error : std::span(stats.errors).subspan(1)) all += error;
+  const auto [least, most] = std::ranges::minmax(stats.errors, {}, &PictureError::target);
   const auto pictures = static_cast<double>(stats.errors.size());
   const std::string unmet = all.unmet_pixels == 0 ? ""
                                                   : fmt::format(" but for {} of at most {:.3g}",
                                                                 count_of(all.unmet_pixels, "pixel"), all.largest_claim);
   return fmt::format("{:.4g} spp, {}{}", mean_samples(*stats.view, all) / pictures,
-                     describe_error(all.target, *stats.view->error_target), unmet);
+                     describe_errors(least.target, most.target, *stats.view->error_target), unmet);
 }
 
-/// Tells the options that give the pictures of a time limit again, each frame's.
-void tell_targets(const RunStats& stats, const Console& console) {
+/// The options that give the last picture of a time limit again.
+std::string describe_target(const RunStats& stats) {
   ErrorTarget target = *stats.view->error_target;
-  for (size_t i = 0; i < stats.errors.size(); ++i) {
-    target.error = stats.errors[i].target;
-    const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames[i]);
-    console.note(fmt::format("the picture{} of {}", name, describe_options(target)));
-  }
+  target.error = stats.errors.back().target;
+  const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
+  return fmt::format("the picture{} of {}", name, describe_options(target));
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
@@ -244,6 +240,10 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
         progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
       };
       FrameRendering(frame, options, device, scene, renderer, stats, on_progress).run();
+      if (options.error.time_limit_s) {
+        progress.clear();
+        console.note(describe_target(stats));
+      }
     } catch (const RunError& error) {
       if (name.empty()) throw;
       std::vector<Problem> problems = error.problems();
@@ -354,7 +354,6 @@ void render(const RenderOptions& given, const CLI::App& command) {
   pictures.get();
   render_frames(run.frames, options, *device, scene, renderer, stats, console);
 
-  if (options.error.time_limit_s) tell_targets(stats, console);
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();
   tell_end(stats, console);

@@ -14,6 +14,7 @@
 
 #include "arguments.h"
 #include "camera_path.h"
+#include "core/suggest.h"
 #include "load_options.h"
 #include "promin/aovs.h"
 #include "promin/error.h"
@@ -52,8 +53,10 @@ AovSet read_aovs(const OptionValues& words) {
 #include "promin/kinds/aovs.def"
     if (name == kCryptomatte) is_known = choice.cryptomatte = true;
     if (is_known) continue;
-    words.refuse(fmt::format("--aov takes names of {}, {} with commas between, not \"{}\"",
-                             fmt::join(aov_names(), ", "), kCryptomatte, name));
+    std::vector<std::string_view> known(aov_names().begin(), aov_names().end());
+    known.push_back(kCryptomatte);
+    words.refuse(fmt::format("--aov takes names of {} with commas between, not \"{}\"", fmt::join(known, ", "), name),
+                 nearest_name(name, known));
   }
   return choice;
 }
@@ -268,8 +271,9 @@ std::string describe_options(const ErrorTarget& target) {
                      target.max_samples, target.display ? " --error-in display" : "");
 }
 
-std::string describe_error(float error, const ErrorTarget& target) {
-  return fmt::format("error {}{}", error, target.display ? " as shown" : "");
+std::string describe_errors(float least, float most, const ErrorTarget& target) {
+  const std::string to = least == most ? "" : fmt::format(" to {}", most);
+  return fmt::format("error {}{}{}", least, to, target.display ? " as shown" : "");
 }
 
 void add_render_options(CLI::App& command, RenderOptions& options) {

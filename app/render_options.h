@@ -119,10 +119,11 @@ struct ErrorOptions {
 /// shown, by what.
 void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
 
-/// The options that ask for such a target; nine digits bring the error back to the bit.
+/// The options that ask for such a target, to the bit.
 std::string describe_options(const ErrorTarget& target);
-/// "error 0.015625", or with " as shown": an error that was reached, measured as the target is.
-std::string describe_error(float error, const ErrorTarget& target);
+/// "error 0.015625", "error 0.015625 to 0.125" or one of these with " as shown": errors that were reached, measured as
+/// the target is.
+std::string describe_errors(float least, float most, const ErrorTarget& target);
 
 struct RenderOptions {
   TracingOptions tracing;

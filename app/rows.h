@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "core/utf8.h"
+
 namespace promin::app {
 
 /// A line of what an info command prints on the standard output.
 inline void print_row(const std::string& name, const std::string& value) {
-  fmt::print("{:<12}{}\n", name, value);
+  fmt::print("{:<12}{}\n", name, to_one_line(value));
 }
 
 /// Prints each of `values` on a line, with the name before the first.

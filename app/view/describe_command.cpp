@@ -7,7 +7,6 @@
 namespace promin::app {
 namespace {
 
-/// Nine digits bring a float back to the bit; of an angle in degrees they are within half of a float's last place.
 std::string words_of(const vec3& v) {
   return fmt::format("{} {} {}", v.x, v.y, v.z);
 }
@@ -87,6 +86,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   command +=
       fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));
   if (camera.projection == Projection::kPerspective) {
+    // Nine digits of an angle in degrees are within half of a float's last place.
     command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));
   }
   command += fmt::format(" --near {}", camera.near);

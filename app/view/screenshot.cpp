@@ -29,8 +29,9 @@ std::string write_pictures(const std::vector<uvec4>& records, const View& view, 
   for (const char* ending : {".exr", ".png"}) {
     write_image(name + ending, image, metadata, std::nullopt, {}, display);
   }
-  const std::string exactness = view.error_target ? describe_error(view.error_target->error, *view.error_target)
-                                                  : fmt::format("{} spp", view.samples_per_pixel);
+  const std::string exactness =
+      view.error_target ? describe_errors(view.error_target->error, view.error_target->error, *view.error_target)
+                        : fmt::format("{} spp", view.samples_per_pixel);
   return fmt::format("wrote {0}.exr and {0}.png, {1}x{2}, {3}", name, view.size.x, view.size.y, exactness);
 }
 

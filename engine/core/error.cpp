@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/error.h"
 
-#include <utility>
-
 #include "core/utf8.h"
 
 namespace promin {
@@ -23,7 +21,7 @@ std::string Problem::sentence() const {
   std::string text = what;
   if (!where.empty()) text += ", " + where;
   if (!cure.empty()) text += "; " + cure;
-  return to_one_line(std::move(text));
+  return to_one_line(text);
 }
 
 Error::Error(const std::vector<Problem>& problems)

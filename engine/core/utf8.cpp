@@ -3,7 +3,6 @@
 #include "core/utf8.h"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 namespace promin {
@@ -14,10 +13,17 @@ std::string to_utf8(std::string_view text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-std::string to_one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; }, '?');
-  return text;
+std::string to_one_line(std::string_view text) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    // U+0080 to U+009F are control characters of two bytes.
+    const bool ends_control = byte >= 0x80 && byte < 0xA0 && !line.empty() && line.back() == '\xC2';
+    if (ends_control) line.pop_back();
+    line += is_control(byte) || ends_control ? '?' : c;
+  }
+  return line;
 }
 
 }  // namespace promin

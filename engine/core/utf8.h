@@ -11,8 +11,8 @@ namespace promin {
 /// JSON, EXR files and Python want UTF-8.
 std::string to_utf8(std::string_view text);
 
-/// The text with question marks in place of control characters: names and words of files may hold line feeds and what
-/// drives a terminal.
-std::string to_one_line(std::string text);
+/// The text with question marks in place of control characters, for what a terminal shows: names and words of files may
+/// hold line feeds and what drives it.
+std::string to_one_line(std::string_view text);
 
 }  // namespace promin

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/opened_picture.h"
 
+#include <fstream>
+
 namespace promin {
 namespace {
 
 std::string name_existing(const std::filesystem::path& file) {
   std::error_code error;
-  if (std::filesystem::is_regular_file(file, error)) return file.string();
-  throw InputError({"no such picture", file.string(), "check the path"});
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InputError({"no such picture", file.string(), "check the path"});
+  if (!std::ifstream(file)) throw InputError({"cannot open the file", file.string(), "check its permissions"});
+  return file.string();
 }
 
 }  // namespace

@@ -202,19 +202,27 @@ ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
   return {film_records_, count, from.records()};
 }
 
+RenderMode PictureTracer::mode_of_middle(RenderMode mode) const {
+  // Nothing is lit that way.
+  mode.debug_view = wanted_.steps ? DebugView::kSteps : DebugView::kNormals;
+  return mode;
+}
+
+void PictureTracer::prepare_middle_film(const RenderMode& mode) {
+  if (middle_film_) return;
+  FeatureMask features = scene_.features(mode_of_middle(mode)) | layout::FEATURE_AOVS;
+  features = features.without(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
+  FilmOptions film_of_middle = film_options();
+  if (wanted_.steps) film_of_middle.packet_size = 1;
+  middle_film_.emplace(device_, scene_.device_scene(), features, film_of_middle);
+  middle_film_->warm_up();
+}
+
 void PictureTracer::trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+  prepare_middle_film(view.mode);
   View middle_view = view;
   middle_view.max_depth = 0;
-  // Nothing is lit that way.
-  middle_view.mode.debug_view = wanted_.steps ? DebugView::kSteps : DebugView::kNormals;
-  FeatureMask features = scene_.features(middle_view.mode) | layout::FEATURE_AOVS;
-  features = features.without(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
-  if (!middle_film_) {
-    FilmOptions film_of_middle = film_options();
-    if (wanted_.steps) film_of_middle.packet_size = 1;
-    middle_film_.emplace(device_, scene_.device_scene(), features, film_of_middle);
-    middle_film_->warm_up();
-  }
+  middle_view.mode = mode_of_middle(view.mode);
   const SampleRange middle{view.samples_per_pixel / 2, view.samples_per_pixel / 2 + 1};
   for_each_band(view, middle_film_->records().count, [&](const PixelWindow& band, size_t first) {
     const uvec2 size = band.hi - band.lo;

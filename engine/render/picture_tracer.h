@@ -97,6 +97,8 @@ class PictureTracer {
   /// Traces the middle sample once more, without light, for its steps and the surfaces that it has met: steps are of
   /// single rays, and packets are not; samples of a list have nothing but light.
   void trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress);
+  RenderMode mode_of_middle(RenderMode mode) const;
+  void prepare_middle_film(const RenderMode& mode);
   /// A picture without pixels yet.
   RenderResult make_result(const View& view) const;
   /// A picture of a fixed number of samples a pixel.
@@ -118,6 +120,10 @@ class PictureTracer {
                     RenderResult& result) const;
   /// A picture without pixels yet, with what rays through the centres of pixels tell.
   RenderResult begin_refined(const View& view, const ProgressCallback& progress);
+  /// Whether AOVs are wanted that rays through the pixels' centers tell.
+  bool tells_of_centers() const;
+  /// Compiles what is not yet.
+  void prepare_to_refine(const RenderMode& mode);
   RenderResult render_to_error(const View& view, const ProgressCallback& progress);
 
   const gpu::Device& device_;

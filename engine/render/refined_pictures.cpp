@@ -73,14 +73,23 @@ void PictureTracer::take_refined(const Refinement& refinement, const RefinedAovs
   }
 }
 
+bool PictureTracer::tells_of_centers() const {
+  return wanted_.steps || wanted_.has_any(AovSource::kSurface);
+}
+
+void PictureTracer::prepare_to_refine(const RenderMode& mode) {
+  prepare_refining_film(mode);
+  if (tells_of_centers()) prepare_middle_film(mode);
+}
+
 RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallback& progress) {
   RenderResult result = make_result(view);
   View centers = view;
   centers.error_target.reset();
   centers.samples_per_pixel = 1;
-  if (wanted_.steps || wanted_.has_any(AovSource::kSurface)) trace_middle(centers, result, keep_going(progress));
+  prepare_to_refine(view.mode);
+  if (tells_of_centers()) trace_middle(centers, result, keep_going(progress));
   result.error.emplace(PictureError{.target = view.error_target->error});
-  prepare_refining_film(view.mode);
   return result;
 }
 
@@ -112,6 +121,8 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
 }
 
 RenderResult PictureTracer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
+  // What is compiled once is none of the picture's time.
+  prepare_to_refine(view.mode);
   const Stopwatch elapsed;
   View step = view;
   step.error_target->error = first_error(*view.error_target);

@@ -57,7 +57,18 @@ void expect_displayed(const Image& picture, const Image& png, const DisplayTrans
 }
 
 TEST_F(CliTest, NamesOfFilesDriveNoTerminal) {
-  expect_failure(run({"info", "no\nsuch\033[2J.gltf"}), 3, "no?such?[2J.gltf");
+  // The last is U+009B, which begins commands as ESC and [ do.
+  expect_failure(run({"info", "no\nsuch\033[2J\u00e9\u009b.gltf"}), 3, "no?such?[2J\u00e9?.gltf");
+  const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8", "-o", "x\033[2J\ny.exr", "-v"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr(": x?[2J?y.exr\n"));
+  json gltf = json::parse(classic_square());
+  gltf["cameras"] = {
+      {{"name", "ma\033[2J\nin"}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  gltf["nodes"].push_back({{"camera", 0}});
+  gltf["scenes"][0]["nodes"] = {0, gltf["nodes"].size() - 1};
+  write("camera.gltf", gltf.dump());
+  EXPECT_THAT(run({"info", "camera.gltf"}).out, HasSubstr(" 0 ma?[2J?in, perspective"));
 }
 
 TEST_F(CliTest, HelpAndVersionEverywhere) {
@@ -82,7 +93,10 @@ TEST_F(CliTest, HelpAndVersionEverywhere) {
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
   const std::pair<OptionValues, std::string> cases[] = {
       {{}, "no command given, on the command line; see promin --help"},
-      {{"rendr"}, "unknown command rendr"},
+      {{"rendr"}, "unknown command rendr, on the command line; did you mean render?"},
+      {{"paint"}, "unknown command paint, on the command line; see promin --help"},
+      {{"render", "square.gltf", "--aov", "depth,normel"}, "not \"normel\", on the command line; did you mean normal?"},
+      {{"render", "square.gltf", "--filter", "bx"}, "not \"bx\", on the command line; did you mean box?"},
       {{"--spp", "3"}, "unknown option --spp"},
       {{"render"}, "SCENE is required, on the command line; see promin render --help"},
       {{"info"}, "SCENE is required, on the command line; see promin info --help"},

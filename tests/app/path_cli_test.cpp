@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 /// Three poses before the scenes of the fixture, and the options that give each alone.
@@ -109,16 +110,24 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
 }
 
 TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
-  const ProcessResult limited = render_path({"--frames", "1-2", "-o", "limited#.exr", "--time-limit", "0.2"});
+  // Of edges as many samples as there may be take seconds; where nothing is seen the least error is had at once.
+  write("path.json", R"({"format": "promin camera path", "version": 1, "frames": [
+    {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
+    {"time_s": 0.1, "eye": [0, 0, 4], "look": [0, 0, 1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01}]})");
+  const ProcessResult limited = render_path({"--frames", "0-1", "-o", "limited#.exr", "--time-limit", "0.3", "--size",
+                                             "320", "180", "--max-spp", "4096", "--background", "0", "0", "0"});
   ASSERT_EQ(limited.exit_code, 0) << limited.err;
-  for (const std::string number : {"1", "2"}) {
+  EXPECT_THAT(limited.err, HasSubstr("of frame 1 of --target-error 1.5258789e-05 "));
+  EXPECT_THAT(limited.err, Not(HasSubstr("of frame 0 of --target-error 1.5258789e-05 ")));
+  EXPECT_THAT(limited.out, HasSubstr("spp, error 1.5258789e-05 to "));
+  for (const std::string number : {"0", "1"}) {
     const std::string before = "the picture of frame " + number + " of ";
     const size_t place = limited.err.find(before);
     ASSERT_NE(place, std::string::npos) << limited.err;
     std::istringstream line(limited.err.substr(place + before.size()));
-    OptionValues again = {"--frames", number, "-o", "again.exr"};
+    OptionValues again = {"--frames", number, "-o", "again.exr", "--size", "320", "180", "--background", "0", "0", "0"};
     std::string word;
-    while (again.size() < 10 && line >> word) again.push_back(word);
+    while (again.size() < 17 && line >> word) again.push_back(word);
     ASSERT_EQ(render_path(again).exit_code, 0) << limited.err;
     EXPECT_EQ(read("again.exr"), read("limited" + number + ".exr")) << limited.err;
   }
@@ -172,6 +181,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
       {{"-o", "f#.exr", "--frames", "1-3"}, "there is no frame 3, path.json; the path has the frames 0-2"},
       {{"-o", "f#.exr", "--frames", "2-1"}, "--frames is empty"},
       {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number from 0 to 9999999, not \"\" in \"1-\""},
+      {{"-o", "f#.exr", "--frames", "x"}, "from 0 to 9999999, not \"x\", on the command line"},
       {{"-o", "f#.exr", "--frames", "-1"}, "--frames takes a whole number"},
       {{"-o", "f#.exr", "--fps", "0"}, "--fps takes"},
       {{"-o", "f#.exr", "--fps", "often"}, "--fps takes"},
