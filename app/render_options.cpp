@@ -21,6 +21,7 @@
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "promin/view.h"
+#include "trace/refinement.h"
 
 namespace promin::app {
 namespace {
@@ -253,8 +254,7 @@ std::optional<ErrorTarget> ErrorOptions::error_target() const {
 ErrorTarget ErrorOptions::target_or(float error) const {
   ErrorTarget result;
   result.error = target.value_or(error);
-  // What is coarse at any rate needs fewer.
-  if (target && !time_limit_s && *target >= 1.0F / 32.0F) result.min_samples = kMinRefinedSamples;
+  if (target && !time_limit_s) result.min_samples = usual_min_samples(*target);
   result.min_samples = min_samples.value_or(std::min(result.min_samples, max_samples.value_or(result.min_samples)));
   result.max_samples = max_samples.value_or(std::max(result.max_samples, result.min_samples));
   if (space == ErrorSpace::kDisplay) result.display.emplace();

@@ -25,6 +25,9 @@ struct ListedSample {
 /// Samples that are traced between two looks at what they bring.
 inline constexpr size_t kMostListedSamples = size_t{1} << 19;
 
+/// What programs take for ErrorTarget::min_samples where the user does not say: of what is coarse anyway fewer.
+uint32_t usual_min_samples(float error);
+
 /// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the
 /// root of 2. `error` is more than the target's.
 float first_error(const ErrorTarget& target);

@@ -20,6 +20,7 @@
 #include "promin/renderer.h"
 #include "run_program.h"
 #include "trace/pixel_estimate.h"
+#include "trace/refinement.h"
 
 namespace promin::measure {
 namespace {
@@ -88,7 +89,8 @@ class HonestyBench {
     const size_t uniform_count = views.size();
     for (const float error : {1.0F / 16.0F, 1.0F / 64.0F, 1.0F / 128.0F}) {
       views.push_back(view_);
-      views.back().error_target = ErrorTarget{.error = error, .display = display_};
+      views.back().error_target =
+          ErrorTarget{.error = error, .min_samples = usual_min_samples(error), .display = display_};
     }
     std::vector<RenderResult> results(views.size());
     std::vector<std::function<double()>> contestants;
