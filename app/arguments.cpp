@@ -19,12 +19,9 @@ namespace {
 
 constexpr const char* kWhere = "on the command line";
 
-std::string cure_for(const std::string& command) {
-  return fmt::format("see {} --help", command);
-}
-
-std::string ask_for(std::string_view near) {
-  return fmt::format("did you mean {}?", near);
+/// `near` is what the user may have meant, where that is known.
+std::string cure_for(const std::string& command, std::string_view near = {}) {
+  return near.empty() ? fmt::format("see {} --help", command) : fmt::format("did you mean {}?", near);
 }
 
 /// "promin render" of the command "render".
@@ -50,23 +47,27 @@ const CLI::App& deepest_command(const CLI::App& program) {
   return commands.empty() ? program : *commands.front();
 }
 
+std::string nearest_of(const std::string& name, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  return std::string(nearest_name(name, known));
+}
+
 /// The command's option whose name is nearest to this one; empty where none is near.
 std::string nearest_option(const std::string& name, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
   }
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  return std::string(nearest_name(name, known));
+  return nearest_of(name, names);
 }
 
+/// The same of the program's commands.
 std::string nearest_command(const std::string& name, const CLI::App& program) {
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     names.push_back(command->get_name());
   }
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  return std::string(nearest_name(name, known));
+  return nearest_of(name, names);
 }
 
 /// CLI11 collects what it does not know: options, commands and words too many.
@@ -77,18 +78,17 @@ void refuse_leftovers(const CLI::App& program) {
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
   const auto option = std::find_if(leftovers.begin(), leftovers.end(), is_option);
   const CLI::App& command = deepest_command(program);
-  const std::string cure = cure_for(path_of(command));
+  const std::string path = path_of(command);
   if (option != leftovers.end()) {
     const std::string name = option->substr(0, option->find('='));
-    const std::string near = nearest_option(name, command);
-    throw UsageError({"unknown option " + name, kWhere, near.empty() ? cure : ask_for(near)});
+    throw UsageError({"unknown option " + name, kWhere, cure_for(path, nearest_option(name, command))});
   }
   // A program without commands is one itself.
   const bool lacks_command =
       &command == &program && !program.get_subcommands([](const CLI::App*) { return true; }).empty();
-  if (!lacks_command) throw UsageError({"unexpected argument " + leftovers.front(), kWhere, cure});
-  const std::string near = nearest_command(leftovers.front(), program);
-  throw UsageError({"unknown command " + leftovers.front(), kWhere, near.empty() ? cure : ask_for(near)});
+  const std::string& word = leftovers.front();
+  if (!lacks_command) throw UsageError({"unexpected argument " + word, kWhere, cure_for(path)});
+  throw UsageError({"unknown command " + word, kWhere, cure_for(path, nearest_command(word, program))});
 }
 
 /// As messages have it.
@@ -145,7 +145,7 @@ void OptionValues::refuse_option(size_t i) const {
 }
 
 void OptionValues::refuse(const std::string& what, std::string_view near) const {
-  throw UsageError({what, kWhere, near.empty() ? cure_for(command_) : ask_for(near)});
+  throw UsageError({what, kWhere, cure_for(command_, near)});
 }
 
 std::string OptionValues::quote(size_t i) const {

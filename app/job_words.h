@@ -10,11 +10,11 @@
 #include "formats/source_file.h"
 #include "jobs/job.h"
 
-// What a job keeps of its command: of its options and inputs what the manifest says, and what plans it again.
 namespace CLI {
 class App;
 }
 
+// What a job keeps of its command: of its options and inputs what the manifest says, and what plans it again.
 namespace promin::app {
 
 /// The words that a command was given, by given_options().
