@@ -24,6 +24,10 @@ std::string cure_for(const std::string& command, std::string_view near = {}) {
   return near.empty() ? fmt::format("see {} --help", command) : fmt::format("did you mean {}?", near);
 }
 
+std::string tell_too_few(const std::string& option, const std::string& placeholders) {
+  return fmt::format("too few values for {} {}", option, placeholders);
+}
+
 /// "promin render" of the command "render".
 std::string path_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : app.get_parent()->get_name() + " " + app.get_name();
@@ -141,7 +145,7 @@ void OptionValues::refuse_option(size_t i) const {
   const std::string& word = words_[i];
   const bool is_option = word.size() > 1 && word[0] == '-' &&
                          (word[1] == '-' || (std::isalpha(static_cast<unsigned char>(word[1])) != 0 && word != "-inf"));
-  if (is_option) refuse("too few values for " + option_);
+  if (is_option) refuse(tell_too_few(option_, placeholders_));
 }
 
 void OptionValues::refuse(const std::string& what, std::string_view near) const {
@@ -192,9 +196,9 @@ OptionTable::OptionTable(CLI::App& command) : command_(command) {}
 
 void OptionTable::add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set) {
   const auto count = static_cast<int>(std::count(placeholders.begin(), placeholders.end(), ' ')) + 1;
-  const auto receive = [path = path_of(command_), name = display_name(names),
+  const auto receive = [path = path_of(command_), name = display_name(names), placeholders,
                         set = std::move(set)](const std::vector<std::string>& words) {
-    set(OptionValues(path, name, words));
+    set(OptionValues(path, name, placeholders, words));
     return true;
   };
   CLI::Option* option = command_.add_option(names, CLI::callback_t(receive), help);
@@ -266,8 +270,11 @@ bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
     return false;
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string message = error.what();
-    const std::string option = message.substr(0, message.find(':'));
-    throw UsageError({"too few values for " + option, kWhere, cure_for(path_of(deepest_command(program)))});
+    const std::string name = message.substr(0, message.find(':'));
+    const CLI::App& command = deepest_command(program);
+    const CLI::Option* option = command.get_option_no_throw(name);
+    const std::string placeholders = option == nullptr ? "" : option->get_type_name();
+    throw UsageError({tell_too_few(name, placeholders), kWhere, cure_for(path_of(command))});
   } catch (const CLI::ParseError& error) {
     // A misspelt option explains more than the missing one.
     refuse_leftovers(program);

@@ -23,8 +23,12 @@ namespace promin::app {
 /// and what it got.
 class OptionValues {
  public:
-  OptionValues(std::string command, std::string option, std::vector<std::string> words)
-      : command_(std::move(command)), option_(std::move(option)), words_(std::move(words)) {}
+  /// `placeholders` are those of OptionTable::add.
+  OptionValues(std::string command, std::string option, std::string placeholders, std::vector<std::string> words)
+      : command_(std::move(command)),
+        option_(std::move(option)),
+        placeholders_(std::move(placeholders)),
+        words_(std::move(words)) {}
 
   const std::vector<std::string>& all() const { return words_; }
   const std::string& text() const { return words_.front(); }
@@ -41,7 +45,7 @@ class OptionValues {
   /// Splits the only word into parts, each to be read as a word of the same option. What refuses a part tells the
   /// whole.
   OptionValues with(std::vector<std::string> parts) const {
-    OptionValues values(command_, option_, std::move(parts));
+    OptionValues values(command_, option_, placeholders_, std::move(parts));
     values.whole_word_ = text();
     return values;
   }
@@ -56,6 +60,7 @@ class OptionValues {
 
   std::string command_;
   std::string option_;
+  std::string placeholders_;
   std::vector<std::string> words_;
   /// What the words are parts of, where they are.
   std::string whole_word_;

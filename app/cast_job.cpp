@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "command_job.h"
 #include "core/count_of.h"
 #include "fingerprint.h"
 #include "job_words.h"

@@ -5,14 +5,12 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "arguments.h"
 #include "cast_job.h"
 #include "cast_options.h"
 #include "core/count_of.h"
-#include "core/file.h"
 #include "deferred_signals.h"
 #include "fingerprint.h"
 #include "job_words.h"
@@ -26,14 +24,6 @@ namespace promin::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-/// Of the file that keeps arguments.
-constexpr int kFormat = 1;
-
-fs::path arguments_file(const fs::path& folder) {
-  return folder / "command.json";
-}
 
 /// Parses what the command of this name takes.
 void parse(CLI::App& program, const CLI::App& command, const std::vector<std::string>& arguments) {
@@ -132,30 +122,16 @@ std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<
 
 jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
   const jobs::Job job = jobs::Job::create(folder, planned.manifest());
-  if (read_arguments(job) != planned.arguments()) {
-    const Json json = {{"promin_command", kFormat}, {"kind", job.manifest().kind}, {"arguments", planned.arguments()}};
-    write_text_file(arguments_file(folder), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  }
+  if (read_arguments(job) != planned.arguments()) write_arguments(job, planned.arguments());
   planned.remember();
   return job;
-}
-
-std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job) {
-  const Json json = Json::parse(std::ifstream(arguments_file(job.folder())), nullptr, false);
-  try {
-    if (json.is_object() && json.at("promin_command") == kFormat && json.at("kind") == job.manifest().kind) {
-      return json.at("arguments").get<std::vector<std::string>>();
-    }
-  } catch (const nlohmann::json::exception&) {
-  }
-  return {};
 }
 
 std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& console, std::shared_ptr<RaySource> rays) {
   const std::optional<std::vector<std::string>> arguments = read_arguments(job);
   if (!arguments) {
     throw InputError({"does not say by what command the job's pieces are made, or is damaged",
-                      arguments_file(job.folder()).string(), "give the job's command once more"});
+                      arguments_file(job).string(), "give the job's command once more"});
   }
   std::unique_ptr<PlannedJob> planned =
       plan_job(job.manifest().kind, *arguments, job.folder(), console, std::move(rays));
@@ -167,7 +143,7 @@ std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& cons
 std::string find_driver(const jobs::Job& job) {
   for (size_t piece = 0; piece < job.piece_count(); ++piece) {
     if (job.state_of(piece) != jobs::PieceState::kDone) continue;
-    const Json json = Json::parse(job.read(piece).description, nullptr, false);
+    const nlohmann::json json = nlohmann::json::parse(job.read(piece).description, nullptr, false);
     const auto driver = json.is_object() ? json.find("driver") : json.end();
     return driver != json.end() && driver->is_string() ? driver->get<std::string>() : "";
   }
@@ -180,6 +156,7 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
     const DeferredSignals while_writing;
     return create_job(planned, *options.folder);
   }();
+  steps.begin();
   const std::optional<size_t> made = make_share(job, planned, options.share.value_or(jobs::Share{}), steps, console);
   if (!made) return;
   if (options.share) {

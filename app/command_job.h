@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,14 +34,13 @@ jobs::Job create_job(PlannedJob& planned, const std::filesystem::path& folder);
 std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& console,
                                        std::shared_ptr<RaySource> rays = nullptr);
 
-/// The arguments that create_job has kept; nothing where it has not.
-std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job);
-
 /// What the pieces of a job that are there were made on, as driver_of tells it; empty where there is none.
 std::string find_driver(const jobs::Job& job);
 
 /// What differs about commands with --job.
 struct JobSteps {
+  /// Called when the job's folder is there, before any work.
+  std::function<void()> begin = [] {};
   std::function<gpu::DeviceHandle()> open_device;
   /// Makes the command's files of all pieces.
   std::function<void(const jobs::Job& job)> merge;

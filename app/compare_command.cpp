@@ -162,7 +162,7 @@ void check_limit(const Difference& difference, const std::string& in, const Comp
 void compare(const CompareOptions& options) {
   if (options.fail_percent && !options.fail) {
     throw UsageError(
-        {"--fail-percent has no limit of which it allows more", "on the command line", "give --fail as well"});
+        {"--fail-percent needs a limit for pixels to exceed", "on the command line", "give --fail as well"});
   }
   if (options.difference) {
     check_pictures({*options.difference});

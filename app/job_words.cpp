@@ -8,9 +8,12 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "arguments.h"
+#include "core/file.h"
 #include "promin/error.h"
 #include "sources_hash.h"
 
@@ -18,6 +21,10 @@ namespace promin::app {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Of the file that keeps arguments.
+constexpr int kFormat = 1;
 
 /// How a job takes an option. What has no row is an ordinary option: it decides about bits, is no file, and is kept.
 struct OptionOfJobs {
@@ -114,6 +121,26 @@ std::vector<std::string> keep_arguments(const CLI::App& command) {
     }
   }
   return arguments;
+}
+
+fs::path arguments_file(const jobs::Job& job) {
+  return job.folder() / "command.json";
+}
+
+void write_arguments(const jobs::Job& job, const std::vector<std::string>& arguments) {
+  const Json json = {{"promin_command", kFormat}, {"kind", job.manifest().kind}, {"arguments", arguments}};
+  write_text_file(arguments_file(job), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job) {
+  const Json json = Json::parse(std::ifstream(arguments_file(job)), nullptr, false);
+  try {
+    if (json.is_object() && json.at("promin_command") == kFormat && json.at("kind") == job.manifest().kind) {
+      return json.at("arguments").get<std::vector<std::string>>();
+    }
+  } catch (const nlohmann::json::exception&) {
+  }
+  return {};
 }
 
 void check_asks_for_work(const std::vector<std::string>& words) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,6 +30,13 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
 
 /// What PlannedJob::arguments() is of a parsed command.
 std::vector<std::string> keep_arguments(const CLI::App& command);
+
+/// The file of a job's folder that keeps them.
+std::filesystem::path arguments_file(const jobs::Job& job);
+/// Keeps them there. Throws RunError.
+void write_arguments(const jobs::Job& job, const std::vector<std::string>& arguments);
+/// What write_arguments has kept; nothing where it has not, or the file is damaged or another kind's.
+std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job);
 
 /// Throws UsageError for words of a job's arguments that ask for help or the version.
 void check_asks_for_work(const std::vector<std::string>& words);

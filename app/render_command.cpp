@@ -293,11 +293,13 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures) {
   throw UsageError({"the picture is there already", found->string(), "say by -o where to write"});
 }
 
-/// Goes on with a job, and where it has all pieces writes its pictures.
-void render_job(PictureRun run, const CLI::App& command, const Console& console) {
+/// Goes on with a job, and where it has all pieces writes its pictures. `begin` is called when nothing is wrong with
+/// it.
+void render_job(PictureRun run, const CLI::App& command, const Console& console, const std::function<void()>& begin) {
   const RenderOptions options = run.options;
   RunStats stats;
-  const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
+  const JobSteps steps = {.begin = begin,
+                          .open_device = [&] { return open_device_for(options.tracing, stats, console); },
                           .merge = [&](const jobs::Job& job) { merge_job_deferring(job, options.pictures); },
                           .outputs = fmt::format("{}", fmt::join(names_of(options.pictures), ", "))};
   run_job(*plan_pictures(std::move(run), command, console), options.job, steps, console);
@@ -329,13 +331,15 @@ void render(const RenderOptions& given, const CLI::App& command) {
 
   PictureRun run = prepare_pictures(options, std::move(frames), console);
   check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
-  if (given.pictures.empty() && !options.pictures.empty()) {
+  const auto tell_names = [&] {
+    if (!given.pictures.empty() || options.pictures.empty()) return;
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
-  }
+  };
   if (options.job.folder) {
-    render_job(std::move(run), command, console);
+    render_job(std::move(run), command, console, tell_names);
     return;
   }
+  tell_names();
   const Scene& scene = run.scene;
   RunStats& stats = run.stats;
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);

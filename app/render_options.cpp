@@ -228,8 +228,8 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   });
   table.add("--min-spp", "N",
             fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
-                        "--target-error from 1/32 on {}]",
-                        kMinRefinedSamples, ErrorTarget{}.min_samples, kMinRefinedSamples),
+                        "--target-error from 1/{:g} on {}]",
+                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
             [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
             fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
@@ -326,6 +326,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
                  options.exr.is_half);
   table.add("--compression", fmt::format("{}", fmt::join(exr_compression_names(), "|")),
             "How an EXR is compressed, always without loss [zip]", [&](const OptionValues& w) {
+              options.names_compression = true;
               options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
             });
   table.add_flag("--multipart", "Give an EXR a part for each AOV, which some programs read faster and others cannot",
@@ -451,7 +452,7 @@ void check_render_options(const RenderOptions& options) {
   for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
                                        {has_depth_kind, "--depth"},
                                        {options.exr.is_half, "--half"},
-                                       {options.exr.compression != ExrCompression::kZip, "--compression"},
+                                       {options.names_compression, "--compression"},
                                        {options.exr.is_multipart, "--multipart"}}) {
     refuse_if(is_given && !has_exr, fmt::format("{} has no picture to go to", name),
               "give -o with the ending .exr as well");

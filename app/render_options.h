@@ -137,6 +137,8 @@ struct RenderOptions {
   /// Channels that an EXR carries beside R, G and B.
   AovSet aovs;
   ExrOptions exr;
+  /// Whether the user has said how EXRs are compressed, be it as they are anyway.
+  bool names_compression = false;
   /// A camera path, and which of its frames to render; without `frames` all.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;

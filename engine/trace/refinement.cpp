@@ -27,7 +27,7 @@ constexpr double kMoreThanFirst = 1.5;
 }  // namespace
 
 uint32_t usual_min_samples(float error) {
-  return error >= 1.0F / 32.0F ? kMinRefinedSamples : ErrorTarget{}.min_samples;
+  return error >= kCoarseError ? kMinRefinedSamples : ErrorTarget{}.min_samples;
 }
 
 float first_error(const ErrorTarget& target) {

@@ -25,7 +25,10 @@ struct ListedSample {
 /// Samples that are traced between two looks at what they bring.
 inline constexpr size_t kMostListedSamples = size_t{1} << 19;
 
-/// What programs take for ErrorTarget::min_samples where the user does not say: of what is coarse anyway fewer.
+/// An error from which on a picture is coarse.
+inline constexpr float kCoarseError = 1.0F / 32.0F;
+
+/// What programs take for ErrorTarget::min_samples where the user does not say: fewer from kCoarseError on.
 uint32_t usual_min_samples(float error);
 
 /// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the

@@ -19,6 +19,7 @@
 #include "fingerprint.h"
 #include "in_process.h"
 #include "jobs/job.h"
+#include "job_words.h"
 #include "jobs/sha256.h"
 #include "merge_job.h"
 #include "planned_job.h"

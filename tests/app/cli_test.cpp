@@ -146,7 +146,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "-s", "-1"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "2x"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--size", "64"}, "too few values for --size"},
-      {{"render", "square.gltf", "--size", "64", "-o", "a.exr"}, "too few values for --size, on the command line;"},
+      {{"render", "square.gltf", "--size", "64", "-o", "a.exr"}, "too few values for --size W H, on the command line;"},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values for --eye"},
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-inf"}, "--near takes a number from 0"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "foo"},
@@ -184,7 +184,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0", "inf"}, "--background takes a number"},
       {{"render", "square.gltf", "--background", "sky", "-o", "a.exr"},
        "--background takes three numbers or environment, not \"sky\""},
-      {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"}, "too few values for --background"},
+      {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"},
+       "too few values for --background R G B|environment"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
   };
@@ -284,6 +285,13 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
     expect_failure(run({"render", "square.gltf", "--size", "300", "300", "-o", output, "--quiet"}), 1, output);
     EXPECT_EQ(read(output), "old");
   }
+  // Not even room for what precedes the rows, nor for more of a message; libpng has nothing to add.
+  fill_disk(50);
+  const ProcessResult early = run({"render", "square.gltf", "-o", "old.png", "--quiet"});
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.err, testing::StartsWith("promin: error: "));
+  EXPECT_EQ(read("old.png"), "old");
+  fill_disk(2000);
   // It waits on disk until it is whole, and before it is traced there is no room for that.
   const OptionValues large = {"render",         "square.gltf", "--size", "30000",   "20000",
                               "--target-error", "0.5",         "-o",     "old.exr", "--quiet"};

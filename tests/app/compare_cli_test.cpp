@@ -91,7 +91,7 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   write("text.exr", "no picture");
   expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
   expect_failure(compare({"a.exr", "b.exr", "--fail-percent", "3"}), 2,
-                 "--fail-percent has no limit of which it allows more");
+                 "--fail-percent needs a limit for pixels to exceed");
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
 

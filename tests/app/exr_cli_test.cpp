@@ -307,8 +307,12 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
 }
 
 TEST_F(ExrCliTest, OptionsOfExrsWantOne) {
-  for (const OptionValues& option :
-       {OptionValues{"--half"}, {"--multipart"}, {"--compression", "piz"}, {"--depth", "plane"}, {"--aov", "depth"}}) {
+  for (const OptionValues& option : {OptionValues{"--half"},
+                                     {"--multipart"},
+                                     {"--compression", "piz"},
+                                     {"--compression", "zip"},
+                                     {"--depth", "plane"},
+                                     {"--aov", "depth"}}) {
     OptionValues arguments = {"render", "square.gltf", "-o", "a.png"};
     arguments.insert(arguments.end(), option.begin(), option.end());
     expect_failure(run(arguments), 2, option.front());

@@ -87,6 +87,10 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
 TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
   for (int i = 0; i < 2; ++i) expect_done(render({"--job", "job"}));
   EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
+  // Nothing is said to be written by who is refused.
+  const ProcessResult refused = run({"render", "square.gltf", "--job", "job", "--aov", "normal"});
+  expect_failure(refused, 2, "the folder has another job");
+  EXPECT_THAT(refused.err, testing::Not(HasSubstr("writing")));
 }
 
 TEST_F(JobCliTest, SeveralMayBeginAtOnce) {

@@ -96,6 +96,9 @@ class SinkProxy final : public OIIO::Filesystem::IOProxy {
   size_t size() const override { return size_; }
   /// Whether the sink has not taken something. OpenImageIO's PNG writer does not notice.
   bool is_full() const { return is_full_; }
+  /// Has OpenImageIO leave a PNG as it is, whose end libpng would else write and, where no row has been, say on
+  /// standard error that it cannot. What libpng holds is lost to the process.
+  void give_up() { m_mode = Closed; }
 
  private:
   ProminPicturesSink sink_;
@@ -322,6 +325,7 @@ struct ProminPicturesWriter {
     check(output->close());
     // Close may have written more.
     check(true);
+    end.is_finished = true;
   }
 
   bool is_exr;
@@ -332,6 +336,14 @@ struct ProminPicturesWriter {
   std::vector<uint32_t> samples;
   uint32_t next_row = 0;
   std::unique_ptr<OIIO::ImageOutput> output;
+  /// Gives up what is not finished: the last member, so that it does before OpenImageIO closes the output.
+  struct End {
+    SinkProxy& proxy;
+    bool is_finished = false;
+    ~End() {
+      if (!is_finished) proxy.give_up();
+    }
+  } end{proxy};
 };
 
 namespace {
