@@ -11,6 +11,7 @@
 #include "device_fixture.h"
 #include "device_scene/sampling.h"
 #include "render/renderer_impl.h"
+#include "support/thorough.h"
 #include "test_scenes.h"
 
 namespace promin {
@@ -246,8 +247,8 @@ TEST_F(AovsTest, SurfacesAreWhereTheyAre) {
 
 TEST_F(AovsTest, TextureCoordinatesAreThoseOfTheMesh) {
   Scene scene;
-  const uint32_t texture = test::add_texture(scene, uvec2(2), {0xFFFFFFFF, 0xFF808080, 0xFF404040, 0xFFFFFFFF},
-                                             ImageUse::kColor);
+  const uint32_t texture =
+      test::add_texture(scene, uvec2(2), {0xFFFFFFFF, 0xFF808080, 0xFF404040, 0xFFFFFFFF}, ImageUse::kColor);
   Material textured = test::make_unlit(vec3(1.0F));
   std::get<Unlit>(textured.model).color_texture.texture = texture;
   scene.materials = {textured};
@@ -374,7 +375,7 @@ TEST_F(AovsTest, RefinedPicturesHaveThemToo) {
 
 // With steps they are told by rays of their own.
 TEST_F(AovsTest, SurfacesAreTheSameBesideSteps) {
-  for (const Subject& subject : subjects()) {
+  for (const Subject& subject : test::cases_of(subjects(), 1)) {
     View view = subject.view;
     view.samples_per_pixel = 4;
     // Whose kernels compile soon.

@@ -17,6 +17,7 @@
 #include "promin/renderer.h"
 #include "render/caster_access.h"
 #include "render/renderer_impl.h"
+#include "support/thorough.h"
 
 namespace promin {
 namespace {
@@ -214,7 +215,8 @@ TEST_F(ExplainTest, GlassIsATreeWithParents) {
 }
 
 TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {
-  for (const char* name : {"mirrors.gltf", "metallic_roughness.gltf", "triangles_smooth.gltf"}) {
+  for (const char* name :
+       test::cases_of<const char*>({"metallic_roughness.gltf", "mirrors.gltf", "triangles_smooth.gltf"}, 1)) {
     SCOPED_TRACE(name);
     world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name));
     View view;

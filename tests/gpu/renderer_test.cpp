@@ -21,6 +21,7 @@
 #include "promin/error.h"
 #include "promin/load_scene.h"
 #include "render/renderer_impl.h"
+#include "support/thorough.h"
 
 namespace promin {
 namespace {
@@ -107,7 +108,8 @@ TEST_F(RendererTest, TexelsAndStorageBuffersGiveTheSameBits) {
   constexpr uint64_t kEnough = uint64_t{1} << 26;
   if (device().profile().most_texel_bytes < kEnough) GTEST_SKIP() << "the device's texel buffers are too small";
   std::vector<std::pair<world::Scene, View>> pictures = {{make_scene_of_everything(2000), test::make_view(kSize)}};
-  for (const char* name : {"light_physical.gltf", "showcase.gltf", "vertex_colors.gltf"}) {
+  for (const char* name :
+       test::cases_of<const char*>({"showcase.gltf", "light_physical.gltf", "vertex_colors.gltf"}, 1)) {
     world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name));
     View view;
     view.size = kSize;

@@ -12,13 +12,14 @@
 #include "hard/random_shapes.h"
 #include "oracle/distance.h"
 #include "scene/features.h"
+#include "support/thorough.h"
 
 namespace promin::hard {
 namespace {
 
 constexpr int kShapeCount = 20;
 /// What goes wrong at a rim does so for one ray in some ten thousand.
-constexpr int kRimShapeCount = 40;
+const int kRimShapeCount = test::is_thorough() ? 40 : 16;
 constexpr int kRayCount = 5000;
 constexpr vec3 kCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
 
