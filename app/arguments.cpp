@@ -175,7 +175,8 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
     for (size_t k = 0; k < others.size(); ++k) {
       words += (k + 1 == others.size() ? " or " : ", ") + std::string(others[k]);
     }
-    refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not {}", option_, min, max, words, quote(i)));
+    refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not {}", option_, min, max, words, quote(i)),
+           nearest_name(words_[i], others));
   }
   return number;
 }

@@ -21,7 +21,6 @@
 #include "core/file.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
-#include "merge_job.h"
 #include "outputs.h"
 #include "progress.h"
 #include "promin/caster.h"
@@ -174,8 +173,7 @@ void answer_all(std::vector<Ray> rays, RayReader& reader, Answers& answers, cons
 void cast_job(const CastOptions& options, const CLI::App& command, const Console& console) {
   RunStats stats;
   const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
-                          .merge = [&](const jobs::Job& job) { merge_job_deferring(job, options.outputs()); },
-                          .outputs = fmt::format("{}", fmt::join(names_of(options.outputs()), ", "))};
+                          .files = options.outputs()};
   run_job(*plan_rays(options, command, console), options.job, steps, console);
 }
 

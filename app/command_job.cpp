@@ -14,6 +14,7 @@
 #include "deferred_signals.h"
 #include "fingerprint.h"
 #include "job_words.h"
+#include "merge_job.h"
 #include "picture_job.h"
 #include "progress.h"
 #include "promin/error.h"
@@ -165,9 +166,8 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
     }
     return;
   }
-  steps.merge(job);
-  if (console.is_quiet()) return;
-  fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), steps.outputs);
+  const std::string outputs = merge_job_deferring(job, steps.files);
+  if (!console.is_quiet()) fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), outputs);
 }
 
 }  // namespace promin::app

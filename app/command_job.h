@@ -42,10 +42,8 @@ struct JobSteps {
   /// Called when the job's folder is there, before any work.
   std::function<void()> begin = [] {};
   std::function<gpu::DeviceHandle()> open_device;
-  /// Makes the command's files of all pieces.
-  std::function<void(const jobs::Job& job)> merge;
-  /// These files, in words.
-  std::string outputs;
+  /// What is made of all pieces.
+  std::vector<std::filesystem::path> files;
 };
 /// Does what a command with --job does: makes the pieces of its share that are missing, and without --piece then the
 /// files of them; and says so on standard output unless quiet. A signal ends it with the piece at hand. Throws

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "merge_command.h"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <CLI/App.hpp>
 #include <memory>
@@ -39,8 +39,8 @@ void merge(const MergeOptions& options) {
   check_job_files(job, files);
   if (job.manifest().kind == kPictureJob) find_pictures();
   check_outputs({}, files, {});
-  merge_job_deferring(job, files);
-  if (!options.is_quiet) fmt::print("{}: {}\n", count_of(job.piece_count(), "piece"), fmt::join(names_of(files), ", "));
+  const std::string made = merge_job_deferring(job, files);
+  if (!options.is_quiet) fmt::print("{}: {}\n", count_of(job.piece_count(), "piece"), made);
 }
 
 }  // namespace

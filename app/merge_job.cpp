@@ -3,14 +3,17 @@
 #include "merge_job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
 
 #include "cast_job.h"
 #include "deferred_signals.h"
+#include "outputs.h"
 #include "picture_job.h"
 #include "promin/error.h"
+#include "render_options.h"
 
 namespace promin::app {
 namespace {
@@ -45,21 +48,26 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs,
   }
 }
 
-void merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs, const ProgressCallback& progress,
-               bool is_mixed, const std::optional<std::vector<uint32_t>>& frames) {
+std::optional<PictureError> merge_job(const jobs::Job& job, const std::vector<fs::path>& outputs,
+                                      const ProgressCallback& progress, bool is_mixed,
+                                      const std::optional<std::vector<uint32_t>>& frames) {
   check_job_files(job, outputs, frames);
   if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress, frames);
   if (frames) throw UsageError({"answers to rays have no frames", job.folder().string(), "leave the frames out"});
   merge_hits(job, outputs, progress, is_mixed);
+  return {};
 }
 
-void merge_job_deferring(const jobs::Job& job, const std::vector<fs::path>& outputs) {
+std::string merge_job_deferring(const jobs::Job& job, const std::vector<fs::path>& outputs) {
   const DeferredSignals while_writing;
+  std::string made = fmt::format("{}", fmt::join(names_of(outputs), ", "));
   try {
-    merge_job(job, outputs, [&](double) { return !while_writing.is_pending(); });
+    const auto error = merge_job(job, outputs, [&](double) { return !while_writing.is_pending(); });
+    if (error && error->unmet_pixels > 0) made += fmt::format(", error {}{}", error->target, describe_unmet(*error));
   } catch (const Cancelled&) {
     // What the signal's sender wants is an end, and has it now.
   }
+  return made;
 }
 
 }  // namespace promin::app

@@ -158,16 +158,17 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
 }
 
 /// Writes one picture of its pieces, which lie row by row, to the files of these names with the number of its frame. A
-/// row of pieces is held at a time.
-void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const std::vector<fs::path>& files,
-                  const ProgressCallback& progress) {
+/// row of pieces is held at a time. Returns what a picture of an error has come to.
+std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const size_t> pieces,
+                                         const std::vector<fs::path>& files, const ProgressCallback& progress) {
   PicturePart part = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
   const PicturePart first = without_values(part);
   PictureHeader header;
   header.size = size_of(first.window);
   if (header.size != first.full_size) header.crop = CropPlacement{first.window.lo, first.full_size};
   header.metadata = first.metadata;
-  if (const auto error = sum_errors(job, pieces, first)) put_error(header.metadata, *error, area_of(first.window));
+  const std::optional<PictureError> error = sum_errors(job, pieces, first);
+  if (error) put_error(header.metadata, *error, area_of(first.window));
   for (const Channel& channel : first.channels) header.channels.push_back({channel.name, channel.is_integer, {}});
   header.display = first.display;
   header.exr = first.exr;
@@ -188,6 +189,7 @@ void write_merged(const jobs::Job& job, std::span<const size_t> pieces, const st
     row.reset();
   }
   written.commit();
+  return error;
 }
 
 std::string name_frame(uint32_t frame) {
@@ -369,13 +371,23 @@ void check_merged_pictures(const jobs::Job& job, const std::vector<fs::path>& fi
   check_numbered(job, files);
 }
 
-void merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files, const ProgressCallback& progress,
-                    const std::optional<std::vector<uint32_t>>& frames) {
+std::optional<PictureError> merge_pictures(const jobs::Job& job, const std::vector<fs::path>& files,
+                                           const ProgressCallback& progress,
+                                           const std::optional<std::vector<uint32_t>>& frames) {
   const std::vector<std::vector<size_t>> pictures = choose_pictures(job, frames);
   std::vector<size_t> chosen;
   for (const std::vector<size_t>& pieces : pictures) chosen.insert(chosen.end(), pieces.begin(), pieces.end());
   check_done(job, chosen);
-  for (const std::vector<size_t>& pieces : pictures) write_merged(job, pieces, files, progress);
+  std::optional<PictureError> all;
+  for (const std::vector<size_t>& pieces : pictures) {
+    const std::optional<PictureError> error = write_merged(job, pieces, files, progress);
+    if (error && all) {
+      *all += *error;
+    } else if (error) {
+      all = error;
+    }
+  }
+  return all;
 }
 
 }  // namespace promin::app

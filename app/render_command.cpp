@@ -20,7 +20,6 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "image/open_pictures.h"
-#include "merge_job.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"
@@ -58,11 +57,8 @@ std::string describe_samples(const RunStats& stats) {
   for (const PictureError& error : std::span(stats.errors).subspan(1)) all += error;
   const auto [least, most] = std::ranges::minmax(stats.errors, {}, &PictureError::target);
   const auto pictures = static_cast<double>(stats.errors.size());
-  const std::string unmet = all.unmet_pixels == 0 ? ""
-                                                  : fmt::format(" but for {} of at most {:.3g}",
-                                                                count_of(all.unmet_pixels, "pixel"), all.largest_claim);
   return fmt::format("{:.4g} spp, {}{}", mean_samples(*stats.view, all) / pictures,
-                     describe_errors(least.target, most.target, *stats.view->error_target), unmet);
+                     describe_errors(least.target, most.target, *stats.view->error_target), describe_unmet(all));
 }
 
 /// The options that give the last picture of a time limit again.
@@ -300,8 +296,7 @@ void render_job(PictureRun run, const CLI::App& command, const Console& console,
   RunStats stats;
   const JobSteps steps = {.begin = begin,
                           .open_device = [&] { return open_device_for(options.tracing, stats, console); },
-                          .merge = [&](const jobs::Job& job) { merge_job_deferring(job, options.pictures); },
-                          .outputs = fmt::format("{}", fmt::join(names_of(options.pictures), ", "))};
+                          .files = options.pictures};
   run_job(*plan_pictures(std::move(run), command, console), options.job, steps, console);
 }
 

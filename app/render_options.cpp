@@ -14,6 +14,7 @@
 
 #include "arguments.h"
 #include "camera_path.h"
+#include "core/count_of.h"
 #include "core/suggest.h"
 #include "load_options.h"
 #include "promin/aovs.h"
@@ -37,6 +38,8 @@ constexpr uint32_t kMaxTextureMib = 8192;
 /// Seconds.
 constexpr double kMinTimeLimit = 1e-3;
 constexpr double kMaxTimeLimit = 1e6;
+/// Of what an error may be written as a fraction of.
+constexpr double kMostOfFraction = 1e9;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
@@ -82,7 +85,9 @@ BackgroundChoice read_background(const OptionValues& words) {
   const std::string& first = words.text();
   if (first == kEnvironment) return {.is_environment = true};
   if (std::isalpha(static_cast<unsigned char>(first.front())) != 0) {
-    words.refuse(fmt::format("--background takes three numbers or {}, not \"{}\"", kEnvironment, first));
+    constexpr std::array kWords = {kEnvironment};
+    words.refuse(fmt::format("--background takes three numbers or {}, not \"{}\"", kEnvironment, first),
+                 nearest_name(first, kWords));
   }
   const dvec3 color{words.real(0, 0.0, kMaxBackground), words.real(1, 0.0, kMaxBackground),
                     words.real(2, 0.0, kMaxBackground)};
@@ -224,7 +229,17 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   table.add("--target-error", "E", std::string(target_help), [&](const OptionValues& w) {
     // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
     const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
-    error.target = std::max(static_cast<float>(w.real(0, least, 1.0)), kMinTargetError);
+    // "1/64" is what errors are spoken of as.
+    const size_t bar = w.text().find('/');
+    if (bar == std::string::npos) {
+      error.target = std::max(static_cast<float>(w.real(0, least, 1.0)), kMinTargetError);
+      return;
+    }
+    const OptionValues parts = w.with({w.text().substr(0, bar), w.text().substr(bar + 1)});
+    const double target = parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
+    if (!(target >= least && target <= 1.0))
+      w.refuse(fmt::format("--target-error takes 1/65536 to 1, not \"{}\"", w.text()));
+    error.target = std::max(static_cast<float>(target), kMinTargetError);
   });
   table.add("--min-spp", "N",
             fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
@@ -276,6 +291,11 @@ std::string describe_errors(float least, float most, const ErrorTarget& target) 
   return fmt::format("error {}{}{}", least, to, target.display ? " as shown" : "");
 }
 
+std::string describe_unmet(const PictureError& error) {
+  if (error.unmet_pixels == 0) return "";
+  return fmt::format(" but for {} of at most {:.3g}", count_of(error.unmet_pixels, "pixel"), error.largest_claim);
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
@@ -293,7 +313,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   add_error_options(
       table, options.error,
-      "Instead of --spp: take samples until each pixel is off by at most E, 2^-16 to 1, where 1 is white");
+      "Instead of --spp: take samples until each pixel is off by at most E, 1/65536 to 1, where 1 is white");
   add_time_limit_option(table, options.error);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
@@ -411,6 +431,10 @@ void check_render_options(const RenderOptions& options) {
               "give --exposure in stops");
     check_error_target(*error.error_target());
   } else {
+    AovSet light = options.aovs;
+    light.alpha = false;
+    refuse_if(light.has_any(AovSource::kParts) && is_debug,
+              "--aov of light and --shading contradict each other: a debug shading has no light", "leave one out");
     refuse_if(options.aovs.error && is_debug,
               "--aov error and --shading contradict each other: a debug shading has no error", "leave one out");
     for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
@@ -457,6 +481,8 @@ void check_render_options(const RenderOptions& options) {
     refuse_if(is_given && !has_exr, fmt::format("{} has no picture to go to", name),
               "give -o with the ending .exr as well");
   }
+  const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
+  refuse_if(view.look.dithers && !has_png, "--dither has no picture to go to", "give -o with the ending .png as well");
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
   if (options.aovs.alpha) refuse_beside("--alpha", {{is_debug, "--shading"}});
 }

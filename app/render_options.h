@@ -125,6 +125,9 @@ std::string describe_options(const ErrorTarget& target);
 /// the target is.
 std::string describe_errors(float least, float most, const ErrorTarget& target);
 
+/// " but for 750 pixels of at most 0.0161": those that have missed a target; empty where none has.
+std::string describe_unmet(const PictureError& error);
+
 struct RenderOptions {
   TracingOptions tracing;
   /// Where the user names none, those of name_pictures.

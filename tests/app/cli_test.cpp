@@ -184,6 +184,14 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0", "inf"}, "--background takes a number"},
       {{"render", "square.gltf", "--background", "sky", "-o", "a.exr"},
        "--background takes three numbers or environment, not \"sky\""},
+      {{"render", "square.gltf", "--background", "envronment", "-o", "a.exr"}, "did you mean environment?"},
+      {{"render", "square.gltf", "--exposure", "averge", "-o", "a.exr"}, "did you mean average?"},
+      {{"render", "square.gltf", "-o", "a.exr", "--dither"}, "--dither has no picture to go to"},
+      {{"render", "square.gltf", "-o", "a.exr", "--aov", "direct", "--shading", "normals"},
+       "--aov of light and --shading"},
+      {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/0"}, "not \"0\" in \"1/0\""},
+      {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/65537"}, "--target-error takes 1/65536 to 1"},
+      {{"render", "square.gltf", "-o", "a.exr", "--target-error", "3/2"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"},
        "too few values for --background R G B|environment"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
@@ -679,6 +687,12 @@ TEST_F(CliTest, VerboseTellsTheSteps) {
   for (const char* part : {"loaded square.gltf", "BVH by ", "features: ", "upload "}) {
     EXPECT_THAT(result.err, HasSubstr(part));
   }
+}
+
+TEST_F(CliTest, ErrorsMayBeFractions) {
+  render({"square.gltf", "--target-error", "1/64"}, "a.exr");
+  render({"square.gltf", "--target-error", "0.015625"}, "b.exr");
+  EXPECT_TRUE(read("a.exr") == read("b.exr"));
 }
 
 TEST_F(CliTest, ErrorsAsTheyAreShownAreTold) {

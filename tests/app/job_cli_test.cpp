@@ -93,6 +93,20 @@ TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
   EXPECT_THAT(refused.err, testing::Not(HasSubstr("writing")));
 }
 
+TEST_F(JobCliTest, PixelsThatMissTheErrorAreToldWithoutAJobAndWithOne) {
+  OptionValues command = {"render", "square.gltf", "--size", "61", "47", "--target-error", "1/1000", "--max-spp", "16"};
+  command.insert(command.end(), {"-o", "a.exr"});
+  const std::string missed = "error 0.001 but for ";
+  const ProcessResult alone = run(command);
+  const size_t at = alone.out.find(missed);
+  ASSERT_NE(at, std::string::npos) << alone.out;
+  const size_t end = alone.out.find(',', at);
+  const std::string told = alone.out.substr(at, end - at);
+  command.insert(command.end(), {"--job", "job", "--pieces", "3"});
+  EXPECT_THAT(run(command).out, HasSubstr("a.exr, " + told + "\n"));
+  EXPECT_THAT(run({"merge", "job", "-o", "b.exr"}).out, HasSubstr("b.exr, " + told + "\n"));
+}
+
 TEST_F(JobCliTest, SeveralMayBeginAtOnce) {
   expect_done(render({"-o", "whole.exr"}));
   std::vector<std::unique_ptr<Process>> programs;
