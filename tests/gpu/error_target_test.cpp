@@ -111,7 +111,7 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
     Renderer renderer = make_renderer(device(), scene, options);
     expect_honest(renderer, with_target(view_of(scene, uvec2(48, 36)), 1.0F / 64.0F), name, display_of(scene));
     // As promin render begins coarse pictures: from few samples, by chance, claims are small soonest.
-    const View coarse = with_target(view_of(scene, uvec2(160, 120)), 1.0F / 16.0F, kMinRefinedSamples);
+    const View coarse = with_target(view_of(scene, uvec2(96, 72)), 1.0F / 16.0F, kMinRefinedSamples);
     expect_honest(renderer, coarse, name, display_of(scene));
   }
   Renderer wires = make_renderer(device(), make_wires(), options);
