@@ -59,10 +59,9 @@ std::vector<std::filesystem::path> number_pictures(const jobs::Job& job,
 void check_merged_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
 /// Puts the pieces of a job of pictures together and writes each picture, or those of these frames of a path, to the
 /// files of these names, with the number of its frame; check_merged_pictures has seen these. Returns what pictures of
-/// an error have come to together. Throws RunError where
-/// pieces of these pictures are missing, which names some, InputError where pieces do not belong together (made by
-/// different drivers) or are damaged, UsageError for a frame that the job does not have, Cancelled where `progress`,
-/// which is asked before each piece, says so.
+/// an error have come to together. Throws RunError where pieces of these pictures are missing, which names some,
+/// InputError where pieces do not belong together (made by different drivers) or are damaged, UsageError for a frame
+/// that the job does not have, Cancelled where `progress`, which is asked before each piece, says so.
 std::optional<PictureError> merge_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files,
                                            const ProgressCallback& progress,
                                            const std::optional<std::vector<uint32_t>>& frames = std::nullopt);

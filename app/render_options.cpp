@@ -38,7 +38,7 @@ constexpr uint32_t kMaxTextureMib = 8192;
 /// Seconds.
 constexpr double kMinTimeLimit = 1e-3;
 constexpr double kMaxTimeLimit = 1e6;
-/// Of what an error may be written as a fraction of.
+/// The largest number in a fraction that is an error.
 constexpr double kMostOfFraction = 1e9;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
@@ -92,6 +92,23 @@ BackgroundChoice read_background(const OptionValues& words) {
   const dvec3 color{words.real(0, 0.0, kMaxBackground), words.real(1, 0.0, kMaxBackground),
                     words.real(2, 0.0, kMaxBackground)};
   return {.color = vec3(color)};
+}
+
+/// Reads "0.02" or, as errors are spoken of, "1/64".
+float read_error(const OptionValues& words) {
+  // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
+  const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
+  const std::string& text = words.text();
+  const size_t bar = text.find('/');
+  double error = 0.0;
+  if (bar == std::string::npos) {
+    error = words.real(0, least, 1.0);
+  } else {
+    const OptionValues parts = words.with({text.substr(0, bar), text.substr(bar + 1)});
+    error = parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
+    if (error < least || error > 1.0) words.refuse(fmt::format("--target-error takes 1/65536 to 1, not \"{}\"", text));
+  }
+  return std::max(static_cast<float>(error), kMinTargetError);
 }
 
 /// Reads "3-7", or "3" alone.
@@ -226,21 +243,8 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
     if (!std::has_single_bit(samples)) w.refuse(fmt::format("{} takes a power of two, not {}", name, samples));
     return samples;
   };
-  table.add("--target-error", "E", std::string(target_help), [&](const OptionValues& w) {
-    // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
-    const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
-    // "1/64" is what errors are spoken of as.
-    const size_t bar = w.text().find('/');
-    if (bar == std::string::npos) {
-      error.target = std::max(static_cast<float>(w.real(0, least, 1.0)), kMinTargetError);
-      return;
-    }
-    const OptionValues parts = w.with({w.text().substr(0, bar), w.text().substr(bar + 1)});
-    const double target = parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
-    if (!(target >= least && target <= 1.0))
-      w.refuse(fmt::format("--target-error takes 1/65536 to 1, not \"{}\"", w.text()));
-    error.target = std::max(static_cast<float>(target), kMinTargetError);
-  });
+  table.add("--target-error", "E", std::string(target_help),
+            [&](const OptionValues& w) { error.target = read_error(w); });
   table.add("--min-spp", "N",
             fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
                         "--target-error from 1/{:g} on {}]",
