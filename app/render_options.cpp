@@ -106,7 +106,8 @@ float read_error(const OptionValues& words) {
   } else {
     const OptionValues parts = words.with({text.substr(0, bar), text.substr(bar + 1)});
     error = parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
-    if (error < least || error > 1.0) words.refuse(fmt::format("--target-error takes 1/65536 to 1, not \"{}\"", text));
+    if (error < least || error > 1.0)
+      words.refuse(fmt::format("--target-error takes {} to 1, not \"{}\"", least_error(), text));
   }
   return std::max(static_cast<float>(error), kMinTargetError);
 }
@@ -237,6 +238,10 @@ void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
 
 }  // namespace
 
+std::string least_error() {
+  return fmt::format("1/{:g}", 1.0F / kMinTargetError);
+}
+
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help) {
   const auto read_power = [](const OptionValues& w, std::string_view name) {
     const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
@@ -317,7 +322,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   add_error_options(
       table, options.error,
-      "Instead of --spp: take samples until each pixel is off by at most E, 1/65536 to 1, where 1 is white");
+      fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {} to 1, where 1 is white",
+                  least_error()));
   add_time_limit_option(table, options.error);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
@@ -407,6 +413,8 @@ void check_render_options(const RenderOptions& options) {
   const bool averages = view.look.averages_exposure;
   const bool is_debug = view.debug_view != DebugView::kNone;
   const bool has_depth_kind = view.depth_kind != DepthKind::kRay;
+  AovSet named = options.aovs;
+  named.alpha = false;
 
   check_tracing_options(options.tracing);
   if (options.path) check_no_camera(view, "--path");
@@ -435,9 +443,7 @@ void check_render_options(const RenderOptions& options) {
               "give --exposure in stops");
     check_error_target(*error.error_target());
   } else {
-    AovSet light = options.aovs;
-    light.alpha = false;
-    refuse_if(light.has_any(AovSource::kParts) && is_debug,
+    refuse_if(named.has_any(AovSource::kParts) && is_debug,
               "--aov of light and --shading contradict each other: a debug shading has no light", "leave one out");
     refuse_if(options.aovs.error && is_debug,
               "--aov error and --shading contradict each other: a debug shading has no error", "leave one out");
@@ -473,8 +479,6 @@ void check_render_options(const RenderOptions& options) {
   refuse_if(options.fps && !options.path, "--fps has no path to play", "give --path as well");
 
   // What only an EXR holds; PNG files take alpha alone.
-  AovSet named = options.aovs;
-  named.alpha = false;
   const auto& pictures = options.pictures;
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
   for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
@@ -485,10 +489,12 @@ void check_render_options(const RenderOptions& options) {
     refuse_if(is_given && !has_exr, fmt::format("{} has no picture to go to", name),
               "give -o with the ending .exr as well");
   }
-  const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
-  refuse_if(view.look.dithers && !has_png, "--dither has no picture to go to", "give -o with the ending .png as well");
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
   if (options.aovs.alpha) refuse_beside("--alpha", {{is_debug, "--shading"}});
+
+  // What only a PNG shows.
+  const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
+  refuse_if(view.look.dithers && !has_png, "--dither has no picture to go to", "give -o with the ending .png as well");
 }
 
 }  // namespace promin::app

@@ -98,6 +98,9 @@ enum class ErrorSpace : uint32_t { kLinear, kDisplay };
 /// Names for people, by the value of the ErrorSpace.
 std::span<const std::string_view> error_space_names();
 
+/// The least error to aim at, as a fraction in words.
+std::string least_error();
+
 /// How exact pictures are to be. What the user leaves open follows from the rest.
 struct ErrorOptions {
   std::optional<float> target;

@@ -44,9 +44,9 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
   add_variant_option(table, options.tracing.load);
   add_view_options(table, options.view);
   add_error_options(table, options.error,
-                    fmt::format("A picture at rest takes samples until each pixel is off by at most E, 2^-16 to 1, "
+                    fmt::format("A picture at rest takes samples until each pixel is off by at most E, {} to 1, "
                                 "where 1 is white [{:g}]",
-                                ErrorTarget{}.error));
+                                least_error(), ErrorTarget{}.error));
   table.add("--target-ms", "T",
             fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
                         kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
