@@ -34,7 +34,29 @@ void LoadReport::refuse(const std::string& what, const std::string& place, const
 }
 
 void LoadReport::warn(const std::string& sentence) {
-  if (said_.insert(sentence).second) warnings_.push_back(make_visible(sentence));
+  if (said_.insert(sentence).second) warnings_.push_back({make_visible(sentence)});
+}
+
+void LoadReport::repair(const Fault& fault) {
+  const std::string value = fault.value.empty() ? "" : " (" + fault.value + ")";
+  if (is_strict_) return refuse(fault.what + value, fault.place, fault.cure);
+  const auto [kind, is_new] = kinds_.try_emplace({fault.what, fault.repair}, warnings_.size());
+  if (is_new) {
+    const std::string place = fault.place.empty() ? "" : ", " + fault.place;
+    warnings_.push_back({make_visible(fault.what + value + place), fault.repair});
+  }
+  ++warnings_[kind->second].fault_count;
+}
+
+std::vector<std::string> LoadReport::warnings() const {
+  std::vector<std::string> sentences;
+  for (const Warning& warning : warnings_) {
+    std::string sentence = warning.sentence;
+    if (warning.fault_count > 1) sentence += " and " + std::to_string(warning.fault_count - 1) + " more";
+    if (!warning.repair.empty()) sentence += "; " + warning.repair;
+    sentences.push_back(std::move(sentence));
+  }
+  return sentences;
 }
 
 void LoadReport::add_source(const std::filesystem::path& file) {

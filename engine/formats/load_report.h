@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/source_file.h"
@@ -16,11 +19,26 @@ namespace promin {
 /// A word of the file as messages show it: in double quotes, and no longer than a line.
 std::string quote(std::string_view word);
 
-/// What a loader has to say about a file: problems, which end the load, and warnings. Each is kept once, however often
-/// it is met.
+/// A fault of a file that leaves its geometry in no doubt: the loader repairs it, and a strict one refuses the file.
+struct Fault {
+  /// What is wrong, without words of the file: faults with the same `what` and `repair` share one warning.
+  std::string what;
+  /// The word or number of the file that is wrong; may be empty. The warning shows that of the first fault.
+  std::string value = {};
+  /// Inside the file, as for LoadReport::refuse.
+  std::string place = {};
+  /// What the author of the file can do about it.
+  std::string cure = {};
+  /// What the loader does instead, as a sentence: "the face is left out".
+  std::string repair = {};
+};
+
+/// What a loader reports about a file: problems, which end the load, and warnings. Each is kept once, however often it
+/// occurs.
 class LoadReport {
  public:
-  explicit LoadReport(std::filesystem::path file) : file_(std::move(file)) {}
+  explicit LoadReport(std::filesystem::path file, bool is_strict = false)
+      : file_(std::move(file)), is_strict_(is_strict) {}
 
   const std::filesystem::path& file() const { return file_; }
 
@@ -28,6 +46,9 @@ class LoadReport {
   /// from the file are made visible as '?', so that each message stays on its line.
   void refuse(const std::string& what, const std::string& place, const std::string& cure);
   void warn(const std::string& sentence);
+  /// Warns once for all faults of a kind, with the place of the first and the number of the others: "a face has fewer
+  /// than 3 corners, line 12 and 11 more; the face is left out". A strict report refuses each instead.
+  void repair(const Fault& fault);
 
   /// Is called for each file before it is read, or found missing.
   void add_source(const std::filesystem::path& file);
@@ -36,13 +57,24 @@ class LoadReport {
   /// Throws InputError with all problems so far, if there are any.
   void throw_if_refused() const;
 
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  /// In the order in which each was first found.
+  std::vector<std::string> warnings() const;
 
  private:
+  /// One sentence; of a kind of faults the first, and how many there are.
+  struct Warning {
+    std::string sentence;
+    std::string repair;
+    uint64_t fault_count = 0;
+  };
+
   std::filesystem::path file_;
+  bool is_strict_;
   std::vector<Problem> problems_;
   size_t problem_count_ = 0;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
+  /// The index in warnings_ of each kind of faults, by its `what` and `repair`.
+  std::map<std::pair<std::string, std::string>, size_t> kinds_;
   std::vector<SourceFile> sources_;
   std::set<std::string> said_;
 };

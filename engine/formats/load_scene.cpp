@@ -94,7 +94,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
 }
 
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources) {
-  LoadReport report(file);
+  LoadReport report(file, options.is_strict);
   report.add_source(file);
   try {
     Scene scene = load_by_format(file, options, report);

@@ -12,9 +12,9 @@ namespace promin {
 
 /// How a scene is read.
 struct LoadOptions {
-  /// Whether a file that requires an extension which is not known is refused, as glTF 2.0, section 3.12, asks for. Else
-  /// it is refused only where it lies on what geometry is made of: where it changes materials, textures or light, the
-  /// scene comes without it, and with a warning.
+  /// Whether a file is refused for anything that its format forbids, and for each extension that it requires and promin
+  /// does not know (glTF 2.0, section 3.12). Otherwise geometry that can be drawn is drawn: a fault of what only
+  /// colours, shades, views or lights it costs one warning (docs/usage.md, "What is read").
   bool is_strict = false;
   /// The variant of materials that is shown (KHR_materials_variants), one of Scene::variants; empty: the materials that
   /// hold without any.
