@@ -34,7 +34,7 @@ void LoadReport::refuse(const std::string& what, const std::string& place, const
 }
 
 void LoadReport::warn(const std::string& sentence) {
-  if (said_.insert(sentence).second) warnings_.push_back({make_visible(sentence)});
+  if (said_.insert(sentence).second) warnings_.push_back({make_visible(sentence), "", 0});
 }
 
 void LoadReport::repair(const Fault& fault) {
@@ -43,7 +43,7 @@ void LoadReport::repair(const Fault& fault) {
   const auto [kind, is_new] = kinds_.try_emplace({fault.what, fault.repair}, warnings_.size());
   if (is_new) {
     const std::string place = fault.place.empty() ? "" : ", " + fault.place;
-    warnings_.push_back({make_visible(fault.what + value + place), fault.repair});
+    warnings_.push_back({make_visible(fault.what + value + place), fault.repair, 0});
   }
   ++warnings_[kind->second].fault_count;
 }
