@@ -94,7 +94,9 @@ class SceneReader {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
       if (placed.is_visible) read_geometry(placed, mesh, primitive, object);
-      if (object.geometry != Object::kNoGeometry) {
+      if (object.geometry == Object::kNoGeometry) {
+        if (placed.is_visible) report_.lose_geometry();
+      } else {
         object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
       }
       scene_.objects.push_back(std::move(object));
