@@ -86,13 +86,14 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
   const auto* const own = std::ranges::find_if(kFormats, has_ending);
   const bool is_right = own != std::end(kFormats) && own->load == format.load;
   if (kind.name.empty() || is_right) return;
-  throw InputError({"the file is " + kind.name + ", whatever its ending says", file.string(), kind.cure});
+  throw InputError({"the file is " + kind.name, file.string(), kind.cure});
 }
 
 /// A picture of nothing is taken for one of the scene: throws InputError where a mesh has nothing to draw, or a scene
-/// nothing of what it shows. One that shows nothing stays, with a warning.
+/// nothing of what it shows. A scene that shows nothing gets a warning.
 void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
   if (has_anything_to_draw(scene)) return;
+  refuse_wrong_ending(report.file(), format);
   const std::string what = "the scene holds nothing to draw";
   if (!format.is_mesh && !report.has_lost_geometry()) return scene.warnings.push_back(what);
   const std::string reason = scene.warnings.empty() ? "" : " (" + scene.warnings.front() + ")";

@@ -44,10 +44,16 @@ std::string_view without_zero_bytes_at_end(std::string_view text) {
 
 bool TextLines::advance() {
   if (rest_.empty()) return false;
-  const size_t end = rest_.find('\n');
-  line_ = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  if (left_at_newline_ > rest_.size()) {
+    const size_t newline = rest_.find('\n');
+    left_at_newline_ = newline == std::string_view::npos ? 0 : rest_.size() - newline;
+  }
+  line_ = rest_.substr(0, rest_.size() - left_at_newline_);
+  line_ = line_.substr(0, line_.find('\r'));
+  rest_.remove_prefix(line_.size());
+  // What ends the line.
+  if (rest_.starts_with('\r')) rest_.remove_prefix(1);
+  if (rest_.size() == left_at_newline_ && !rest_.empty()) rest_.remove_prefix(1);
   ++number_;
   return true;
 }

@@ -94,9 +94,7 @@ class SceneReader {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
       if (placed.is_visible) read_geometry(placed, mesh, primitive, object);
-      if (object.geometry == Object::kNoGeometry) {
-        if (placed.is_visible) report_.lose_geometry();
-      } else {
+      if (object.geometry != Object::kNoGeometry) {
         object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
       }
       scene_.objects.push_back(std::move(object));
