@@ -40,7 +40,7 @@ class PictureMeshes {
   const Scene& scene_;
   /// Of each geometry, how many objects show it.
   std::vector<uint32_t> object_counts_;
-  /// Of each geometry, once an object has asked.
+  /// For each geometry that an object has asked for.
   std::vector<std::optional<bool>> has_turned_normals_;
   std::map<std::pair<uint32_t, Needs>, std::shared_ptr<const Mesh>> made_;
 };
