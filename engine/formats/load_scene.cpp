@@ -16,6 +16,7 @@
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
 #include "promin/error.h"
+#include "scene/stray_geometry.h"
 #include "scene/turned_normals.h"
 
 namespace promin {
@@ -65,6 +66,16 @@ void warn_of_turned_normals(Scene& scene) {
                            (count == 1
                                 ? " triangle has vertex normals that lie against its winding: they are turned"
                                 : " triangles have vertex normals that lie against their winding: they are turned"));
+}
+
+/// Warns of geometry that a camera which frames the scene leaves out.
+void warn_of_stray_geometry(Scene& scene) {
+  if (!scene.cameras.empty()) return;
+  const uint64_t count = find_main_part(scene).stray_count;
+  if (count == 0) return;
+  scene.warnings.push_back((count == 1 ? "1 primitive lies" : std::to_string(count) + " primitives lie") +
+                           " far from nearly all of the surface: the camera that frames the scene leaves " +
+                           (count == 1 ? "it" : "them") + " out");
 }
 
 /// What else goes into JSON, EXR files and Python.
@@ -120,6 +131,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
     sources = report.sources();
     warn_of_tiny_meshes(scene);
     warn_of_turned_normals(scene);
+    warn_of_stray_geometry(scene);
     show_names_in_utf8(scene);
     if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
     return scene;
