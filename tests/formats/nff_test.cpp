@@ -17,6 +17,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 const std::string kView = "v\nfrom 1 2 8\nat 1 2 3\nup 0 2 1\nangle 45\nhither 0.5\nresolution 640 480\n";
@@ -57,6 +58,14 @@ TEST_F(NffTest, ViewsAreCameras) {
 
 TEST_F(NffTest, TheBackgroundMayFollowTheView) {
   EXPECT_EQ(load(kView + "b 1 0 0\n" + kMaterial + "s 0 0 0 1\n").environment.background, vec3(1, 0, 0));
+}
+
+TEST_F(NffTest, NormalsAgainstTheWindingAreWarnedOf) {
+  const std::string turned = "pp 3\n0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n";
+  const std::string right = "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n";
+  EXPECT_THAT(load(kMaterial + right).warnings, Each(Not(HasSubstr("against"))));
+  EXPECT_THAT(load(kMaterial + turned + right + turned).warnings,
+              Contains("2 triangles have vertex normals that lie against their winding: they are turned"));
 }
 
 TEST_F(NffTest, LinesMeanNothing) {
@@ -263,8 +272,7 @@ const Repair kRepairs[] = {
     {"LongBackground", "b 0 0 1 1", "\"b\" has more numbers"},
     {"NegativeLight", "l 0 0 0 1 1 -1", "\"l\" has a number that is not from 0 to 1e7"},
     {"LightOfTwo", "l 0 0 0 1 1", "\"l\" has too few numbers"},
-    {"LightNowhere", "l 0 nan 0 1 1 1",
-     "\"l\" has a coordinate that is not finite or beyond 1e15 (\"nan\"), line 1; it is"},
+    {"LightNowhere", "l 0 nan 0 1 1 1", "\"l\" has a coordinate that is no number up to 1e15 (\"nan\"), line 1; it is"},
     {"ShortLight", "l 0 0", "\"l\" has a coordinate"},
     {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" is without from, at, up or angle"},
     {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in one place"},
@@ -279,8 +287,7 @@ const Repair kRepairs[] = {
     {"NoPixels", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 512", "a resolution that is not of whole"},
     {"TooManyPixels", "v resolution 99999 512", "a resolution that is not of whole"},
     {"HalfAPixel", "v resolution 5.5 512", "a resolution that is not of whole"},
-    {"SphereNan", "s nan 0 0 1",
-     "\"s\" has a coordinate that is not finite or beyond 1e15 (\"nan\"), line 1; it is left"},
+    {"SphereNan", "s nan 0 0 1", "\"s\" has a coordinate that is no number up to 1e15 (\"nan\"), line 1; it is left"},
     {"SphereInfinite", "s 0 0 inf 1", "\"s\" has a coordinate"},
     {"SphereBeyondDouble", "s 1e999 0 0 1", "\"s\" has a coordinate"},
     {"SphereTooFar", "s 1e16 0 0 1", "\"s\" has a coordinate"},

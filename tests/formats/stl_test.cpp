@@ -146,7 +146,7 @@ TEST_F(StlTest, FacetsThatAreNoTrianglesAreSaid) {
   EXPECT_THAT(scene.warnings,
               ElementsAre("a facet has fewer than 3 corners (2), line 5; the facet is left out",
                           "a facet has more than 3 corners (4), line 11; it is cut in triangles",
-                          "a vertex coordinate of a facet is not finite or beyond 1e15 (\"nan\"), line 15 and 1 more; "
+                          "a facet has a vertex coordinate that is no number up to 1e15 (\"nan\"), line 15 and 1 more; "
                           "the facet is left out"));
   EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
 }
@@ -159,7 +159,7 @@ TEST_F(StlTest, BinaryFacetsWithoutAPlaceAreLeftOut) {
   const LoadedScene scene = load(stl.bytes());
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   EXPECT_THAT(mesh_of(scene).colors, testing::Each(vec4(1, 0, 0, 1))) << "that of its facet";
-  EXPECT_THAT(scene.warnings, ElementsAre("a vertex coordinate of a facet is not finite or beyond 1e15, facet 0 and 1 "
+  EXPECT_THAT(scene.warnings, ElementsAre("a facet has a vertex coordinate that is no number up to 1e15, facet 0 and 1 "
                                           "more; the facet is left out"));
 }
 
@@ -236,7 +236,7 @@ const BadFile kBadStl[] = {
     {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is no number", ": line 3"},
     {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is no number", ": line 4"},
     {"TooLarge", "solid\nfacet\nvertex 0 0 1e16\nvertex 0 0 0\nvertex 1 1 1\nendfacet\n",
-     "nothing to draw (a vertex coordinate of a facet is not finite or beyond 1e15 (\"1e16\"), line 3", ""},
+     "nothing to draw (a facet has a vertex coordinate that is no number up to 1e15 (\"1e16\"), line 3", ""},
     {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",
      "nothing to draw (a facet has fewer than 3 corners (2), line 5", ""},
     {"LostVertex", "solid\nvertex 0 0 0\n", "lies in no facet", ": line 2"},

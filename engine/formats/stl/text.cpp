@@ -101,7 +101,7 @@ class StlParser {
       // Written so that NaN fails.
       if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
         is_placed_ = false;
-        repair("a vertex coordinate of a facet is not finite or beyond 1e15", quote(word), "the facet is left out");
+        repair("a facet has a vertex coordinate that is no number up to 1e15", quote(word), "the facet is left out");
       }
       corner[i] = static_cast<float>(*number);
     }
