@@ -48,6 +48,7 @@ class SceneReader {
     if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
     warn_about_motion();
     report_.throw_if_refused();
+    refuse_nothing_drawn();
     textures.finish(scene_);
     scene_.warnings = report_.warnings();
     return std::move(scene_);
@@ -63,9 +64,9 @@ class SceneReader {
     if (node.mesh < 0) return;
     const std::optional<uint64_t> instance_count = count_gltf_instances(document_, placed);
     if (!instance_count) return read_mesh(placed);
-    if (!has_room_for(*instance_count, placed)) return;
+    if (*instance_count == 0 || !has_room_for(*instance_count, placed)) return;
     for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
-      read_mesh({placed.node, place, placed.is_visible});
+      read_mesh({placed.node, place, placed.rotation, placed.is_visible});
     }
   }
 
@@ -93,7 +94,11 @@ class SceneReader {
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
-      if (placed.is_visible) read_geometry(placed, mesh, primitive, object);
+      // A scale of 0 is another way to hide a node.
+      if (placed.is_visible && !has_no_area(placed.world_from_object)) {
+        read_geometry(placed, mesh, primitive, object);
+        if (object.geometry == Object::kNoGeometry) has_undrawn_ = true;
+      }
       if (object.geometry != Object::kNoGeometry) {
         object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
       }
@@ -118,6 +123,15 @@ class SceneReader {
     place_gltf_mesh(placed, geometry,
                     "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]", scene_,
                     object, report_);
+  }
+
+  /// A file whose nodes show meshes of which none can be drawn is no scene; one that hides all is.
+  void refuse_nothing_drawn() {
+    const auto is_drawn = [](const Object& object) { return object.geometry != Object::kNoGeometry; };
+    if (!has_undrawn_ || std::ranges::any_of(scene_.objects, is_drawn)) return;
+    report_.refuse("none of the meshes can be drawn: they hold points or lines, or have no positions or too few corners", "meshes",
+                   "export triangles");
+    report_.throw_if_refused();
   }
 
   uint32_t add(Geometry geometry) {
@@ -176,6 +190,8 @@ class SceneReader {
   Scene scene_;
   std::map<std::tuple<size_t, size_t, std::vector<double>>, uint32_t> mesh_geometries_;
   uint64_t triangle_count_ = 0;
+  /// Whether a mesh primitive that a node shows is none that can be drawn.
+  bool has_undrawn_ = false;
   uint32_t default_material_ = kNoMaterial;
 };
 
