@@ -129,8 +129,9 @@ class SceneReader {
   void refuse_nothing_drawn() {
     const auto is_drawn = [](const Object& object) { return object.geometry != Object::kNoGeometry; };
     if (!has_undrawn_ || std::ranges::any_of(scene_.objects, is_drawn)) return;
-    report_.refuse("none of the meshes can be drawn: they hold points or lines, or have no positions or too few corners", "meshes",
-                   "export triangles");
+    report_.refuse(
+        "none of the meshes can be drawn: they hold points or lines, or have no positions or too few corners", "meshes",
+        "export triangles");
     report_.throw_if_refused();
   }
 
