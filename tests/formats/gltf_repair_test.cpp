@@ -137,8 +137,7 @@ const Repair kRepairs[] = {
      [](auto& g) {
        material_extension(g, "KHR_materials_specular") = {{"specularColorFactor", {1, -1, 1}}};
      },
-     PROMIN_CLAMPED("-1", "materials[0].extensions.KHR_materials_specular.specularColorFactor[1]",
-                    "0 to 1e+15")},
+     PROMIN_CLAMPED("-1", "materials[0].extensions.KHR_materials_specular.specularColorFactor[1]", "0 to 1e+15")},
     {"TextureIndex",
      [](auto& g) {
        g.json["materials"][0]["normalTexture"] = {{"index", 0}};
@@ -477,6 +476,23 @@ TEST_F(GltfRepairTest, RangesOfLightsMayBeTheLargestFloat) {
   EXPECT_TRUE(std::isinf(load(gltf).lights.at(0).range));
 }
 
+TEST_F(GltfRepairTest, TheDraftOfLightsIsRead) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.json["extensionsUsed"] = {"KHR_lights"};
+  gltf.json["extensions"]["KHR_lights"]["lights"] = {
+      {{"type", "ambient"}, {"color", {1, 1, 1}}},
+      {{"type", "spot"}, {"color", {1, 0.5, 0}}, {"intensity", 3}, {"spot", {{"outerConeAngle", 0.5}}}}};
+  gltf.json["scenes"] = {{{"nodes", {0, 1}}, {"extensions", {{"KHR_lights", {{"light", 0}}}}}}};
+  gltf.add_node({{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights", {{"light", 1}}}}}});
+  const LoadedScene scene = load(gltf);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"ambient\"")));
+  ASSERT_THAT(scene.lights, SizeIs(1));
+  EXPECT_EQ(scene.lights[0].kind, LightKind::kSpot);
+  EXPECT_EQ(scene.lights[0].position, vec3(1, 2, 3));
+  EXPECT_EQ(scene.lights[0].diffuse, vec3(3, 1.5F, 0));
+  EXPECT_EQ(scene.lights[0].outer_cone_angle, 0.5F);
+}
+
 // Bytes
 
 TEST_F(GltfRepairTest, DataUrisHaveManyForms) {
@@ -574,9 +590,19 @@ TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
   gltf.json["bufferViews"][2]["byteLength"] = 0;
   gltf.show({{"attributes", {{"POSITION", none}}}});
   const LoadedScene scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("an accessor has no elements, accessors[2].count"),
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a buffer view has no bytes, bufferViews[2]"),
+                                          HasSubstr("an accessor has no elements, accessors[2].count"),
                                           HasSubstr("too few corners for a triangle, meshes[1].primitives[0]")));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+}
+
+TEST_F(GltfRepairTest, EmptyBuffersHoldNothing) {
+  GltfBuilder gltf = triangle_gltf();
+  gltf.text();
+  gltf.json["buffers"].push_back({{"byteLength", 0}});
+  const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
+  EXPECT_THAT(scene.warnings, ElementsAre("a buffer has no bytes, buffers[1]; nothing is read of it"));
+  EXPECT_NE(strict_refusal("strict.gltf", gltf.json.dump()), "");
 }
 
 TEST_F(GltfRepairTest, ColorsAreClampedAndCoordinatesReplaced) {
@@ -613,6 +639,19 @@ TEST_F(GltfRepairTest, LengthsInTheHeaderOfAGlbAreRepaired) {
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr(warning)));
     EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle) << warning;
   }
+}
+
+TEST_F(GltfRepairTest, FilesMayBeginWithAByteOrderMark) {
+  EXPECT_EQ(corners_of(mesh_of(SceneFolder::load("scene.gltf", "\xEF\xBB\xBF" + triangle_gltf().text()))), kTriangle);
+}
+
+TEST_F(GltfRepairTest, TheJsonOfAGlbMayBePaddedByZeros) {
+  std::string bytes = triangle_gltf().glb();
+  const size_t json_length = static_cast<unsigned char>(bytes[12]) + 256 * static_cast<unsigned char>(bytes[13]);
+  bytes.insert(20 + json_length, std::string(4, '\0'));
+  bytes.replace(12, 4, GltfBuilder::u32(json_length + 4));
+  bytes.replace(8, 4, GltfBuilder::u32(bytes.size()));
+  EXPECT_EQ(corners_of(mesh_of(SceneFolder::load("a.glb", bytes))), kTriangle);
 }
 
 TEST_F(GltfRepairTest, VersionOneIsNamedInTextAndGlb) {

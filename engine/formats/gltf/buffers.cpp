@@ -216,7 +216,9 @@ class BufferReader {
       buffers_.bytes.emplace_back();
       // One that cannot be used is null (check_gltf_schema).
       if (source.is_null()) continue;
-      if (needed_[index] == 0) {
+      if (source["byteLength"] == 0) {
+        report_.repair({"a buffer has no bytes", "", place_of(index), "leave it out", "nothing is read of it"});
+      } else if (needed_[index] == 0) {
         weigh_unneeded(source, index);
       } else if (needed_by_meshes_[index] > 0) {
         read_buffer(source, index, report_);

@@ -261,6 +261,9 @@ void check_view(const json& view, uint64_t available, const std::string& place, 
                       std::to_string(available) + " bytes",
                   place, "correct its byteOffset or byteLength");
   }
+  if (view["byteLength"] == 0) {
+    report.repair({"a buffer view has no bytes", "", place, "leave out what uses it", "nothing is read of it"});
+  }
   if (const auto stride = view.find("byteStride"); stride != view.end()) {
     if (*stride >= 4 && *stride <= 252 && stride->get<uint64_t>() % 4 == 0) return;
     report.repair({"a stride is no multiple of 4 from 4 to 252", stride->dump(), place + ".byteStride",

@@ -86,6 +86,24 @@ void fill_views(GltfDocument& document) {
   document.scene = source.value("scene", size_t{0});
 }
 
+/// Gives an extension's draft, which has its form, its name.
+void rename_extension(json& element, const char* draft, const char* name) {
+  const auto extensions = element.find("extensions");
+  if (extensions == element.end() || !extensions->is_object() || extensions->contains(name)) return;
+  const auto found = extensions->find(draft);
+  if (found == extensions->end()) return;
+  (*extensions)[name] = std::move(*found);
+  extensions->erase(draft);
+}
+
+/// KHR_lights is what KHR_lights_punctual was called before it was ratified.
+void rename_lights(json& document) {
+  rename_extension(document, "KHR_lights", "KHR_lights_punctual");
+  const auto nodes = document.find("nodes");
+  if (nodes == document.end() || !nodes->is_array()) return;
+  for (json& node : *nodes) rename_extension(node, "KHR_lights", "KHR_lights_punctual");
+}
+
 void leave_out_images_without_bytes(GltfDocument& document) {
   if (!document.json.contains("images")) return;
   for (json& image : document.json["images"]) {
@@ -112,6 +130,7 @@ GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) 
 
   check_gltf_version(document.json, report);
   report.throw_if_refused();
+  rename_lights(document.json);
   check_gltf_schema(document.json, options.is_strict, report);
   report.throw_if_refused();
 
