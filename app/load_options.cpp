@@ -8,7 +8,7 @@ namespace promin::app {
 
 void add_strict_option(OptionTable& table, LoadOptions& options) {
   table.add_flag("--strict",
-                 "Refuse glTF files that require an extension which is not known, also where only materials have it",
+                 "Refuse a scene for anything that its format forbids, and for required extensions that are not known",
                  options.is_strict);
 }
 

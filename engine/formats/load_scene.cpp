@@ -16,6 +16,8 @@
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
 #include "promin/error.h"
+#include "scene/stray_geometry.h"
+#include "scene/turned_normals.h"
 
 namespace promin {
 namespace {
@@ -46,6 +48,34 @@ void warn_of_tiny_meshes(Scene& scene) {
     if (max_component(bounds.extent()) >= kSmallestMesh) continue;
     scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
   }
+}
+
+/// Warns of triangles that scene/turned_normals.h shades on the side which their vertex normals face.
+void warn_of_turned_normals(Scene& scene) {
+  std::vector<bool> is_shown(scene.geometries.size(), false);
+  for (const Object& object : scene.objects) {
+    if (object.geometry != Object::kNoGeometry) is_shown[object.geometry] = true;
+  }
+  uint64_t count = 0;
+  for (size_t i = 0; i < scene.geometries.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[i]);
+    if (is_shown[i] && mesh != nullptr) count += count_turned_triangles(*mesh);
+  }
+  if (count == 0) return;
+  scene.warnings.push_back(std::to_string(count) +
+                           (count == 1
+                                ? " triangle has vertex normals that lie against its winding: they are turned"
+                                : " triangles have vertex normals that lie against their winding: they are turned"));
+}
+
+/// Warns of geometry that a camera which frames the scene leaves out.
+void warn_of_stray_geometry(Scene& scene) {
+  if (!scene.cameras.empty()) return;
+  const uint64_t count = find_main_part(scene).stray_count;
+  if (count == 0) return;
+  scene.warnings.push_back((count == 1 ? "1 primitive lies" : std::to_string(count) + " primitives lie") +
+                           " far from nearly all of the surface: the camera that frames the scene leaves " +
+                           (count == 1 ? "it" : "them") + " out");
 }
 
 /// What else goes into JSON, EXR files and Python.
@@ -100,6 +130,8 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
     Scene scene = load_by_format(file, options, report);
     sources = report.sources();
     warn_of_tiny_meshes(scene);
+    warn_of_turned_normals(scene);
+    warn_of_stray_geometry(scene);
     show_names_in_utf8(scene);
     if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
     return scene;

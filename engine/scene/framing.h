@@ -12,7 +12,7 @@ namespace promin {
 Camera frame_bounds(const Bounds& bounds, float aspect_ratio, Framing framing = Framing::kFront);
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
 
-/// The box to look at: everything finite, or else a box of size 2 around the first plane's point or the origin. Throws
+/// The box to look at: the main part of everything finite (scene/stray_geometry.h), or else a box of size 2 around the first plane's point or the origin. Throws
 /// InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 

@@ -3,6 +3,7 @@
 #include "scene/picture_meshes.h"
 
 #include "scene/texture_slots.h"
+#include "scene/turned_normals.h"
 #include "textures/center_uvs.h"
 #include "textures/tangents.h"
 
@@ -24,7 +25,8 @@ std::vector<bool> find_materials(const Mesh& mesh, const Object& object, size_t 
 
 }  // namespace
 
-PictureMeshes::PictureMeshes(const Scene& scene) : scene_(scene), object_counts_(scene.geometries.size(), 0) {
+PictureMeshes::PictureMeshes(const Scene& scene)
+    : scene_(scene), object_counts_(scene.geometries.size(), 0), has_turned_normals_(scene.geometries.size()) {
   for (const Object& object : scene.objects) {
     if (object.geometry != Object::kNoGeometry) ++object_counts_[object.geometry];
   }
@@ -32,7 +34,7 @@ PictureMeshes::PictureMeshes(const Scene& scene) : scene_(scene), object_counts_
 
 std::shared_ptr<const Mesh> PictureMeshes::find(const Object& object) {
   const auto* mesh = std::get_if<Mesh>(&scene_.geometries[object.geometry]);
-  if (mesh == nullptr || mesh->uvs.empty()) return nullptr;
+  if (mesh == nullptr) return nullptr;
   const Needs needs = needs_of(*mesh, object);
   if (needs == Needs{}) return nullptr;
   const std::pair key(object.geometry, needs);
@@ -40,12 +42,21 @@ std::shared_ptr<const Mesh> PictureMeshes::find(const Object& object) {
   auto made = std::make_shared<Mesh>(*mesh);
   if (needs.tangents) add_tangents(*made, *needs.tangents);
   center_uvs(*made, {needs.center[0], needs.center[1], needs.center[2], needs.center[3]});
+  if (needs.turns_normals) turn_normals(*made, needs.tangents.has_value());
   if (object_counts_[object.geometry] > 1) made_.emplace(key, made);
   return made;
 }
 
-PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& object) const {
+bool PictureMeshes::has_turned_normals(uint32_t geometry, const Mesh& mesh) {
+  std::optional<bool>& known = has_turned_normals_[geometry];
+  if (!known) known = count_turned_triangles(mesh) > 0;
+  return *known;
+}
+
+PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& object) {
   Needs needs;
+  needs.turns_normals = has_turned_normals(object.geometry, mesh);
+  if (mesh.uvs.empty()) return needs;
   std::vector<TextureSlot> slots;
   const std::vector<bool> is_on_mesh = find_materials(mesh, object, scene_.materials.size());
   for (size_t i = 0; i < is_on_mesh.size(); ++i) {

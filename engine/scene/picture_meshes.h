@@ -14,8 +14,9 @@
 
 namespace promin {
 
-/// Meshes with what textures need of them: tangents where a texture of normals is shown (textures/tangents.h), texture
-/// coordinates near 0 (textures/center_uvs.h). Each is made once for the objects that need the same of it.
+/// Meshes with what shading needs of them: normals that agree with the winding (scene/turned_normals.h), tangents where
+/// a texture of normals is shown (textures/tangents.h), texture coordinates near 0 (textures/center_uvs.h). Each is
+/// made once for the objects that need the same of it.
 class PictureMeshes {
  public:
   /// The scene is valid and outlives this.
@@ -29,14 +30,18 @@ class PictureMeshes {
   struct Needs {
     std::optional<uint32_t> tangents;
     std::array<double, 4> center{};
+    bool turns_normals = false;
 
     auto operator<=>(const Needs&) const = default;
   };
-  Needs needs_of(const Mesh& mesh, const Object& object) const;
+  Needs needs_of(const Mesh& mesh, const Object& object);
+  bool has_turned_normals(uint32_t geometry, const Mesh& mesh);
 
   const Scene& scene_;
   /// Of each geometry, how many objects show it.
   std::vector<uint32_t> object_counts_;
+  /// For each geometry that an object has asked for.
+  std::vector<std::optional<bool>> has_turned_normals_;
   std::map<std::pair<uint32_t, Needs>, std::shared_ptr<const Mesh>> made_;
 };
 

@@ -13,6 +13,7 @@
 #include "promin/view.h"
 #include "scene/framing.h"
 #include "scene/glass.h"
+#include "scene/stray_geometry.h"
 #include "shapes/shapes.h"
 
 namespace promin {
@@ -96,7 +97,7 @@ struct CenterOfUnbounded {
 }  // namespace
 
 Bounds frame_of(const Scene& scene) {
-  Bounds bounds = bounds_of(scene);
+  const Bounds bounds = find_main_part(scene).bounds;
   if (!bounds.is_empty()) return bounds;
   vec3 center(0.0F);
   for (const Object& object : scene.objects) {

@@ -118,9 +118,10 @@ class Scene:
 
     @staticmethod
     def load(path: str | os.PathLike[str], *, strict: bool = False, variant: str = "") -> Scene:
-        """Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a glTF file that requires
-        an extension which is not known. variant: of the file's `variants` the one that is shown. Raises InputError with
-        every problem of the file, UsageError where it has no such variant. See `warnings` too."""
+        """Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a file for anything
+        that its format forbids, and for required extensions of glTF that are not known; otherwise geometry that can be
+        drawn is drawn, and `warnings` lists what was repaired. variant: the one of the file's `variants` that is shown.
+        Raises InputError with every problem of the file, UsageError where it has no such variant."""
         scene = Scene(center=(0.0, 0.0, 0.0))
         file = Path(os.fsdecode(path))
         base = _promin.Scene.load(str(file), bool(strict), str(variant))

@@ -17,6 +17,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 const std::string kView = "v\nfrom 1 2 8\nat 1 2 3\nup 0 2 1\nangle 45\nhither 0.5\nresolution 640 480\n";
@@ -57,6 +58,14 @@ TEST_F(NffTest, ViewsAreCameras) {
 
 TEST_F(NffTest, TheBackgroundMayFollowTheView) {
   EXPECT_EQ(load(kView + "b 1 0 0\n" + kMaterial + "s 0 0 0 1\n").environment.background, vec3(1, 0, 0));
+}
+
+TEST_F(NffTest, NormalsAgainstTheWindingAreWarnedOf) {
+  const std::string turned = "pp 3\n0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n";
+  const std::string right = "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n";
+  EXPECT_THAT(load(kMaterial + right).warnings, Each(Not(HasSubstr("against"))));
+  EXPECT_THAT(load(kMaterial + turned + right + turned).warnings,
+              Contains("2 triangles have vertex normals that lie against their winding: they are turned"));
 }
 
 TEST_F(NffTest, LinesMeanNothing) {

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "promin/scene.h"
+
+namespace promin {
+
+/// The part of a scene that is worth looking at.
+struct MainPart {
+  /// Bounds of everything finite in it; empty where nothing is finite.
+  Bounds bounds;
+  /// The number of finite primitives outside of it.
+  uint64_t stray_count = 0;
+};
+
+/// Everything finite, unless 99 percent of its surface lie in a box of less than 1/64 of its size: then the bounds of
+/// what has its centre there. A picture of everything would show that box as a few pixels. Throws InputError as
+/// bounds_of() does.
+MainPart find_main_part(const Scene& scene);
+
+}  // namespace promin
