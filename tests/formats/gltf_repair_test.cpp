@@ -65,7 +65,7 @@ const Repair kRepairs[] = {
     // The document
     {"NoAsset", [](auto& g) { g.json.erase("asset"); }, "the version is missing, asset.version; glTF 2.0 is taken"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
-     "the version is none of glTF's (2), asset.version; glTF 2.0 is taken"},
+     "the version is not written as glTF has it (2), asset.version; glTF 2.0 is taken"},
     {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; it is ignored"},
     {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; },
      "another value stands where a string belongs (7), extensions.KHR_implicit_shapes.shapes[0].name; it is ignored"},

@@ -261,8 +261,8 @@ class BufferReader {
     if (bytes.size() < source["byteLength"].get<uint64_t>()) repair_length(source["byteLength"], index);
   }
 
-  /// Takes a buffer that is shorter than it says where its views do without what is missing, or where no more than
-  /// padding is, which is 0.
+  /// Takes a buffer that is shorter than it says where its views need none of the missing bytes. Up to three missing
+  /// bytes that they need are padding, and become 0.
   void repair_length(uint64_t length, size_t index) {
     std::span<const std::byte>& bytes = buffers_.bytes[index];
     const uint64_t needed = needed_by_meshes_[index];

@@ -82,7 +82,7 @@ uint64_t needed_bytes(const std::string& type, int component_type) {
   return bytes - ((column + 3) / 4 * 4 - column);
 }
 
-/// Whether an attribute of vertices changes no more than how they look, or nothing.
+/// Whether an attribute changes how vertices look and not where they are.
 bool shades_only(std::string_view attribute) {
   constexpr std::string_view kShading[] = {"NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
   return std::ranges::find(kShading, attribute) != std::end(kShading) || !is_read_attribute(attribute);
@@ -100,7 +100,7 @@ void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t strid
                 place, "correct the count, the offset or the buffer view");
 }
 
-/// A stride of 0 is none.
+/// A stride of 0 stands for packed elements.
 uint64_t stride_of(const json& view, uint64_t element) {
   const uint64_t stride = view.value("byteStride", element);
   return stride == 0 ? element : stride;

@@ -24,7 +24,7 @@ int index_of(const json& object, const char* name) {
   return object.value(name, -1);
 }
 
-// Of what nothing uses the views are empty (check_gltf_schema).
+// What nothing uses is null (check_gltf_schema), and its view is empty.
 
 GltfBufferView view_of(const json& source) {
   if (source.is_null()) return {};

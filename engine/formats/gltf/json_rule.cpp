@@ -51,7 +51,7 @@ int count_steps(std::string_view path) {
   return steps;
 }
 
-/// The path of what is left out where a rule is broken.
+/// The path of the part that goes where a rule is broken.
 std::string_view part_of(const JsonRule& rule) {
   if (!rule.part.empty()) return rule.part;
   if (!rule.is_required) return rule.path;

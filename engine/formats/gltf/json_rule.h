@@ -29,7 +29,7 @@ struct JsonRule {
   /// Whether a value that breaks the rule is left out, with a warning, instead of refused. Where it is required, what
   /// holds it is left out.
   bool is_repaired = false;
-  /// Of repaired numbers: one out of range is clamped; without a warning where it is off by rounding.
+  /// Whether a repaired number out of range is clamped. That gives no warning where the number is off by rounding.
   bool is_clamped = true;
   /// What is left out instead: a part of `path` from its beginning; empty for the above.
   std::string_view part = {};
@@ -91,7 +91,7 @@ class JsonCheck {
   JsonCheck(nlohmann::json& document, bool is_strict, LoadReport& report)
       : document_(document), is_strict_(is_strict), report_(report) {}
 
-  /// Of the array at the path `only_used`, if any, only elements that indices point to are looked at.
+  /// In the array at the path `only_used`, if there is one, only elements that indices point to are checked.
   void check(const JsonRule& rule, std::string_view only_used = {});
 
   /// Whether an index that was checked points to the element of the array at `target`.

@@ -191,7 +191,7 @@ class SceneReader {
   Scene scene_;
   std::map<std::tuple<size_t, size_t, std::vector<double>>, uint32_t> mesh_geometries_;
   uint64_t triangle_count_ = 0;
-  /// Whether a mesh primitive that a node shows is none that can be drawn.
+  /// Whether a node shows a mesh primitive that cannot be drawn.
   bool has_undrawn_ = false;
   uint32_t default_material_ = kNoMaterial;
 };

@@ -221,7 +221,7 @@ class PrimitiveReader {
     mesh.colors.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* c = &values[components * vertex];
-      // Of alpha no more than 0...1 means anything (glTF 2.0, section 3.7.2.1).
+      // Alpha has a meaning in 0...1 alone (glTF 2.0, section 3.7.2.1).
       const vec4 given(c[0], c[1], c[2], components == 4 ? c[3] : 1.0F);
       const vec4 color(drawable(given.r), drawable(given.g), drawable(given.b), std::min(drawable(given.a), 1.0F));
       if (const int wrong = find_wrong_component(given, color); wrong >= 0) {

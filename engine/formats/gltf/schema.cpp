@@ -384,7 +384,7 @@ void drop_unused(json& document, const char* name, const JsonCheck& check, const
   }
 }
 
-/// Of buffers that nothing uses the reader still says where bytes are missing.
+/// Whether a buffer cannot even be asked for its bytes, which the reader does of buffers that nothing uses.
 bool is_broken_buffer(const json& buffer) {
   if (!buffer.is_object()) return true;
   const auto length = buffer.find("byteLength");
@@ -419,7 +419,7 @@ void check_gltf_version(json& document, LoadReport& report) {
   } else if (version != "2" && !version.starts_with("2.")) {
     report.refuse("glTF version " + quote(version) + " is not 2.x", "asset.version", "export the file as glTF 2.0");
   } else if (!given->is_string() || version == "2") {
-    report.repair({"the version is none of glTF's", version, "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
+    report.repair({"the version is not written as glTF has it", version, "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
   }
   const auto least = asset.find("minVersion");
   if (least != asset.end() && *least != "2.0") {
