@@ -144,11 +144,11 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
 }
 
 bool has_format(const json& accessor, std::string_view attribute) {
-  const std::string type = accessor["type"];
+  const auto& type = accessor["type"].get_ref<const std::string&>();
   const int component_type = accessor["componentType"];
   const bool normalized = accessor.value("normalized", false);
   return std::ranges::any_of(kFormats, [&](const Format& format) {
-    return format.attribute == attribute && format.type == type && format.component_type == component_type &&
+    return format.component_type == component_type && format.attribute == attribute && format.type == type &&
            format.normalized.value_or(normalized) == normalized;
   });
 }
@@ -180,34 +180,46 @@ void check_attributes(const json& attributes, const json& accessors, const std::
   }
 }
 
+/// Whether an attribute that only shades cannot be read beside the others. Says why.
+bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_count, const std::string& place,
+                 LoadReport& report) {
+  const auto count = accessor["count"].get<uint64_t>();
+  const bool has_wrong_format = is_read_attribute(name) && !has_format(accessor, name);
+  if (has_wrong_format) {
+    report.repair({"the format of an attribute is not allowed", say_format(accessor), place,
+                   "export it as the glTF specification has it", "the attribute is left out"});
+  } else if (count != vertex_count) {
+    report.repair({"an attribute has another number of elements than there are vertices",
+                   std::to_string(count) + " for " + std::to_string(vertex_count), place,
+                   "give all attributes one count", "the attribute is left out"});
+  }
+  return has_wrong_format || count != vertex_count;
+}
+
+void check_vertex_count(const json& accessor, uint64_t vertex_count, const std::string& place, LoadReport& report) {
+  const auto count = accessor["count"].get<uint64_t>();
+  if (count == vertex_count) return;
+  report.refuse("the attribute has " + std::to_string(count) + " elements, there are " + std::to_string(vertex_count) +
+                    " vertices",
+                place, "give all attributes one count");
+}
+
 /// Checks what is beside each other in each vertex. What only shades is left out where it is wrong.
 void check_vertices(json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   const auto positions = attributes.find("POSITION");
   if (positions == attributes.end()) return;
   const auto vertex_count = accessors[positions->get<size_t>()]["count"].get<uint64_t>();
   for (auto attribute = attributes.begin(); attribute != attributes.end();) {
-    const std::string name = attribute.key();
+    const std::string& name = attribute.key();
     const std::string at = place + "." + name;
     const json& accessor = accessors[attribute->get<size_t>()];
-    const auto count = accessor["count"].get<uint64_t>();
-    const bool is_wrong_format = is_read_attribute(name) && !has_format(accessor, name);
-    const bool is_left_out = shades_only(name) && (is_wrong_format || count != vertex_count);
-    if (is_left_out && is_wrong_format) {
-      report.repair({"the format of an attribute is not allowed", say_format(accessor), at,
-                     "export it as the glTF specification has it", "the attribute is left out"});
-    } else if (is_left_out) {
-      report.repair({"an attribute has another number of elements than there are vertices",
-                     std::to_string(count) + " for " + std::to_string(vertex_count), at,
-                     "give all attributes one count", "the attribute is left out"});
-    } else {
-      check_format(accessor, name, at, report);
-      if (count != vertex_count) {
-        report.refuse("the attribute has " + std::to_string(count) + " elements, there are " +
-                          std::to_string(vertex_count) + " vertices",
-                      at, "give all attributes one count");
-      }
+    if (shades_only(name) && is_left_out(name, accessor, vertex_count, at, report)) {
+      attribute = attributes.erase(attribute);
+      continue;
     }
-    attribute = is_left_out ? attributes.erase(attribute) : std::next(attribute);
+    check_format(accessor, name, at, report);
+    check_vertex_count(accessor, vertex_count, at, report);
+    ++attribute;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -68,6 +69,25 @@ std::string say_left_out(const JsonRule& rule) {
   return "what holds it is ignored";
 }
 
+/// Where a value stands in a document, in words only where a message needs them.
+struct Place {
+  static constexpr size_t kNoIndex = std::numeric_limits<size_t>::max();
+
+  const Place* outer = nullptr;
+  std::string_view name = {};
+  size_t index = kNoIndex;
+
+  std::string text() const {
+    if (outer == nullptr) return "";
+    const std::string prefix = outer->text();
+    if (index != kNoIndex) return prefix + "[" + std::to_string(index) + "]";
+    return (prefix.empty() ? "" : prefix + ".") + std::string(name);
+  }
+
+  /// Whether it is a member of the document itself, of this name.
+  bool is_part(std::string_view part) const { return outer != nullptr && outer->outer == nullptr && name == part; }
+};
+
 /// Checks the values at the path of one rule.
 class RuleCheck {
  public:
@@ -84,7 +104,7 @@ class RuleCheck {
 
   /// Checks every value at `path` below `value`. The result says what of it is left out: 0 nothing, 1 the value, 2 what
   /// holds it, and so on.
-  int visit(json& value, const std::string& place, std::string_view path) {
+  int visit(json& value, const Place& place, std::string_view path) {
     if (path.empty()) return check_value(value, place) ? 0 : level_;
     if (path.starts_with("[]")) return visit_elements(value, place, path.substr(2));
     if (path.front() == '.') return visit(value, place, path.substr(1));
@@ -95,12 +115,13 @@ class RuleCheck {
   const std::vector<bool>& used() const { return used_; }
 
  private:
-  int visit_elements(json& array, const std::string& place, std::string_view path) {
+  int visit_elements(json& array, const Place& place, std::string_view path) {
     if (!array.is_array()) return 0;
+    const bool is_partial = place.is_part(skipped_in_);
     int level = 0;
     for (size_t i = 0; i < array.size(); ++i) {
-      if (place == skipped_in_ && (i >= kept_.size() || !kept_[i])) continue;
-      const int level_of_element = visit(array[i], place + "[" + std::to_string(i) + "]", path);
+      if (is_partial && (i >= kept_.size() || !kept_[i])) continue;
+      const int level_of_element = visit(array[i], Place{.outer = &place, .index = i}, path);
       const bool is_no_object = path.empty() && rule_.kind == JsonKind::kObject;
       if (level_of_element == 1) array[i] = is_no_object ? json::object() : json();
       level = std::max(level, level_of_element - 1);
@@ -108,27 +129,26 @@ class RuleCheck {
     return level;
   }
 
-  int visit_member(json& object, const std::string& place, std::string_view path) {
+  int visit_member(json& object, const Place& place, std::string_view path) {
     if (!object.is_object()) return 0;
     const size_t end = std::min(path.find_first_of(".["), path.size());
-    const std::string name(path.substr(0, end));
-    const std::string prefix = place.empty() ? "" : place + ".";
-    if (name == "*") return visit_all_members(object, prefix, path.substr(end));
+    const std::string_view name = path.substr(0, end);
+    if (name == "*") return visit_all_members(object, place, path.substr(end));
     const auto member = object.find(name);
     if (member != object.end()) {
-      const int level = visit(*member, prefix + name, path.substr(end));
+      const int level = visit(*member, Place{.outer = &place, .name = name}, path.substr(end));
       if (level == 1) object.erase(member);
       return std::max(level - 1, 0);
     }
     if (!rule_.is_required || end < path.size()) return 0;
-    const bool may_stay = fail(quote(name), "", "is missing", place.empty() ? "the top level" : place, "add it");
+    const bool may_stay = fail(quote(name), "", "is missing", place, "add it");
     return may_stay ? 0 : level_ - 1;
   }
 
-  int visit_all_members(json& object, const std::string& prefix, std::string_view path) {
+  int visit_all_members(json& object, const Place& place, std::string_view path) {
     int level = 0;
     for (auto member = object.begin(); member != object.end();) {
-      const int level_of_member = visit(member.value(), prefix + member.key(), path);
+      const int level_of_member = visit(member.value(), Place{.outer = &place, .name = member.key()}, path);
       member = level_of_member == 1 ? object.erase(member) : std::next(member);
       level = std::max(level, level_of_member - 1);
     }
@@ -136,7 +156,7 @@ class RuleCheck {
   }
 
   /// The checks return whether the value may stay.
-  bool check_value(json& value, const std::string& place) {
+  bool check_value(json& value, const Place& place) {
     switch (rule_.kind) {
       case JsonKind::kObject:
         return expect(value.is_object(), value, place, "an object");
@@ -161,17 +181,18 @@ class RuleCheck {
   }
 
   /// Repairs or refuses what is wrong with a value: `shown` is the value, `subject` names its kind.
-  bool fail(const std::string& subject, const std::string& shown, const std::string& predicate,
-            const std::string& place, const std::string& cure) {
+  bool fail(const std::string& subject, const std::string& shown, const std::string& predicate, const Place& place,
+            const std::string& cure) {
+    const std::string where = place.outer == nullptr ? "the top level" : place.text();
     if (rule_.is_repaired) {
-      report_.repair({subject + " " + predicate, shown, place, cure, say_left_out(rule_)});
+      report_.repair({subject + " " + predicate, shown, where, cure, say_left_out(rule_)});
       return false;
     }
-    report_.refuse((shown.empty() ? subject : shown) + " " + predicate, place, cure);
+    report_.refuse((shown.empty() ? subject : shown) + " " + predicate, where, cure);
     return true;
   }
 
-  bool expect(bool is_met, const json& value, const std::string& place, const std::string& wanted) {
+  bool expect(bool is_met, const json& value, const Place& place, const std::string& wanted) {
     if (is_met) return true;
     const std::string got = value.is_number() ? value.dump() : std::string("a JSON ") + value.type_name();
     return fail("another value", got, "stands where " + wanted + " belongs", place, "write " + wanted);
@@ -187,11 +208,11 @@ class RuleCheck {
     return true;
   }
 
-  bool check_number(json& value, const std::string& place) {
+  bool check_number(json& value, const Place& place) {
     return value.is_number() ? check_range(value, place) : expect(false, value, place, "a number");
   }
 
-  bool check_range(json& value, const std::string& place) {
+  bool check_range(json& value, const Place& place) {
     const auto number = value.get<double>();
     if (number >= rule_.lo && number <= rule_.hi) return true;
     const std::string range = written(rule_.lo) + " to " + written(rule_.hi);
@@ -201,25 +222,25 @@ class RuleCheck {
     }
     const bool is_rounded = number >= rule_.lo - kMostRounding && number <= rule_.hi + kMostRounding;
     if (!is_rounded || is_strict_) {
-      report_.repair({"a number is out of range", value.dump(), place, cure, "it is clamped to " + range});
+      report_.repair({"a number is out of range", value.dump(), place.text(), cure, "it is clamped to " + range});
     }
     value = std::clamp(number, rule_.lo, rule_.hi);
     return true;
   }
 
-  bool check_numbers(json& value, const std::string& place) {
+  bool check_numbers(json& value, const Place& place) {
     if (!value.is_array() || value.size() != rule_.count) {
       return expect(false, value, place, "an array of " + std::to_string(rule_.count) + " numbers");
     }
     bool may_stay = true;
     for (size_t i = 0; i < value.size(); ++i) {
-      const bool is_right = check_number(value[i], place + "[" + std::to_string(i) + "]");
+      const bool is_right = check_number(value[i], Place{.outer = &place, .index = i});
       may_stay = may_stay && is_right;
     }
     return may_stay;
   }
 
-  bool check_index(json& value, const std::string& place) {
+  bool check_index(json& value, const Place& place) {
     if (!make_integer(value)) return expect(false, value, place, "an integer");
     const auto number = value.get<double>();
     if (number >= 0.0 && number < static_cast<double>(used_.size())) {
@@ -233,7 +254,7 @@ class RuleCheck {
     return fail("an index", "index " + value.dump(), "is out of range", place, cure);
   }
 
-  bool check_choice(json& value, const std::string& place) {
+  bool check_choice(json& value, const Place& place) {
     make_integer(value);
     const std::string got = value.is_string() ? value.get<std::string>() : value.dump();
     std::string_view rest = rule_.target;
@@ -246,7 +267,7 @@ class RuleCheck {
   }
 
   /// "5126", a string, is not the number 5126.
-  bool check_choice_type(const json& value, const std::string& place) {
+  bool check_choice_type(const json& value, const Place& place) {
     const bool is_number_wanted = rule_.target.front() >= '0' && rule_.target.front() <= '9';
     return expect(is_number_wanted == value.is_number(), value, place, is_number_wanted ? "a number" : "a string");
   }
@@ -266,7 +287,7 @@ class RuleCheck {
 
 void JsonCheck::check(const JsonRule& rule, std::string_view only_used) {
   RuleCheck check(document_, rule, is_strict_, report_, only_used, used_[only_used]);
-  check.visit(document_, "", rule.path);
+  check.visit(document_, Place(), rule.path);
   if (rule.kind != JsonKind::kIndex) return;
   std::vector<bool>& used = used_[rule.target];
   used.resize(std::max(used.size(), check.used().size()));
