@@ -58,7 +58,7 @@ std::vector<int> root_nodes(const GltfDocument& document) {
 }
 
 /// Nodes with several parents may stand for more places than the size of the file bounds.
-constexpr size_t kMostFurtherPlaces = size_t{1} << 20;
+constexpr size_t kMostFurtherPlaces = size_t{1} << 18;
 
 }  // namespace
 

@@ -27,7 +27,7 @@ bool has_no_area(const dmat4& world_from_object);
 
 /// The nodes of the default scene, depth first, parents before children: the order that numbers objects and cameras. A
 /// node with several parents is placed below each. Nodes whose transform overflows go to the report, and so do more
-/// places than the file's nodes and a million.
+/// places than the file's nodes and 2^18 more.
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report);
 
 }  // namespace promin
