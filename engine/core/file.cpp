@@ -17,6 +17,7 @@
 #include <mutex>
 #include <set>
 
+#include "core/stand_in.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -59,6 +60,9 @@ std::vector<std::byte> read_file(const fs::path& file, uint64_t most_bytes) {
   stream.seekg(0);
   if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     throw InputError({"cannot read the file to its end", file.string(), "check the disk"});
+  }
+  if (const StandIn* stand_in = find_stand_in({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
+    throw InputError({std::string("the file is ") + stand_in->what, file.string(), stand_in->cure});
   }
   return bytes;
 }

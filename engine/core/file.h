@@ -32,7 +32,7 @@ struct FileStamp {
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
 /// The whole of a regular file, or its first `most_bytes`. Throws InputError, with the place and the cure, if it is
-/// missing, a folder, not readable or empty.
+/// missing, a folder, not readable, empty, or no more than a stand-in for the file (core/stand_in.h).
 std::vector<std::byte> read_file(const std::filesystem::path& file,
                                  uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 

@@ -52,6 +52,10 @@ class LoadReport {
   /// than 3 corners, line 12 and 11 more; the face is left out". A strict report refuses each instead.
   void repair(const Fault& fault);
 
+  /// Is called where a part of the scene is to be seen and cannot be drawn.
+  void lose_geometry() { has_lost_geometry_ = true; }
+  bool has_lost_geometry() const { return has_lost_geometry_; }
+
   /// Is called for each file before it is read, or found missing.
   void add_source(const std::filesystem::path& file);
   const std::vector<SourceFile>& sources() const { return sources_; }
@@ -72,6 +76,7 @@ class LoadReport {
 
   std::filesystem::path file_;
   bool is_strict_;
+  bool has_lost_geometry_ = false;
   std::vector<Problem> problems_;
   size_t problem_count_ = 0;
   std::vector<Warning> warnings_;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/rounding.h"
 #include "core/utf8.h"
+#include "formats/file_kind.h"
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
 #include "formats/nff/load_nff.h"
@@ -26,6 +27,8 @@ struct SceneFormat {
   const char* ending;
   Scene (*load)(const LoadOptions&, LoadReport&);
   bool has_variants = false;
+  /// Whether a file is a mesh and nothing else.
+  bool is_mesh = false;
 };
 
 bool has_anything_to_draw(const Scene& scene) {
@@ -89,8 +92,9 @@ void show_names_in_utf8(Scene& scene) {
   show(scene.cameras);
 }
 
-constexpr SceneFormat kFormats[] = {{".gltf", load_gltf, true}, {".glb", load_gltf, true}, {".obj", load_obj},
-                                    {".ply", load_ply},         {".stl", load_stl},        {".nff", load_nff}};
+constexpr SceneFormat kFormats[] = {{".gltf", load_gltf, true},      {".glb", load_gltf, true},
+                                    {".obj", load_obj, false, true}, {".ply", load_ply, false, true},
+                                    {".stl", load_stl, false, true}, {".nff", load_nff}};
 
 const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
@@ -99,7 +103,30 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
     if (ending == format.ending) return format;
     known += known.empty() ? format.ending : std::string(", ") + format.ending;
   }
-  throw InputError({"unknown scene format " + quote(ending), file.string(), "use a file that ends in " + known});
+  const std::string what = "unknown scene format " + quote(ending);
+  const FileKind kind = find_file_kind(file);
+  if (kind.name.empty()) throw InputError({what, file.string(), "use a file that ends in " + known});
+  throw InputError({what + ", the file is " + kind.name, file.string(), kind.cure});
+}
+
+/// Throws InputError where the first bytes of a file that cannot be loaded say that its ending is wrong.
+void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& format) {
+  const FileKind kind = find_file_kind(file);
+  const auto has_ending = [&](const SceneFormat& other) { return kind.ending == other.ending; };
+  const auto* const own = std::ranges::find_if(kFormats, has_ending);
+  const bool is_right = own != std::end(kFormats) && own->load == format.load;
+  if (kind.name.empty() || is_right) return;
+  throw InputError({"the file is " + kind.name + ", whatever its ending says", file.string(), kind.cure});
+}
+
+/// A picture of nothing is taken for one of the scene: throws InputError where a mesh has nothing to draw, or a scene
+/// nothing of what it shows. One that shows nothing stays, with a warning.
+void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
+  if (has_anything_to_draw(scene)) return;
+  const std::string what = "the scene holds nothing to draw";
+  if (!format.is_mesh && !report.has_lost_geometry()) return scene.warnings.push_back(what);
+  const std::string reason = scene.warnings.empty() ? "" : " (" + scene.warnings.front() + ")";
+  throw InputError({what + reason, report.file().string(), "export it with triangles"});
 }
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
@@ -113,7 +140,14 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   if (!is_regular_file(status) && !is_directory(status)) {
     throw InputError({"not a regular file", file.string(), "name the scene's file"});
   }
-  return format.load(options, report);
+  try {
+    Scene scene = format.load(options, report);
+    check_geometry(format, report, scene);
+    return scene;
+  } catch (const InputError&) {
+    refuse_wrong_ending(file, format);
+    throw;
+  }
 }
 
 }  // namespace
@@ -133,7 +167,6 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
     warn_of_turned_normals(scene);
     warn_of_stray_geometry(scene);
     show_names_in_utf8(scene);
-    if (!has_anything_to_draw(scene)) scene.warnings.push_back("the scene holds nothing to draw");
     return scene;
   } catch (...) {
     sources = report.sources();

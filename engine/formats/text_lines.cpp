@@ -5,11 +5,22 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 
 namespace promin {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r\f\v";
+
+std::string_view take_up_to(std::string_view& line, std::string_view ends) {
+  const size_t begin = std::min(line.find_first_not_of(kSpace), line.size());
+  line.remove_prefix(begin);
+  const size_t end = std::min(line.find_first_of(ends), line.size());
+  const std::string_view word = line.substr(0, end);
+  line.remove_prefix(end);
+  return word;
+}
 
 template <class Number>
 std::optional<Number> parse_whole(std::string_view word) {
@@ -27,6 +38,10 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
 
+std::string_view without_zero_bytes_at_end(std::string_view text) {
+  return text.substr(0, text.find_last_not_of('\0') + 1);
+}
+
 bool TextLines::advance() {
   if (rest_.empty()) return false;
   const size_t end = rest_.find('\n');
@@ -38,12 +53,11 @@ bool TextLines::advance() {
 }
 
 std::string_view take_word(std::string_view& line) {
-  const size_t begin = std::min(line.find_first_not_of(kSpace), line.size());
-  line.remove_prefix(begin);
-  const size_t end = std::min(line.find_first_of(" \t\r\f\v#"), line.size());
-  const std::string_view word = line.substr(0, end);
-  line.remove_prefix(end);
-  return word;
+  return take_up_to(line, " \t\r\f\v#");
+}
+
+std::string_view take_field(std::string_view& line) {
+  return take_up_to(line, kSpace);
 }
 
 std::string_view trim(std::string_view line) {
@@ -55,6 +69,22 @@ std::string_view trim(std::string_view line) {
 std::optional<double> parse_number(std::string_view word) {
   const std::optional<double> number = parse_whole<double>(word);
   return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<double> parse_any_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool is_whole = end == word.data() + word.size();
+  if (error == std::errc() && is_whole) return number;
+  // Too large or too small for a double.
+  if (error == std::errc::result_out_of_range && is_whole) return std::strtod(std::string(word).c_str(), nullptr);
+  // The C library of Windows wrote infinity and NaN so: "-1.#INF", "1.#QNAN".
+  const size_t mark = word.find(".#");
+  if (mark == std::string_view::npos) return std::nullopt;
+  const double infinite = std::numeric_limits<double>::infinity();
+  if (word.substr(mark + 2).starts_with("INF")) return word.starts_with('-') ? -infinite : infinite;
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::optional<int64_t> parse_integer(std::string_view word) {

@@ -596,6 +596,16 @@ TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
 }
 
+TEST_F(GltfRepairTest, TheLastColumnOfAMatrixNeedsNoPadding) {
+  GltfBuilder gltf = triangle_gltf();
+  const size_t view = gltf.add_view(std::vector<uint8_t>(14, 0));
+  // Two of 2 x 2 bytes: columns of 2 lie 4 apart.
+  gltf.json["accessors"].push_back({{"bufferView", view}, {"componentType", 5121}, {"count", 2}, {"type", "MAT2"}});
+  EXPECT_EQ(strict_refusal("scene.gltf", gltf.text()), "");
+  gltf.json["bufferViews"][view]["byteLength"] = 13;
+  EXPECT_THAT(strict_refusal("scene.gltf", gltf.text()), HasSubstr("end at byte 14 of a buffer view of 13"));
+}
+
 TEST_F(GltfRepairTest, EmptyBuffersHoldNothing) {
   GltfBuilder gltf = triangle_gltf();
   gltf.text();
@@ -669,10 +679,12 @@ TEST_F(GltfRepairTest, VersionOneIsNamedInTextAndGlb) {
 TEST_F(GltfRepairTest, MeshesOfWhichNoneCanBeDrawnAreRefused) {
   GltfBuilder gltf = triangle_gltf();
   primitive(gltf)["mode"] = 1;
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("none of the meshes can be drawn"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()),
+              HasSubstr("the scene holds nothing to draw (a mesh primitive holds points or lines"));
   gltf.add_node({{"mesh", 0}});
   gltf.json["nodes"][0]["scale"] = {0, 0, 0};
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("none of the meshes can be drawn"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()),
+              HasSubstr("the scene holds nothing to draw (a mesh primitive holds points or lines"));
   gltf.json["nodes"][1]["scale"] = {0, 0, 0};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("nothing to draw"))) << "all is hidden";
 }

@@ -333,7 +333,7 @@ TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
     GltfBuilder bare = shape_gltf(shape, changes);
     bare.json["meshes"][0]["primitives"][0]["attributes"] = json::object();
     bare.json["meshes"][0]["primitives"][0].erase("indices");
-    EXPECT_THAT(refusal("scene.gltf", bare.text()), HasSubstr("none of the meshes can be drawn"));
+    EXPECT_THAT(refusal("scene.gltf", bare.text()), HasSubstr("the scene holds nothing to draw"));
     bare.show({{"attributes", {{"POSITION", 0}}}});
     const LoadedScene nothing = load(bare);
     EXPECT_TRUE(std::holds_alternative<world::NotDrawn>(nothing.objects.at(0).shape));

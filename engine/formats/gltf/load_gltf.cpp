@@ -48,7 +48,6 @@ class SceneReader {
     if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
     warn_about_motion();
     report_.throw_if_refused();
-    refuse_nothing_drawn();
     textures.finish(scene_);
     scene_.warnings = report_.warnings();
     return std::move(scene_);
@@ -95,11 +94,11 @@ class SceneReader {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
       // A scale of 0 is another way to hide a node.
-      if (placed.is_visible && !has_no_area(placed.world_from_object)) {
-        read_geometry(placed, mesh, primitive, object);
-        if (object.geometry == Object::kNoGeometry) has_undrawn_ = true;
-      }
-      if (object.geometry != Object::kNoGeometry) {
+      const bool is_shown = placed.is_visible && !has_no_area(placed.world_from_object);
+      if (is_shown) read_geometry(placed, mesh, primitive, object);
+      if (object.geometry == Object::kNoGeometry) {
+        if (is_shown) report_.lose_geometry();
+      } else {
         object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
       }
       scene_.objects.push_back(std::move(object));
@@ -123,16 +122,6 @@ class SceneReader {
     place_gltf_mesh(placed, geometry,
                     "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]", scene_,
                     object, report_);
-  }
-
-  /// A file whose nodes show meshes of which none can be drawn is no scene; one that hides all is.
-  void refuse_nothing_drawn() {
-    const auto is_drawn = [](const Object& object) { return object.geometry != Object::kNoGeometry; };
-    if (!has_undrawn_ || std::ranges::any_of(scene_.objects, is_drawn)) return;
-    report_.refuse(
-        "none of the meshes can be drawn: they hold points or lines, or have no positions or too few corners", "meshes",
-        "export triangles");
-    report_.throw_if_refused();
   }
 
   uint32_t add(Geometry geometry) {
@@ -191,8 +180,6 @@ class SceneReader {
   Scene scene_;
   std::map<std::tuple<size_t, size_t, std::vector<double>>, uint32_t> mesh_geometries_;
   uint64_t triangle_count_ = 0;
-  /// Whether a node shows a mesh primitive that cannot be drawn.
-  bool has_undrawn_ = false;
   uint32_t default_material_ = kNoMaterial;
 };
 

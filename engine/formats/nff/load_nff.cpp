@@ -10,6 +10,7 @@
 
 #include "core/file.h"
 #include "formats/nff/text.h"
+#include "formats/text_lines.h"
 #include "formats/triangulate.h"
 
 namespace promin {
@@ -54,7 +55,10 @@ class PolygonMesh {
 
   bool has_directions(std::span<const vec3> normals) {
     const bool result = std::ranges::find(normals, vec3(0.0F)) == normals.end();
-    if (!result) report_.warn("there are normals of no length, polygons that have them are drawn sharp");
+    if (!result) {
+      report_.repair({"a polygon has a normal of no length, or one that is no number", "", "",
+                      "give each corner a direction", "the polygon is drawn sharp"});
+    }
     return result;
   }
 
@@ -141,7 +145,8 @@ void add_group(const NffText& text, const NffGroup& group, uint32_t number, Scen
 
 Scene load_nff(const LoadOptions& /*options*/, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(report.file());
-  const NffText text = parse_nff_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
+  const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const NffText text = parse_nff_text(without_zero_bytes_at_end(file), report);
   report.throw_if_refused();
 
   Scene scene;
@@ -153,6 +158,7 @@ Scene load_nff(const LoadOptions& /*options*/, LoadReport& report) {
   for (size_t i = 0; i < text.groups.size(); ++i) {
     add_group(text, text.groups[i], static_cast<uint32_t>(i), scene, report);
   }
+  report.throw_if_refused();
   scene.warnings = report.warnings();
   return scene;
 }

@@ -3,12 +3,14 @@
 #include "formats/nff/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 
-#include "formats/nff/tokens.h"
 #include "formats/text_lines.h"
+#include "formats/text_words.h"
 #include "formats/triangulate.h"
 #include "promin/validate.h"
 #include "promin/view.h"
@@ -21,12 +23,15 @@ constexpr double kMostFactor = 1e7;
 /// A view along its up to this sine has no top.
 constexpr double kLeastSine = 1e-6;
 
+/// What a view is made of.
+constexpr std::string_view kViewParts[] = {"from", "at", "up", "angle", "hither", "resolution"};
+
 class NffParser {
  public:
-  NffParser(std::string_view text, LoadReport& report) : tokens_(text), report_(report) {}
+  NffParser(std::string_view text, LoadReport& report) : words_(text), report_(report) {}
 
   NffText parse() {
-    while (!is_broken_ && !tokens_.next().empty()) read_statement(tokens_.take());
+    while (!is_broken_ && !words_.next().empty()) read_statement(words_.take());
     return std::move(out_);
   }
 
@@ -36,49 +41,91 @@ class NffParser {
     /// What follows it, for messages.
     const char* form;
     void (NffParser::*read)();
+    /// Whether it is a shape: the number of its words tells where the next statement begins.
+    bool is_shape = true;
   };
+  static constexpr size_t kStatementCount = 8;
+  static const std::array<Statement, kStatementCount> kStatements;
+
+  static const Statement* find_statement(std::string_view keyword) {
+    const auto* const found = std::ranges::find(kStatements, keyword, &Statement::keyword);
+    return found == kStatements.end() ? nullptr : found;
+  }
+
+  static bool is_view_part(std::string_view word) {
+    return std::ranges::find(kViewParts, word) != std::end(kViewParts);
+  }
 
   void read_statement(std::string_view keyword) {
-    static constexpr Statement kStatements[] = {
-        {"p", "p and the number of corners, then x y z of each", &NffParser::read_polygon},
-        {"pp", "pp and the number of corners, then x y z and a normal of each", &NffParser::read_patch},
-        {"s", "s x y z radius", &NffParser::read_sphere},
-        {"c", "c x y z radius of the base, then x y z radius of the apex", &NffParser::read_cone},
-        {"f", "f red green blue Kd Ks Shine T index-of-refraction", &NffParser::read_material},
-        {"l", "l x y z, and red green blue where it has a colour", &NffParser::read_light},
-        {"b", "b red green blue", &NffParser::read_background},
-        {"v", "v from x y z at x y z up x y z angle degrees hither distance resolution width height",
-         &NffParser::read_view}};
-    const auto* const found = std::ranges::find(kStatements, keyword, &Statement::keyword);
-    if (found == std::end(kStatements)) {
+    const Statement* found = find_statement(keyword);
+    const bool is_further_number = statement_ != nullptr && !statement_->is_shape && parse_any_number(keyword);
+    if (found == nullptr && is_further_number)
+      return repair("has more numbers than it takes", keyword, "they are ignored");
+    if (found == nullptr) {
       return refuse(quote(keyword) + " is no statement of NFF", "use v b l f c s p or pp, each with all its numbers");
     }
     statement_ = found;
+    is_placed_ = true;
     (this->*found->read)();
   }
 
   void refuse(const std::string& what, const std::string& cure) {
-    if (!is_broken_) report_.refuse(what, tokens_.place(), cure);
+    if (!is_broken_) report_.refuse(what, words_.place(), cure);
     is_broken_ = true;
   }
 
   void refuse(const std::string& what) { refuse(what, std::string("write ") + statement_->form); }
 
-  /// Takes the next word as a number; 0 once a problem is reported, here and below.
-  double take_number(double least, double most, const char* range) {
+  /// `what` is said of the statement.
+  void repair(const std::string& what, std::string_view word, const std::string& repair) {
+    report_.repair({quote(statement_->keyword) + " " + what, word.empty() ? "" : quote(word), words_.place(),
+                    std::string("write ") + statement_->form, repair});
+  }
+
+  void leave_out(const std::string& what) {
+    repair(what, {}, "it is left out");
+    if (statement_->is_shape) report_.lose_geometry();
+  }
+
+  /// Takes the next word as a number, which may be infinite or NaN; NaN where it is no number. Where another statement
+  /// begins instead, or another part of a view, it is not taken.
+  double take_any_number() {
     if (is_broken_) return 0.0;
-    if (tokens_.next().empty()) {
+    if (words_.next().empty()) {
       refuse("the file ends within " + quote(statement_->keyword));
       return 0.0;
     }
-    const std::string_view word = tokens_.take();
-    const std::optional<double> number = parse_number(word);
-    if (number && *number >= least && *number <= most) return *number;
-    refuse(quote(word) + " is no number " + range);
-    return 0.0;
+    const bool is_other = find_statement(words_.next()) != nullptr || is_view_part(words_.next());
+    word_ = is_other && !statement_->is_shape ? std::string_view() : words_.take();
+    const std::optional<double> number = parse_any_number(word_);
+    if (!number && statement_->is_shape) refuse(quote(word_) + " is no number");
+    return number.value_or(std::numeric_limits<double>::quiet_NaN());
   }
 
-  double take_coordinate() { return take_number(-kMaxCoordinate, kMaxCoordinate, "up to 1e15"); }
+  /// A number within a range; another one is said and becomes the nearest that is, or the least.
+  double take_number(double least, double most, const char* range) {
+    const double number = take_any_number();
+    if (is_broken_ || (number >= least && number <= most)) return number;
+    if (word_.empty()) {
+      repair("has too few numbers", {}, "those that lack are taken for the least");
+    } else {
+      repair(std::string("has a number that is not ") + range, word_,
+             "the nearest that is, or else the least, is taken");
+    }
+    return number > most ? most : least;
+  }
+
+  double take_coordinate() {
+    const double number = take_any_number();
+    // Written so that NaN fails.
+    if (std::abs(number) <= kMaxCoordinate) return number;
+    if (is_placed_ && !is_broken_) {
+      repair("has a coordinate that is not finite or beyond 1e15", word_, "it is left out");
+      if (statement_->is_shape) report_.lose_geometry();
+    }
+    is_placed_ = false;
+    return 0.0;
+  }
   float take_factor() { return static_cast<float>(take_number(0.0, kMostFactor, "from 0 to 1e7")); }
 
   // The order in which arguments are evaluated is the compiler's own, that of statements is not.
@@ -93,11 +140,17 @@ class NffParser {
     return color;
   }
 
+  /// Whether the statement is read, and says where it is.
+  bool is_good() const { return is_placed_ && !is_broken_; }
+
   /// Takes a radius, of whose sign nothing is made but that it is told.
   double take_radius(bool may_be_zero) {
     const double radius = take_coordinate();
     const bool is_valid = std::abs(radius) >= kMinSize || (may_be_zero && radius == 0.0);
-    if (!is_broken_ && !is_valid) refuse("the radius is 0 or too small", "give one from 1e-22 to 1e15");
+    if (is_good() && !is_valid) {
+      leave_out("has a radius that is 0 or too small");
+      is_placed_ = false;
+    }
     return radius;
   }
 
@@ -105,8 +158,8 @@ class NffParser {
 
   void read_light() {
     NffLight light{vec3(take_point())};
-    if (parse_number(tokens_.next())) light.color = take_color();
-    out_.lights.push_back(light);
+    if (parse_any_number(words_.next())) light.color = take_color();
+    if (is_good()) out_.lights.push_back(light);
   }
 
   void read_material() {
@@ -123,7 +176,7 @@ class NffParser {
   }
 
   void add(const NffShape& shape) {
-    if (is_broken_) return;
+    if (!is_good()) return;
     if (!is_group_open_) out_.groups.push_back({material_});
     is_group_open_ = true;
     out_.groups.back().shapes.push_back(shape);
@@ -139,16 +192,14 @@ class NffParser {
     const double base_radius = take_radius(true);
     const dvec3 apex = take_point();
     const double apex_radius = take_radius(true);
-    if (is_broken_) return;
-    if (base_radius == 0.0 && apex_radius == 0.0) return refuse("both radii are 0", "give at least one another size");
-    if (base_radius * apex_radius < 0.0) {
-      return refuse("one radius is negative and the other is not", "give both the same sign");
-    }
+    if (!is_good()) return;
+    if (base_radius == 0.0 && apex_radius == 0.0) return leave_out("has two radii of 0");
+    if (base_radius * apex_radius < 0.0) return leave_out("has one radius that is negative and one that is not");
     const dvec3 center = 0.5 * (base + apex);
     const dvec3 axis = apex - base;
     const double half_height = 0.5 * glm::length(axis);
     if (!(half_height >= kMinSize && half_height <= kMaxCoordinate)) {
-      return refuse("base and apex are one point, or too far from each other", "place them from 1e-22 to 1e15 apart");
+      return leave_out("has base and apex in one point, or too far from each other");
     }
     if (base_radius == apex_radius) {
       add(Cylinder{center, axis, half_height, std::abs(base_radius), true});
@@ -161,19 +212,28 @@ class NffParser {
   void read_patch() { read_corners(true); }
 
   void read_corners(bool has_normals) {
-    if (tokens_.next().empty()) return refuse("the file ends within " + quote(statement_->keyword));
-    const std::string_view word = tokens_.take();
+    if (words_.next().empty()) return refuse("the file ends within " + quote(statement_->keyword));
+    const std::string_view word = words_.take();
     const std::optional<int64_t> count = parse_integer(word);
     constexpr auto kMostCorners = static_cast<int64_t>(kMaxPolygonCorners);
-    if (!count || *count < 3 || *count > kMostCorners) {
+    if (!count || *count < 0 || *count > kMostCorners) {
       return refuse(quote(word) + " is no number of corners", "give 3 to " + std::to_string(kMostCorners));
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {
       out_.corners.emplace_back(take_point());
-      if (has_normals) out_.normals.emplace_back(take_point());
+      if (has_normals) out_.normals.push_back(take_normal());
     }
-    add(polygon);
+    if (*count >= 3) return add(polygon);
+    if (is_good()) leave_out("has fewer than 3 corners");
+  }
+
+  /// 0 where it is no direction.
+  vec3 take_normal() {
+    dvec3 normal;
+    for (int i = 0; i < 3; ++i) normal[i] = take_any_number();
+    // Written so that NaN fails.
+    return glm::length(normal) <= kMaxCoordinate ? vec3(normal) : vec3(0.0F);
   }
 
   /// Its parts may come in any order, and some may be absent.
@@ -184,20 +244,19 @@ class NffParser {
     Camera camera;
     camera.aspect_ratio = 1.0F;
     std::optional<double> angle;
-    for (bool is_part = true; is_part && !is_broken_;) {
-      const std::string_view part = tokens_.next();
-      is_part =
-          part == "from" || part == "at" || part == "up" || part == "angle" || part == "hither" || part == "resolution";
-      if (is_part) tokens_.take();
+    while (is_view_part(words_.next()) && !is_broken_) {
+      const std::string_view part = words_.take();
       if (part == "from") from = take_point();
       if (part == "at") at = take_point();
       if (part == "up") up = take_point();
-      if (part == "angle") angle = take_number(1e-3, 179.9, "of degrees from 0.001 to 179.9");
+      if (part == "angle") angle = take_any_number();
       if (part == "hither") camera.near = static_cast<float>(take_number(0.0, kMaxCoordinate, "from 0 to 1e15"));
       if (part == "resolution") camera.resolution = take_resolution();
     }
-    if (is_broken_) return;
-    if (!from || !at || !up || !angle) return refuse("a view is without from, at, up or angle");
+    if (!is_good()) return;
+    if (!from || !at || !up || !angle) return leave_out("is without from, at, up or angle");
+    // Written so that NaN fails.
+    if (!(*angle >= 1e-3 && *angle <= 179.9)) return leave_out("has an angle that is not from 0.001 to 179.9 degrees");
     camera.yfov = static_cast<float>(glm::radians(*angle));
     if (camera.resolution.x > 0) {
       camera.aspect_ratio = static_cast<float>(camera.resolution.x) / static_cast<float>(camera.resolution.y);
@@ -206,8 +265,7 @@ class NffParser {
     const dvec3 side = glm::cross(look, glm::normalize(*up));
     // Written so that NaN, which points in one place give, is refused too.
     if (!(glm::length(side) >= kLeastSine)) {
-      return refuse("a view has from and at in one place, or an up that is 0 or along it",
-                    "give two points and a direction across");
+      return leave_out("has from and at in one place, or an up that is 0 or along it");
     }
     camera.eye = vec3(*from);
     camera.look = vec3(look);
@@ -215,24 +273,39 @@ class NffParser {
     out_.cameras.push_back(camera);
   }
 
+  /// 0 where it is none.
   uvec2 take_resolution() {
-    uvec2 size(0);
-    for (int i = 0; i < 2; ++i) {
-      const double side = take_number(1.0, kMaxSide, "of pixels from 1 to 32768");
-      if (!is_broken_ && side != std::floor(side)) refuse("a resolution is no whole number");
-      size[i] = static_cast<uint32_t>(side);
-    }
-    return size;
+    dvec2 size;
+    for (int i = 0; i < 2; ++i) size[i] = take_any_number();
+    const auto is_side = [](double side) { return side >= 1.0 && side <= kMaxSide && side == std::floor(side); };
+    if (is_broken_ || (is_side(size.x) && is_side(size.y))) return uvec2(size);
+    repair("has a resolution that is not of whole numbers from 1 to 32768", {}, "it is without one");
+    return uvec2(0);
   }
 
-  NffTokens tokens_;
+  TextWords words_;
   LoadReport& report_;
   NffText out_;
   const Statement* statement_ = nullptr;
+  /// The last word that was taken for a number; empty where there was none.
+  std::string_view word_;
+  /// Whether the statement has a place, as far as it is read.
+  bool is_placed_ = true;
   std::optional<NffMaterial> material_;
   bool is_group_open_ = false;
   bool is_broken_ = false;
 };
+
+const std::array<NffParser::Statement, NffParser::kStatementCount> NffParser::kStatements = {
+    {{"p", "p and the number of corners, then x y z of each", &NffParser::read_polygon},
+     {"pp", "pp and the number of corners, then x y z and a normal of each", &NffParser::read_patch},
+     {"s", "s x y z radius", &NffParser::read_sphere},
+     {"c", "c x y z radius of the base, then x y z radius of the apex", &NffParser::read_cone},
+     {"f", "f red green blue Kd Ks Shine T index-of-refraction", &NffParser::read_material, false},
+     {"l", "l x y z, and red green blue where it has a colour", &NffParser::read_light, false},
+     {"b", "b red green blue", &NffParser::read_background, false},
+     {"v", "v from x y z at x y z up x y z angle degrees hither distance resolution width height",
+      &NffParser::read_view, false}}};
 
 }  // namespace
 

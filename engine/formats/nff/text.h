@@ -61,8 +61,9 @@ struct NffText {
   std::vector<vec3> normals;
 };
 
-/// Parses an NFF file; all numbers are in the ranges that validate() asks for. The first problem ends it, because
-/// nothing tells where the next statement begins; it goes to the report with its line.
+/// Parses an NFF file; all numbers are in the ranges that validate() asks for, but normals, which may be 0. Shapes,
+/// lights and views without a place are left out. A word that is no statement, or no number of a shape, ends it,
+/// because nothing tells where the next statement begins. Problems go to the report with their line.
 NffText parse_nff_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

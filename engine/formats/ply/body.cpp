@@ -12,20 +12,21 @@
 #include "core/srgb.h"
 #include "formats/ply/rows.h"
 #include "formats/triangulate.h"
+#include "promin/validate.h"
 
 namespace promin {
 namespace {
 
-/// The numbers of a vertex that are read, by their place in a row of them; any others go to the last place.
-enum Column : uint32_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kColumnCount };
+/// The numbers of a vertex or face that are read, by their place in a row of them; any others go to the last place.
+enum Column : uint32_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kU, kV, kTexture, kColumnCount };
 using Row = std::array<double, kColumnCount + 1>;
 
 struct ColumnName {
   std::string_view name;
   Column column;
 };
-/// The colours have two sets of names.
-constexpr std::array<ColumnName, 14> kColumnNames = {{{"x", kX},
+/// Colours have two sets of names, texture coordinates four.
+constexpr std::array<ColumnName, 23> kColumnNames = {{{"x", kX},
                                                       {"y", kY},
                                                       {"z", kZ},
                                                       {"nx", kNx},
@@ -38,7 +39,16 @@ constexpr std::array<ColumnName, 14> kColumnNames = {{{"x", kX},
                                                       {"diffuse_red", kRed},
                                                       {"diffuse_green", kGreen},
                                                       {"diffuse_blue", kBlue},
-                                                      {"diffuse_alpha", kAlpha}}};
+                                                      {"diffuse_alpha", kAlpha},
+                                                      {"s", kU},
+                                                      {"t", kV},
+                                                      {"u", kU},
+                                                      {"v", kV},
+                                                      {"texture_u", kU},
+                                                      {"texture_v", kV},
+                                                      {"texture_s", kU},
+                                                      {"texture_t", kV},
+                                                      {"texnumber", kTexture}}};
 
 uint32_t column_of(const PlyProperty& property) {
   const auto found = std::ranges::find(kColumnNames, property.name, &ColumnName::name);
@@ -46,12 +56,12 @@ uint32_t column_of(const PlyProperty& property) {
 }
 
 /// Which of its properties a row's element has where, and the numbers that stand for full colour.
-struct VertexLayout {
+struct Layout {
   std::vector<uint32_t> columns;
   std::array<bool, kColumnCount + 1> is_there{};
   Row full{};
 
-  explicit VertexLayout(const PlyElement& element) {
+  explicit Layout(const PlyElement& element) {
     for (const PlyProperty& property : element.properties) {
       const uint32_t column = column_of(property);
       columns.push_back(column);
@@ -61,6 +71,7 @@ struct VertexLayout {
     }
   }
   bool has_all(uint32_t first) const { return is_there[first] && is_there[first + 1] && is_there[first + 2]; }
+  bool has_uvs() const { return is_there[kU] && is_there[kV]; }
 };
 
 template <class Rows>
@@ -71,6 +82,7 @@ class BodyReader {
 
   PlyBody read() {
     vertex_count_ = header_.find("vertex")->row_count;
+    decide_what_is_read();
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;
       read_element(element);
@@ -80,54 +92,75 @@ class BodyReader {
       }
     }
     if (has_wild_colors_) report_.warn("vertex colours below 0 or above 1 are clamped");
-    if (has_small_faces_) report_.warn("faces of fewer than 3 corners are not drawn");
     return std::move(out_);
   }
 
  private:
   bool is_good() const { return problem_.empty() && rows_.problem().empty(); }
 
-  void read_element(const PlyElement& element) {
-    if (element.name == "vertex") {
-      const VertexLayout layout(element);
-      reserve_vertices(layout);
-      read_rows(element, layout.columns, [&](const Row& row) { add_vertex(layout, row); });
-      return;
+  /// What faces say comes before what vertices say, but for colours, where vertices say more.
+  void decide_what_is_read() {
+    const Layout vertices(*header_.find("vertex"));
+    has_normals_ = vertices.has_all(kNx);
+    has_colors_ = vertices.has_all(kRed);
+    has_uvs_ = vertices.has_uvs() && !header_.texture_files.empty();
+    const PlyElement* face = header_.find("face");
+    if (face == nullptr) return;
+    const Layout faces(*face);
+    has_face_colors_ = faces.has_all(kRed) && !has_colors_;
+    if (faces.has_all(kRed) && has_colors_) {
+      report_.warn("colours of faces are ignored, as the vertices have colours");
     }
-    // No column of the others is read.
-    const std::vector<uint32_t> columns(element.properties.size(), kColumnCount);
-    if (element.name == "face") {
+    has_corner_uvs_ = std::ranges::any_of(face->properties, &PlyProperty::lists_uvs) && !header_.texture_files.empty();
+    if (has_corner_uvs_) has_uvs_ = false;
+    has_face_textures_ = has_corner_uvs_ || (has_uvs_ && faces.is_there[kTexture]);
+  }
+
+  void read_element(const PlyElement& element) {
+    const Layout layout(element);
+    if (element.name == "vertex") {
+      reserve_vertices();
+      read_rows(element, layout.columns, [&](const Row& row) { add_vertex(layout, row); });
+    } else if (element.name == "face") {
       out_.corner_counts.reserve(element.row_count);
       out_.corners.reserve(3 * element.row_count);
-      read_rows(element, columns, [&](const Row&) { add_polygon(); });
+      if (has_face_colors_) out_.face_colors.reserve(element.row_count);
+      if (has_corner_uvs_) out_.corner_uvs.reserve(3 * element.row_count);
+      read_rows(element, layout.columns, [&](const Row& row) { add_polygon(layout, row); });
     } else if (element.name == "tristrips") {
-      read_rows(element, columns, [&](const Row&) { add_strip(); });
+      read_rows(element, layout.columns, [&](const Row&) { add_strip(); });
     } else {
-      read_rows(element, columns, [](const Row&) {});
+      read_rows(element, layout.columns, [](const Row&) {});
     }
   }
 
   template <class Take>
   void read_rows(const PlyElement& element, const std::vector<uint32_t>& columns, const Take& take) {
     Row row{};
+    const bool has_positions = element.name == "vertex";
     for (uint64_t i = 0; i < element.row_count; ++i) {
       rows_.start_row();
+      row_ = i;
       for (size_t p = 0; p < columns.size(); ++p) {
         const PlyProperty& property = element.properties[p];
         if (property.is_list) {
           read_list(property);
         } else {
-          row[columns[p]] = rows_.take(property.type);
+          const bool is_position = has_positions && columns[p] <= kZ;
+          row[columns[p]] = is_position ? rows_.take(property.type) : rows_.take_any(property.type);
         }
       }
       rows_.end_row(report_);
       if (is_good()) take(row);
-      if (!is_good()) return tell_place(element, i);
+      if (is_good()) continue;
+      place_ = place_of(element.name);
+      return;
     }
   }
 
-  void tell_place(const PlyElement& element, uint64_t row) {
-    place_ = rows_.place().empty() ? element.name + " " + std::to_string(row) : rows_.place();
+  /// That of the current row.
+  std::string place_of(const std::string& element) const {
+    return rows_.place().empty() ? element + " " + std::to_string(row_) : rows_.place();
   }
 
   void read_list(const PlyProperty& property) {
@@ -139,33 +172,55 @@ class BodyReader {
       return;
     }
     const bool is_wanted = property.lists_vertices();
-    if (is_wanted) list_.clear();
+    std::vector<double>* list = is_wanted ? &list_ : property.lists_uvs() ? &uv_list_ : nullptr;
+    if (list != nullptr) list->clear();
     for (auto i = static_cast<uint64_t>(count); i > 0 && rows_.problem().empty(); --i) {
-      const double number = rows_.take(property.type);
-      if (is_wanted) list_.push_back(number);
+      const double number = is_wanted ? rows_.take(property.type) : rows_.take_any(property.type);
+      if (list != nullptr) list->push_back(number);
     }
   }
 
-  void reserve_vertices(const VertexLayout& layout) {
+  void reserve_vertices() {
     out_.positions.reserve(vertex_count_);
-    if (layout.has_all(kNx)) out_.normals.reserve(vertex_count_);
-    if (layout.has_all(kRed)) out_.colors.reserve(vertex_count_);
+    if (has_normals_) out_.normals.reserve(vertex_count_);
+    if (has_colors_) out_.colors.reserve(vertex_count_);
+    if (has_uvs_) out_.uvs.reserve(vertex_count_);
   }
 
-  void add_vertex(const VertexLayout& layout, const Row& row) {
+  void add_vertex(const Layout& layout, const Row& row) {
     out_.positions.emplace_back(row[kX], row[kY], row[kZ]);
-    if (layout.has_all(kNx)) out_.normals.emplace_back(row[kNx], row[kNy], row[kNz]);
-    if (!layout.has_all(kRed)) return;
-    const auto share = [&](Column column) { return clamp(row[column] / layout.full[column]); };
-    out_.colors.emplace_back(decode(share(kRed)), decode(share(kGreen)), decode(share(kBlue)),
-                             layout.is_there[kAlpha] ? share(kAlpha) : 1.0);
+    if (has_normals_) out_.normals.emplace_back(row[kNx], row[kNy], row[kNz]);
+    if (has_colors_) out_.colors.push_back(color_of(layout, row, "vertex"));
+    if (has_uvs_) out_.uvs.push_back(uv_of(row[kU], row[kV], "vertex"));
   }
 
-  double clamp(double share) {
+  vec4 color_of(const Layout& layout, const Row& row, const char* element) {
+    const auto share = [&](Column column) { return clamp(row[column] / layout.full[column], element); };
+    // The order in which arguments are evaluated is the compiler's own, that of statements is not.
+    dvec4 color(1.0);
+    color.r = decode(share(kRed));
+    color.g = decode(share(kGreen));
+    color.b = decode(share(kBlue));
+    if (layout.is_there[kAlpha]) color.a = share(kAlpha);
+    return vec4(color);
+  }
+
+  double clamp(double share, const char* element) {
     if (share >= 0.0 && share <= 1.0) return share;
+    if (std::isnan(share)) {
+      report_.repair({"a colour is no number", "", place_of(element), "export the mesh again", "1 is taken"});
+      return 1.0;
+    }
     has_wild_colors_ = true;
-    // Also of what is no number.
     return share > 1.0 ? 1.0 : 0.0;
+  }
+
+  vec2 uv_of(double u, double v, const char* element) {
+    // Written so that NaN fails.
+    if (std::abs(u) <= kMaxCoordinate && std::abs(v) <= kMaxCoordinate) return vec2(dvec2(u, v));
+    report_.repair({"a texture coordinate is not finite or beyond 1e15", "", place_of(element), "export the mesh again",
+                    "0 is taken"});
+    return vec2(0.0F);
   }
 
   /// Most colours are bytes.
@@ -188,7 +243,7 @@ class BodyReader {
     return std::nullopt;
   }
 
-  void add_polygon() {
+  void add_polygon(const Layout& layout, const Row& row) {
     if (list_.size() > kMaxPolygonCorners) {
       problem_ = "a face has more than " + std::to_string(kMaxPolygonCorners) + " corners";
       return;
@@ -198,12 +253,44 @@ class BodyReader {
       if (!corner) return;
       out_.corners.push_back(*corner);
     }
-    if (list_.size() >= 3) {
-      out_.corner_counts.push_back(static_cast<uint32_t>(list_.size()));
+    if (list_.size() < 3) {
+      report_.repair({"a face has fewer than 3 corners", "", place_of("face"), "give it 3", "the face is left out"});
+      out_.corners.resize(out_.corners.size() - list_.size());
       return;
     }
-    has_small_faces_ = true;
-    out_.corners.resize(out_.corners.size() - list_.size());
+    out_.corner_counts.push_back(static_cast<uint32_t>(list_.size()));
+    if (has_face_colors_) out_.face_colors.push_back(color_of(layout, row, "face"));
+    if (has_corner_uvs_) add_corner_uvs();
+    if (has_face_textures_) out_.face_textures.push_back(texture_of(layout, row));
+  }
+
+  bool has_own_uvs() const { return uv_list_.size() == 2 * list_.size(); }
+
+  void add_corner_uvs() {
+    for (size_t i = 0; i < list_.size(); ++i) {
+      out_.corner_uvs.push_back(has_own_uvs() ? uv_of(uv_list_[2 * i], uv_list_[2 * i + 1], "face") : vec2(0.0F));
+    }
+  }
+
+  /// Faces that show no texture have no texture coordinates, or the texture -1.
+  uint32_t texture_of(const Layout& layout, const Row& row) {
+    if (has_corner_uvs_ && !has_own_uvs()) {
+      if (!uv_list_.empty()) {
+        report_.repair({"a face has not two texture coordinates for each corner", "", place_of("face"),
+                        "export the mesh again", "it is drawn without a texture"});
+      }
+      return PlyBody::kNoTexture;
+    }
+    if (!layout.is_there[kTexture]) return 0;
+    const double number = row[kTexture];
+    if (number >= 0.0 && number < static_cast<double>(header_.texture_files.size())) {
+      return static_cast<uint32_t>(number);
+    }
+    if (number != -1.0) {
+      report_.repair({"a face names a texture that is not there", "", place_of("face"), "export the mesh again",
+                      "it is drawn without a texture"});
+    }
+    return PlyBody::kNoTexture;
   }
 
   /// A strip is several: each -1 begins another. Every second triangle of one is wound the other way.
@@ -221,6 +308,9 @@ class BodyReader {
         out_.corners.push_back(static_cast<uint32_t>(list_[corner]));
       }
       out_.corner_counts.push_back(3);
+      if (has_face_colors_) out_.face_colors.emplace_back(1.0F);
+      if (has_corner_uvs_) out_.corner_uvs.insert(out_.corner_uvs.end(), 3, vec2(0.0F));
+      if (has_face_textures_) out_.face_textures.push_back(has_corner_uvs_ ? PlyBody::kNoTexture : 0);
     }
   }
 
@@ -229,11 +319,19 @@ class BodyReader {
   LoadReport& report_;
   PlyBody out_;
   uint64_t vertex_count_ = 0;
+  bool has_normals_ = false;
+  bool has_colors_ = false;
+  bool has_uvs_ = false;
+  bool has_face_colors_ = false;
+  bool has_corner_uvs_ = false;
+  bool has_face_textures_ = false;
+  /// The number of the current row in its element.
+  uint64_t row_ = 0;
   std::vector<double> list_;
+  std::vector<double> uv_list_;
   std::string problem_;
   std::string place_;
   bool has_wild_colors_ = false;
-  bool has_small_faces_ = false;
 };
 
 }  // namespace

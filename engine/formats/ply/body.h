@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -19,13 +20,25 @@ struct PlyBody {
   std::vector<vec3> normals = {};
   /// Empty, or one per position: linear RGBA within 0...1.
   std::vector<vec4> colors = {};
+  /// Empty, or one per position: v grows upwards, from the lowest row of a picture.
+  std::vector<vec2> uvs = {};
   /// Indices of positions, polygon after polygon.
   std::vector<uint32_t> corners = {};
   /// How many of them each polygon has, 3...kMaxPolygonCorners.
   std::vector<uint32_t> corner_counts = {};
+  /// Empty, or one per polygon, as `colors`. Empty where vertices have colours.
+  std::vector<vec4> face_colors = {};
+  /// Empty, or one per corner, as `uvs`, which are empty then.
+  std::vector<vec2> corner_uvs = {};
+  /// Indices into PlyHeader::texture_files, one per polygon; empty where that is 0 for all of them.
+  std::vector<uint32_t> face_textures = {};
+
+  /// The texture of a polygon that has none.
+  static constexpr uint32_t kNoTexture = std::numeric_limits<uint32_t>::max();
 };
 
-/// Reads the rows behind a header that has vertices and faces. Strips become triangles. Problems go to the report.
+/// Reads the rows behind a header that has vertices and faces; texture coordinates where it has texture files to show.
+/// Strips become triangles. Problems go to the report.
 PlyBody read_ply_body(std::string_view file, const PlyHeader& header, LoadReport& report);
 
 }  // namespace promin

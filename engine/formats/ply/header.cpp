@@ -13,6 +13,7 @@ namespace {
 
 constexpr size_t kMaxNames = 1000;
 constexpr std::string_view kEnd = "end_header";
+constexpr std::string_view kTextureFile = "TextureFile";
 const std::string kExportAgain = "export the file again";
 
 struct TypeName {
@@ -43,18 +44,52 @@ const Named* find_named(const std::vector<Named>& all, std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+/// Walks the lines of a header. Rows of numbers lie behind it, of which the first byte may look like the end of a line:
+/// a \n behind a \r belongs to the line only where the first line ends so.
+class HeaderLines {
+ public:
+  explicit HeaderLines(std::string_view file) : file_(file) {
+    const size_t first_end = std::min(file.find_first_of("\r\n"), file.size());
+    const std::string_view end = file.substr(first_end, 2);
+    ends_ = end == "\r\n" || !end.starts_with('\r') ? "\n" : "\r\n";
+  }
+
+  bool advance() {
+    if (next_ >= file_.size()) return false;
+    const size_t end = std::min(file_.find_first_of(ends_, next_), file_.size());
+    line_ = trim(file_.substr(next_, end - next_));
+    next_ = std::min(end + 1, file_.size());
+    ++number_;
+    return true;
+  }
+
+  /// The current line without spaces around it.
+  std::string_view line() const { return line_; }
+  uint64_t number() const { return number_; }
+  std::string place() const { return "line " + std::to_string(number_); }
+  /// Where the next line begins.
+  size_t next() const { return next_; }
+
+ private:
+  std::string_view file_;
+  /// Any of these ends a line.
+  std::string_view ends_;
+  std::string_view line_;
+  size_t next_ = 0;
+  uint64_t number_ = 0;
+};
+
 class HeaderParser {
  public:
   HeaderParser(std::string_view file, LoadReport& report) : file_(file), lines_(file), report_(report) {}
 
   PlyHeader parse() {
-    if (!lines_.advance() || trim(lines_.line()) != "ply") {
+    if (!lines_.advance() || without_byte_order_mark(lines_.line()) != "ply") {
       report_.refuse("the first line is not \"ply\"", "", "name a PLY file");
       return {};
     }
     while (lines_.advance()) {
-      ++out_.line_count;
-      if (trim(lines_.line()) == kEnd) {
+      if (lines_.line() == kEnd) {
         finish();
         return std::move(out_);
       }
@@ -68,8 +103,8 @@ class HeaderParser {
   void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
 
   void finish() {
-    const auto end = static_cast<size_t>(lines_.line().data() - file_.data());
-    out_.size_bytes = std::min(file_.find('\n', end), file_.size() - 1) + 1;
+    out_.size_bytes = lines_.next();
+    out_.line_count = lines_.number();
     if (!has_format_) refuse("the header tells no format", kExportAgain);
     check_counts(file_.size() - out_.size_bytes);
   }
@@ -82,9 +117,18 @@ class HeaderParser {
       read_element(line);
     } else if (keyword == "property") {
       read_property(line);
-    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+    } else if (keyword == "comment") {
+      read_comment(trim(line));
+    } else if (!keyword.empty() && keyword != "obj_info") {
       report_.warn(quote(keyword) + " in " + lines_.place() + " of the header is ignored");
     }
+  }
+
+  /// The name is the rest of the line, because it may hold spaces.
+  void read_comment(std::string_view text) {
+    if (!text.starts_with(kTextureFile)) return;
+    const std::string_view name = trim(text.substr(kTextureFile.size()));
+    if (!name.empty() && has_room(out_.texture_files, "texture files")) out_.texture_files.emplace_back(name);
   }
 
   void read_format(std::string_view name) {
@@ -167,9 +211,9 @@ class HeaderParser {
   }
 
   std::string_view file_;
-  TextLines lines_;
+  HeaderLines lines_;
   LoadReport& report_;
-  PlyHeader out_ = {.line_count = 1};
+  PlyHeader out_;
   bool has_format_ = false;
 };
 

@@ -26,6 +26,8 @@ struct PlyProperty {
 
   /// Whether it is what faces and strips have their corners in.
   bool lists_vertices() const { return is_list && (name == "vertex_indices" || name == "vertex_index"); }
+  /// Whether it is where faces have texture coordinates of their own, two numbers for each corner.
+  bool lists_uvs() const { return is_list && name == "texcoord"; }
 };
 
 /// A table of the file: `row_count` rows, each with a value of each property.
@@ -41,6 +43,8 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   /// In the order of the file.
   std::vector<PlyElement> elements = {};
+  /// What the lines "comment TextureFile NAME" name, as MeshLab writes them.
+  std::vector<std::string> texture_files = {};
   /// Where the rows begin.
   size_t size_bytes = 0;
   uint64_t line_count = 0;
@@ -50,7 +54,7 @@ struct PlyHeader {
 };
 
 /// Parses the header of a PLY file (Turk 1994), with the types' names of either kind, and holds the counts of rows
-/// against the size of the file. Problems go to the report.
+/// against the size of the file. Its lines end as the first does: in \n, \r\n, or \r alone. Problems go to the report.
 PlyHeader parse_ply_header(std::string_view file, LoadReport& report);
 
 }  // namespace promin

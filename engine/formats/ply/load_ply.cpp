@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "core/file.h"
+#include "formats/picture_sources.h"
 #include "formats/ply/body.h"
 #include "formats/ply/header.h"
+#include "formats/scene_path.h"
 #include "formats/triangulate.h"
 #include "promin/validate.h"
 
@@ -27,17 +31,26 @@ bool lists_vertices(const PlyElement* element) {
   return std::ranges::any_of(element->properties, &PlyProperty::lists_vertices);
 }
 
+bool has_uvs(const PlyElement& element) {
+  const auto has = [&](std::string_view name) { return has_property(element, name); };
+  return has("s") || has("u") || has("texture_u") || has("texture_s") || has("texcoord");
+}
+
 void warn_about_what_is_ignored(const PlyHeader& header, LoadReport& report) {
+  bool are_uvs_there = false;
   for (const PlyElement& element : header.elements) {
-    const auto has = [&](std::string_view name) { return has_property(element, name); };
     if (element.name == "vertex" || element.name == "face") {
-      if (has("s") || has("u") || has("texture_u") || has("texcoord")) {
-        report.warn("texture coordinates of PLY are ignored");
-      }
-      if (element.name == "face" && has("red")) report.warn("colours of faces are ignored");
+      are_uvs_there = are_uvs_there || has_uvs(element);
     } else if (element.name != "tristrips" && element.row_count > 0) {
       report.warn("the element " + quote(element.name) + " is ignored");
     }
+  }
+  if (are_uvs_there && header.texture_files.empty()) {
+    report.warn("texture coordinates are ignored, as no comment TextureFile names a picture");
+  }
+  if (!are_uvs_there && !header.texture_files.empty()) {
+    report.warn("the picture " + quote(header.texture_files.front()) +
+                " is ignored, as there are no texture coordinates");
   }
 }
 
@@ -66,20 +79,39 @@ bool is_in_range(const vec3& p) {
 /// Makes a mesh of what a file has.
 class MeshMaker {
  public:
-  MeshMaker(const PlyBody& body, LoadReport& report) : body_(body), report_(report) {}
+  /// `material_of_texture` has what the faces of each texture file are made of; kUnused where its picture is none.
+  MeshMaker(const PlyBody& body, const std::vector<uint32_t>& material_of_texture, LoadReport& report)
+      : body_(body),
+        material_of_texture_(material_of_texture),
+        report_(report),
+        has_normals_(!body.normals.empty()),
+        has_colors_(!body.colors.empty() || !body.face_colors.empty()),
+        has_uvs_(shows_textures() && (!body.uvs.empty() || !body.corner_uvs.empty())),
+        is_split_(!body.face_colors.empty() || (has_uvs_ && !body.corner_uvs.empty())) {}
 
   Mesh make() {
-    add_vertices();
-    report_.throw_if_refused();
-    size_t first = 0;
+    if (is_split_) {
+      newest_vertex_.resize(body_.positions.size(), kUnused);
+    } else {
+      add_vertices();
+    }
     for (const uint32_t count : body_.corner_counts) {
-      add_polygon(&body_.corners[first], count);
-      first += count;
+      add_polygon(count);
+      first_corner_ += count;
+      ++polygon_;
     }
     return std::move(mesh_);
   }
 
  private:
+  /// The vertices that share a place are looked through up to this number, so that time stays in bounds where each of
+  /// very many faces around one has another colour.
+  static constexpr int kMostTries = 32;
+
+  bool shows_textures() const {
+    return std::ranges::any_of(material_of_texture_, [](uint32_t material) { return material != kUnused; });
+  }
+
   /// Those that faces use, in the file's order; others may hold anything. What has no normal gets its vertices with its
   /// triangles.
   void add_vertices() {
@@ -88,74 +120,199 @@ class MeshMaker {
     mesh_.positions.reserve(body_.positions.size());
     mesh_.normals.reserve(body_.normals.size());
     mesh_.colors.reserve(body_.colors.size());
+    if (has_uvs_) mesh_.uvs.reserve(body_.uvs.size());
     for (uint32_t vertex = 0; vertex < new_index_.size(); ++vertex) {
-      if (new_index_[vertex] == kUnused) continue;
-      if (!is_in_range(body_.positions[vertex])) {
-        report_.refuse("a vertex coordinate is not finite or beyond 1e15", "vertex " + std::to_string(vertex),
-                       "export the mesh again, in a larger unit of length");
-        return;
-      }
-      if (!has_normal(vertex)) continue;
-      new_index_[vertex] = add_vertex(vertex);
-      if (!body_.normals.empty()) mesh_.normals.push_back(body_.normals[vertex]);
+      if (new_index_[vertex] == kUnused || !is_in_range(body_.positions[vertex]) || !has_normal(vertex)) continue;
+      new_index_[vertex] = add_vertex(look_of(vertex, 0));
+      if (has_normals_) mesh_.normals.push_back(body_.normals[vertex]);
     }
   }
 
   /// Whether the vertex needs none, or has one of some length.
   bool has_normal(uint32_t vertex) const {
-    if (body_.normals.empty()) return true;
+    if (!has_normals_) return true;
     const double length = glm::length(dvec3(body_.normals[vertex]));
     return length > 0.0 && std::isfinite(length);
   }
 
-  uint32_t add_vertex(uint32_t vertex) {
-    mesh_.positions.push_back(body_.positions[vertex]);
-    if (!body_.colors.empty()) mesh_.colors.push_back(body_.colors[vertex]);
+  /// What a vertex of the mesh has beside its normal.
+  struct Look {
+    uint32_t vertex = 0;
+    vec4 color{1.0F};
+    vec4 uv{0.0F};
+  };
+
+  /// That of a corner, which is an index into PlyBody::corners where faces say anything.
+  Look look_of(uint32_t vertex, size_t corner) const {
+    Look look{vertex};
+    if (!body_.colors.empty()) look.color = body_.colors[vertex];
+    if (!body_.face_colors.empty()) look.color = body_.face_colors[polygon_];
+    if (!has_uvs_) return look;
+    const vec2 uv = body_.corner_uvs.empty() ? body_.uvs[vertex] : body_.corner_uvs[corner];
+    // A mesh's v grows downwards, from the first row of a picture.
+    look.uv = vec4(uv.x, static_cast<float>(1.0 - static_cast<double>(uv.y)), 0.0F, 0.0F);
+    return look;
+  }
+
+  uint32_t add_vertex(const Look& look) {
+    mesh_.positions.push_back(body_.positions[look.vertex]);
+    if (has_colors_) mesh_.colors.push_back(look.color);
+    if (has_uvs_) mesh_.uvs.push_back(look.uv);
+    if (is_split_) previous_vertex_.push_back(kUnused);
     return static_cast<uint32_t>(mesh_.positions.size() - 1);
   }
 
-  void add_polygon(const uint32_t* corners, uint32_t count) {
-    if (count == 3) return add_triangle(uvec3(corners[0], corners[1], corners[2]));
-    polygon_.clear();
-    for (uint32_t i = 0; i < count; ++i) polygon_.push_back(body_.positions[corners[i]]);
-    for (const uvec3& t : triangulate_polygon(polygon_)) {
-      add_triangle(uvec3(corners[t.x], corners[t.y], corners[t.z]));
+  /// The vertices that share a place of the file form a chain, the newest first.
+  uint32_t find_or_add_vertex(const Look& look) {
+    uint32_t known = newest_vertex_[look.vertex];
+    for (int i = 0; known != kUnused && i < kMostTries; known = previous_vertex_[known], ++i) {
+      const bool is_same =
+          (!has_colors_ || mesh_.colors[known] == look.color) && (!has_uvs_ || mesh_.uvs[known] == look.uv);
+      if (is_same) return known;
     }
+    const uint32_t vertex = add_vertex(look);
+    if (has_normals_) mesh_.normals.push_back(body_.normals[look.vertex]);
+    previous_vertex_[vertex] = newest_vertex_[look.vertex];
+    newest_vertex_[look.vertex] = vertex;
+    return vertex;
   }
 
-  /// `corners` are indices of the file.
-  void add_triangle(const uvec3& corners) {
-    uvec3 vertices(new_index_[corners.x], new_index_[corners.y], new_index_[corners.z]);
-    if (!has_normal(corners.x) || !has_normal(corners.y) || !has_normal(corners.z)) {
-      vertices = add_sharp_corners(corners);
+  bool is_drawable(std::span<const uint32_t> corners) {
+    for (const uint32_t corner : corners) {
+      if (is_in_range(body_.positions[corner])) continue;
+      report_.repair({"a face has a vertex coordinate that is not finite or beyond 1e15", "",
+                      "vertex " + std::to_string(corner), "export the mesh again, in a larger unit of length",
+                      "the face is left out"});
+      return false;
+    }
+    return true;
+  }
+
+  void add_polygon(uint32_t count) {
+    const std::span corners = std::span(body_.corners).subspan(first_corner_, count);
+    if (!is_drawable(corners)) return;
+    if (count == 3) {
+      add_triangle(uvec3(0, 1, 2));
+    } else {
+      polygon_positions_.clear();
+      for (const uint32_t corner : corners) polygon_positions_.push_back(body_.positions[corner]);
+      for (const uvec3& triangle : triangulate_polygon(polygon_positions_)) add_triangle(triangle);
+    }
+    if (has_uvs_) mesh_.triangle_materials.resize(mesh_.triangles.size(), material_of_polygon());
+  }
+
+  /// kUnused: that of what shows no picture.
+  uint32_t material_of_polygon() const {
+    const uint32_t texture = body_.face_textures.empty() ? 0 : body_.face_textures[polygon_];
+    return texture == PlyBody::kNoTexture ? kUnused : material_of_texture_[texture];
+  }
+
+  /// `places` are those of its corners in the polygon.
+  void add_triangle(const uvec3& places) {
+    const uint32_t* corners = &body_.corners[first_corner_];
+    const bool is_smooth =
+        has_normal(corners[places.x]) && has_normal(corners[places.y]) && has_normal(corners[places.z]);
+    if (!is_smooth) return add_sharp_triangle(places);
+    uvec3 vertices;
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t corner = corners[places[i]];
+      vertices[i] = is_split_ ? find_or_add_vertex(look_of(corner, first_corner_ + places[i])) : new_index_[corner];
     }
     mesh_.triangles.push_back(vertices);
   }
 
   /// A triangle without area is never hit, so any normal will do for it.
-  uvec3 add_sharp_corners(const uvec3& corners) {
-    report_.warn("there are normals of no length, faces that use them are drawn sharp");
-    const dvec3 a(body_.positions[corners.x]);
-    const dvec3 normal = glm::cross(dvec3(body_.positions[corners.y]) - a, dvec3(body_.positions[corners.z]) - a);
+  void add_sharp_triangle(const uvec3& places) {
+    const uint32_t* corners = &body_.corners[first_corner_];
+    report_.repair({"a face has a normal of no length, or one that is no number", "",
+                    "vertex " + std::to_string(corners[places.x]), "export the mesh again", "the face is drawn sharp"});
+    const dvec3 a(body_.positions[corners[places.x]]);
+    const dvec3 b(body_.positions[corners[places.y]]);
+    const dvec3 c(body_.positions[corners[places.z]]);
+    const dvec3 normal = glm::cross(b - a, c - a);
     const double length = glm::length(normal);
     uvec3 vertices;
     for (int i = 0; i < 3; ++i) {
-      vertices[i] = add_vertex(corners[i]);
+      vertices[i] = add_vertex(look_of(corners[places[i]], first_corner_ + places[i]));
       mesh_.normals.push_back(length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));
     }
-    return vertices;
+    mesh_.triangles.push_back(vertices);
   }
 
   const PlyBody& body_;
+  const std::vector<uint32_t>& material_of_texture_;
   LoadReport& report_;
+  bool has_normals_;
+  bool has_colors_;
+  bool has_uvs_;
+  /// Whether faces give their corners more than the vertices have.
+  bool is_split_;
   Mesh mesh_;
+  /// The polygon that is being added, and where its corners begin.
+  size_t polygon_ = 0;
+  size_t first_corner_ = 0;
+  /// Of each vertex of the file, where nothing is split.
   std::vector<uint32_t> new_index_;
-  std::vector<vec3> polygon_;
+  /// Of each vertex of the file, where anything is.
+  std::vector<uint32_t> newest_vertex_;
+  /// Of each vertex of the mesh.
+  std::vector<uint32_t> previous_vertex_;
+  std::vector<vec3> polygon_positions_;
 };
+
+/// Adds a material for each texture file whose picture can be shown, with its image and texture. Returns the index of
+/// each file's material, kUnused where it has none.
+std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool takes_texels, Scene& scene,
+                                   LoadReport& report) {
+  std::vector<PictureSource> sources;
+  for (const std::string& name : files) {
+    PictureSource& source = sources.emplace_back();
+    source.takes_texels = takes_texels;
+    source.image->name = name;
+    source.title = quote(name);
+    read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
+      const auto file = find_beside_scene(name, "", true, attempt);
+      return file ? std::optional(read_file(*file, most_bytes)) : std::nullopt;
+    });
+  }
+  decode_pictures(sources, report);
+  std::vector<uint32_t> materials;
+  for (const PictureSource& source : sources) {
+    if (!source.problem.empty()) {
+      materials.push_back(kUnused);
+      continue;
+    }
+    materials.push_back(static_cast<uint32_t>(scene.materials.size()));
+    Phong phong;
+    phong.diffuse = vec3(1.0F);
+    phong.ambient = vec3(1.0F);
+    phong.diffuse_texture.texture = static_cast<uint32_t>(scene.textures.size());
+    Material& material = scene.materials.emplace_back();
+    material.name = source.image->name;
+    material.model = phong;
+    scene.textures.emplace_back().image = static_cast<uint32_t>(scene.images.size());
+    scene.images.push_back(source.image);
+  }
+  return materials;
+}
+
+/// Adds the grey material where anything is made of it, and the mesh, if there is any of it.
+void add_mesh(Mesh mesh, Scene& scene) {
+  const auto grey = static_cast<uint32_t>(scene.materials.size());
+  std::vector<uint32_t>& materials = mesh.triangle_materials;
+  std::ranges::replace(materials, kUnused, grey);
+  if (materials.empty() || std::ranges::find(materials, grey) != materials.end()) {
+    scene.materials.emplace_back().name = "default";
+  }
+  if (mesh.triangles.empty()) return;
+  const uint32_t first = materials.empty() ? grey : materials.front();
+  if (std::ranges::count(materials, first) == static_cast<std::ptrdiff_t>(materials.size())) materials.clear();
+  scene.add("", std::move(mesh), first);
+}
 
 }  // namespace
 
-Scene load_ply(const LoadOptions& /*options*/, LoadReport& report) {
+Scene load_ply(const LoadOptions& options, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(report.file());
   const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const PlyHeader header = parse_ply_header(file, report);
@@ -168,10 +325,11 @@ Scene load_ply(const LoadOptions& /*options*/, LoadReport& report) {
 
   Scene scene;
   scene.file = report.file();
-  scene.materials.emplace_back();
-  scene.materials.back().name = "default";
-  Mesh mesh = MeshMaker(body, report).make();
-  if (!mesh.triangles.empty()) scene.add("", std::move(mesh));
+  const bool has_uvs = !body.uvs.empty() || !body.corner_uvs.empty();
+  const std::vector<uint32_t> materials =
+      add_textures(has_uvs ? header.texture_files : std::vector<std::string>(), options.decodes_images, scene, report);
+  add_mesh(MeshMaker(body, materials, report).make(), scene);
+  report.throw_if_refused();
   scene.warnings = report.warnings();
   return scene;
 }

@@ -7,9 +7,10 @@
 
 namespace promin {
 
-/// Reads the report's file as PLY, text or binary of either order of bytes: the vertices' x, y, z, nx, ny, nz and
-/// colours, which are taken for those of sRGB, the lists vertex_indices or vertex_index of faces, and tristrips. All of
-/// it is one object of the default material; polygons of n corners give n - 2 triangles in file order. Throws
+/// Reads the report's file as PLY, text or binary of either order of bytes: the vertices' x, y, z, nx, ny, nz, colours,
+/// which are taken for those of sRGB, and texture coordinates; the lists vertex_indices or vertex_index of faces, with
+/// colours, texcoord and texnumber; and tristrips. All of it is one object, of the default material, or of one for each
+/// picture that a comment TextureFile names; polygons of n corners give n - 2 triangles in file order. Throws
 /// InputError with all problems.
 Scene load_ply(const LoadOptions& options, LoadReport& report);
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <bit>
-#include <charconv>
 #include <cstring>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,7 @@ class PlyBinaryRows {
   void start_row() {}
   void end_row(LoadReport& /*report*/) {}
 
+  double take_any(PlyType type) { return take(type); }
   double take(PlyType type) {
     switch (type) {
       case PlyType::kInt8:
@@ -76,7 +78,7 @@ class PlyBinaryRows {
 /// Takes numbers off the rows of a PLY file that is text: a row is a line. As PlyBinaryRows otherwise.
 class PlyTextRows {
  public:
-  PlyTextRows(std::string_view body, uint64_t header_lines) : lines_(body, header_lines) {}
+  PlyTextRows(std::string_view body, uint64_t header_lines) : lines_(without_zero_bytes_at_end(body), header_lines) {}
 
   void start_row() {
     do {
@@ -89,26 +91,26 @@ class PlyTextRows {
   }
 
   void end_row(LoadReport& report) {
-    if (problem_.empty() && !rest_.empty() && !take_word(rest_).empty()) {
+    if (problem_.empty() && !rest_.empty() && !take_field(rest_).empty()) {
       report.warn("numbers beyond the properties of an element are ignored");
     }
     rest_ = {};
   }
 
-  double take(PlyType /*type*/) {
-    std::string_view word = take_word(rest_);
-    if (word.empty()) {
-      if (problem_.empty()) problem_ = "a row has fewer numbers than its element has properties";
-      return 0.0;
-    }
-    // Unlike parse_number this takes "nan", which some programs write for the normals of vertices without faces.
-    const std::string_view whole = word;
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error == std::errc() && end == word.data() + word.size()) return number;
-    if (problem_.empty()) problem_ = quote(whole) + " is no number";
-    return 0.0;
+  /// A number that may be infinite or none ("nan"), as programs write for what they do not know.
+  double take(PlyType type) {
+    const double number = take_any(type);
+    if (!is_number_ && problem_.empty()) problem_ = quote(word_) + " is no number";
+    return number;
+  }
+
+  /// The same of any word: NaN where it is no number.
+  double take_any(PlyType /*type*/) {
+    word_ = take_field(rest_);
+    if (word_.empty() && problem_.empty()) problem_ = "a row has fewer numbers than its element has properties";
+    const std::optional<double> number = parse_any_number(word_);
+    is_number_ = number.has_value();
+    return number.value_or(std::numeric_limits<double>::quiet_NaN());
   }
 
   size_t most_numbers(PlyType /*type*/) const { return rest_.size(); }
@@ -118,6 +120,8 @@ class PlyTextRows {
  private:
   TextLines lines_;
   std::string_view rest_;
+  std::string_view word_;
+  bool is_number_ = true;
   std::string problem_;
 };
 

@@ -2,16 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/stl/load_stl.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <optional>
+#include <limits>
 #include <string>
 #include <string_view>
 
 #include "core/file.h"
+#include "core/srgb.h"
+#include "core/stand_in.h"
 #include "formats/stl/text.h"
 #include "formats/text_lines.h"
 #include "promin/validate.h"
@@ -29,48 +31,108 @@ constexpr size_t kFacetBytes = 50;
 constexpr size_t kNormalBytes = 12;
 constexpr size_t kCornersBytes = 36;
 
+template <class Number>
+Number read_number(std::string_view file, size_t offset) {
+  Number number{};
+  std::memcpy(&number, file.data() + offset, sizeof(number));
+  return number;
+}
+
 uint64_t facet_count(std::string_view file) {
-  uint32_t count = 0;
-  std::memcpy(&count, file.data() + kHeaderBytes, sizeof(count));
-  return count;
+  return read_number<uint32_t>(file, kHeaderBytes);
+}
+
+bool has_size_of_binary(std::string_view file) {
+  return file.size() >= kFirstFacet && file.size() == kFirstFacet + kFacetBytes * facet_count(file);
 }
 
 /// Texts begin with "solid", but so do the headers of some binary files. Those hold zeros further on, in their count at
 /// the latest unless it is beyond 16 million.
-bool is_text(std::string_view file) {
-  if (file.size() >= kFirstFacet && file.size() == kFirstFacet + kFacetBytes * facet_count(file)) return false;
-  std::string_view begin = file.substr(0, kFirstFacet + kFacetBytes);
+bool looks_like_text(std::string_view file) {
+  const std::string_view begin = file.substr(0, kFirstFacet + kFacetBytes);
   if (begin.find('\0') != std::string_view::npos) return false;
-  begin = without_byte_order_mark(begin);
-  begin.remove_prefix(std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
-  return is_stl_keyword(begin.substr(0, 5), "solid");
+  return is_stl_keyword(skip_to_text(begin).substr(0, 5), "solid");
 }
 
-/// nullopt where a coordinate is out of range.
-std::optional<StlSolid> read_facets(std::string_view file, uint64_t count, LoadReport& report) {
-  StlSolid solid;
-  solid.corners.resize(3 * count);
-  bool has_attributes = false;
-  for (uint64_t i = 0; i < count; ++i) {
-    const char* facet = file.data() + kFirstFacet + kFacetBytes * i;
-    float coordinates[9];
-    uint16_t attribute = 0;
-    std::memcpy(coordinates, facet + kNormalBytes, kCornersBytes);
-    std::memcpy(&attribute, facet + kNormalBytes + kCornersBytes, sizeof(attribute));
-    has_attributes = has_attributes || attribute != 0;
-    for (const float coordinate : coordinates) {
-      // Written so that NaN fails.
-      if (std::abs(coordinate) <= kMaxCoordinate) continue;
-      report.refuse("a vertex coordinate is not finite or beyond 1e15", "facet " + std::to_string(i),
-                    "export the mesh again, in a larger unit of length");
-      return std::nullopt;
+/// The colours of a binary file's facets, which share the two bytes behind each facet, in one of two ways. VisCAM and
+/// SolidView have 5 bits of blue, green and red, from the lowest on, and set the highest bit where these count. Magics
+/// has red in the lowest, clears the highest bit where they count, and its header has the colour of the other facets.
+class FacetColors {
+ public:
+  FacetColors(std::string_view file, uint64_t count) : file_(file) {
+    for (int i = 0; i < 32; ++i) linear_[static_cast<size_t>(i)] = static_cast<float>(srgb_to_linear(i / 31.0));
+    for (uint64_t i = 0; i < count; ++i) {
+      const uint16_t code = code_of(i);
+      has_codes_ = has_codes_ || code != 0;
+      has_marks_ = has_marks_ || (code & kMark) != 0;
     }
-    for (uint64_t corner = 0; corner < 3; ++corner) {
-      const float* p = &coordinates[3 * corner];
-      solid.corners[3 * i + corner] = vec3(p[0], p[1], p[2]);
+    const std::string_view header = file.substr(0, kHeaderBytes);
+    const size_t mark = header.find(kDefault);
+    is_magics_ = mark != std::string_view::npos && mark + kDefault.size() + 3 <= kHeaderBytes;
+    if (!is_magics_) return;
+    for (int i = 0; i < 3; ++i) {
+      const auto code = static_cast<uint8_t>(header[mark + kDefault.size() + static_cast<size_t>(i)]);
+      default_[i] = static_cast<float>(srgb_to_linear(code / 255.0));
     }
   }
-  if (has_attributes) report.warn("colours of binary STL are ignored");
+
+  /// Whether facets have colours at all.
+  bool exist() const { return is_magics_ || has_marks_; }
+  /// Whether the bytes hold anything that is no colour.
+  bool are_unknown() const { return has_codes_ && !exist(); }
+
+  vec3 of(uint64_t facet) const {
+    const uint16_t code = code_of(facet);
+    // A writer that knows no colours of facets leaves all their bytes 0.
+    if (is_magics_ ? !has_codes_ || (code & kMark) != 0 : (code & kMark) == 0) return default_;
+    const vec3 color(linear_[code & 31U], linear_[code >> 5 & 31U], linear_[code >> 10 & 31U]);
+    return is_magics_ ? color : vec3(color.b, color.g, color.r);
+  }
+
+ private:
+  static constexpr std::string_view kDefault = "COLOR=";
+  static constexpr uint16_t kMark = 0x8000;
+
+  uint16_t code_of(uint64_t facet) const {
+    return read_number<uint16_t>(file_, kFirstFacet + kFacetBytes * facet + kNormalBytes + kCornersBytes);
+  }
+
+  std::string_view file_;
+  /// Linear light of each code of 5 bits.
+  std::array<float, 32> linear_{};
+  bool is_magics_ = false;
+  bool has_codes_ = false;
+  bool has_marks_ = false;
+  /// White where no header says otherwise.
+  vec3 default_{1.0F};
+};
+
+bool is_in_range(const std::array<vec3, 3>& corners) {
+  for (const vec3& p : corners) {
+    for (int i = 0; i < 3; ++i) {
+      // Written so that NaN fails.
+      if (!(std::abs(p[i]) <= kMaxCoordinate)) return false;
+    }
+  }
+  return true;
+}
+
+StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) {
+  const FacetColors colors(file, count);
+  if (colors.are_unknown()) report.warn("the bytes behind the facets are no colours, and ignored");
+  StlSolid solid;
+  solid.corners.reserve(3 * count);
+  if (colors.exist()) solid.colors.reserve(count);
+  for (uint64_t i = 0; i < count; ++i) {
+    const auto corners = read_number<std::array<vec3, 3>>(file, kFirstFacet + kFacetBytes * i + kNormalBytes);
+    if (!is_in_range(corners)) {
+      report.repair({"a vertex coordinate of a facet is not finite or beyond 1e15", "", "facet " + std::to_string(i),
+                     "export the mesh again, in a larger unit of length", "the facet is left out"});
+      continue;
+    }
+    solid.corners.insert(solid.corners.end(), corners.begin(), corners.end());
+    if (colors.exist()) solid.colors.push_back(colors.of(i));
+  }
   return solid;
 }
 
@@ -79,16 +141,22 @@ std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
     report.refuse("the file is no STL", "", "name an STL file, binary or text");
     return {};
   }
-  const uint64_t count = facet_count(file);
+  uint64_t count = facet_count(file);
   const uint64_t room = (file.size() - kFirstFacet) / kFacetBytes;
+  // Who writes to a pipe cannot go back to write the count.
+  const bool is_open = count == 0 || count == std::numeric_limits<uint32_t>::max();
+  if (is_open && room > 0 && file.size() == kFirstFacet + kFacetBytes * room) {
+    report.repair({"the count of facets was never written", std::to_string(count), "", "export the file again",
+                   "as many are read as the file has room for"});
+    count = room;
+  }
   if (count > room) {
     report.refuse("the file tells of " + std::to_string(count) + " facets and has room for " + std::to_string(room), "",
                   "the file is cut short, or no STL: copy or export it again");
     return {};
   }
   if (file.size() > kFirstFacet + kFacetBytes * count) report.warn("bytes behind the last facet are ignored");
-  std::optional<StlSolid> solid = read_facets(file, count, report);
-  return solid ? std::vector<StlSolid>{std::move(*solid)} : std::vector<StlSolid>{};
+  return {read_facets(file, count, report)};
 }
 
 Mesh make_mesh(StlSolid& solid) {
@@ -96,6 +164,8 @@ Mesh make_mesh(StlSolid& solid) {
   mesh.positions = std::move(solid.corners);
   const auto count = static_cast<uint32_t>(mesh.positions.size() / 3);
   mesh.triangles.reserve(count);
+  mesh.colors.reserve(3 * solid.colors.size());
+  for (const vec3& color : solid.colors) mesh.colors.insert(mesh.colors.end(), 3, vec4(color, 1.0F));
   for (uint32_t i = 0; i < count; ++i) mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
   return mesh;
 }
@@ -105,7 +175,9 @@ Mesh make_mesh(StlSolid& solid) {
 Scene load_stl(const LoadOptions& /*options*/, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(report.file());
   const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  std::vector<StlSolid> solids = is_text(file) ? parse_stl_text(file, report) : read_binary(file, report);
+  const std::string_view text = without_zero_bytes_at_end(file);
+  const bool is_text = !has_size_of_binary(file) && looks_like_text(text);
+  std::vector<StlSolid> solids = is_text ? parse_stl_text(text, report) : read_binary(file, report);
   report.throw_if_refused();
 
   Scene scene;

@@ -8,9 +8,10 @@
 namespace promin {
 
 /// Reads the report's file as STL, binary or text. A file whose size is what its count of facets asks for is binary,
-/// whatever it begins with. Each facet is a triangle with corners of its own, in file order, drawn sharp: its normal in
-/// the file is ignored, and so are colours. A solid with facets is an object of the default material, by its name; a
-/// binary file is one. Throws InputError with all problems.
+/// whatever it begins with; one whose count of facets was never written has as many as there is room for. Each facet is
+/// a triangle with corners of its own, in file order, drawn sharp: its normal in the file is ignored. Colours of facets
+/// are those of VisCAM and SolidView, or of Magics, and taken for those of sRGB. A solid with facets is an object of
+/// the default material, by its name; a binary file is one. Throws InputError with all problems.
 Scene load_stl(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

@@ -8,22 +8,33 @@
 #include <optional>
 
 #include "formats/text_lines.h"
+#include "formats/text_words.h"
+#include "formats/triangulate.h"
 #include "promin/validate.h"
 
 namespace promin {
 namespace {
 
+/// What is behind "solid" up to where its first facet or its end begins, which may be on the same line.
+std::string_view name_in(std::string_view behind) {
+  std::string_view rest = behind;
+  for (std::string_view word = take_field(rest); !word.empty(); word = take_field(rest)) {
+    std::string_view next = rest;
+    const bool is_facet = is_stl_keyword(word, "facet") && is_stl_keyword(take_field(next), "normal");
+    if (is_facet || is_stl_keyword(word, "endsolid")) {
+      return behind.substr(0, static_cast<size_t>(word.data() - behind.data()));
+    }
+  }
+  return behind;
+}
+
 class StlParser {
  public:
-  StlParser(std::string_view text, LoadReport& report) : lines_(text), report_(report) {}
+  StlParser(std::string_view text, LoadReport& report) : words_(text), report_(report) {}
 
   std::vector<StlSolid> parse() {
-    while (lines_.advance()) {
-      std::string_view line = lines_.line();
-      const std::string_view keyword = take_word(line);
-      if (!keyword.empty()) read_statement(keyword, line);
-    }
-    if (is_in_facet_) report_.refuse("the file ends within a facet", lines_.place(), "export the file again");
+    while (!words_.next().empty()) read_statement(words_.take());
+    if (is_in_facet_) report_.refuse("the file ends within a facet", words_.place(), "export the file again");
     if (ignored_count_ > 0) {
       report_.warn(std::to_string(ignored_count_) + " statements of STL are ignored, the first is " + first_ignored_);
     }
@@ -31,59 +42,95 @@ class StlParser {
   }
 
  private:
-  void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
+  void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, words_.place(), cure); }
+  void repair(const char* what, const std::string& value, const char* repair) {
+    report_.repair({what, value, words_.place(), "export the file again", repair});
+  }
 
   /// Ordered by how often they come.
-  void read_statement(std::string_view keyword, std::string_view rest) {
+  void read_statement(std::string_view keyword) {
     if (is_stl_keyword(keyword, "vertex")) {
-      read_vertex(rest);
+      read_vertex();
     } else if (is_stl_keyword(keyword, "facet")) {
       begin_facet();
     } else if (is_stl_keyword(keyword, "endfacet")) {
       end_facet();
     } else if (is_stl_keyword(keyword, "solid")) {
-      solids_.push_back({.name = std::string(trim(rest))});
-    } else if (!is_stl_keyword(keyword, "outer") && !is_stl_keyword(keyword, "endloop") &&
-               !is_stl_keyword(keyword, "endsolid") && ignored_count_++ == 0) {
-      first_ignored_ = quote(keyword) + " in " + lines_.place();
+      begin_solid();
+    } else if (is_stl_keyword(keyword, "endsolid")) {
+      while (words_.is_next_on_line() && !is_stl_keyword(words_.next(), "solid")) words_.take();
+    } else if (!is_stl_keyword(keyword, "outer") && !is_stl_keyword(keyword, "loop") &&
+               !is_stl_keyword(keyword, "endloop")) {
+      ignore(keyword);
     }
   }
 
+  void ignore(std::string_view keyword) {
+    if (ignored_count_++ == 0) first_ignored_ = quote(keyword) + " in " + words_.place();
+    while (words_.is_next_on_line()) words_.take();
+  }
+
+  void begin_solid() {
+    const std::string_view name = name_in(words_.behind());
+    solids_.push_back({.name = std::string(trim(name))});
+    while (words_.is_next_on_line() && words_.next().data() < name.data() + name.size()) words_.take();
+  }
+
+  /// The normal may be anything, as it is not used.
   void begin_facet() {
     if (is_in_facet_) refuse("a facet begins within another", "export the file again");
     if (solids_.empty()) solids_.emplace_back();
     is_in_facet_ = true;
-    corner_count_ = 0;
+    is_placed_ = true;
+    corners_.clear();
+    if (!is_stl_keyword(words_.next(), "normal")) return;
+    words_.take();
+    for (int i = 0; i < 3 && !is_stl_keyword(words_.next(), "outer"); ++i) words_.take();
   }
 
-  void read_vertex(std::string_view rest) {
+  void read_vertex() {
     if (!is_in_facet_) return refuse("a vertex lies in no facet", "export the file again");
     vec3 corner;
     for (int i = 0; i < 3; ++i) {
-      const std::string_view word = take_word(rest);
-      const std::optional<double> number = parse_number(word);
-      if (!number || std::abs(*number) > kMaxCoordinate) {
-        return refuse(quote(word) + " is no number up to 1e15", "give each vertex x y z");
+      const std::string_view word = words_.take();
+      const std::optional<double> number = parse_any_number(word);
+      if (!number) return refuse(quote(word) + " is no number", "give each vertex x y z");
+      // Written so that NaN fails.
+      if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
+        is_placed_ = false;
+        repair("a vertex coordinate of a facet is not finite or beyond 1e15", quote(word), "the facet is left out");
       }
       corner[i] = static_cast<float>(*number);
     }
-    ++corner_count_;
-    solids_.back().corners.push_back(corner);
+    corners_.push_back(corner);
   }
 
   void end_facet() {
     if (!is_in_facet_) return refuse("the end of a facet has no begin", "export the file again");
     is_in_facet_ = false;
-    if (corner_count_ != 3) {
-      refuse("a facet has " + std::to_string(corner_count_) + " corners", "give it 3");
+    std::vector<vec3>& all = solids_.back().corners;
+    if (corners_.size() < 3) {
+      repair("a facet has fewer than 3 corners", std::to_string(corners_.size()), "the facet is left out");
+    } else if (corners_.size() > kMaxPolygonCorners) {
+      refuse("a facet has " + std::to_string(corners_.size()) + " corners", "give it 3");
+    } else if (is_placed_ && corners_.size() == 3) {
+      all.insert(all.end(), corners_.begin(), corners_.end());
+    } else if (is_placed_) {
+      repair("a facet has more than 3 corners", std::to_string(corners_.size()), "it is cut in triangles");
+      for (const uvec3& triangle : triangulate_polygon(corners_)) {
+        for (int i = 0; i < 3; ++i) all.push_back(corners_[triangle[i]]);
+      }
     }
   }
 
-  TextLines lines_;
+  TextWords words_;
   LoadReport& report_;
   std::vector<StlSolid> solids_;
   bool is_in_facet_ = false;
-  uint64_t corner_count_ = 0;
+  /// Whether all corners of the facet lie somewhere.
+  bool is_placed_ = true;
+  /// Those of the facet.
+  std::vector<vec3> corners_;
   uint64_t ignored_count_ = 0;
   std::string first_ignored_;
 };

@@ -9,20 +9,26 @@
 
 namespace promin {
 
-/// Takes the words off an NFF file, in which lines mean nothing and # begins a comment up to a line's end.
-class NffTokens {
+/// Takes the words off a text in which lines mean little, and # begins a comment up to a line's end.
+class TextWords {
  public:
-  explicit NffTokens(std::string_view text) : lines_(text) { advance(); }
+  explicit TextWords(std::string_view text) : lines_(text) { advance(); }
 
   /// The word that comes next; empty at the end of the file.
   std::string_view next() const { return next_; }
+  /// Whether it is on the line of the word that was taken last.
+  bool is_next_on_line() const { return !next_.empty() && next_line_ == line_; }
 
   std::string_view take() {
     const std::string_view word = next_;
     line_ = next_line_;
+    behind_ = rest_;
     advance();
     return word;
   }
+
+  /// What is on its line behind the word that was taken last, comments too.
+  std::string_view behind() const { return behind_; }
 
   /// The place of the word that was taken last: "line 12".
   std::string place() const { return "line " + std::to_string(line_); }
@@ -41,6 +47,7 @@ class NffTokens {
 
   TextLines lines_;
   std::string_view rest_;
+  std::string_view behind_;
   std::string_view next_;
   uint64_t next_line_ = 0;
   uint64_t line_ = 0;
