@@ -38,8 +38,12 @@ void LoadReport::warn(const std::string& sentence) {
 }
 
 void LoadReport::repair(const Fault& fault) {
+  if (!is_strict_) return warn(fault);
+  refuse(fault.what + (fault.value.empty() ? "" : " (" + fault.value + ")"), fault.place, fault.cure);
+}
+
+void LoadReport::warn(const Fault& fault) {
   const std::string value = fault.value.empty() ? "" : " (" + fault.value + ")";
-  if (is_strict_) return refuse(fault.what + value, fault.place, fault.cure);
   const auto [kind, is_new] = kinds_.try_emplace({fault.what, fault.repair}, warnings_.size());
   if (is_new) {
     const std::string place = fault.place.empty() ? "" : ", " + fault.place;

@@ -46,6 +46,8 @@ class LoadReport {
   /// from the file are made visible as '?', so that each message stays on its line.
   void refuse(const std::string& what, const std::string& place, const std::string& cure);
   void warn(const std::string& sentence);
+  /// Warns as repair() does of what the format allows and the loader cannot show: no report refuses it.
+  void warn(const Fault& fault);
   /// Warns once for all faults of a kind, with the place of the first and the number of the others: "a face has fewer
   /// than 3 corners, line 12 and 11 more; the face is left out". A strict report refuses each instead.
   void repair(const Fault& fault);

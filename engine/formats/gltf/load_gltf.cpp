@@ -63,9 +63,9 @@ class SceneReader {
     if (node.mesh < 0) return;
     const std::optional<uint64_t> instance_count = count_gltf_instances(document_, placed);
     if (!instance_count) return read_mesh(placed);
-    if (!has_room_for(*instance_count, placed)) return;
+    if (*instance_count == 0 || !has_room_for(*instance_count, placed)) return;
     for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
-      read_mesh({placed.node, place, placed.is_visible});
+      read_mesh({placed.node, place, placed.rotation, placed.is_visible});
     }
   }
 
@@ -93,8 +93,12 @@ class SceneReader {
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
-      if (placed.is_visible) read_geometry(placed, mesh, primitive, object);
-      if (object.geometry != Object::kNoGeometry) {
+      // A scale of 0 is another way to hide a node.
+      const bool is_shown = placed.is_visible && !has_no_area(placed.world_from_object);
+      if (is_shown) read_geometry(placed, mesh, primitive, object);
+      if (object.geometry == Object::kNoGeometry) {
+        if (is_shown) report_.lose_geometry();
+      } else {
         object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
       }
       scene_.objects.push_back(std::move(object));

@@ -28,6 +28,20 @@ dmat4 local_transform(const nlohmann::json& node) {
   return matrix;
 }
 
+/// The rotation of a node alone, as far as it has one.
+std::optional<dmat3> local_rotation(const nlohmann::json& node) {
+  if (!node.contains("matrix")) {
+    const dvec4 q = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
+    return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
+  }
+  const dmat3 matrix(local_transform(node));
+  const dvec3 z = glm::normalize(matrix[2]);
+  const dvec3 x = glm::normalize(glm::cross(matrix[1], z));
+  const dmat3 rotation(x, glm::cross(z, x), z);
+  if (!is_finite(dmat4(rotation))) return std::nullopt;
+  return rotation;
+}
+
 /// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
 std::vector<int> root_nodes(const GltfDocument& document) {
   const nlohmann::json& scenes = elements_of(document.json, "scenes");
@@ -43,20 +57,31 @@ std::vector<int> root_nodes(const GltfDocument& document) {
   return roots;
 }
 
+/// Nodes with several parents may stand for more places than the size of the file bounds.
+constexpr size_t kMostFurtherPlaces = size_t{1} << 18;
+
 }  // namespace
+
+bool has_no_area(const dmat4& world_from_object) {
+  const dmat3 m(world_from_object);
+  const dvec3 zero(0.0);
+  return glm::cross(m[0], m[1]) == zero && glm::cross(m[1], m[2]) == zero && glm::cross(m[2], m[0]) == zero;
+}
 
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report) {
   std::vector<PlacedNode> placed;
   // The stack is our own, last node first, because files may nest deeper than the machine's stack.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), true});
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({.node = *root});
   while (!pending.empty()) {
     PlacedNode next = pending.back();
     pending.pop_back();
     const GltfNode& node = document.nodes[static_cast<size_t>(next.node)];
     const nlohmann::json& source = document.json["nodes"][static_cast<size_t>(next.node)];
     next.world_from_object = next.world_from_object * local_transform(source);
+    const std::optional<dmat3> rotation = local_rotation(source);
+    if (next.rotation) next.rotation = rotation ? std::optional(*next.rotation * *rotation) : std::nullopt;
     const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
     if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
     if (!is_finite(next.world_from_object)) {
@@ -65,8 +90,12 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
       continue;
     }
     placed.push_back(next);
+    if (placed.size() > document.nodes.size() + kMostFurtherPlaces) {
+      report.refuse("the nodes with several parents stand in too many places", "nodes", "give each node one parent");
+      return {};
+    }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      pending.push_back({*child, next.world_from_object, next.is_visible});
+      pending.push_back({*child, next.world_from_object, next.rotation, next.is_visible});
     }
   }
   return placed;
