@@ -12,7 +12,7 @@ namespace promin {
 /// A text without the byte order mark that some editors begin a file with.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// Walks the lines of a text, whether they end in \n or \r\n, without the byte order mark of a file.
+/// Walks the lines of a text, whether they end in \n, \r\n or \r, without the byte order mark of a file.
 class TextLines {
  public:
   /// `lines_before` of the file come before the text.
@@ -32,6 +32,8 @@ class TextLines {
  private:
   std::string_view rest_;
   std::string_view line_;
+  /// The next \n from rest_ on, or the end of the text; stale where it lies before rest_.
+  const char* line_feed_ = nullptr;
   uint64_t number_;
 };
 
