@@ -155,6 +155,7 @@ class NeededViews {
       const bool is_morphed = node.mesh >= 0 && node.weights && has_morph(*node.weights);
       if (is_morphed) need_targets(document.meshes[static_cast<size_t>(node.mesh)]);
     }
+    for (const json& skin : elements_of(document.json, "skins")) need_accessor(skin.value("inverseBindMatrices", -1));
     if (!with_images) return;
     for (const json& image : elements_of(document.json, "images")) need_view(image.value("bufferView", -1));
   }

@@ -97,6 +97,7 @@ constexpr JsonRule kRules[] = {
     index("nodes[].children[]", "nodes"),
     index("nodes[].mesh", "meshes"),
     index("nodes[].camera", "cameras"),
+    index("nodes[].skin", "skins"),
     numbers("nodes[].matrix", 16, -kMaxScalar, kMaxScalar),
     numbers("nodes[].translation", 3, -kMaxCoordinate, kMaxCoordinate),
     numbers("nodes[].rotation", 4, -kMaxScalar, kMaxScalar),
@@ -119,6 +120,13 @@ constexpr JsonRule kRules[] = {
     index("meshes[].primitives[].targets[].*", "accessors"),
     array("meshes[].weights"),
     number("meshes[].weights[]", -kMaxScalar, kMaxScalar),
+
+    array("skins"),
+    object("skins[]"),
+    text("skins[].name"),
+    array("skins[].joints"),
+    index("skins[].joints[]", "nodes"),
+    index("skins[].inverseBindMatrices", "accessors"),
 
     array("materials"),
     object("materials[]"),
