@@ -107,6 +107,7 @@ void view(const WindowOptions& options) {
   start.file = tracing.scene;
   auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
   const EnvironmentChoice environment(options.view.environment);
+  for (const std::string& warning : environment.warnings()) console.warn(warning);
   ViewOptions view_options = options.view;
   if (options.replay) {
     start.replay.emplace(read_camera_path(*options.replay), options.fps);

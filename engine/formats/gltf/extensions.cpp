@@ -20,6 +20,7 @@ using nlohmann::json;
 constexpr std::string_view kKnown[] = {
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
+    "EXT_texture_avif",
     "EXT_texture_webp",
     "KHR_draco_mesh_compression",
     "KHR_implicit_shapes",
@@ -38,6 +39,7 @@ constexpr std::string_view kKnown[] = {
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     "OMI_environment_sky",
     "PROMIN_lights_phong",
