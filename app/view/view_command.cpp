@@ -122,6 +122,7 @@ void view(const WindowOptions& options) {
   start.look = look;
   start.environment = options.view.environment;
   start.variant = tracing.load.material_variant;
+  start.root = tracing.load.root;
   start.error_target = options.error.target_or(ErrorTarget{}.error);
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;

@@ -29,7 +29,7 @@ struct PictureSource {
   std::string title = {};
   /// Why it cannot be used; nothing where it can.
   std::optional<Fault> problem = std::nullopt;
-  /// Whether the problem is the file's. What the file's format allows and promin does not read is none of its.
+  /// Whether the file is broken or missing. It is not where its format allows what promin does not read.
   bool is_file_at_fault = true;
 };
 

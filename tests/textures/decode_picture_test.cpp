@@ -81,7 +81,7 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   }
 }
 
-/// Of a JPEG that a library complains about, there is what is decoded.
+/// The library complains about such JPEGs, and decodes what there is.
 TEST(DecodePicture, JpegsWithWarningsAreDecoded) {
   std::mt19937 random(3);
   std::vector<uint8_t> pixels(size_t{64} * 64 * 3);
@@ -336,6 +336,49 @@ TEST(DecodePicture, Ktx2OfEtc1sByBasisLz) {
   EXPECT_EQ(std::memcmp(picture.texels.data(), expected.data(), expected.size()), 0);
 }
 
+/// A UASTC block of each of the 19 modes, side by side, that basisu 1.15 encodes, and the RGBA that it unpacks of them
+/// as ASTC.
+constexpr std::string_view kUastc =
+    "YUmzVJO1XNsQMlR2mLrc/vUJh8KDFoWHGwDw/w8AAACdWNCgoaGfn0GUJEmABEgAQzg20GSExRAJgADlcnk+ABOctIcOCRAEMUhK29jYWABL"
+    "SA7fBt+mIAlggIQkAAAA21plkhrdUmiombru3CITRIeEBohKRwLqxV0S5XJycgAXHl7hv+QcAAAAAAAAAAAAT37w/4SFhTXh4eEfAP//KyrQ"
+    "0clmumH+n1YIrz6Q+WkogmwtMIvvBgADdESLuMzPLtDxjqJIMln2zhEN9Vmf9Z8l3gHHx4GClhb8Owr69QXtgd5hZeUCpKXFvAyoUv0HBUW+"
+    "BJjVZyoAAAAg8z/zH5UmfLhBAQL8I+EB/MvJ5eTlDGL1HxDgD/gH+Af4B/gH+UCruuqqQZBzEnsPylqv5g==";
+constexpr std::string_view kUastcTexels =
+    "NDU1/zc6Pv86QEf/PUVR/xS0PP8UtDz/FLQ8/xS0PP/x8Qn/8fEJ//HxCf/x8Qn/AAAA/0QHD/+MDx//0Rcu/x0o3f8NDQ3/NDqx/zxBmv/w"
+    "8Ar/8PAK//DwCv9/f3//u9Rm/2dkrv+Snq7/kp6u/xOxOv8dokD/KZNH/zSETv/w8Ar/8PAK//DwCv/w8Ar/AAAA/wAAAP8AAAD/AAAA/+qT"
+    "b4jqk5SI6pNgiOqTUohsG6n/bBup/2wbqQBsG6n/3SZakd4xWpHePVqQ3khajxwHWvAcB1rwHwda8B8HWvBWLlrMVi5azFYuWsxWLlrMYGBg"
+    "n2BgYJ9gYGCfYGBgn0hISABYWFhUaGhoq3h4eP////8A////AICAgH+AgIB/ra2t/7CwsP+ysrL/tra2/0FMXP9EUmX/R1dv/0pdeP8UtDz/"
+    "FLQ8/xS0PP8UtDz/8fEJ//HxCf/x8Qn/8fEJ/y4XF/9rHib/qyY2/+guRf8dKN3/DQ0N/zQ6sf88QZr/8PAK//DwCv+kpFj/pKRY/2dkrv8+"
+    "Lq7/Z2Tz/2dk8//FICf/tCgv/6IxOP+ROkH/8PAK//DwCv/w8Ar/8PAK/////wD///8A////AP///wDqk4WI6pMFiOqT74jqk6KIbDep/2w3"
+    "qQBsN6n/bDep/90mWpHeMVqR3kNakN5OWo8cB1rwHAda8B8HWvAfB1rwVjRazFY0WsxWNFrMVjRazGBgYJ9gYGCfYGBgn2BgYJ9ISEgAWFhY"
+    "VGhoaKt4eHj/////AP///wCAgIB/gICAf7a2tv+5ubn/vb29/8DAwP9PZYb/UmuP/1Vwmf9ZdqL/Hijc/x4o3P8eKNz/Hijc/wAAAP8AAAD/"
+    "gICA/4CAgP9cLi7/kj09/8pNTf//XFz/HSjd/w0NDf80OrH/PEGa//DwCv/LyzD/y8sw/8vLMP+71PP/kp7z/2dkIf9nZCH/E7E6/x2iQP8p"
+    "k0f/NIRO//DwCv/w8Ar/8PAK//DwCv////8A////AP///wD///8A6pPhiOqTMYjqkwWI6pOUiGxVqQBsVan/bFWp/2xVqQDeK1qR3jdakN5D"
+    "WpDeTlqPHwpa7x8KWu8cClrvHApa71Y6WsxWOlrMVjpazFY6WsxaWlqlWlpapVZWVqlWVlapUFBQAGBgYFRwcHCrgICA/////wD///8AgICA"
+    "f4CAgH/AwMD/w8PD/8bGxv/Jycn/XHyt/2CCt/9jiMD/Zo3J/x4o3P8eKNz/Hijc/x4o3P8AAAD/AAAA/4CAgP+AgID/kj09/8pNTf//XFz/"
+    "/1xc/x0o3f8NDQ3/NDqx/zxBmv/w8Ar/8PAK//DwCv/w8Ar/Pi4h/5KeIf+71Gb/u9Rm/xOxOv8dokD/KZNH/zSETv/w8Ar/8PAK//DwCv/w"
+    "8Ar/WlpapVpaWqVaWlqlWlpapeqTlIjqk++I6pOUiOqTYIhscan/bHGp/2xxqQBscan/3itakd43WpDeQ1qQ3k5ajx8KWu8fClrvHApa7xwK"
+    "Wu9WQFrLVkBay1ZAWstWQFrLWlpapVpaWqVWVlapVlZWqVBQUABgYGBUcHBwq4CAgP////8A////AICAgH+AgIB/ycnJ/8zMzP/Q0ND/0tLS"
+    "/w==";
+
+TEST(DecodePicture, Ktx2OfUastcInEachMode) {
+  const Bytes blocks = decode_base64(kUastc).value();
+  const Bytes expected = decode_base64(kUastcTexels).value();
+  Ktx2 ktx2 = {.vk_format = 0, .size = {76, 4}, .level = {}, .color_model = 166};
+  for (const std::byte byte : blocks) ktx2.level.push_back(std::to_integer<uint8_t>(byte));
+  const DecodedPicture picture = decode_picture(make_ktx2(ktx2));
+  ASSERT_EQ(4 * picture.texels.size(), expected.size());
+  EXPECT_EQ(std::memcmp(picture.texels.data(), expected.data(), expected.size()), 0);
+  // Where sides are no multiples of 4, blocks are cut.
+  ktx2.size = {75, 3};
+  const DecodedPicture cut = decode_picture(make_ktx2(ktx2));
+  EXPECT_EQ(cut.texels.at(75 + 74), picture.texels.at(76 + 74));
+  // No mode has seven bits of 69.
+  ktx2.level[0] = 69;
+  EXPECT_THAT([&] { return decode_picture(make_ktx2(ktx2)).size; },
+              ThrowsMessage<PictureError>(HasSubstr("a UASTC block is damaged")));
+}
+
 /// Whatever the bits, there is a picture or an error.
 TEST(DecodePicture, DamagedEtc1sIsToldOf) {
   std::mt19937 random(11);
@@ -358,7 +401,7 @@ TEST(DecodePicture, DamagedEtc1sIsToldOf) {
 TEST(DecodePicture, Ktx2OfOtherFormatsNamesWhatConvertsIt) {
   const auto decoding = [](const Ktx2& ktx2) { return [ktx2] { return read_picture_size(make_ktx2(ktx2)); }; };
   EXPECT_THAT(decoding({.vk_format = 145}), ThrowsMessage<PictureError>(HasSubstr("VkFormat 145 is not read")));
-  EXPECT_THAT(decoding({.vk_format = 0, .color_model = 200}), ThrowsMessage<PictureError>(HasSubstr("ktx transcode")));
+  EXPECT_THAT(decoding({.vk_format = 0, .color_model = 200}), ThrowsMessage<PictureError>(HasSubstr("ktx extract")));
 }
 
 TEST(DecodePicture, ColoursAreNotMultipliedByAlpha) {

@@ -24,7 +24,7 @@ constexpr uint32_t kMostBits = 16;
 /// A canonical prefix code, as Deflate has them (RFC 1951, 3.2.2).
 class PrefixCode {
  public:
-  /// Symbols by the lengths of their words, 0 where a symbol has none.
+  /// The length of each symbol's word, 0 where a symbol has no word.
   explicit PrefixCode(const std::vector<uint8_t>& lengths) {
     for (const uint8_t length : lengths) ++counts_[length];
     counts_[0] = 0;
@@ -96,7 +96,7 @@ uint32_t take_chunks(BitReader& bits, uint32_t chunk_bits) {
 
 /// The colours of a block, by its selectors.
 using Palette = std::array<std::array<uint8_t, 3>, 4>;
-/// Of each of the block's rows a byte, two bits for each texel.
+/// A byte for each row of the block, two bits for each texel.
 using Selectors = std::array<uint8_t, 4>;
 
 /// ETC1: what is added to a colour, by its table and selector.
@@ -142,7 +142,7 @@ std::vector<Palette> read_palettes(Bytes bytes, uint32_t count) {
 
 std::vector<Selectors> read_selectors(Bytes bytes, uint32_t count) {
   BitReader bits(bytes);
-  // Codebooks outside the file, which there are none of.
+  // These bits ask for codebooks outside the file, which no version has.
   if (bits.take(2) != 0) refuse();
   const bool is_raw = bits.take(1) != 0;
   const PrefixCode code = is_raw ? PrefixCode({}) : read_code(bits);

@@ -14,6 +14,7 @@
 
 #include "image/plugin/etc1s.h"
 #include "image/plugin/own_formats.h"
+#include "image/plugin/uastc.h"
 
 // The numbers are those of the Khronos Texture File Format Specification 2.0 and of Vulkan's VkFormat.
 namespace {
@@ -66,7 +67,7 @@ std::optional<Layout> layout_of(uint32_t vk_format) {
   }
 }
 
-constexpr const char* kCure = " is not read; convert it with: ktx transcode --target rgba8";
+constexpr const char* kCure = " is not read; make a PNG of it, for example by `ktx extract`";
 
 /// Colour models and channels of Khronos' data format descriptors.
 constexpr uint8_t kEtc1s = 163;
@@ -76,7 +77,7 @@ constexpr uint8_t kEtc1sGreen = 4;
 struct Header {
   uint32_t width;
   uint32_t height;
-  /// Of a file without a VkFormat the colour model; else 0.
+  /// The colour model of a file without a VkFormat; else 0.
   uint8_t basis_model;
   Layout layout;
   uint32_t supercompression;
@@ -101,17 +102,17 @@ Header read_header(Bytes file) {
   if (vk_format == 0) header.basis_model = descriptor_byte(file, kColorModelAt);
   const bool is_etc1s = header.basis_model == kEtc1s && header.supercompression == kBasisLz;
   if (is_etc1s) return header;
-  if (header.basis_model == kUastc) throw std::runtime_error(std::string("UASTC of Basis Universal") + kCure);
-  const std::optional<Layout> layout = layout_of(vk_format);
-  if (!layout) throw std::runtime_error("VkFormat " + std::to_string(vk_format) + kCure);
   if (header.supercompression != 0 && header.supercompression != kZstd) {
     throw std::runtime_error("supercompression " + std::to_string(header.supercompression) + kCure);
   }
+  if (header.basis_model == kUastc) return header;
+  const std::optional<Layout> layout = layout_of(vk_format);
+  if (!layout) throw std::runtime_error("VkFormat " + std::to_string(vk_format) + kCure);
   header.layout = *layout;
   return header;
 }
 
-/// The value of a key of the file's own notes, without its closing zero; empty where there is none.
+/// The value of a key of the file's own notes, without its closing zero; empty without the key.
 std::string_view find_value(Bytes file, std::string_view key) {
   const auto field = [&](uint64_t place) { return number_at<uint32_t>(file, place); };
   Bytes notes = bytes_at(file, field(56), field(60));
@@ -160,6 +161,22 @@ void read_etc1s(Bytes file, const Header& header, std::span<unsigned char> pixel
   decode_etc1s({header.width, header.height, globals, stored_level(file), is_green}, pixels);
 }
 
+void read_uastc(Bytes file, const Header& header, std::span<unsigned char> pixels) {
+  constexpr size_t kBlockBytes = 16;
+  const uint64_t column_count = (uint64_t{header.width} + 3) / 4;
+  const uint64_t block_count = column_count * ((uint64_t{header.height} + 3) / 4);
+  const std::vector<unsigned char> level = read_level(file, header, block_count * kBlockBytes);
+  for (uint64_t i = 0; i < block_count; ++i) {
+    const auto texels = decode_uastc(std::span<const unsigned char, kBlockBytes>(&level[i * kBlockBytes], kBlockBytes));
+    for (uint64_t k = 0; k < texels.size(); ++k) {
+      const uint64_t x = i % column_count * 4 + k % 4;
+      const uint64_t y = i / column_count * 4 + k / 4;
+      if (x >= header.width || y >= header.height) continue;
+      std::copy(texels[k].begin(), texels[k].end(), &pixels[4 * (y * header.width + x)]);
+    }
+  }
+}
+
 /// Which of red, green, blue, alpha, 0 and 1 a pixel's channels show: "rgba" unless the file says another.
 std::array<size_t, 4> read_swizzle(Bytes file) {
   constexpr std::string_view kNames = "rgba01";
@@ -197,5 +214,6 @@ std::pair<uint32_t, uint32_t> read_ktx2_size(Bytes file) {
 void read_ktx2(Bytes file, std::span<unsigned char> pixels) {
   const Header header = read_header(file);
   if (header.basis_model == kEtc1s) return read_etc1s(file, header, pixels);
+  if (header.basis_model == kUastc) return read_uastc(file, header, pixels);
   read_plain(file, header, pixels);
 }

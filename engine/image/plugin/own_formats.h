@@ -29,7 +29,7 @@ void read_webp(std::span<const unsigned char> file, std::span<unsigned char> pix
 std::pair<uint32_t, uint32_t> read_avif_size(std::span<const unsigned char> file);
 void read_avif(std::span<const unsigned char> file, std::span<unsigned char> pixels);
 
-/// KTX 2.0 (Khronos Texture File Format Specification): the largest level of 1 to 4 channels of 8 bits, as it is or
-/// supercompressed by Zstandard.
+/// KTX 2.0 (Khronos Texture File Format Specification): the largest level of 1 to 4 channels of 8 bits or of UASTC
+/// blocks, as it is or supercompressed by Zstandard, or of ETC1S blocks supercompressed by BasisLZ.
 std::pair<uint32_t, uint32_t> read_ktx2_size(std::span<const unsigned char> file);
 void read_ktx2(std::span<const unsigned char> file, std::span<unsigned char> pixels);
