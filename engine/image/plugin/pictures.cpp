@@ -17,11 +17,13 @@
 #include <vector>
 
 #include "image/exr_parts.h"
-#include "image/plugin/webp.h"
+#include "image/plugin/own_formats.h"
+#include "image/plugin/upright.h"
 
 struct ProminPicturesReader {
-  /// A WebP file in memory; all else has an input.
-  std::span<const unsigned char> webp;
+  /// A file in memory that is read without OpenImageIO, and its format; all else has an input.
+  std::span<const unsigned char> own;
+  const OwnFormat* own_format = nullptr;
   /// Another file in memory.
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
@@ -348,13 +350,16 @@ struct ProminPicturesWriter {
 
 namespace {
 
-/// The place of the R, G, B triple among a file's channels; -1 if it has none.
+/// The place of the R, G, B triple among a file's channels, or of a luminance without chroma; -1 if it has neither.
 int find_rgb(const OIIO::ImageSpec& spec) {
   const auto& names = spec.channelnames;
   for (int first = 0; first + 2 < spec.nchannels; ++first) {
     const auto i = static_cast<size_t>(first);
     if (names[i] == "R" && names[i + 1] == "G" && names[i + 2] == "B") return first;
   }
+  const bool has_chroma = std::ranges::count(names, "RY") + std::ranges::count(names, "BY") > 0;
+  const auto luminance = std::ranges::find(names, "Y");
+  if (!has_chroma && luminance != names.end()) return static_cast<int>(luminance - names.begin());
   return -1;
 }
 
@@ -507,6 +512,7 @@ int promin_pictures_open(const char* file, ProminPicturesReader** reader, Promin
     auto opened = std::make_unique<ProminPicturesReader>();
     opened->input = OIIO::ImageInput::open(file);
     if (!opened->input) throw std::runtime_error(first_line(OIIO::geterror()));
+    opened->input = make_upright(std::move(opened->input));
     *info = describe(*opened);
     *reader = opened.release();
   });
@@ -517,9 +523,10 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
   *reader = nullptr;
   return guard(message, [&] {
     auto opened = std::make_unique<ProminPicturesReader>();
-    if (std::string_view(format) == "webp") {
-      opened->webp = {static_cast<const unsigned char*>(bytes), byte_count};
-      const auto [width, height] = read_webp_size(opened->webp);
+    if (const OwnFormat* own = find_own_format(format)) {
+      opened->own = {static_cast<const unsigned char*>(bytes), byte_count};
+      opened->own_format = own;
+      const auto [width, height] = own->read_size(opened->own);
       *info = {width, height, 1, -1, 1};
       *reader = opened.release();
       return;
@@ -535,6 +542,7 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
     if (!opened->input->open(std::string("memory.") + format, spec, config)) {
       throw std::runtime_error(first_line(opened->input->geterror()));
     }
+    opened->input = make_upright(std::move(opened->input));
     *info = describe(*opened);
     *reader = opened.release();
   });
@@ -543,8 +551,8 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
 int promin_pictures_read_rgba(ProminPicturesReader* reader, unsigned char* pixels, ProminPicturesMessage* message) {
   return guard(message, [&] {
     if (!reader->input) {
-      const auto [width, height] = read_webp_size(reader->webp);
-      read_webp(reader->webp, {pixels, size_t{4} * width * height});
+      const auto [width, height] = reader->own_format->read_size(reader->own);
+      reader->own_format->read(reader->own, {pixels, size_t{4} * width * height});
       return;
     }
     const OIIO::ImageSpec& spec = reader->input->spec();
@@ -559,11 +567,15 @@ int promin_pictures_read_rgba(ProminPicturesReader* reader, unsigned char* pixel
 
 int promin_pictures_read_rgb(ProminPicturesReader* reader, float* pixels, ProminPicturesMessage* message) {
   return guard(message, [&] {
-    if (!reader->input) throw std::runtime_error("WebP has no numbers of light");
+    if (!reader->input) throw std::runtime_error(std::string(reader->own_format->name) + " has no numbers of light");
+    const OIIO::ImageSpec& spec = reader->input->spec();
     const int first = reader->first_channel;
-    if (!reader->input->read_image(0, 0, first, first + 3, OIIO::TypeDesc::FLOAT, pixels)) {
+    const int count = spec.channelnames[static_cast<size_t>(first)] == "Y" ? 1 : 3;
+    constexpr OIIO::stride_t kPixelStride = 3 * sizeof(float);
+    if (!reader->input->read_image(0, 0, first, first + count, OIIO::TypeDesc::FLOAT, pixels, kPixelStride)) {
       throw std::runtime_error(first_line(reader->input->geterror()));
     }
+    for (size_t i = 0; count == 1 && i < 3 * spec.image_pixels(); i += 3) pixels[i + 1] = pixels[i + 2] = pixels[i];
   });
 }
 

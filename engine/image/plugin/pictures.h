@@ -97,7 +97,8 @@ struct ProminPicturesInfo {
   uint64_t width, height;
   /// 0 for volumes and deep pictures.
   uint32_t is_flat;
-  /// The first of three channels named R, G, B; -1 where there are none.
+  /// The first of three channels named R, G, B, or the one named Y, a luminance without chroma; -1 where there are
+  /// none.
   int32_t first_rgb_channel;
   /// Parts of an EXR, of which the above is said of the first; else 1.
   uint32_t part_count;
@@ -150,7 +151,8 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
 int promin_pictures_read_rgba(struct ProminPicturesReader* reader, unsigned char* pixels,
                               struct ProminPicturesMessage* message);
 
-/// Fills the caller's 3 * width * height floats with R, G, B of each pixel, without conversion of colours.
+/// Fills the caller's 3 * width * height floats with R, G, B, or three times Y, of each pixel, without conversion of
+/// colours.
 int promin_pictures_read_rgb(struct ProminPicturesReader* reader, float* pixels, struct ProminPicturesMessage* message);
 
 /// Describes a part by its number from 0; not for what promin_pictures_open_bytes gave.
