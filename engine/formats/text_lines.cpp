@@ -27,12 +27,24 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
 
+std::string_view cut_zero_tail(std::string_view text, const std::string& place, LoadReport& report) {
+  const size_t last = text.find_last_not_of('\0');
+  if (last == std::string_view::npos || last + 1 == text.size()) return text;
+  report.repair({"the text ends in zero bytes", std::to_string(text.size() - last - 1), place,
+                 "export the file again, or copy it again", "they are cut off"});
+  return text.substr(0, last + 1);
+}
+
 bool TextLines::advance() {
   if (rest_.empty()) return false;
-  const size_t end = rest_.find('\n');
+  // A text whose lines end in \r alone is searched once for \n, not once a line.
+  if (newline_ == nullptr || newline_ < rest_.data())
+    newline_ = rest_.data() + std::min(rest_.find('\n'), rest_.size());
+  const auto most = static_cast<size_t>(newline_ - rest_.data());
+  const size_t end = std::min(rest_.substr(0, most).find('\r'), most);
   line_ = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  const size_t end_size = rest_.substr(end).starts_with("\r\n") ? 2 : 1;
+  rest_.remove_prefix(std::min(end + end_size, rest_.size()));
   ++number_;
   return true;
 }

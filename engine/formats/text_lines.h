@@ -7,12 +7,18 @@
 #include <string>
 #include <string_view>
 
+#include "formats/load_report.h"
+
 namespace promin {
 
 /// A text without the byte order mark that some editors begin a file with.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// Walks the lines of a text, whether they end in \n or \r\n, without the byte order mark of a file.
+/// A text without the zero bytes at its end, which some programs pad a file with: the report repairs them, at `place`.
+/// A text of zero bytes alone is kept.
+std::string_view cut_zero_tail(std::string_view text, const std::string& place, LoadReport& report);
+
+/// Walks the lines of a text, whether they end in \n, \r or \r\n, without the byte order mark of a file.
 class TextLines {
  public:
   /// `lines_before` of the file come before the text.
@@ -32,6 +38,8 @@ class TextLines {
  private:
   std::string_view rest_;
   std::string_view line_;
+  /// The next \n of the rest, or the end of the text.
+  const char* newline_ = nullptr;
   uint64_t number_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "formats/obj/materials.h"
+#include "formats/obj/paths.h"
 #include "formats/obj/text.h"
 #include "formats/obj/textures.h"
 #include "formats/triangulate.h"
@@ -40,10 +41,10 @@ class MeshBuilder {
     for (uint32_t i = 0; i < face.corner_count; ++i) {
       const uint32_t normal = text_.corners[face.first_corner + i].normal;
       if (normal == kNoObjIndex) return false;
-      if (!(glm::length(dvec3(text_.normals[normal])) > 0.0)) {
-        report_.warn("there are normals of no length, faces that use them are drawn sharp");
-        return false;
-      }
+      const double length = glm::length(dvec3(text_.normals[normal]));
+      if (length > 0.0) continue;
+      if (length == 0.0) report_.warn("there are normals of no length, faces that use them are drawn sharp");
+      return false;
     }
     return true;
   }
@@ -134,14 +135,18 @@ class MeshBuilder {
 std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadReport& report) {
   std::map<std::string, MtlMaterial> known = read_mtl_files(text.libraries, report);
   std::vector<MtlMaterial*> used;
+  const auto find = [&](const std::string& name) {
+    const auto whole = known.find(name);
+    return whole != known.end() ? whole : known.find(std::string(without_comment(name)));
+  };
   for (const std::string& name : text.material_names) {
-    if (const auto found = known.find(name); found != known.end()) used.push_back(&found->second);
+    if (const auto found = find(name); found != known.end()) used.push_back(&found->second);
   }
   ObjTextures textures(used, report);
   std::vector<uint32_t> indices;
   for (const std::string& name : text.material_names) {
     indices.push_back(static_cast<uint32_t>(scene.materials.size()));
-    if (const auto found = known.find(name); found != known.end()) {
+    if (const auto found = find(name); found != known.end()) {
       add_obj_material(found->second, textures, scene, report);
       continue;
     }
@@ -172,6 +177,14 @@ bool has_texture(const Material& material) {
   return has_any;
 }
 
+void refuse_without_faces(const ObjText& text, LoadReport& report) {
+  const auto refuse = [&](const std::string& what) { report.refuse(what, "", "export it with faces"); };
+  const std::string vertices = "the file has " + std::to_string(text.positions.size()) + " vertices but no faces";
+  if (text.small_face_count > 0) return refuse("all faces have fewer than 3 corners: there is nothing to draw");
+  if (text.has_lines_or_points) return refuse(vertices + ", and lines and points are not drawn");
+  refuse(text.positions.empty() ? "the file has neither vertices nor faces" : vertices);
+}
+
 }  // namespace
 
 Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
@@ -179,10 +192,7 @@ Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(file);
   const ObjText text = parse_obj_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
   report.throw_if_refused();
-  if (text.faces.empty() && !text.positions.empty()) {
-    report.refuse("the file has " + std::to_string(text.positions.size()) + " vertices but no faces", "",
-                  "export it with faces");
-  }
+  if (text.faces.empty()) refuse_without_faces(text, report);
 
   Scene scene;
   scene.file = file;

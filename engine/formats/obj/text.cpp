@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <ranges>
+#include <span>
 #include <unordered_map>
 
 #include "formats/text_lines.h"
@@ -13,6 +17,9 @@
 
 namespace promin {
 namespace {
+
+constexpr const char* kNumberCure = "write numbers up to 1e15, with a decimal point";
+constexpr const char* kVertexCure = "give it x y z, or x y z red green blue, as numbers with a decimal point";
 
 /// Statements that other programs need and that change nothing here.
 constexpr std::array<std::string_view, 1> kHarmless = {"s"};
@@ -30,8 +37,7 @@ class ObjParser {
     if (ignored_count_ > 0) {
       report_.warn(std::to_string(ignored_count_) + " statements of OBJ are ignored, the first is " + first_ignored_);
     }
-    refuse_indices_past_the_end();
-    forget_uvs_past_the_end();
+    check_faces();
     if (!out_.colors.empty()) out_.colors.resize(out_.positions.size(), vec3(1.0F));
     return std::move(out_);
   }
@@ -68,6 +74,7 @@ class ObjParser {
     } else if (keyword == "mtllib") {
       out_.libraries.emplace_back(trim(rest));
     } else if (keyword == "l" || keyword == "p") {
+      out_.has_lines_or_points = true;
       report_.warn("lines and points are not drawn");
     } else if (std::find(kHarmless.begin(), kHarmless.end(), keyword) == kHarmless.end() && ignored_count_++ == 0) {
       first_ignored_ = quote(keyword) + " in " + lines_.place();
@@ -76,32 +83,78 @@ class ObjParser {
 
   void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
 
-  /// Reads the numbers of a line into `numbers`; their count, or nullopt once a problem is reported.
-  std::optional<size_t> read_numbers(std::string_view rest, std::array<double, 6>& numbers) {
-    size_t count = 0;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
-      const std::optional<double> number = parse_number(word);
-      if (!number || std::abs(*number) > kMaxCoordinate) {
-        refuse(quote(word) + " is no number up to 1e15", "write it with a decimal point");
-        return std::nullopt;
-      }
-      if (count < numbers.size()) numbers[count] = *number;
-    }
-    return count;
+  void repair(const std::string& what, std::string_view value, const std::string& cure, const std::string& repair) {
+    report_.repair({what, value.empty() ? "" : quote(value), lines_.place(), cure, repair});
   }
 
-  /// x y z, maybe a weight or a colour.
-  void read_vertex(std::string_view rest) {
-    std::array<double, 6> n{};
-    const std::optional<size_t> count = read_numbers(rest, n);
-    if (count && *count != 3 && *count != 4 && *count != 6) {
-      refuse("a vertex has " + std::to_string(*count) + " numbers", "give it x y z, or x y z red green blue");
+  /// The numbers of a statement.
+  struct Numbers {
+    std::array<double, 6> values{};
+    /// All words count, and the first six are read.
+    size_t word_count = 0;
+    /// How many words come before the first that is no number up to 1e15.
+    size_t good_count = 0;
+    /// That word.
+    std::string_view bad_word = {};
+
+    bool are_good(size_t count) const { return good_count >= count; }
+  };
+
+  static Numbers read_numbers(std::string_view rest) {
+    Numbers numbers;
+    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++numbers.word_count) {
+      if (numbers.word_count >= numbers.values.size() || !numbers.bad_word.empty()) continue;
+      const std::optional<double> number = parse_number(word);
+      if (number && std::abs(*number) <= kMaxCoordinate) {
+        numbers.values[numbers.good_count++] = *number;
+      } else {
+        numbers.bad_word = word;
+      }
     }
+    return numbers;
+  }
+
+  /// A vertex that is no position.
+  struct BadVertex {
+    uint32_t index = 0;
+    uint64_t line = 0;
+    std::string what = {};
+    bool is_used = false;
+  };
+
+  /// x y z, maybe a weight or a colour. What is no position is refused once a face uses it.
+  void read_vertex(std::string_view rest) {
+    const Numbers numbers = read_numbers(rest);
+    const std::array<double, 6>& n = numbers.values;
     out_.positions.emplace_back(n[0], n[1], n[2]);
-    if (count != 6U) return;
-    if (n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) refuse("a vertex colour is negative", "use numbers from 0");
+    if (!numbers.are_good(3)) return add_bad_vertex(numbers);
+    if (numbers.word_count >= 6) return read_color(numbers);
+    if (numbers.word_count == 5 || !numbers.bad_word.empty()) {
+      repair("what follows x y z of a vertex is no weight and no colour", numbers.bad_word, kVertexCure,
+             "it is ignored");
+    }
+  }
+
+  void add_bad_vertex(const Numbers& numbers) {
+    const std::string what = numbers.bad_word.empty()
+                                 ? "a vertex has " + std::to_string(numbers.word_count) + " numbers"
+                                 : quote(numbers.bad_word) + " is no number up to 1e15";
+    bad_vertices_.push_back({static_cast<uint32_t>(out_.positions.size() - 1), lines_.number(), what});
+  }
+
+  void read_color(const Numbers& numbers) {
+    const std::array<double, 6>& n = numbers.values;
+    if (numbers.word_count > 6) {
+      repair("a vertex has more than 6 numbers", "", kVertexCure, "those behind its colour are ignored");
+    }
+    vec3 color(n[3], n[4], n[5]);
+    if (!numbers.are_good(6) || n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) {
+      repair("a vertex colour is no three numbers from 0", numbers.bad_word, "use numbers from 0",
+             "the vertex counts as white");
+      color = vec3(1.0F);
+    }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
-    out_.colors.emplace_back(n[3], n[4], n[5]);
+    out_.colors.push_back(color);
   }
 
   /// u, and mostly v; a third number is for textures of three dimensions. Files for which textures do not matter may
@@ -115,16 +168,24 @@ class ObjParser {
       if (number && std::abs(*number) <= kMaxCoordinate) {
         uv[i] = *number;
       } else {
-        report_.warn("texture coordinates that are no numbers up to 1e15 are taken for 0");
+        repair("a texture coordinate is no number up to 1e15", word, kNumberCure, "it counts as 0");
       }
     }
     out_.uvs.push_back(uv);
   }
 
   void read_normal(std::string_view rest) {
-    std::array<double, 6> n{};
-    const std::optional<size_t> count = read_numbers(rest, n);
-    if (count && *count != 3) refuse("a normal has " + std::to_string(*count) + " numbers", "give it x y z");
+    const Numbers numbers = read_numbers(rest);
+    const std::array<double, 6>& n = numbers.values;
+    if (!numbers.are_good(3)) {
+      repair("a normal is no three numbers up to 1e15", numbers.bad_word, kNumberCure,
+             "the faces that use it are drawn sharp");
+      out_.normals.emplace_back(std::numeric_limits<float>::quiet_NaN());
+      return;
+    }
+    if (numbers.word_count > 3) {
+      repair("a normal has more than 3 numbers", "", "give it x y z", "those behind the third are ignored");
+    }
     out_.normals.emplace_back(n[0], n[1], n[2]);
   }
 
@@ -139,7 +200,12 @@ class ObjParser {
       out_.corners.push_back(corner);
     }
     const size_t count = out_.corners.size() - first;
-    if (count < 3 || count > kMaxPolygonCorners) {
+    if (count < 3) {
+      ++out_.small_face_count;
+      out_.corners.resize(first);
+      return repair("a face has fewer than 3 corners", "", "give it 3 or more, on one line", "it is left out");
+    }
+    if (count > kMaxPolygonCorners) {
       refuse("a face has " + std::to_string(count) + " corners",
              "give it 3 to " + std::to_string(kMaxPolygonCorners) + ", on one line");
       return;
@@ -150,6 +216,7 @@ class ObjParser {
     }
     ++out_.groups.back().face_count;
     out_.faces.push_back({static_cast<uint32_t>(first), static_cast<uint32_t>(count), material_});
+    face_lines_.push_back(lines_.number());
   }
 
   /// "1", "1/2", "1//3" or "1/2/3": position, texture coordinate, normal.
@@ -161,57 +228,75 @@ class ObjParser {
       parts[i] = word.substr(0, end);
       word.remove_prefix(std::min(end + 1, word.size()));
     }
-    bool is_good = word.empty() && read_index(parts[0], out_.positions.size(), last_position_, corner.position);
-    if (is_good && !parts[1].empty()) is_good = read_uv_index(parts[1], corner.uv);
-    if (is_good && !parts[2].empty()) {
-      is_good = read_index(parts[2], out_.normals.size(), last_normal_, corner.normal);
-    }
-    if (!is_good) {
+    corner.position = read_index(parts[0], out_.positions.size());
+    if (!word.empty() || corner.position == kMissing) {
       refuse(quote(whole) + " is no corner of a face", "use indices from 1, or from -1 back to the first vertex");
+      return false;
     }
-    return is_good;
+    if (!parts[1].empty()) corner.uv = read_index(parts[1], out_.uvs.size());
+    if (!parts[2].empty()) corner.normal = read_index(parts[2], out_.normals.size());
+    return true;
   }
+
+  /// What a word becomes that is no index: one past the end.
+  static constexpr uint32_t kMissing = kNoObjIndex - 1;
 
   /// An index as OBJ writes it: from 1 on, or from -1 backwards from the current place. Vertices may follow the faces
   /// that use them, so the upper end is checked last.
-  struct LastIndex {
-    uint32_t index = 0;
-    std::string place = {};
-  };
-  bool read_index(std::string_view word, size_t count_so_far, LastIndex& last, uint32_t& index) {
+  static uint32_t read_index(std::string_view word, size_t count_so_far) {
     const std::optional<int64_t> written = parse_integer(word);
-    if (!written || *written == 0 || *written >= int64_t{kNoObjIndex}) return false;
+    if (!written || *written == 0) return kMissing;
     const int64_t from_zero = *written > 0 ? *written - 1 : static_cast<int64_t>(count_so_far) + *written;
-    if (from_zero < 0) return false;
-    index = static_cast<uint32_t>(from_zero);
-    if (index >= count_so_far && index >= last.index) last = {index, lines_.place()};
-    return true;
+    return from_zero >= 0 && from_zero < int64_t{kMissing} ? static_cast<uint32_t>(from_zero) : kMissing;
   }
 
-  /// False where it is no number; where there are no such coordinates, the corner stays without.
-  bool read_uv_index(std::string_view word, uint32_t& index) {
-    const std::optional<int64_t> written = parse_integer(word);
-    if (!written) return false;
-    const int64_t from_zero = *written > 0 ? *written - 1 : static_cast<int64_t>(out_.uvs.size()) + *written;
-    if (*written != 0 && from_zero >= 0 && from_zero < int64_t{kNoObjIndex}) index = static_cast<uint32_t>(from_zero);
-    return true;
+  /// Once all vertices are known.
+  void check_faces() {
+    for (size_t i = 0; i < out_.faces.size(); ++i) {
+      const std::span corners(&out_.corners[out_.faces[i].first_corner], out_.faces[i].corner_count);
+      check_positions(corners, face_lines_[i]);
+      if (forget_past_the_end(corners, &ObjCorner::uv, out_.uvs.size())) {
+        report_.repair({"a face names texture coordinates that are not there", "", place_of(face_lines_[i]),
+                        "use an index up to their number", "it is drawn without them"});
+      }
+      if (forget_past_the_end(corners, &ObjCorner::normal, out_.normals.size())) {
+        report_.repair({"a face names a normal that is not there", "", place_of(face_lines_[i]),
+                        "use an index up to their number", "it is drawn sharp"});
+      }
+    }
+    for (const BadVertex& vertex : bad_vertices_) report_bad_vertex(vertex);
   }
 
-  void forget_uvs_past_the_end() {
-    for (ObjCorner& corner : out_.corners) {
-      if (corner.uv >= out_.uvs.size()) corner.uv = kNoObjIndex;
+  static std::string place_of(uint64_t line) { return "line " + std::to_string(line); }
+
+  void check_positions(std::span<const ObjCorner> corners, uint64_t line) {
+    for (const ObjCorner& corner : corners) {
+      if (corner.position >= out_.positions.size()) {
+        report_.refuse("index " + std::to_string(uint64_t{corner.position} + 1) + " is out of range, there are " +
+                           std::to_string(out_.positions.size()) + " vertices",
+                       place_of(line), "use an index up to their number");
+      } else if (!bad_vertices_.empty()) {
+        const auto found = std::ranges::lower_bound(bad_vertices_, corner.position, {}, &BadVertex::index);
+        if (found != bad_vertices_.end() && found->index == corner.position) found->is_used = true;
+      }
     }
   }
 
-  void refuse_indices_past_the_end() {
-    const auto check = [&](const LastIndex& last, size_t count, const char* what) {
-      if (last.place.empty() || last.index < count) return;
-      report_.refuse("index " + std::to_string(uint64_t{last.index} + 1) + " is out of range, there are " +
-                         std::to_string(count) + " " + what,
-                     last.place, "use an index up to their number");
-    };
-    check(last_position_, out_.positions.size(), "vertices");
-    check(last_normal_, out_.normals.size(), "normals");
+  /// Whether there was any.
+  static bool forget_past_the_end(std::span<ObjCorner> corners, uint32_t ObjCorner::*index, size_t count) {
+    bool has_any = false;
+    for (ObjCorner& corner : corners) {
+      if (corner.*index == kNoObjIndex || corner.*index < count) continue;
+      corner.*index = kNoObjIndex;
+      has_any = true;
+    }
+    return has_any;
+  }
+
+  void report_bad_vertex(const BadVertex& vertex) {
+    if (vertex.is_used) return report_.refuse(vertex.what, place_of(vertex.line), kVertexCure);
+    report_.repair({"a vertex that no face uses is no three numbers up to 1e15", vertex.what, place_of(vertex.line),
+                    kVertexCure, "it is left out"});
   }
 
   void use_material(const std::string& name) {
@@ -229,8 +314,10 @@ class ObjParser {
   bool is_group_open_ = false;
   uint32_t material_ = kNoObjIndex;
   std::unordered_map<std::string, uint32_t> materials_;
-  LastIndex last_position_;
-  LastIndex last_normal_;
+  /// The line of each face.
+  std::vector<uint64_t> face_lines_;
+  /// By index.
+  std::vector<BadVertex> bad_vertices_;
   uint64_t ignored_count_ = 0;
   std::string first_ignored_;
 };
@@ -238,6 +325,7 @@ class ObjParser {
 }  // namespace
 
 ObjText parse_obj_text(std::string_view text, LoadReport& report) {
+  text = cut_zero_tail(text, "", report);
   if (text.find('\0') != std::string_view::npos) {
     report.refuse("the file is not text", "", "name a Wavefront OBJ file");
     return {};

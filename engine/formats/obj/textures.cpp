@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "formats/obj/heights.h"
 #include "formats/picture_sources.h"
 #include "formats/scene_path.h"
 
@@ -19,13 +20,14 @@ struct MapUse {
   ImageUse use;
 };
 /// The maps that are read. Those of roughness and metallic are read to be merged.
-constexpr std::array<MapUse, 7> kMapUses = {{{"map_Kd", ImageUse::kColor},
+constexpr std::array<MapUse, 8> kMapUses = {{{"map_Kd", ImageUse::kColor},
                                              {"map_d", ImageUse::kData},
                                              {"map_Ks", ImageUse::kColor},
                                              {"map_Ke", ImageUse::kColor},
                                              {"map_Pr", ImageUse::kData},
                                              {"map_Pm", ImageUse::kData},
-                                             {"norm", ImageUse::kNormal}}};
+                                             {"norm", ImageUse::kNormal},
+                                             {"bump", ImageUse::kData}}};
 
 std::optional<std::vector<std::byte>> read_beside_scene(const std::string& name, LoadReport& report,
                                                         uint64_t most_bytes) {
@@ -115,6 +117,25 @@ TextureSlot ObjTextures::read_metallic_roughness(const MtlMap* roughness, const 
   const auto [known, is_new] = image_numbers_.try_emplace(sources, static_cast<uint32_t>(images_.size()));
   if (is_new) images_.push_back(merge(sources.first, sources.second));
   return place(*placed, known->second);
+}
+
+TextureSlot ObjTextures::read_heights(const MtlMap* map) {
+  const ImagePointer picture = find_picture(map, ImageUse::kData);
+  if (picture == nullptr || map->strength == 0.0 || is_flat(*picture)) return {};
+  HeightMap heights = {map->strength * glm::sign(map->scale), map->channel, map->is_clamped};
+  const bool is_of_normals = holds_normals(*picture);
+  if (is_of_normals) {
+    report_.warn("image " + quote(map->file) + " of a map of heights holds normals, it is taken for a map of normals");
+    heights.height = dvec2(0.0);
+  }
+  const std::tuple key(picture, heights.height.x, heights.height.y, heights.channel, heights.is_clamped);
+  const auto [known, is_new] = height_numbers_.try_emplace(key, static_cast<uint32_t>(images_.size()));
+  if (is_new) {
+    const auto normals = std::make_shared<TextureImage>(is_of_normals ? *picture : make_normals(*picture, heights));
+    normals->use = ImageUse::kNormal;
+    images_.push_back(normals);
+  }
+  return place(*map, known->second);
 }
 
 void ObjTextures::finish(Scene& scene) {
