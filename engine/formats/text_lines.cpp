@@ -37,16 +37,19 @@ std::string_view cut_zero_tail(std::string_view text, const std::string& place, 
 
 bool TextLines::advance() {
   if (rest_.empty()) return false;
-  // A text whose lines end in \r alone is searched once for \n, not once a line.
-  if (newline_ == nullptr || newline_ < rest_.data())
-    newline_ = rest_.data() + std::min(rest_.find('\n'), rest_.size());
-  const auto most = static_cast<size_t>(newline_ - rest_.data());
-  const size_t end = std::min(rest_.substr(0, most).find('\r'), most);
-  line_ = rest_.substr(0, end);
-  const size_t end_size = rest_.substr(end).starts_with("\r\n") ? 2 : 1;
-  rest_.remove_prefix(std::min(end + end_size, rest_.size()));
+  newline_ = find_from(newline_, '\n');
+  return_ = find_from(return_, '\r');
+  const char* end = std::min(newline_, return_);
+  line_ = rest_.substr(0, static_cast<size_t>(end - rest_.data()));
+  const size_t end_size = newline_ == return_ + 1 ? 2 : 1;
+  rest_.remove_prefix(std::min(line_.size() + end_size, rest_.size()));
   ++number_;
   return true;
+}
+
+const char* TextLines::find_from(const char* known, char end) const {
+  if (known != nullptr && known >= rest_.data()) return known;
+  return rest_.data() + std::min(rest_.find(end), rest_.size());
 }
 
 std::string_view take_word(std::string_view& line) {

@@ -36,10 +36,15 @@ class TextLines {
   std::string place() const { return "line " + std::to_string(number_); }
 
  private:
+  /// `known` where it lies in the rest, else the next such character.
+  const char* find_from(const char* known, char end) const;
+
   std::string_view rest_;
   std::string_view line_;
-  /// The next \n of the rest, or the end of the text.
+  /// The next \n and \r of the rest, or the end of the text: each is searched for once, however many lines end in the
+  /// other.
   const char* newline_ = nullptr;
+  const char* return_ = nullptr;
   uint64_t number_;
 };
 

@@ -62,10 +62,10 @@ GltfBuilder small_gltf() {
 const std::string kSmallObj =
     "mtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nvn 0 0 1\no one\nusemtl red\n"
     "f 1 2 3 4\nf 1//1 2//1 3//-1\ng two\nf -5 -4 -3 -2 -1\nl 1 2\nvt 0 1\nvt 1 0.5\nf 1/1/1 2/2/1 3/-1/1\n"
-    "usemtl metal\nf 1/1 2/2 3/3\n";
+    "usemtl metal\nf 1/1 2/2 3/2\n";
 const std::string kSmallMtl =
     "newmtl red\nKa 0 0 0\nKd 1 0 0\nKs 1 1 1\nNs 10\nillum 3\nd 0.5\nmap_Kd -s 1 1 1 a.png\nnorm -bm 2 a.png\n"
-    "newmtl metal\nPr 0.5\nPm 1\nmap_Pr -clamp on -o 0 1 a.png\nmap_Pm a.png\nmap_Ke a.png\n";
+    "newmtl metal\nPr 0.5\nPm 1\nmap_Pr -clamp on -o 0 1 a.png\nmap_Pm a.png\nmap_Ke a.png\nbump -bm 2 -imfchan r a.png\n";
 
 /// A square with normals and colours, a strip, and what is passed over.
 std::string small_ply(const std::string& format) {

@@ -103,7 +103,7 @@ class ObjParser {
   static Numbers read_numbers(std::string_view rest) {
     Numbers numbers;
     for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++numbers.word_count) {
-      if (numbers.word_count >= numbers.values.size() || !numbers.bad_word.empty()) continue;
+      if (numbers.good_count == numbers.values.size() || !numbers.bad_word.empty()) continue;
       const std::optional<double> number = parse_number(word);
       if (number && std::abs(*number) <= kMaxCoordinate) {
         numbers.values[numbers.good_count++] = *number;
@@ -252,6 +252,7 @@ class ObjParser {
 
   /// Once all vertices are known.
   void check_faces() {
+    if (are_indices_in_range() && bad_vertices_.empty()) return;
     for (size_t i = 0; i < out_.faces.size(); ++i) {
       const std::span corners(&out_.corners[out_.faces[i].first_corner], out_.faces[i].corner_count);
       check_positions(corners, face_lines_[i]);
@@ -265,6 +266,19 @@ class ObjParser {
       }
     }
     for (const BadVertex& vertex : bad_vertices_) report_bad_vertex(vertex);
+  }
+
+  bool are_indices_in_range() const {
+    uint32_t position_end = 0;
+    uint32_t uv_end = 0;
+    uint32_t normal_end = 0;
+    for (const ObjCorner& corner : out_.corners) {
+      position_end = std::max(position_end, corner.position + 1);
+      // 0 of kNoObjIndex.
+      uv_end = std::max(uv_end, corner.uv + 1);
+      normal_end = std::max(normal_end, corner.normal + 1);
+    }
+    return position_end <= out_.positions.size() && uv_end <= out_.uvs.size() && normal_end <= out_.normals.size();
   }
 
   static std::string place_of(uint64_t line) { return "line " + std::to_string(line); }
