@@ -65,7 +65,8 @@ const std::string kSmallObj =
     "usemtl metal\nf 1/1 2/2 3/2\n";
 const std::string kSmallMtl =
     "newmtl red\nKa 0 0 0\nKd 1 0 0\nKs 1 1 1\nNs 10\nillum 3\nd 0.5\nmap_Kd -s 1 1 1 a.png\nnorm -bm 2 a.png\n"
-    "newmtl metal\nPr 0.5\nPm 1\nmap_Pr -clamp on -o 0 1 a.png\nmap_Pm a.png\nmap_Ke a.png\nbump -bm 2 -imfchan r a.png\n";
+    "newmtl metal\nPr 0.5\nPm 1\nmap_Pr -clamp on -o 0 1 a.png\nmap_Pm a.png\nmap_Ke a.png\nbump -bm 2 -imfchan r "
+    "a.png\n";
 
 /// A square with normals and colours, a strip, and what is passed over.
 std::string small_ply(const std::string& format) {
