@@ -10,7 +10,7 @@ import pathlib
 from scenegen import features, fine
 from scenegen.showcase import showcase
 from scenegen.sphereflake import sphereflake
-from scenegen.wavefront import write_obj_scene
+from scenegen.wavefront import write_obj_scenes
 
 
 def write_each(scenes, folder):
@@ -23,7 +23,7 @@ def write_all(folder):
     write_each(features.SCENES, folder)
     sphereflake(2).write(folder / "sphereflake.gltf")
     showcase().write(folder / "showcase.gltf", separate_buffer=True)
-    write_obj_scene(folder)
+    write_obj_scenes(folder)
 
 
 def main():

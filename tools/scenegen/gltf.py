@@ -29,7 +29,7 @@ def shortest(x):
     return next(n for n in (float(f"{wanted:.{digits}g}") for digits in range(1, 10)) if to_float32(n) == wanted)
 
 
-def _png(rows):
+def png(rows):
     """A PNG file of rows of RGB bytes."""
 
     def chunk(kind, data):
@@ -124,7 +124,7 @@ class Gltf:
 
     def textured(self, name, rows):
         """Metallic-roughness, dull, in the colours of a repeated texture: rows of RGB bytes, codes of sRGB."""
-        uri = "data:image/png;base64," + base64.b64encode(_png(rows)).decode()
+        uri = "data:image/png;base64," + base64.b64encode(png(rows)).decode()
         texture = self._append("textures", {"source": self._append("images", {"name": name, "uri": uri})})
         index = self.metallic_roughness(name, (1.0, 1.0, 1.0), 0.0, 1.0)
         self._root["materials"][index]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}

@@ -1,8 +1,11 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The OBJ scene: faces of any number of corners, concave ones too, and several materials in an MTL file."""
+"""The OBJ scenes: faces of any number of corners, concave ones too, with several materials in an MTL file; and maps of
+heights."""
 
 import math
+
+from .gltf import png
 
 _MATERIALS = {
     "ground": "Ka 0.42 0.4 0.36\nKd 0.62 0.58 0.5\nKs 0 0 0\nNs 0\nillum 1\n",
@@ -13,9 +16,17 @@ _MATERIALS = {
 }
 
 
+_HEIGHTS = "Kd 0.6 0.5 0.3\nKs 0.3 0.3 0.3\nNs 30\nillum 2\n"
+_HEIGHT_MATERIALS = {
+    "flat": _HEIGHTS,
+    "raised": _HEIGHTS + "map_Bump -bm 6 height_maps.png\n",
+    "sunk": _HEIGHTS + "bump -bm -6 -s 2 2 height_maps.png\n",
+}
+
+
 class _Obj:
-    def __init__(self):
-        self.lines = ["# Written by tools/make_scenes.py", "mtllib obj_materials.mtl"]
+    def __init__(self, name):
+        self.lines = ["# Written by tools/make_scenes.py", f"mtllib {name}.mtl"]
         self.count = 0
 
     def prism(self, name, outline, bottom, top, side_material, cap_material):
@@ -42,6 +53,17 @@ class _Obj:
         self.lines += [f"usemtl {material}", "f -4 -3 -2 -1"]
         self.count += 4
 
+    def tile(self, name, x, material):
+        """A square with texture coordinates, seen from +z."""
+        self.lines.append(f"o {name}")
+        self.lines += [f"v {x + u:.5g} {v} 0\nvt {u} {v}" for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        self.lines += [f"usemtl {material}", "f -4/-4 -3/-3 -2/-2 -1/-1"]
+
+    def write(self, folder, name, materials):
+        (folder / f"{name}.obj").write_text("\n".join(self.lines) + "\n", encoding="utf-8")
+        texts = (f"newmtl {material}\n{text}" for material, text in materials.items())
+        (folder / f"{name}.mtl").write_text("\n".join(texts), encoding="utf-8")
+
 
 def _regular(corners, radius, x, z, inner_radius=None):
     """A regular outline around (x, z); with an inner radius a star of twice the corners."""
@@ -54,15 +76,32 @@ def _regular(corners, radius, x, z, inner_radius=None):
     return outline
 
 
-def write_obj_scene(folder):
-    """Writes obj_materials.obj and .mtl."""
-    obj = _Obj()
+def _write_materials(folder):
+    obj = _Obj("obj_materials")
     obj.quad("ground", [(-2.8, 0, 1.8), (2.4, 0, 1.8), (2.4, 0, -1.6), (-2.8, 0, -1.6)], "ground")
     obj.prism("star", _regular(5, 0.95, -1.55, 0.4, inner_radius=0.42), 0.0, 0.7, "gold", "brick")
     corner = [(0.1, 1.5), (1.0, 1.5), (1.0, 0.5), (1.9, 0.5), (1.9, -0.4), (0.1, -0.4)]
     obj.prism("corner", corner, 0.0, 0.55, "brick", "gold")
     obj.prism("hexagon", _regular(6, 0.5, 0.85, 0.2), 0.55, 1.3, "lagoon", "lagoon")
     obj.quad("mirror", [(-2.7, 0.0, -1.5), (2.3, 0.0, -1.5), (2.3, 1.5, -1.3), (-2.7, 1.5, -1.3)], "mirror")
-    (folder / "obj_materials.obj").write_text("\n".join(obj.lines) + "\n", encoding="utf-8")
-    materials = (f"newmtl {name}\n{text}" for name, text in _MATERIALS.items())
-    (folder / "obj_materials.mtl").write_text("\n".join(materials), encoding="utf-8")
+    obj.write(folder, "obj_materials", _MATERIALS)
+
+
+def _dome_row(y, size=16):
+    """A row of a picture of one dome, in whole numbers."""
+    heights = [max(0, 255 - ((2 * x + 1 - size) ** 2 + (2 * y + 1 - size) ** 2) * 255 // (size * size)) for x in range(size)]
+    return bytes(channel for height in heights for channel in (height, height, height))
+
+
+def _write_heights(folder):
+    obj = _Obj("height_maps")
+    for i, material in enumerate(_HEIGHT_MATERIALS):
+        obj.tile(material, 1.1 * i, material)
+    obj.write(folder, "height_maps", _HEIGHT_MATERIALS)
+    (folder / "height_maps.png").write_bytes(png([_dome_row(y) for y in range(16)]))
+
+
+def write_obj_scenes(folder):
+    """Writes obj_materials and height_maps, each with its MTL."""
+    _write_materials(folder)
+    _write_heights(folder)

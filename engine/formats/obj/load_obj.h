@@ -7,8 +7,8 @@
 
 namespace promin {
 
-/// Reads Wavefront OBJ and its MTL. See load_scene for what is promised. A file with vertices but no faces is refused
-/// (a point cloud: there is nothing to draw); one with neither is an empty scene, with a warning.
+/// Reads Wavefront OBJ and its MTL. See load_scene for what is promised. A file is refused without a face of at least 3
+/// corners: there is nothing to draw, as in point clouds.
 Scene load_obj(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

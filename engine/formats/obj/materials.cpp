@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/file.h"
-#include "formats/obj/find_file.h"
+#include "formats/obj/paths.h"
+#include "formats/scene_path.h"
 #include "formats/text_lines.h"
 #include "promin/validate.h"
 
@@ -28,25 +28,36 @@ double illum_of(const MtlMaterial& source) {
   return std::floor(source.find("illum", 2.0).x);
 }
 
-/// Where a file of materials is, if it is there; the report is none of the scene's.
-std::optional<std::filesystem::path> try_library(const std::string& name, LoadReport& report) {
+/// What find_beside_scene says of a file that it does not find.
+std::string reason_against(const std::string& name, LoadReport& report) {
   LoadReport attempt(report.file(), false, report.root());
-  const auto file = find_named_file("", name, attempt);
-  for (const SourceFile& source : attempt.sources()) report.add_source(source.file);
-  return file;
+  find_beside_scene(name, "", true, attempt);
+  try {
+    attempt.throw_if_refused();
+  } catch (const InputError& error) {
+    return error.problems().front().what;
+  }
+  return quote(name) + " does not exist";
 }
 
-/// The files that a mtllib line names: the whole rest of the line, because names may hold spaces, or else each word.
-std::vector<std::filesystem::path> find_library(const std::string& line, LoadReport& report) {
-  if (const auto file = try_library(line, report)) return {*file};
-  std::vector<std::filesystem::path> files;
+/// The names of the files that a mtllib line names: the whole rest of the line, because names may hold spaces, or else
+/// each word.
+std::vector<std::string> find_library(const std::string& line, LoadReport& report) {
+  if (auto whole = find_named_file(line, "", report)) return {*whole};
+  std::vector<std::string> files;
+  std::vector<std::string> missing;
   std::string_view rest = line;
   for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
-    if (const auto file = try_library(std::string(word), report)) {
-      files.push_back(*file);
-    } else {
-      report.warn("the material file " + quote(word) + " does not exist: its materials are grey");
-    }
+    const std::string name(word);
+    auto file = find_named_file(name, "", report);
+    if (!file) file = find_by_last_part(name, "", report);
+    (file ? files : missing).push_back(file.value_or(name));
+  }
+  if (missing.empty()) return files;
+  if (auto whole = find_by_last_part(line, "", report)) return {*whole};
+  for (const std::string& name : missing) {
+    report.warn("the material file " + quote(name) +
+                " is not read, its materials are grey: " + reason_against(name, report));
   }
   return files;
 }
@@ -63,15 +74,9 @@ void warn_of_unused_maps(const MtlMaterial& source, std::initializer_list<const 
   }
 }
 
-bool is_invisible_by_tr(const MtlMaterial& source) {
-  return !source.numbers.contains("d") && source.find("Tr", 0.0).x >= 1.0;
-}
-
-/// Where a material has both, d holds. Tr is transparency, as most programs read it; but others write opacity by this
-/// name, so a material that would be invisible by Tr alone is opaque.
+/// Where a material has both, d holds.
 float opacity_of(const MtlMaterial& source) {
   const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
-  if (is_invisible_by_tr(source)) return 1.0F;
   return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
@@ -92,14 +97,46 @@ TextureSlot read_base_color(const MtlMaterial& source, ObjTextures& textures) {
   return textures.read_base_color(source.find_map("map_Kd"), source.find_map("map_d"));
 }
 
+/// The slot of norm, or else of the heights of bump.
+TextureSlot read_normals(const MtlMaterial& source, ObjTextures& textures) {
+  if (const MtlMap* normals = source.find_map("norm")) return textures.read_slot(normals, ImageUse::kNormal);
+  return textures.read_heights(source.find_map("bump"));
+}
+
 bool is_metallic_roughness(const MtlMaterial& source) {
   return source.numbers.contains("Pr") || source.numbers.contains("Pm") || source.maps.contains("map_Pr") ||
          source.maps.contains("map_Pm");
 }
 
-void take_alpha(const MtlMaterial& source, Material& material) {
-  if (is_filtering(source) && !is_metallic_roughness(source)) return;
+/// Whether opacity is that of the whole surface, rather than of light that goes through Phong's glass.
+bool blends(const MtlMaterial& source) {
+  return !is_filtering(source) || is_metallic_roughness(source);
+}
+
+/// Of Tr without d there are two conventions. By that of most programs it is 1 - d, and 1 would be invisible: a file
+/// that has such a material was written by the other, by which Tr is d.
+void settle_transparency(std::vector<MtlMaterial>& materials, const std::string& file, LoadReport& report) {
+  const auto has_tr_alone = [](const MtlMaterial& source) {
+    return source.numbers.contains("Tr") && !source.numbers.contains("d");
+  };
+  const auto invisible = std::ranges::find_if(materials, [&](const MtlMaterial& source) {
+    return has_tr_alone(source) && opacity_of(source) == 0.0F && blends(source);
+  });
+  if (invisible == materials.end()) return;
+  report.warn("material " + quote(invisible->name) +
+              " would be invisible by its Tr without a d: it is drawn opaque, and each Tr without a d of " + file +
+              " counts as d");
+  for (MtlMaterial& source : materials) {
+    if (!has_tr_alone(source)) continue;
+    const double opacity = source.find("Tr", 1.0).x;
+    source.numbers["d"] = dvec3(opacity > 0.0 ? opacity : 1.0);
+  }
+}
+
+void take_alpha(const MtlMaterial& source, Material& material, LoadReport& report) {
+  if (!blends(source)) return;
   material.alpha = opacity_of(source);
+  if (material.alpha == 0.0F) report.warn("material " + quote(source.name) + " is invisible, by its d of 0");
   const bool has_map = source.find_map("map_d") != nullptr;
   if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
 }
@@ -117,9 +154,8 @@ MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& 
   model.metallic = share("Pm", 0.0);
   model.metallic_roughness_texture =
       textures.read_metallic_roughness(source.find_map("map_Pr"), source.find_map("map_Pm"));
-  const MtlMap* normals = source.find_map("norm");
-  model.normal_texture = textures.read_slot(normals, ImageUse::kNormal);
-  if (normals != nullptr) model.normal_scale = static_cast<float>(normals->strength);
+  model.normal_texture = read_normals(source, textures);
+  if (const MtlMap* normals = source.find_map("norm")) model.normal_scale = static_cast<float>(normals->strength);
   return model;
 }
 
@@ -129,7 +165,7 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& rep
   phong.diffuse = color_of(source, "Kd", 0.8);
   phong.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : phong.diffuse;
   phong.diffuse_texture = read_base_color(source, textures);
-  phong.normal_texture = textures.read_slot(source.find_map("norm"), ImageUse::kNormal);
+  phong.normal_texture = read_normals(source, textures);
   if (illum >= 2.0) {
     phong.specular = color_of(source, "Ks", 0.0);
     phong.shininess = static_cast<float>(source.find("Ns", 0.0).x);
@@ -153,7 +189,7 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& rep
 
 /// illum 0: the colour of Kd, to which Ke adds.
 void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& material, LoadReport& report) {
-  warn_of_unused_maps(source, {"map_Ks", "map_Ke", "norm"}, report);
+  warn_of_unused_maps(source, {"map_Ks", "map_Ke", "norm", "bump"}, report);
   material.emissive = vec3(source.find("Ke", 0.0));
   const vec3 color = color_of(source, "Kd", 0.8);
   if (const TextureSlot slot = read_base_color(source, textures); slot.exists()) {
@@ -166,12 +202,6 @@ void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& ma
 
 void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
-  if (is_invisible_by_tr(source)) {
-    report.warn(title + " has a Tr of " + (source.find("Tr", 0.0).x == 1.0 ? "1" : "more than 1") +
-                " and no d, it is drawn opaque; give it d 0 if it is to be invisible");
-  } else if (opacity_of(source) == 0.0F && !source.maps.contains("map_d") && !is_filtering(source)) {
-    report.warn(title + " has a d of 0, it is invisible");
-  }
   if (opacity_of(source) == 1.0F && (illum_of(source) == 4.0 || illum_of(source) == 9.0)) {
     report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
                 ") with a d of 1, it is drawn opaque");
@@ -195,29 +225,47 @@ std::string folder_of(const std::filesystem::path& file, const std::filesystem::
   return folder.empty() || folder == "." ? "" : folder.string() + "/";
 }
 
+/// The materials of a file of this name beside the scene; none where it cannot be read.
+std::vector<MtlMaterial> read_mtl_file(const std::string& name, LoadReport& report) {
+  const auto file = find_beside_scene(name, "mtllib " + name, true, report);
+  if (!file) return {};
+  try {
+    const std::vector<std::byte> bytes = read_file(*file);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string short_name = file->filename().string();
+    std::vector<MtlMaterial> materials = parse_mtl(text, short_name, folder_of(*file, report.file()), report);
+    settle_transparency(materials, short_name, report);
+    return materials;
+  } catch (const InputError& error) {
+    report.warn("the material file " + quote(name) + " is ignored: " + error.problems().front().what);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>& libraries, LoadReport& report) {
   std::map<std::string, MtlMaterial> materials;
   for (const std::string& library : libraries) {
-    for (const std::filesystem::path& file : find_library(library, report)) {
-      const std::vector<std::byte> bytes = read_file(file);
-      const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      const std::string folder = folder_of(file, report.file());
-      for (MtlMaterial& source : parse_mtl(text, file.filename().string(), folder, report)) {
+    for (const std::string& file : find_library(library, report)) {
+      for (MtlMaterial& source : read_mtl_file(file, report)) {
         warn_about_what_is_ignored(source, report);
-        materials.emplace(without_comment(source.name), source);
         materials.emplace(source.name, std::move(source));
       }
     }
   }
+  // Where no material has a whole name, it is found without a comment.
+  std::map<std::string, MtlMaterial> shorter;
+  for (const auto& [name, source] : materials) shorter.emplace(without_comment(name), source);
+  for (auto& [name, source] : shorter) source.name = name;
+  materials.merge(shorter);
   return materials;
 }
 
 void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& scene, LoadReport& report) {
   Material& material = scene.materials.emplace_back();
   material.name = source.name;
-  take_alpha(source, material);
+  take_alpha(source, material, report);
   if (is_metallic_roughness(source)) {
     warn_of_unused_maps(source, {"map_Ks"}, report);
     material.model = metallic_roughness_of(source, textures);

@@ -8,25 +8,26 @@
 #include <optional>
 #include <utility>
 
+#include "formats/obj/paths.h"
 #include "formats/text_lines.h"
 #include "promin/validate.h"
 
 namespace promin {
 namespace {
 
-/// Statements with factors of light, which are checked.
-constexpr std::array<std::string_view, 8> kFactors = {"Ka", "Kd", "Ks", "Ke", "Ns", "illum", "Pr", "Pm"};
-/// Statements that others write without much care: what is no number counts as what is given here.
-struct LenientNumber {
-  std::string_view keyword;
-  double otherwise;
-};
-constexpr std::array<LenientNumber, 4> kLenient = {{{"d", 1.0}, {"Tr", 0.0}, {"Tf", 1.0}, {"Ni", 0.0}}};
-constexpr std::array<std::string_view, 8> kMaps = {"map_Ka", "map_Kd", "map_d",  "map_Ks",
-                                                   "map_Ke", "map_Pr", "map_Pm", "norm"};
-/// Maps of another name, and heights, which are no normals.
+/// Statements with a colour of three numbers, and with one number.
+constexpr std::array<std::string_view, 5> kColors = {"Ka", "Kd", "Ks", "Ke", "Tf"};
+constexpr std::array<std::string_view, 7> kNumbers = {"Ns", "illum", "Pr", "Pm", "d", "Tr", "Ni"};
+/// Those that the materials clamp or check.
+constexpr std::array<std::string_view, 4> kOfAnySign = {"Tf", "d", "Tr", "Ni"};
+constexpr std::array<std::string_view, 9> kMaps = {"map_Ka", "map_Kd", "map_d", "map_Ks", "map_Ke",
+                                                   "map_Pr", "map_Pm", "norm",  "bump"};
+/// Other names of bump.
+constexpr std::array<std::string_view, 2> kBumps = {"map_Bump", "map_bump"};
+/// Maps of another name.
 constexpr std::array<std::string_view, 3> kOtherMaps = {"disp", "decal", "refl"};
-constexpr std::array<std::string_view, 3> kHeights = {"map_Bump", "map_bump", "bump"};
+/// Maps of one channel.
+constexpr std::array<std::string_view, 3> kScalarMaps = {"map_d", "map_Pr", "map_Pm"};
 
 template <size_t Count>
 bool is_among(const std::array<std::string_view, Count>& words, std::string_view word) {
@@ -61,7 +62,8 @@ const MapOption* find_option(std::string_view word) {
 /// The rest of a map's line: options with their words, then the file's name, which may hold spaces.
 class MapParser {
  public:
-  explicit MapParser(std::string_view rest) : rest_(trim(rest)) {}
+  MapParser(const std::string& keyword, std::string_view rest, LoadReport& report)
+      : keyword_(keyword), rest_(trim(rest)), report_(report) {}
 
   MtlMap parse() {
     for (;;) {
@@ -73,6 +75,7 @@ class MapParser {
     }
     map_.file = trim(rest_);
     std::ranges::replace(map_.file, '\\', '/');
+    map_.strength *= gain_;
     return std::move(map_);
   }
 
@@ -80,6 +83,7 @@ class MapParser {
   void take_option(const MapOption& option) {
     // What is left out keeps its default.
     dvec3 numbers = option.name == "-s" ? dvec3(1.0) : dvec3(0.0);
+    if (option.name == "-mm") numbers.y = 1.0;
     for (int i = 0; i < option.word_count; ++i) {
       std::string_view rest = rest_;
       const std::string_view word = take_word(rest);
@@ -88,14 +92,39 @@ class MapParser {
       if (trim(rest).empty() || (option.has_numbers && !number)) break;
       rest_ = rest;
       if (option.name == "-clamp") map_.is_clamped = word == "on";
+      if (option.name == "-imfchan") take_channel(word);
       if (number && std::abs(*number) <= kMaxCoordinate) numbers[i] = *number;
     }
     if (option.name == "-s") map_.scale = dvec2(numbers);
     if (option.name == "-o") map_.offset = dvec2(numbers);
     if (option.name == "-bm") map_.strength = numbers.x;
+    if (option.name == "-mm") take_gain(numbers);
+    if (option.name == "-t" && numbers != dvec3(0.0)) ignore("-t");
   }
 
+  void take_channel(std::string_view word) {
+    const size_t channel = std::string_view("rgbml").find(word);
+    const bool is_read = word.size() == 1 && channel != std::string_view::npos;
+    if (is_read) map_.channel = static_cast<int>(channel);
+    // In grey pictures red is luminance, and map_d shows alpha where there is any.
+    if (!is_read || (is_among(kScalarMaps, keyword_) && (word == "g" || word == "b"))) ignore("-imfchan");
+  }
+
+  /// Heights only differ by the gain: slopes do not depend on the base.
+  void take_gain(const dvec3& base_and_gain) {
+    if (keyword_ == "bump") {
+      gain_ = base_and_gain.y;
+    } else if (dvec2(base_and_gain) != dvec2(0.0, 1.0)) {
+      ignore("-mm");
+    }
+  }
+
+  void ignore(const std::string& option) { report_.warn("the option " + option + " of " + keyword_ + " is ignored"); }
+
+  const std::string& keyword_;
   std::string_view rest_;
+  LoadReport& report_;
+  double gain_ = 1.0;
   MtlMap map_;
 };
 
@@ -107,14 +136,14 @@ class MtlParser {
   std::vector<MtlMaterial> parse() {
     while (lines_.advance()) {
       std::string_view rest = lines_.line();
-      const std::string keyword(take_word(rest));
+      std::string keyword(take_word(rest));
+      if (is_among(kBumps, keyword)) keyword = "bump";
       if (keyword == "newmtl") begin_material(std::string(trim(rest)));
-      const auto lenient = std::ranges::find(kLenient, std::string_view(keyword), &LenientNumber::keyword);
-      if (lenient != kLenient.end()) read_lenient(*lenient, rest);
-      if (is_among(kFactors, keyword)) read_factors(keyword, rest);
+      if (is_among(kColors, keyword)) read_numbers(keyword, rest, 3);
+      if (is_among(kNumbers, keyword)) read_numbers(keyword, rest, 1);
       if (is_among(kMaps, keyword)) {
         read_map(keyword, rest);
-      } else if (keyword.starts_with("map_") || is_among(kOtherMaps, keyword) || is_among(kHeights, keyword)) {
+      } else if (keyword.starts_with("map_") || is_among(kOtherMaps, keyword)) {
         ignore_map(keyword);
       }
     }
@@ -128,53 +157,46 @@ class MtlParser {
     has_ignored_map_ = false;
   }
 
-  void read_lenient(const LenientNumber& number, std::string_view rest) {
-    dvec3 numbers(number.otherwise);
+  std::string place() const { return "mtllib " + name_ + " " + lines_.place(); }
+
+  void read_numbers(const std::string& keyword, std::string_view rest, int most) {
+    dvec3 numbers(keyword == "Tf" ? 1.0 : 0.0);
     int count = 0;
-    for (std::string_view word = take_word(rest); !word.empty() && count < 3; word = take_word(rest)) {
+    bool is_negative = false;
+    for (std::string_view word = take_word(rest); !word.empty() && count < most; word = take_word(rest)) {
       // The opacity of what is seen edge-on, which is drawn as that of all.
       if (word == "-halo") continue;
-      numbers[count++] = parse_number(word).value_or(number.otherwise);
-    }
-    if (count > 0) materials_.back().numbers[std::string(number.keyword)] = count == 1 ? dvec3(numbers.x) : numbers;
-  }
-
-  /// A fault in the current line.
-  void repair(const std::string& what, std::string_view value, const char* cure, const char* repair) {
-    report_.repair({what, quote(value), "mtllib " + name_ + " " + lines_.place(), cure, repair});
-  }
-
-  /// A statement with a word that is no number is left out; a negative factor is 0, one beyond all light the most.
-  void read_factors(const std::string& keyword, std::string_view rest) {
-    dvec3 numbers(0.0);
-    int count = 0;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
+      if (count == 0 && (word == "spectral" || word == "xyz")) return ignore_color(keyword, word);
       const std::optional<double> number = parse_number(word);
-      if (!number) {
-        return repair(keyword + " has a word that is no number", word, "use numbers from 0, with a decimal point",
-                      "the statement is left out");
+      if (!number || std::abs(*number) > kMaxCoordinate || (keyword == "illum" && *number < 0.0)) {
+        return report_.repair({keyword + " of a material is no number from 0 to 1e15", quote(word), place(),
+                               "use numbers from 0, with a decimal point", "the statement is ignored"});
       }
-      const double clamped = std::clamp(*number, 0.0, double{kMaxCoordinate});
-      if (clamped != *number) {
-        repair(keyword + " is negative or beyond 1e15", word, "use numbers from 0 to 1e15", "it is clamped");
-      }
-      if (count < 3) numbers[count] = clamped;
+      is_negative = is_negative || *number < 0.0;
+      numbers[count++] = *number;
+    }
+    if (is_negative && !is_among(kOfAnySign, keyword)) {
+      report_.repair({keyword + " of a material is negative", "", place(), "use numbers from 0", "it counts as 0"});
+      numbers = glm::max(numbers, dvec3(0.0));
     }
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
   }
 
+  /// By a curve, or in CIE's space of colours, which MTL allows.
+  void ignore_color(const std::string& keyword, std::string_view kind) {
+    report_.warn("colours given as " + std::string(kind) + " are ignored, the first is " + keyword + " in " + place());
+  }
+
   void read_map(const std::string& keyword, std::string_view rest) {
-    MtlMap map = MapParser(rest).parse();
-    if (map.file.empty() || map.file.starts_with("# ")) return;
-    map.folder = folder_;
+    MtlMap map = MapParser(keyword, rest, report_).parse();
+    if (without_comment(map.file).empty()) return;
+    std::optional<std::string> found = find_named_file(map.file, folder_, report_);
+    if (!found) found = find_by_last_part(map.file, folder_, report_);
+    map.file = found.value_or(folder_ + map.file);
     materials_.back().maps[keyword] = std::move(map);
   }
 
   void ignore_map(const std::string& keyword) {
-    if (is_among(kHeights, keyword)) {
-      report_.warn("bump maps, which hold heights, are ignored: name maps of normals by norm");
-      return;
-    }
     if (std::exchange(has_ignored_map_, true)) return;
     report_.warn("material " + quote(materials_.back().name) + ": some of its texture maps are ignored, the first is " +
                  keyword + " in " + name_ + " " + lines_.place());
@@ -203,7 +225,7 @@ const MtlMap* MtlMaterial::find_map(const std::string& keyword) const {
 
 std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, const std::string& folder,
                                    LoadReport& report) {
-  return MtlParser(text, name, folder, report).parse();
+  return MtlParser(without_zero_bytes_at_end(text), name, folder, report).parse();
 }
 
 }  // namespace promin

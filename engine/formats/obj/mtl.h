@@ -14,16 +14,16 @@ namespace promin {
 
 /// A texture map as its line has it.
 struct MtlMap {
-  /// As written, with slashes as dividers; may not exist.
+  /// Relative to the scene; may not exist.
   std::string file = {};
-  /// That of the MTL, relative to the scene: empty or with a slash at its end.
-  std::string folder = {};
   /// u' = scale u + offset, and v likewise, which grows upwards.
   dvec2 scale{1.0};
   dvec2 offset{0.0};
   bool is_clamped = false;
-  /// The option -bm.
+  /// The option -bm, times the gain of -mm.
   double strength = 1.0;
+  /// The option -imfchan: of RGBA, from 0, or 4 for the luminance.
+  int channel = 4;
   /// Whether its picture could be read.
   bool is_usable = true;
 };
@@ -42,10 +42,11 @@ struct MtlMaterial {
   const MtlMap* find_map(const std::string& keyword) const;
 };
 
-/// Parses the statements Ka, Kd, Ks, Ke, Ns, illum, Pr and Pm, which the report repairs, d, Tr, Tf and Ni, of which
-/// what is no number counts as not there, and map_Ka, map_Kd, map_d, map_Ks, map_Ke, map_Pr, map_Pm and norm with their
-/// options; other maps are warned about. `name` is that of the file for messages, `folder` its own, relative to the
-/// scene: empty or with a slash at its end.
+/// Parses the statements Ka, Kd, Ks, Ke, Ns, illum, Pr, Pm, d, Tr, Tf and Ni, and map_Ka, map_Kd, map_d, map_Ks,
+/// map_Ke, map_Pr, map_Pm, norm and bump (also map_Bump and map_bump, which count as bump) with their options; other
+/// maps are warned about. The report repairs numbers: a statement with another word is ignored, and a factor of light
+/// below 0 counts as 0. `name` is that of the file for messages, `folder` its own, relative to the scene: empty or with
+/// a slash at its end.
 std::vector<MtlMaterial> parse_mtl(std::string_view text, const std::string& name, const std::string& folder,
                                    LoadReport& report);
 

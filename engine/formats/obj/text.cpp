@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <unordered_map>
 
@@ -15,9 +18,11 @@
 namespace promin {
 namespace {
 
+constexpr const char* kNumberCure = "write numbers up to 1e15, with a decimal point";
+constexpr const char* kVertexCure = "give it x y z, or x y z red green blue, as numbers with a decimal point";
+
 /// Statements that other programs need and that change nothing here.
 constexpr std::array<std::string_view, 1> kHarmless = {"s"};
-constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 class ObjParser {
  public:
@@ -32,10 +37,7 @@ class ObjParser {
     if (ignored_count_ > 0) {
       report_.warn(std::to_string(ignored_count_) + " statements of OBJ are ignored, the first is " + first_ignored_);
     }
-    refuse_indices_past_the_end();
-    forget_uvs_past_the_end();
-    forget_normals_past_the_end();
-    if (!bad_positions_.empty()) leave_out_faces_of_bad_positions();
+    check_faces();
     if (!out_.colors.empty()) out_.colors.resize(out_.positions.size(), vec3(1.0F));
     return std::move(out_);
   }
@@ -72,6 +74,7 @@ class ObjParser {
     } else if (keyword == "mtllib") {
       out_.libraries.emplace_back(trim(rest));
     } else if (keyword == "l" || keyword == "p") {
+      out_.has_lines_or_points = true;
       report_.warn("lines and points are not drawn");
     } else if (std::find(kHarmless.begin(), kHarmless.end(), keyword) == kHarmless.end() && ignored_count_++ == 0) {
       first_ignored_ = quote(keyword) + " in " + lines_.place();
@@ -80,60 +83,75 @@ class ObjParser {
 
   void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
 
-  /// A fault in the current line.
-  void repair(const char* what, std::string_view value, const char* cure, const char* repair) {
+  void repair(const std::string& what, std::string_view value, const std::string& cure, const std::string& repair) {
     report_.repair({what, value.empty() ? "" : quote(value), lines_.place(), cure, repair});
   }
 
-  /// The numbers of a line, of which no more than these are kept.
+  /// The numbers of a statement.
   struct Numbers {
     std::array<double, 6> values{};
-    /// Also of those that are not kept.
-    size_t count = 0;
-    /// The first word that is no number up to 1e15, and its place; empty where all are.
+    /// All words count, and the first six are read.
+    size_t word_count = 0;
+    /// How many words come before the first that is no number up to 1e15.
+    size_t good_count = 0;
+    /// That word.
     std::string_view bad_word = {};
-    size_t first_bad = std::numeric_limits<size_t>::max();
+
+    bool are_good(size_t count) const { return good_count >= count; }
   };
 
   static Numbers read_numbers(std::string_view rest) {
     Numbers numbers;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++numbers.count) {
+    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++numbers.word_count) {
+      if (numbers.good_count == numbers.values.size() || !numbers.bad_word.empty()) continue;
       const std::optional<double> number = parse_number(word);
-      const bool is_good = number && std::abs(*number) <= kMaxCoordinate;
-      if (!is_good && numbers.bad_word.empty()) {
+      if (number && std::abs(*number) <= kMaxCoordinate) {
+        numbers.values[numbers.good_count++] = *number;
+      } else {
         numbers.bad_word = word;
-        numbers.first_bad = numbers.count;
       }
-      if (numbers.count < numbers.values.size()) numbers.values[numbers.count] = is_good ? *number : kNotANumber;
     }
     return numbers;
   }
 
-  /// x y z, maybe a weight, or a colour and its alpha.
+  /// A vertex that is no position.
+  struct BadVertex {
+    uint32_t index = 0;
+    uint64_t line = 0;
+    std::string what = {};
+    bool is_used = false;
+  };
+
+  /// x y z, maybe a weight or a colour. What is no position costs the faces that use it.
   void read_vertex(std::string_view rest) {
     const Numbers numbers = read_numbers(rest);
-    const auto& n = numbers.values;
-    if (numbers.count < 3 || numbers.first_bad < 3) {
-      out_.positions.emplace_back(kNotANumber);
-      bad_positions_.push_back({static_cast<uint32_t>(out_.positions.size() - 1), lines_.number()});
-    } else {
-      out_.positions.emplace_back(n[0], n[1], n[2]);
-    }
-    if (numbers.count >= 6) return add_color(vec3(n[3], n[4], n[5]));
-    if (numbers.count == 5) {
-      repair("a vertex has 5 numbers", "", "give it x y z, or x y z red green blue", "x y z count");
+    const std::array<double, 6>& n = numbers.values;
+    out_.positions.emplace_back(n[0], n[1], n[2]);
+    if (!numbers.are_good(3)) return add_bad_vertex(numbers);
+    if (numbers.word_count >= 6) return read_color(numbers);
+    if (numbers.word_count == 5 || !numbers.bad_word.empty()) {
+      repair("what follows x y z of a vertex is no weight and no colour", numbers.bad_word, kVertexCure,
+             "it is ignored");
     }
   }
 
-  void add_color(vec3 color) {
-    const bool is_number = color.x == color.x && color.y == color.y && color.z == color.z;
-    if (!is_number) {
-      repair("a vertex colour is no number", "", "use numbers from 0", "the vertex is white");
-      color = vec3(1.0F);
+  void add_bad_vertex(const Numbers& numbers) {
+    const std::string what = numbers.bad_word.empty()
+                                 ? "a vertex has " + std::to_string(numbers.word_count) + " numbers"
+                                 : quote(numbers.bad_word) + " is no number up to 1e15";
+    bad_vertices_.push_back({static_cast<uint32_t>(out_.positions.size() - 1), lines_.number(), what});
+  }
+
+  void read_color(const Numbers& numbers) {
+    const std::array<double, 6>& n = numbers.values;
+    if (numbers.word_count > 6) {
+      repair("a vertex has more than 6 numbers", "", kVertexCure, "those behind its colour are ignored");
     }
-    if (color.x < 0.0F || color.y < 0.0F || color.z < 0.0F) {
-      repair("a vertex colour is negative", "", "use numbers from 0", "it counts as 0");
-      color = glm::max(color, vec3(0.0F));
+    vec3 color(n[3], n[4], n[5]);
+    if (!numbers.are_good(6) || n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) {
+      repair("a vertex colour is no three numbers from 0", numbers.bad_word, "use numbers from 0",
+             "the vertex counts as white");
+      color = vec3(1.0F);
     }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
     out_.colors.push_back(color);
@@ -150,17 +168,25 @@ class ObjParser {
       if (number && std::abs(*number) <= kMaxCoordinate) {
         uv[i] = *number;
       } else {
-        report_.warn("texture coordinates that are no numbers up to 1e15 are taken for 0");
+        repair("a texture coordinate is no number up to 1e15", word, kNumberCure, "it counts as 0");
       }
     }
     out_.uvs.push_back(uv);
   }
 
-  /// What is no number matters where a face uses it.
   void read_normal(std::string_view rest) {
     const Numbers numbers = read_numbers(rest);
-    const auto& n = numbers.values;
-    out_.normals.push_back(numbers.count < 3 ? vec3(kNotANumber) : vec3(n[0], n[1], n[2]));
+    const std::array<double, 6>& n = numbers.values;
+    if (!numbers.are_good(3)) {
+      repair("a normal is no three numbers up to 1e15", numbers.bad_word, kNumberCure,
+             "the faces that use it are drawn sharp");
+      out_.normals.emplace_back(std::numeric_limits<float>::quiet_NaN());
+      return;
+    }
+    if (numbers.word_count > 3) {
+      repair("a normal has more than 3 numbers", "", "give it x y z", "those behind the third are ignored");
+    }
+    out_.normals.emplace_back(n[0], n[1], n[2]);
   }
 
   void read_face(std::string_view rest) {
@@ -175,13 +201,14 @@ class ObjParser {
     }
     const size_t count = out_.corners.size() - first;
     if (count < 3) {
+      ++out_.small_face_count;
       out_.corners.resize(first);
-      return repair("a face has fewer than 3 corners", "", "give it 3 corners or more, on one line",
-                    "the face is left out");
+      return repair("a face has fewer than 3 corners", "", "give it 3 or more, on one line", "it is left out");
     }
     if (count > kMaxPolygonCorners) {
-      return refuse("a face has " + std::to_string(count) + " corners",
-                    "give it up to " + std::to_string(kMaxPolygonCorners));
+      refuse("a face has " + std::to_string(count) + " corners",
+             "give it 3 to " + std::to_string(kMaxPolygonCorners) + ", on one line");
+      return;
     }
     if (!is_group_open_) {
       out_.groups.push_back({group_name_, static_cast<uint32_t>(out_.faces.size()), 0});
@@ -189,6 +216,7 @@ class ObjParser {
     }
     ++out_.groups.back().face_count;
     out_.faces.push_back({static_cast<uint32_t>(first), static_cast<uint32_t>(count), material_});
+    face_lines_.push_back(lines_.number());
   }
 
   /// "1", "1/2", "1//3" or "1/2/3": position, texture coordinate, normal.
@@ -200,84 +228,55 @@ class ObjParser {
       parts[i] = word.substr(0, end);
       word.remove_prefix(std::min(end + 1, word.size()));
     }
-    const bool is_good = word.empty() && read_index(parts[0], out_.positions.size(), last_position_, corner.position);
-    if (is_good && !parts[1].empty()) corner.uv = read_optional_index(parts[1], out_.uvs.size());
-    if (is_good && !parts[2].empty()) corner.normal = read_optional_index(parts[2], out_.normals.size());
-    if (!is_good) {
+    corner.position = read_index(parts[0], out_.positions.size());
+    if (!word.empty() || corner.position == kMissing) {
       refuse(quote(whole) + " is no corner of a face", "use indices from 1, or from -1 back to the first vertex");
+      return false;
     }
-    return is_good;
+    if (!parts[1].empty()) corner.uv = read_index(parts[1], out_.uvs.size());
+    if (!parts[2].empty()) corner.normal = read_index(parts[2], out_.normals.size());
+    return true;
   }
+
+  /// What a word becomes that is no index: one past the end.
+  static constexpr uint32_t kMissing = kNoObjIndex - 1;
 
   /// An index as OBJ writes it: from 1 on, or from -1 backwards from the current place. Vertices may follow the faces
   /// that use them, so the upper end is checked last.
-  struct LastIndex {
-    uint32_t index = 0;
-    std::string place = {};
-  };
-  bool read_index(std::string_view word, size_t count_so_far, LastIndex& last, uint32_t& index) {
+  static uint32_t read_index(std::string_view word, size_t count_so_far) {
     const std::optional<int64_t> written = parse_integer(word);
-    if (!written || *written == 0 || *written >= int64_t{kNoObjIndex}) return false;
+    if (!written || *written == 0) return kMissing;
     const int64_t from_zero = *written > 0 ? *written - 1 : static_cast<int64_t>(count_so_far) + *written;
-    if (from_zero < 0) return false;
-    index = static_cast<uint32_t>(from_zero);
-    if (index >= count_so_far && index >= last.index) last = {index, lines_.place()};
-    return true;
+    return from_zero >= 0 && from_zero < int64_t{kMissing} ? static_cast<uint32_t>(from_zero) : kMissing;
   }
 
-  /// An index of texture coordinates or normals. Where it leads nowhere, it is one that is past the end for sure.
-  static uint32_t read_optional_index(std::string_view word, size_t count_so_far) {
-    constexpr uint32_t kNowhere = kNoObjIndex - 1;
-    const int64_t written = parse_integer(word).value_or(0);
-    const int64_t from_zero = written > 0 ? written - 1 : static_cast<int64_t>(count_so_far) + written;
-    const bool is_index = written != 0 && from_zero >= 0 && from_zero < int64_t{kNowhere};
-    return is_index ? static_cast<uint32_t>(from_zero) : kNowhere;
-  }
-
-  void forget_uvs_past_the_end() {
-    for (ObjCorner& corner : out_.corners) {
-      if (corner.uv >= out_.uvs.size()) corner.uv = kNoObjIndex;
-    }
-  }
-
-  /// A face whose corners have no normals, or not all of them, is drawn sharp.
-  void forget_normals_past_the_end() {
+  /// Once all vertices are known.
+  void check_faces() {
+    if (are_indices_in_range() && bad_vertices_.empty()) return;
+    std::vector<bool> is_drawn(out_.faces.size(), true);
     for (size_t i = 0; i < out_.faces.size(); ++i) {
-      bool is_past_the_end = false;
-      for (ObjCorner& corner : corners_of(out_.faces[i])) {
-        if (corner.normal == kNoObjIndex || corner.normal < out_.normals.size()) continue;
-        corner.normal = kNoObjIndex;
-        is_past_the_end = true;
+      const std::span corners(&out_.corners[out_.faces[i].first_corner], out_.faces[i].corner_count);
+      is_drawn[i] = check_positions(corners, face_lines_[i]);
+      if (forget_past_the_end(corners, &ObjCorner::uv, out_.uvs.size())) {
+        report_.repair({"a face names texture coordinates that are not there", "", place_of(face_lines_[i]),
+                        "use an index up to their number", "it is drawn without them"});
       }
-      if (!is_past_the_end) continue;
-      report_.repair({"a face names a normal that is not there", "", "face " + std::to_string(i + 1),
-                      "export the mesh again", "the face is drawn sharp"});
+      if (forget_past_the_end(corners, &ObjCorner::normal, out_.normals.size())) {
+        report_.repair({"a face names a normal that is not there", "", place_of(face_lines_[i]),
+                        "use an index up to their number", "it is drawn sharp"});
+      }
     }
+    for (const BadVertex& vertex : bad_vertices_) report_bad_vertex(vertex);
+    keep_faces(is_drawn);
   }
 
-  std::span<ObjCorner> corners_of(const ObjFace& face) {
-    return std::span(out_.corners).subspan(face.first_corner, face.corner_count);
-  }
-
-  bool has_positions(const ObjFace& face) {
-    for (const ObjCorner& corner : corners_of(face)) {
-      const vec3& position = out_.positions[corner.position];
-      if (position.x == position.x && position.y == position.y && position.z == position.z) continue;
-      const auto line = std::ranges::lower_bound(bad_positions_, corner.position, {}, &BadPosition::index)->line;
-      report_.repair({"a face has a vertex coordinate that is no number up to 1e15", "", "line " + std::to_string(line),
-                      "give the vertex x y z", "the face is left out"});
-      return false;
-    }
-    return true;
-  }
-
-  void leave_out_faces_of_bad_positions() {
+  /// Leaves the other faces out, and groups without any.
+  void keep_faces(const std::vector<bool>& is_kept) {
     std::vector<ObjFace> kept;
     for (ObjGroup& group : out_.groups) {
       const auto first = static_cast<uint32_t>(kept.size());
-      for (uint32_t i = 0; i < group.face_count; ++i) {
-        const ObjFace& face = out_.faces[group.first_face + i];
-        if (has_positions(face)) kept.push_back(face);
+      for (uint32_t i = group.first_face; i < group.first_face + group.face_count; ++i) {
+        if (is_kept[i]) kept.push_back(out_.faces[i]);
       }
       group.first_face = first;
       group.face_count = static_cast<uint32_t>(kept.size()) - first;
@@ -286,14 +285,61 @@ class ObjParser {
     std::erase_if(out_.groups, [](const ObjGroup& group) { return group.face_count == 0; });
   }
 
-  void refuse_indices_past_the_end() {
-    if (last_position_.place.empty() || last_position_.index < out_.positions.size()) return;
-    report_.refuse("index " + std::to_string(uint64_t{last_position_.index} + 1) + " is out of range, there are " +
-                       std::to_string(out_.positions.size()) + " vertices",
-                   last_position_.place, "use an index up to their number");
-    // Nothing looks up what is not there.
-    out_.faces.clear();
-    out_.groups.clear();
+  bool are_indices_in_range() const {
+    uint32_t position_end = 0;
+    uint32_t uv_end = 0;
+    uint32_t normal_end = 0;
+    for (const ObjCorner& corner : out_.corners) {
+      position_end = std::max(position_end, corner.position + 1);
+      // 0 of kNoObjIndex.
+      uv_end = std::max(uv_end, corner.uv + 1);
+      normal_end = std::max(normal_end, corner.normal + 1);
+    }
+    return position_end <= out_.positions.size() && uv_end <= out_.uvs.size() && normal_end <= out_.normals.size();
+  }
+
+  static std::string place_of(uint64_t line) { return "line " + std::to_string(line); }
+
+  /// Whether the face has a place in space. An index that leads nowhere is refused.
+  bool check_positions(std::span<const ObjCorner> corners, uint64_t line) {
+    bool is_placed = true;
+    for (const ObjCorner& corner : corners) {
+      if (corner.position >= out_.positions.size()) {
+        report_.refuse("index " + std::to_string(uint64_t{corner.position} + 1) + " is out of range, there are " +
+                           std::to_string(out_.positions.size()) + " vertices",
+                       place_of(line), "use an index up to their number");
+      } else if (BadVertex* bad = find_bad_vertex(corner.position); bad != nullptr) {
+        bad->is_used = true;
+        if (is_placed) {
+          report_.repair({"a face has a vertex that is no three numbers up to 1e15", bad->what, place_of(bad->line),
+                          kVertexCure, "the face is left out"});
+        }
+        is_placed = false;
+      }
+    }
+    return is_placed;
+  }
+
+  BadVertex* find_bad_vertex(uint32_t position) {
+    const auto found = std::ranges::lower_bound(bad_vertices_, position, {}, &BadVertex::index);
+    return found != bad_vertices_.end() && found->index == position ? &*found : nullptr;
+  }
+
+  /// Whether there was any.
+  static bool forget_past_the_end(std::span<ObjCorner> corners, uint32_t ObjCorner::*index, size_t count) {
+    bool has_any = false;
+    for (ObjCorner& corner : corners) {
+      if (corner.*index == kNoObjIndex || corner.*index < count) continue;
+      corner.*index = kNoObjIndex;
+      has_any = true;
+    }
+    return has_any;
+  }
+
+  void report_bad_vertex(const BadVertex& vertex) {
+    if (vertex.is_used) return;
+    report_.repair({"a vertex that no face uses is no three numbers up to 1e15", vertex.what, place_of(vertex.line),
+                    kVertexCure, "it is left out"});
   }
 
   void use_material(const std::string& name) {
@@ -311,13 +357,10 @@ class ObjParser {
   bool is_group_open_ = false;
   uint32_t material_ = kNoObjIndex;
   std::unordered_map<std::string, uint32_t> materials_;
-  LastIndex last_position_;
-  struct BadPosition {
-    uint32_t index;
-    uint64_t line;
-  };
-  /// By rising index.
-  std::vector<BadPosition> bad_positions_;
+  /// The line of each face.
+  std::vector<uint64_t> face_lines_;
+  /// By index.
+  std::vector<BadVertex> bad_vertices_;
   uint64_t ignored_count_ = 0;
   std::string first_ignored_;
 };

@@ -39,18 +39,21 @@ struct ObjGroup {
   uint32_t face_count = 0;
 };
 
-/// What an OBJ file says, checked: every index is in range, and every position that a face uses is finite.
+/// What an OBJ file says, checked: every index is in range, and what faces use is finite, but normals.
 struct ObjText {
-  /// Not a number where the file has none; no face uses such a position.
   std::vector<vec3> positions;
   /// Empty, or one per position, and white where the file gives none.
   std::vector<vec3> colors;
   /// Texture coordinates; v grows upwards.
   std::vector<dvec2> uvs;
-  /// The normals as written, which are not of unit length; not a number where the file has none.
+  /// The normals as written, which are not of unit length; NaN where the file gives no numbers.
   std::vector<vec3> normals;
   std::vector<ObjCorner> corners;
+  /// Each has at least 3 corners.
   std::vector<ObjFace> faces;
+  /// How many faces are left out for fewer.
+  uint64_t small_face_count = 0;
+  bool has_lines_or_points = false;
   std::vector<ObjGroup> groups;
   /// The names of usemtl lines, each once.
   std::vector<std::string> material_names;
@@ -59,8 +62,9 @@ struct ObjText {
 };
 
 /// Parses the statements v, vt, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning where they would
-/// show. Zero bytes at the end do not count. The report repairs bad texture coordinates, normals and colours, and faces
-/// that cannot be drawn, which are left out. It refuses indices of positions that are out of range, with their line.
+/// show. Problems go to the report with their line: a face refuses the file whose corner is no index of a vertex, or
+/// whose vertex is no position. The report repairs the rest: faces of fewer than 3 corners, vertices that no face uses,
+/// colours, normals and texture coordinates that are no numbers, and indices of the latter two that are out of range.
 ObjText parse_obj_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

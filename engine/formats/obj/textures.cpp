@@ -8,8 +8,9 @@
 #include <string_view>
 
 #include "core/file.h"
-#include "formats/obj/find_file.h"
+#include "formats/obj/heights.h"
 #include "formats/picture_sources.h"
+#include "formats/scene_path.h"
 
 namespace promin {
 namespace {
@@ -19,16 +20,18 @@ struct MapUse {
   ImageUse use;
 };
 /// The maps that are read. Those of roughness and metallic are read to be merged.
-constexpr std::array<MapUse, 7> kMapUses = {{{"map_Kd", ImageUse::kColor},
+constexpr std::array<MapUse, 8> kMapUses = {{{"map_Kd", ImageUse::kColor},
                                              {"map_d", ImageUse::kData},
                                              {"map_Ks", ImageUse::kColor},
                                              {"map_Ke", ImageUse::kColor},
                                              {"map_Pr", ImageUse::kData},
                                              {"map_Pm", ImageUse::kData},
-                                             {"norm", ImageUse::kNormal}}};
+                                             {"norm", ImageUse::kNormal},
+                                             {"bump", ImageUse::kData}}};
 
-std::optional<std::vector<std::byte>> read_map_file(const MtlMap& map, LoadReport& report, uint64_t most_bytes) {
-  const auto file = find_named_file(map.folder, map.file, report);
+std::optional<std::vector<std::byte>> read_beside_scene(const std::string& name, LoadReport& report,
+                                                        uint64_t most_bytes) {
+  const auto file = find_beside_scene(name, "", true, report);
   if (!file) return std::nullopt;
   return read_file(*file, most_bytes);
 }
@@ -42,11 +45,6 @@ void for_each_map(const std::vector<MtlMaterial*>& materials, const Task& task) 
       if (found != kMapUses.end()) task(map, found->use);
     }
   }
-}
-
-/// A map's file, as messages name it.
-std::string title_of(const MtlMap& map) {
-  return map.folder + map.file;
 }
 
 uint64_t texel_count(const uvec2& size) {
@@ -70,15 +68,16 @@ bool has_alpha(const TextureImage& image) {
 ObjTextures::ObjTextures(const std::vector<MtlMaterial*>& materials, LoadReport& report) : report_(report) {
   std::vector<PictureSource> sources;
   for_each_map(materials, [&](const MtlMap& map, ImageUse use) {
-    const auto [known, is_new] = pictures_.try_emplace({title_of(map), use});
+    const auto [known, is_new] = pictures_.try_emplace({map.file, use});
     if (!is_new) return;
     PictureSource& source = sources.emplace_back();
     source.image->use = use;
-    source.image->name = title_of(map);
-    source.title = quote(title_of(map));
+    source.image->name = map.file;
+    source.title = quote(map.file);
     known->second = source.image;
-    read_picture(source, report,
-                 [&](LoadReport& attempt, uint64_t most_bytes) { return read_map_file(map, attempt, most_bytes); });
+    read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
+      return read_beside_scene(map.file, attempt, most_bytes);
+    });
   });
   decode_pictures(sources, report);
   for_each_map(materials, [&](MtlMap& map, ImageUse use) { map.is_usable = !find_picture(&map, use)->texels.empty(); });
@@ -120,13 +119,32 @@ TextureSlot ObjTextures::read_metallic_roughness(const MtlMap* roughness, const 
   return place(*placed, known->second);
 }
 
+TextureSlot ObjTextures::read_heights(const MtlMap* map) {
+  const ImagePointer picture = find_picture(map, ImageUse::kData);
+  if (picture == nullptr || map->strength == 0.0 || is_flat(*picture)) return {};
+  HeightMap heights = {map->strength * glm::sign(map->scale), map->channel, map->is_clamped};
+  const bool is_of_normals = holds_normals(*picture);
+  if (is_of_normals) {
+    report_.warn("image " + quote(map->file) + " of a map of heights holds normals, it is taken for a map of normals");
+    heights.height = dvec2(0.0);
+  }
+  const std::tuple key(picture, heights.height.x, heights.height.y, heights.channel, heights.is_clamped);
+  const auto [known, is_new] = height_numbers_.try_emplace(key, static_cast<uint32_t>(images_.size()));
+  if (is_new) {
+    const auto normals = std::make_shared<TextureImage>(is_of_normals ? *picture : make_normals(*picture, heights));
+    normals->use = ImageUse::kNormal;
+    images_.push_back(normals);
+  }
+  return place(*map, known->second);
+}
+
 void ObjTextures::finish(Scene& scene) {
   scene.images = std::move(images_);
   scene.textures = std::move(textures_);
 }
 
 ObjTextures::ImagePointer ObjTextures::find_picture(const MtlMap* map, ImageUse use) const {
-  return map == nullptr ? nullptr : pictures_.at({title_of(*map), use});
+  return map == nullptr ? nullptr : pictures_.at({map->file, use});
 }
 
 /// OBJ's v grows upwards, from the lowest row of a picture. The mesh's is 1 - v.

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,10 @@ class ObjTextures {
   /// nullptr, and an empty slot where both are.
   TextureSlot read_metallic_roughness(const MtlMap* roughness, const MtlMap* metallic);
 
+  /// The slot of the normals that a map of heights gives (formats/obj/heights.h), or of those that its picture holds in
+  /// truth, with a warning. An empty one for nullptr, and where there are no slopes.
+  TextureSlot read_heights(const MtlMap* map);
+
   /// Hands over the images and textures of the slots.
   void finish(Scene& scene);
 
@@ -49,6 +54,9 @@ class ObjTextures {
   std::vector<Texture> textures_;
   /// Indices of images_, by the pictures that they are made of.
   std::map<std::pair<ImagePointer, ImagePointer>, uint32_t> image_numbers_;
+  /// Indices of images_ of normals, by the picture of heights and the fields of HeightMap; a height of 0 is that of a
+  /// picture that holds normals itself.
+  std::map<std::tuple<ImagePointer, double, double, int, bool>, uint32_t> height_numbers_;
   /// Indices of textures_, by image and whether it is clamped.
   std::map<std::pair<uint32_t, bool>, uint32_t> texture_numbers_;
 };

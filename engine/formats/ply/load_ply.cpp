@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/file.h"
-#include "formats/obj/find_file.h"
+#include "formats/obj/paths.h"
 #include "formats/picture_sources.h"
 #include "formats/ply/body.h"
 #include "formats/ply/header.h"
@@ -271,7 +271,9 @@ std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool t
     source.image->name = name;
     source.title = quote(name);
     read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
-      const auto file = find_named_file("", name, attempt);
+      std::optional<std::string> named = find_named_file(name, "", attempt);
+      if (!named) named = find_by_last_part(name, "", attempt);
+      const auto file = find_beside_scene(named.value_or(name), "", true, attempt);
       return file ? std::optional(read_file(*file, most_bytes)) : std::nullopt;
     });
   }
