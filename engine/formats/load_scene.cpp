@@ -130,8 +130,15 @@ void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& 
   throw InputError({what + reason, report.file().string(), "export it with triangles"});
 }
 
+void check_root(const std::filesystem::path& root) {
+  std::error_code error;
+  if (root.empty() || is_directory(root, error)) return;
+  throw UsageError({"the root of a scene's files is no folder", root.string(), "name a folder"});
+}
+
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
+  check_root(options.root);
   if (!options.material_variant.empty() && !format.has_variants) {
     throw UsageError({std::string("files that end in ") + format.ending + " have no variants of materials",
                       file.string(), "ask for none"});
@@ -159,7 +166,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
 }
 
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources) {
-  LoadReport report(file, options.is_strict);
+  LoadReport report(file, options.is_strict, options.root);
   report.add_source(file);
   try {
     Scene scene = load_by_format(file, options, report);

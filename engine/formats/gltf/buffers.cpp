@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/buffers.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -25,6 +26,9 @@ constexpr std::array<int8_t, 256> make_base64_values() {
   for (size_t i = 0; i < kAlphabet.size(); ++i) {
     values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int8_t>(i);
   }
+  // The letters of RFC 4648, section 5, too.
+  values['-'] = values['+'];
+  values['_'] = values['/'];
   return values;
 }
 
@@ -35,17 +39,30 @@ int hex_value(char c) {
   return -1;
 }
 
+/// Whether a text ends so, whatever the case of its letters.
+bool has_ending(std::string_view text, std::string_view ending) {
+  if (text.size() < ending.size()) return false;
+  return std::ranges::equal(text.substr(text.size() - ending.size()), ending, [](char a, char b) {
+    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+  });
+}
+
 // The readers below return nullopt once the report holds the reason.
 
 std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& place, LoadReport& report,
                                    uint64_t most_bytes = std::numeric_limits<uint64_t>::max()) {
-  constexpr std::string_view kMarker = ";base64,";
-  const size_t marker = uri.find(kMarker);
-  if (marker == std::string::npos || uri.find(',') != marker + kMarker.size() - 1) {
+  const size_t comma = uri.find(',');
+  if (comma == std::string::npos || !has_ending(std::string_view(uri).substr(0, comma), ";base64")) {
     report.refuse("the data: URI is not base64", place, "write data:application/octet-stream;base64,...");
     return std::nullopt;
   }
-  std::string_view text = std::string_view(uri).substr(marker + kMarker.size());
+  std::string_view text = std::string_view(uri).substr(comma + 1);
+  std::optional<std::string> unescaped;
+  if (text.find_first_of("% \t\r\n") != std::string_view::npos) {
+    unescaped = decode_percent(text);
+    if (unescaped) std::erase_if(*unescaped, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+    text = unescaped ? std::string_view(*unescaped) : "*";
+  }
   // Four letters are three bytes.
   if (most_bytes / 3 < text.size() / 4) text = text.substr(0, (most_bytes / 3 + 1) * 4);
   std::optional<Bytes> bytes = decode_base64(text);
@@ -54,7 +71,8 @@ std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& pl
 }
 
 bool is_data(const std::string& uri) {
-  return uri.starts_with("data:");
+  constexpr std::string_view kScheme = "data:";
+  return uri.size() >= kScheme.size() && has_ending(std::string_view(uri).substr(0, kScheme.size()), kScheme);
 }
 
 std::optional<std::filesystem::path> find_file(const std::string& uri, const std::string& place, bool must_exist,
@@ -65,10 +83,11 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
   return std::nullopt;
 }
 
-/// The number of bytes that a URI names; 0 where the file is missing. A URI that leads where it must not is refused.
-uint64_t size_of_uri(const std::string& uri, const std::string& place, LoadReport& report) {
-  if (is_data(uri)) return read_data_uri(uri, place, report).value_or(Bytes{}).size();
-  const auto file = find_file(uri, place, false, report);
+/// The number of bytes that a URI names; 0 where they cannot be read.
+uint64_t size_of_uri(const std::string& uri, const std::string& place, const LoadReport& report) {
+  LoadReport attempt(report.file(), false, report.root());
+  if (is_data(uri)) return read_data_uri(uri, place, attempt).value_or(Bytes{}).size();
+  const auto file = find_file(uri, place, false, attempt);
   if (!file) return 0;
   std::error_code error;
   const uintmax_t size = std::filesystem::file_size(*file, error);
@@ -79,15 +98,30 @@ std::string say_too_short(uint64_t size, uint64_t length) {
   return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
 }
 
-std::vector<bool> find_needed_buffers(const GltfDocument& document, const std::vector<bool>& is_needed_view) {
-  std::vector<bool> is_needed(elements_of(document.json, "buffers").size(), false);
+/// The buffer that the bytes of a view lie in, compressed or not, and the byte where they end.
+struct Extent {
+  size_t buffer = 0;
+  uint64_t end = 0;
+};
+
+Extent extent_of(const GltfDocument& document, size_t index) {
+  const GltfBufferView& view = document.views[index];
+  const json* compressed = find_meshopt(document.json["bufferViews"][index]);
+  if (compressed == nullptr) return {static_cast<size_t>(view.buffer), view.byte_offset + view.byte_length};
+  return {(*compressed)["buffer"],
+          compressed->value("byteOffset", uint64_t{0}) + (*compressed)["byteLength"].get<uint64_t>()};
+}
+
+/// How many bytes of each buffer the views that are needed reach over.
+std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_images) {
+  std::vector<uint64_t> needed(elements_of(document.json, "buffers").size(), 0);
+  const std::vector<bool> is_needed_view = find_needed_views(document, with_images);
   for (size_t i = 0; i < is_needed_view.size(); ++i) {
     if (!is_needed_view[i]) continue;
-    const json* compressed = find_meshopt(document.json["bufferViews"][i]);
-    const auto own = static_cast<size_t>(document.views[i].buffer);
-    is_needed[compressed == nullptr ? own : (*compressed)["buffer"].get<size_t>()] = true;
+    const Extent extent = extent_of(document, i);
+    needed[extent.buffer] = std::max(needed[extent.buffer], extent.end);
   }
-  return is_needed;
+  return needed;
 }
 
 /// Whether the buffer only stands for what compressed views hold, and needs no bytes.
@@ -101,7 +135,8 @@ bool is_fallback(const json& buffer) {
 /// Finds the views that readers of a document need.
 class NeededViews {
  public:
-  explicit NeededViews(const GltfDocument& document) : document_(document), is_needed_(document.views.size(), false) {
+  NeededViews(const GltfDocument& document, bool with_images)
+      : document_(document), is_needed_(document.views.size(), false) {
     for (size_t m = 0; m < document.meshes.size(); ++m) {
       const std::vector<GltfPrimitive>& primitives = document.meshes[m].primitives;
       for (size_t p = 0; p < primitives.size(); ++p) {
@@ -120,6 +155,8 @@ class NeededViews {
       const bool is_morphed = node.mesh >= 0 && node.weights && has_morph(*node.weights);
       if (is_morphed) need_targets(document.meshes[static_cast<size_t>(node.mesh)]);
     }
+    for (const json& skin : elements_of(document.json, "skins")) need_accessor(skin.value("inverseBindMatrices", -1));
+    if (!with_images) return;
     for (const json& image : elements_of(document.json, "images")) need_view(image.value("bufferView", -1));
   }
 
@@ -159,6 +196,110 @@ class NeededViews {
 
   const GltfDocument& document_;
   std::vector<bool> is_needed_;
+};
+
+/// Exporters count bytes of padding that they do not write.
+constexpr uint64_t kMostPadding = 3;
+
+/// Reads the buffers of one document.
+class BufferReader {
+ public:
+  BufferReader(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary, LoadReport& report)
+      : document_(document),
+        glb_binary_(glb_binary),
+        report_(report),
+        needed_(find_needed_bytes(document, true)),
+        needed_by_meshes_(find_needed_bytes(document, false)) {}
+
+  GltfBuffers read() {
+    for (const json& source : elements_of(document_.json, "buffers")) {
+      const size_t index = buffers_.bytes.size();
+      buffers_.bytes.emplace_back();
+      // One that cannot be used is null (check_gltf_schema).
+      if (source.is_null()) continue;
+      if (source["byteLength"] == 0) {
+        report_.repair({"a buffer has no bytes", "", place_of(index), "leave it out", "nothing is read of it"});
+      } else if (needed_[index] == 0) {
+        weigh_unneeded(source, index);
+      } else if (needed_by_meshes_[index] > 0) {
+        read_buffer(source, index, report_);
+      } else {
+        try_buffer(source, index);
+      }
+    }
+    return std::move(buffers_);
+  }
+
+ private:
+  static std::string place_of(size_t index) { return "buffers[" + std::to_string(index) + "]"; }
+
+  /// The binary chunk belongs to the first buffer alone.
+  bool is_chunk(const json& source, size_t index) const {
+    return !source.contains("uri") && index == 0 && glb_binary_.has_value();
+  }
+
+  void weigh_unneeded(const json& source, size_t index) {
+    if (is_fallback(source)) return;
+    const auto length = source["byteLength"].get<uint64_t>();
+    const uint64_t size = source.contains("uri")    ? size_of_uri(source["uri"], place_of(index) + ".uri", report_)
+                          : is_chunk(source, index) ? glb_binary_->size()
+                                                    : 0;
+    if (size < length) report_.warn(place_of(index) + " " + say_too_short(size, length) + "; no mesh needs it");
+  }
+
+  void read_buffer(const json& source, size_t index, LoadReport& report) {
+    std::span<const std::byte>& bytes = buffers_.bytes[index];
+    if (source.contains("uri")) {
+      std::optional<Bytes> own = read_gltf_uri(source["uri"], place_of(index) + ".uri", report);
+      if (!own) return;
+      bytes = buffers_.own.emplace_back(std::move(*own));
+    } else if (is_chunk(source, index)) {
+      bytes = *glb_binary_;
+    } else {
+      report.refuse("the buffer has no bytes", place_of(index), "add a uri, or a binary chunk to the GLB file");
+      return;
+    }
+    if (bytes.size() < source["byteLength"].get<uint64_t>()) repair_length(source["byteLength"], index);
+  }
+
+  /// Takes a buffer that is shorter than it says where its views need none of the missing bytes. Up to three missing
+  /// bytes that they need are padding, and become 0.
+  void repair_length(uint64_t length, size_t index) {
+    std::span<const std::byte>& bytes = buffers_.bytes[index];
+    const uint64_t needed = needed_by_meshes_[index];
+    if (needed > bytes.size() + kMostPadding) {
+      report_.refuse("the buffer " + say_too_short(bytes.size(), length), place_of(index), "export the file again");
+      return;
+    }
+    report_.repair({"a buffer is shorter than its byteLength",
+                    std::to_string(bytes.size()) + " bytes for " + std::to_string(length), place_of(index),
+                    "export the file again", "what is there of it is read"});
+    if (needed <= bytes.size()) return;
+    Bytes& own = buffers_.own.emplace_back(bytes.begin(), bytes.end());
+    own.resize(needed);
+    bytes = own;
+  }
+
+  /// Reads a buffer that only images lie in: they are left out where it cannot be read.
+  void try_buffer(const json& source, size_t index) {
+    LoadReport attempt(report_.file(), false, report_.root());
+    try {
+      read_buffer(source, index, attempt);
+      attempt.throw_if_refused();
+    } catch (const InputError& error) {
+      buffers_.bytes[index] = {};
+      report_.repair({"a buffer of images cannot be read: " + error.problems().front().what, "", place_of(index),
+                      "export the file again", "its images are left out"});
+    }
+    for (const SourceFile& file : attempt.sources()) report_.add_source(file.file);
+  }
+
+  const GltfDocument& document_;
+  std::optional<std::span<const std::byte>> glb_binary_;
+  LoadReport& report_;
+  std::vector<uint64_t> needed_;
+  std::vector<uint64_t> needed_by_meshes_;
+  GltfBuffers buffers_;
 };
 
 }  // namespace
@@ -206,45 +347,18 @@ std::optional<std::string> decode_percent(std::string_view text) {
   return decoded;
 }
 
-std::vector<bool> find_needed_views(const GltfDocument& document) {
-  return NeededViews(document).take();
+std::vector<bool> find_needed_views(const GltfDocument& document, bool with_images) {
+  return NeededViews(document, with_images).take();
 }
 
-GltfBuffers read_gltf_buffers(const GltfDocument& document, const std::vector<bool>& is_needed_view,
-                              std::optional<std::span<const std::byte>> glb_binary, LoadReport& report) {
-  const std::vector<bool> is_needed = find_needed_buffers(document, is_needed_view);
-  GltfBuffers buffers;
-  for (const json& source : elements_of(document.json, "buffers")) {
-    const size_t index = buffers.bytes.size();
-    std::span<const std::byte>& bytes = buffers.bytes.emplace_back();
-    const std::string place = "buffers[" + std::to_string(index) + "]";
-    const auto length = source["byteLength"].get<uint64_t>();
-    const bool has_uri = source.contains("uri");
-    // The binary chunk belongs to the first buffer alone.
-    const bool is_chunk = !has_uri && index == 0 && glb_binary;
-    if (!is_needed[index]) {
-      if (is_fallback(source)) continue;
-      const uint64_t size = has_uri    ? size_of_uri(source["uri"], place + ".uri", report)
-                            : is_chunk ? glb_binary->size()
-                                       : 0;
-      if (size < length) report.warn(place + " " + say_too_short(size, length) + "; no mesh needs it");
-      continue;
-    }
-    if (has_uri) {
-      std::optional<Bytes> own = read_gltf_uri(source["uri"], place + ".uri", report);
-      if (!own) continue;
-      bytes = buffers.own.emplace_back(std::move(*own));
-    } else if (is_chunk) {
-      bytes = *glb_binary;
-    } else {
-      report.refuse("the buffer has no bytes", place, "add a uri, or a binary chunk to the GLB file");
-      continue;
-    }
-    if (bytes.size() < length) {
-      report.refuse("the buffer " + say_too_short(bytes.size(), length), place, "export the file again");
-    }
-  }
-  return buffers;
+bool has_bytes(const GltfDocument& document, size_t view) {
+  const Extent extent = extent_of(document, view);
+  return extent.end <= document.buffers.bytes[extent.buffer].size();
+}
+
+GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
+                              LoadReport& report) {
+  return BufferReader(document, glb_binary, report).read();
 }
 
 }  // namespace promin

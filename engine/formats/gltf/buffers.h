@@ -21,17 +21,20 @@ std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, cons
                                                     LoadReport& report,
                                                     uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
-/// Which buffer views hold images, instances, or attributes or indices of meshes that are read.
-std::vector<bool> find_needed_views(const GltfDocument& document);
+/// Which buffer views hold instances, or attributes or indices of meshes that are read, or images where they count.
+std::vector<bool> find_needed_views(const GltfDocument& document, bool with_images);
+
+/// Whether the buffer of a view, or of what it is compressed to, has its bytes.
+bool has_bytes(const GltfDocument& document, size_t view);
 
 /// The bytes of every buffer of a document: from data: URIs, files beside the scene (see find_beside_scene) or the
-/// GLB's binary chunk. A buffer that needed views lie in, or what they are compressed to, has at least its byteLength
-/// of them, any other has none. Only the former is refused where its bytes are missing or too few; of the latter that
-/// is a warning. Problems go to the report.
-GltfBuffers read_gltf_buffers(const GltfDocument& document, const std::vector<bool>& is_needed_view,
-                              std::optional<std::span<const std::byte>> glb_binary, LoadReport& report);
+/// GLB's binary chunk. One that needed views lie in, or what they are compressed to, has all of their bytes, any other
+/// has none. Missing bytes of a buffer that meshes need are a refusal. Those of other buffers are a warning. Problems go
+/// to the report.
+GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
+                              LoadReport& report);
 
-/// RFC 4648, with or without padding; nullopt where the text is no base64.
+/// RFC 4648, with or without padding, with either of its alphabets; nullopt where the text is no base64.
 std::optional<std::vector<std::byte>> decode_base64(std::string_view text);
 
 /// RFC 3986: "%20" is a space; nullopt for a broken escape.

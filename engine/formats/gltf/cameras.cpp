@@ -12,25 +12,32 @@ namespace {
 /// Columns shorter than this, or this near to parallel, have no direction left to normalise.
 constexpr double kLeastSine = 1e-9;
 
-void read_pose(const PlacedNode& placed, Camera& camera, LoadReport& report) {
-  const std::string place = "nodes[" + std::to_string(placed.node) + "]";
-  const dvec3 eye(placed.world_from_object[3]);
-  if (!(std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) <= kMaxCoordinate)) {
-    report.refuse("the camera lies beyond 1e15 in the world", place, "use a smaller translation in it and its parents");
-  }
-  const dvec3 back(placed.world_from_object[2]);
-  const dvec3 y(placed.world_from_object[1]);
-  const dvec3 look = -back / glm::length(back);
-  const dvec3 up = y / glm::length(y);
+/// Takes the camera's axes from columns that need no length; whether they give any.
+bool take_axes(const dmat3& columns, Camera& camera) {
+  const dvec3 look = -columns[2] / glm::length(columns[2]);
+  const dvec3 up = columns[1] / glm::length(columns[1]);
   const dvec3 upright = up - glm::dot(up, look) * look;
   const double sine = glm::length(upright);
   // Written so that the NaN of a column without length fails.
-  if (!(sine > kLeastSine)) {
-    report.refuse("the camera has no orientation", place, "use a scale other than 0 in it and its parents");
-  }
-  camera.eye = vec3(eye);
+  if (!(sine > kLeastSine)) return false;
   camera.look = vec3(look);
   camera.up = vec3(upright / sine);
+  return true;
+}
+
+/// Whether the camera has a place and an orientation in the world.
+bool read_pose(const PlacedNode& placed, Camera& camera, LoadReport& report) {
+  const std::string place = "nodes[" + std::to_string(placed.node) + "]";
+  const dvec3 eye(placed.world_from_object[3]);
+  camera.eye = vec3(eye);
+  if (!(std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) <= kMaxCoordinate)) {
+    report.warn({"a camera lies beyond 1e15 in the world", "", place, "", "it is left out"});
+    return false;
+  }
+  if (take_axes(dmat3(placed.world_from_object), camera)) return true;
+  if (placed.rotation && take_axes(*placed.rotation, camera)) return true;
+  report.warn({"a camera has no orientation", "", place, "", "it is left out"});
+  return false;
 }
 
 }  // namespace
@@ -39,6 +46,8 @@ std::optional<Camera> read_gltf_camera(const GltfDocument& document, const Place
   const GltfNode& node = document.nodes[static_cast<size_t>(placed.node)];
   if (node.camera < 0) return std::nullopt;
   const nlohmann::json& source = document.json["cameras"][static_cast<size_t>(node.camera)];
+  // One that cannot be used is null (JsonCheck).
+  if (source.is_null()) return std::nullopt;
   const std::string type = source["type"];
   const nlohmann::json& parameters = source[type];
   Camera camera;
@@ -55,7 +64,7 @@ std::optional<Camera> read_gltf_camera(const GltfDocument& document, const Place
     camera.ymag = static_cast<float>(ymag);
     camera.aspect_ratio = static_cast<float>(xmag / ymag);
   }
-  read_pose(placed, camera, report);
+  if (!read_pose(placed, camera, report)) return std::nullopt;
   return camera;
 }
 

@@ -24,7 +24,8 @@ struct Format {
   std::optional<bool> normalized;
 };
 
-/// The attributes of vertices and of instances that the loader reads; "indices" stands for a primitive's indices.
+/// The attributes of vertices and of instances that the loader reads; "indices" stands for a primitive's indices,
+/// "inverseBindMatrices" for those of a skin.
 constexpr Format kFormats[] = {
     {"POSITION", "VEC3", kGltfFloat, {}},
     {"POSITION", "VEC3", kGltfByte, {}},
@@ -53,9 +54,15 @@ constexpr Format kFormats[] = {
     {"TANGENT", "VEC4", kGltfFloat, {}},
     {"TANGENT", "VEC4", kGltfByte, true},
     {"TANGENT", "VEC4", kGltfShort, true},
-    {"indices", "SCALAR", kGltfUnsignedByte, false},
-    {"indices", "SCALAR", kGltfUnsignedShort, false},
-    {"indices", "SCALAR", kGltfUnsignedInt, false},
+    {"JOINTS_0", "VEC4", kGltfUnsignedByte, false},
+    {"JOINTS_0", "VEC4", kGltfUnsignedShort, false},
+    {"WEIGHTS_0", "VEC4", kGltfFloat, {}},
+    {"WEIGHTS_0", "VEC4", kGltfUnsignedByte, true},
+    {"WEIGHTS_0", "VEC4", kGltfUnsignedShort, true},
+    {"inverseBindMatrices", "MAT4", kGltfFloat, {}},
+    {"indices", "SCALAR", kGltfUnsignedByte, {}},
+    {"indices", "SCALAR", kGltfUnsignedShort, {}},
+    {"indices", "SCALAR", kGltfUnsignedInt, {}},
     {"TRANSLATION", "VEC3", kGltfFloat, {}},
     {"ROTATION", "VEC4", kGltfFloat, {}},
     {"ROTATION", "VEC4", kGltfByte, true},
@@ -74,33 +81,58 @@ uint64_t element_bytes(const std::string& type, int component_type) {
   return rows * ((rows * component_bytes(component_type) + 3) / 4 * 4);
 }
 
+/// The same without the padding of the last column, which a view need not have.
+uint64_t needed_bytes(const std::string& type, int component_type) {
+  const uint64_t bytes = element_bytes(type, component_type);
+  if (!type.starts_with("MAT")) return bytes;
+  const uint64_t column = static_cast<uint64_t>(type[3] - '0') * component_bytes(component_type);
+  return bytes - ((column + 3) / 4 * 4 - column);
+}
+
+/// All sets of joints and weights are read, and have the formats of the first.
+std::string_view first_of_sets(std::string_view attribute) {
+  if (attribute.starts_with("JOINTS_")) return "JOINTS_0";
+  return attribute.starts_with("WEIGHTS_") ? "WEIGHTS_0" : attribute;
+}
+
 /// Refuses `count` elements that do not fit into a buffer view. In 64 bits nothing wraps: the schema keeps offsets
-/// below 2^53, counts below 2^31 and strides below 256.
+/// below 2^53, counts and strides below 2^31.
 void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t stride, uint64_t size,
                const std::string& place, LoadReport& report) {
   const auto available = view["byteLength"].get<uint64_t>();
-  const uint64_t end = offset + (count - 1) * stride + size;
+  const uint64_t end = count == 0 ? 0 : offset + (count - 1) * stride + size;
   if (end <= available) return;
   report.refuse("the elements end at byte " + std::to_string(end) + " of a buffer view of " +
                     std::to_string(available) + " bytes",
                 place, "correct the count, the offset or the buffer view");
 }
 
+/// A stride of 0 stands for packed elements.
+uint64_t stride_of(const json& view, uint64_t element) {
+  const uint64_t stride = view.value("byteStride", element);
+  return stride == 0 ? element : stride;
+}
+
 void check_accessor(const json& document, const json& accessor, bool is_plain, const std::string& place,
                     LoadReport& report) {
   const auto count = accessor["count"].get<uint64_t>();
+  if (count == 0) {
+    report.repair(
+        {"an accessor has no elements", "", place + ".count", "leave out what uses it", "nothing is drawn of it"});
+  }
   const std::string type = accessor["type"];
   const int component_type = accessor["componentType"];
   const uint64_t size = element_bytes(type, component_type);
   if (accessor.contains("bufferView")) {
     const json& view = document["bufferViews"][accessor["bufferView"].get<size_t>()];
-    const uint64_t stride = view.value("byteStride", size);
+    const uint64_t stride = stride_of(view, size);
     if (stride < size) {
       report.refuse(
           "a stride of " + std::to_string(stride) + " bytes is less than an element of " + std::to_string(size), place,
           "correct byteStride of its buffer view");
     }
-    check_fit(view, accessor.value("byteOffset", uint64_t{0}), count, stride, size, place, report);
+    check_fit(view, accessor.value("byteOffset", uint64_t{0}), count, stride, needed_bytes(type, component_type), place,
+              report);
   } else if (is_plain && count > kMaxZeroElements) {
     report.refuse("an accessor of " + std::to_string(count) + " zeros is too large", place + ".count",
                   "add a buffer view or use at most " + std::to_string(kMaxZeroElements));
@@ -118,23 +150,29 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
   check_part("values", size);
 }
 
-void check_format(const json& accessor, std::string_view attribute, const std::string& place, LoadReport& report) {
-  const std::string type = accessor["type"];
+bool has_format(const json& accessor, std::string_view attribute) {
+  attribute = first_of_sets(attribute);
+  const auto& type = accessor["type"].get_ref<const std::string&>();
   const int component_type = accessor["componentType"];
   const bool normalized = accessor.value("normalized", false);
-  for (const Format& format : kFormats) {
-    if (format.attribute == attribute && format.type == type && format.component_type == component_type &&
-        format.normalized.value_or(normalized) == normalized) {
-      return;
-    }
-  }
-  if (!is_read_attribute(attribute)) return;
-  report.refuse("the accessor's format (" + type + " of " + std::to_string(component_type) +
-                    (normalized ? ", normalized" : "") + ") is not allowed here",
-                place, "export it as the glTF specification has it");
+  return std::ranges::any_of(kFormats, [&](const Format& format) {
+    return format.component_type == component_type && format.attribute == attribute && format.type == type &&
+           format.normalized.value_or(normalized) == normalized;
+  });
 }
 
-/// Checks what is beside each other in each vertex, or in each instance.
+std::string say_format(const json& accessor) {
+  return accessor["type"].get<std::string>() + " of " + accessor["componentType"].dump() +
+         (accessor.value("normalized", false) ? ", normalized" : "");
+}
+
+void check_format(const json& accessor, std::string_view attribute, const std::string& place, LoadReport& report) {
+  if (has_format(accessor, attribute) || !is_read_attribute(attribute)) return;
+  report.refuse("the accessor's format (" + say_format(accessor) + ") is not allowed here", place,
+                "export it as the glTF specification has it");
+}
+
+/// Checks what is beside each other in each instance.
 void check_attributes(const json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   uint64_t first_count = 0;
   for (const auto& [name, index] : attributes.items()) {
@@ -147,6 +185,41 @@ void check_attributes(const json& attributes, const json& accessors, const std::
           "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(first_count),
           place + "." + name, "give all attributes one count");
     }
+  }
+}
+
+/// Whether an attribute that only shades cannot be read beside the others. Says why.
+bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_count, const std::string& place,
+                 LoadReport& report) {
+  const auto count = accessor["count"].get<uint64_t>();
+  const bool has_wrong_format = is_read_attribute(name) && !has_format(accessor, name);
+  if (has_wrong_format) {
+    report.repair({"the format of an attribute is not allowed", say_format(accessor), place,
+                   "export it as the glTF specification has it", "the attribute is left out"});
+  } else if (count != vertex_count) {
+    report.repair({"an attribute has another number of elements than there are vertices",
+                   std::to_string(count) + " for " + std::to_string(vertex_count), place,
+                   "give all attributes one count", "the attribute is left out"});
+  }
+  return has_wrong_format || count != vertex_count;
+}
+
+/// Checks what is beside each other in each vertex. Attributes other than the position are left out where they are
+/// wrong; without joints a mesh stands as it is.
+void check_vertices(json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
+  const auto positions = attributes.find("POSITION");
+  if (positions == attributes.end()) return;
+  const auto vertex_count = accessors[positions->get<size_t>()]["count"].get<uint64_t>();
+  for (auto attribute = attributes.begin(); attribute != attributes.end();) {
+    const std::string& name = attribute.key();
+    const std::string at = place + "." + name;
+    const json& accessor = accessors[attribute->get<size_t>()];
+    if (name != "POSITION" && is_left_out(name, accessor, vertex_count, at, report)) {
+      attribute = attributes.erase(attribute);
+      continue;
+    }
+    check_format(accessor, name, at, report);
+    ++attribute;
   }
 }
 
@@ -163,14 +236,67 @@ void check_instances(const json& node, const json& accessors, const std::string&
   }
 }
 
-void check_primitive(const json& primitive, const json& accessors, const std::string& place, LoadReport& report) {
-  check_attributes(primitive["attributes"], accessors, place + ".attributes", report);
+void check_primitive(json& primitive, const json& accessors, const std::string& place, LoadReport& report) {
+  check_vertices(primitive["attributes"], accessors, place + ".attributes", report);
   if (!primitive.contains("indices")) return;
-  const bool is_compressed = find_draco(primitive) != nullptr;
   const json& indices = accessors[primitive["indices"].get<size_t>()];
   check_format(indices, "indices", place + ".indices", report);
-  if (!indices.contains("bufferView") && !is_compressed) {
-    report.refuse("the indices have no buffer view, so all are 0", place + ".indices", "add the bytes");
+  if (indices.value("normalized", false)) {
+    report.repair({"indices are normalized", "", place + ".indices", "write integers", "they are read as integers"});
+  }
+}
+
+/// Marks the buffer views that more than images need.
+std::vector<bool> find_structural_views(const json& document) {
+  std::vector<bool> is_structural(elements_of(document, "bufferViews").size(), false);
+  const auto mark = [&](const json& holder) {
+    if (const auto view = holder.find("bufferView"); view != holder.end()) is_structural[view->get<size_t>()] = true;
+  };
+  for (const json& accessor : elements_of(document, "accessors")) {
+    mark(accessor);
+    if (!accessor.contains("sparse")) continue;
+    mark(accessor["sparse"]["indices"]);
+    mark(accessor["sparse"]["values"]);
+  }
+  for (const json& mesh : elements_of(document, "meshes")) {
+    for (const json& primitive : mesh["primitives"]) {
+      if (const json* draco = find_draco(primitive)) mark(*draco);
+    }
+  }
+  return is_structural;
+}
+
+void check_view(const json& view, uint64_t available, const std::string& place, LoadReport& report) {
+  const uint64_t end = view.value("byteOffset", uint64_t{0}) + view["byteLength"].get<uint64_t>();
+  if (end > available) {
+    report.refuse("the buffer view ends at byte " + std::to_string(end) + " of a buffer of " +
+                      std::to_string(available) + " bytes",
+                  place, "correct its byteOffset or byteLength");
+  }
+  if (view["byteLength"] == 0) {
+    report.repair({"a buffer view has no bytes", "", place, "leave out what uses it", "nothing is read of it"});
+  }
+  if (const auto stride = view.find("byteStride"); stride != view.end()) {
+    if (*stride >= 4 && *stride <= 252 && stride->get<uint64_t>() % 4 == 0) return;
+    report.repair({"a stride is no multiple of 4 from 4 to 252", stride->dump(), place + ".byteStride",
+                   "pad the elements", *stride == 0 ? "the elements are taken as packed" : "it is taken as it stands"});
+  }
+}
+
+/// Images lose a view that is no part of its buffer.
+void check_images(json& document, LoadReport& report) {
+  if (!document.contains("images")) return;
+  size_t i = 0;
+  for (json& image : document["images"]) {
+    const std::string place = at("images", i++);
+    if (!image.contains("bufferView")) continue;
+    const json& view = document["bufferViews"][image["bufferView"].get<size_t>()];
+    const auto available = document["buffers"][view["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
+    const uint64_t end = view.value("byteOffset", uint64_t{0}) + view["byteLength"].get<uint64_t>();
+    if (end <= available) continue;
+    report.repair({"the buffer view of an image ends behind its buffer", std::to_string(end - available) + " bytes",
+                   place, "export the file again", "the image is left out"});
+    image.erase("bufferView");
   }
 }
 
@@ -202,6 +328,7 @@ std::vector<bool> find_plain_accessors(const json& document) {
 }  // namespace
 
 bool is_read_attribute(std::string_view name) {
+  name = first_of_sets(name);
   return std::any_of(std::begin(kFormats), std::end(kFormats), [&](auto& format) { return format.attribute == name; });
 }
 
@@ -216,34 +343,36 @@ uint64_t component_count(const std::string& type) {
   return type.starts_with("MAT") ? n * n : n;
 }
 
-void check_gltf_accessors(const json& document, LoadReport& report) {
+void check_gltf_accessors(json& document, bool is_strict, LoadReport& report) {
   const json& buffers = elements_of(document, "buffers");
   const json& views = elements_of(document, "bufferViews");
+  check_images(document, report);
+  const std::vector<bool> is_structural = find_structural_views(document);
   for (size_t i = 0; i < views.size(); ++i) {
-    const auto available = buffers[views[i]["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
-    const uint64_t end = views[i].value("byteOffset", uint64_t{0}) + views[i]["byteLength"].get<uint64_t>();
-    if (end > available) {
-      report.refuse("the buffer view ends at byte " + std::to_string(end) + " of a buffer of " +
-                        std::to_string(available) + " bytes",
-                    at("bufferViews", i), "correct its byteOffset or byteLength");
-    }
-    if (views[i].value("byteStride", 4) % 4 != 0) {
-      report.refuse("the stride is no multiple of 4", at("bufferViews", i) + ".byteStride", "pad the elements");
-    }
+    if (views[i].is_null() || !(is_structural[i] || is_strict)) continue;
+    check_view(views[i], buffers[views[i]["buffer"].get<size_t>()]["byteLength"], at("bufferViews", i), report);
   }
 
   const json& accessors = elements_of(document, "accessors");
   const std::vector<bool> is_plain = find_plain_accessors(document);
   for (size_t i = 0; i < accessors.size(); ++i) {
-    check_accessor(document, accessors[i], is_plain[i], at("accessors", i), report);
+    if (!accessors[i].is_null()) check_accessor(document, accessors[i], is_plain[i], at("accessors", i), report);
   }
 
   const json& nodes = elements_of(document, "nodes");
   for (size_t i = 0; i < nodes.size(); ++i) check_instances(nodes[i], accessors, at("nodes", i), report);
+  const json& skins = elements_of(document, "skins");
+  for (size_t i = 0; i < skins.size(); ++i) {
+    const auto matrices = skins[i].find("inverseBindMatrices");
+    if (matrices == skins[i].end()) continue;
+    check_format(accessors[matrices->get<size_t>()], "inverseBindMatrices", at("skins", i) + ".inverseBindMatrices",
+                 report);
+  }
 
-  const json& meshes = elements_of(document, "meshes");
+  if (!document.contains("meshes")) return;
+  json& meshes = document["meshes"];
   for (size_t m = 0; m < meshes.size(); ++m) {
-    const auto& primitives = meshes[m]["primitives"];
+    auto& primitives = meshes[m]["primitives"];
     for (size_t p = 0; p < primitives.size(); ++p) {
       check_primitive(primitives[p], accessors, at("meshes", m) + "." + at("primitives", p), report);
     }

@@ -7,23 +7,15 @@ namespace promin {
 
 using nlohmann::json;
 
-void check_gltf_asset(const json& document, LoadReport& report) {
-  const auto& asset = document["asset"];
-  const std::string version = asset["version"];
-  if (!version.starts_with("2.")) {
-    report.refuse("glTF version " + quote(version) + " is not 2.x", "asset.version", "convert the file to glTF 2.0");
-  }
-  const std::string least_version = asset.value("minVersion", "2.0");
-  if (least_version != "2.0") {
-    report.refuse("the file needs glTF " + quote(least_version), "asset.minVersion", "export it for glTF 2.0");
-  }
-
-  const json& cameras = elements_of(document, "cameras");
-  for (size_t i = 0; i < cameras.size(); ++i) {
-    const std::string type = cameras[i]["type"];
-    if (cameras[i].contains(type)) continue;
-    report.refuse(quote(type) + " is missing", "cameras[" + std::to_string(i) + "]",
-                  "add the camera's parameters under that name");
+void check_gltf_cameras(json& document, LoadReport& report) {
+  const auto cameras = document.find("cameras");
+  if (cameras == document.end()) return;
+  for (size_t i = 0; i < cameras->size(); ++i) {
+    json& camera = (*cameras)[i];
+    if (camera.is_null() || camera.contains(camera["type"].get<std::string>())) continue;
+    report.repair({"the camera's parameters are missing", "", "cameras[" + std::to_string(i) + "]",
+                   "add them under the name of its type", "the camera is left out"});
+    camera = nullptr;
   }
 }
 

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "formats/gltf/checks.h"
 #include "formats/gltf/json_lookup.h"
+#include "formats/gltf/json_rule.h"
 
 namespace promin {
 namespace {
@@ -15,88 +17,141 @@ std::string node_place(size_t node) {
   return "nodes[" + std::to_string(node) + "]";
 }
 
-/// The parent of each node, -1 for roots.
-std::vector<int> find_parents(const json& nodes, LoadReport& report) {
-  std::vector<int> parents(nodes.size(), -1);
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    size_t position = 0;
-    for (const json& child : elements_of(nodes[i], "children")) {
-      int& parent = parents[child.get<size_t>()];
-      if (parent >= 0) {
-        report.refuse(node_place(child.get<size_t>()) + " has two parents, " + node_place(static_cast<size_t>(parent)) +
-                          " and " + node_place(i),
-                      node_place(i) + ".children[" + std::to_string(position) + "]", "copy the node instead");
-      }
-      parent = static_cast<int>(i);
-      ++position;
-    }
+/// Takes what `is_extra` finds out of an array of indices.
+template <class IsExtra>
+void take_out(json& indices, const IsExtra& is_extra) {
+  json kept = json::array();
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (!is_extra(indices[i].get<size_t>(), i)) kept.push_back(indices[i]);
   }
-  return parents;
+  if (kept.size() < indices.size()) indices = std::move(kept);
 }
 
-/// With one parent each, whatever cannot be reached from a root lies on a cycle or below one.
-void refuse_cycles(const json& nodes, const std::vector<int>& parents, LoadReport& report) {
-  std::vector<size_t> reached;
-  std::vector<bool> is_reached(nodes.size(), false);
+/// The number of parents of each node, each of which has it as a child once.
+std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
+  std::vector<uint32_t> parent_counts(nodes.size(), 0);
+  // The last parent that was seen of each node.
+  std::vector<size_t> parents(nodes.size(), nodes.size());
   for (size_t i = 0; i < nodes.size(); ++i) {
-    if (parents[i] < 0) reached.push_back(i);
+    if (!nodes[i].contains("children")) continue;
+    take_out(nodes[i]["children"], [&](size_t child, size_t position) {
+      const std::string place = node_place(i) + ".children[" + std::to_string(position) + "]";
+      if (parents[child] == i) {
+        report.repair({"a node has a child twice", node_place(child), place, "name it once", "it is shown once"});
+        return true;
+      }
+      if (parent_counts[child]++ > 0) {
+        report.repair(
+            {"a node has two parents", node_place(child), place, "copy the node instead", "it is shown below each"});
+      }
+      parents[child] = i;
+      return false;
+    });
+  }
+  return parent_counts;
+}
+
+/// A node that is not reached once all of its parents are lies on a cycle or below one.
+void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadReport& report) {
+  std::vector<size_t> reached;
+  size_t reached_count = 0;
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (parent_counts[i] == 0) reached.push_back(i);
   }
   while (!reached.empty()) {
     const size_t node = reached.back();
     reached.pop_back();
-    if (is_reached[node]) continue;
-    is_reached[node] = true;
-    for (const json& child : elements_of(nodes[node], "children")) reached.push_back(child.get<size_t>());
+    ++reached_count;
+    for (const json& child : elements_of(nodes[node], "children")) {
+      if (--parent_counts[child.get<size_t>()] == 0) reached.push_back(child.get<size_t>());
+    }
   }
-  const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
-  if (lost != is_reached.end()) {
-    report.refuse("the node is its own ancestor or lies below one that is",
-                  node_place(static_cast<size_t>(lost - is_reached.begin())), "remove the child that closes the cycle");
+  if (reached_count == nodes.size()) return;
+  const auto lost = std::ranges::find_if(parent_counts, [](uint32_t count) { return count > 0; });
+  report.refuse("the node is its own ancestor or lies below one that is",
+                node_place(static_cast<size_t>(lost - parent_counts.begin())),
+                "remove the child that closes the cycle");
+}
+
+/// Makes the last row of a matrix 0 0 0 1.
+void make_affine(json& matrix, const std::string& place, bool is_strict, LoadReport& report) {
+  for (const size_t i : {3, 7, 11, 15}) {
+    const double wanted = i == 15 ? 1.0 : 0.0;
+    const auto number = matrix[i].get<double>();
+    if (number == wanted) continue;
+    if (std::abs(number - wanted) > kMostRounding || is_strict) {
+      report.repair({"the matrix is not affine", matrix[i].dump(), place + ".matrix[" + std::to_string(i) + "]",
+                     "make its last row 0 0 0 1", "its last row is taken as 0 0 0 1"});
+    }
+    matrix[i] = wanted;
   }
 }
 
-void check_transform(const json& node, const std::string& place, LoadReport& report) {
+void check_transform(json& node, const std::string& place, bool is_strict, LoadReport& report) {
   if (node.contains("matrix")) {
-    for (const char* property : {"translation", "rotation", "scale"}) {
-      if (node.contains(property)) {
-        report.refuse(std::string("the node has both a matrix and a ") + property, place, "keep one of them");
-      }
-    }
-    const auto& m = node["matrix"];
-    if (m[3].get<double>() != 0.0 || m[7].get<double>() != 0.0 || m[11].get<double>() != 0.0 ||
-        m[15].get<double>() != 1.0) {
-      report.refuse("the matrix is not affine", place + ".matrix", "make its last row 0 0 0 1");
+    make_affine(node["matrix"], place, is_strict, report);
+    if (node.erase("translation") + node.erase("rotation") + node.erase("scale") > 0) {
+      report.repair({"a node has both a matrix and a translation, rotation or scale", "", place, "keep one of them",
+                     "the matrix is taken"});
     }
   }
   const dvec4 rotation = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
-  if (glm::dot(rotation, rotation) < 1e-12) {
-    report.refuse("the rotation has length 0", place + ".rotation", "use a unit quaternion");
+  if (glm::dot(rotation, rotation) >= 1e-12) return;
+  report.repair(
+      {"a rotation has length 0", "", place + ".rotation", "use a unit quaternion", "the node is not turned"});
+  node.erase("rotation");
+}
+
+/// Marks the nodes below a node.
+void mark_below(const json& nodes, size_t node, std::vector<bool>& is_below) {
+  std::vector<size_t> pending{node};
+  while (!pending.empty()) {
+    const size_t next = pending.back();
+    pending.pop_back();
+    for (const json& child : elements_of(nodes[next], "children")) {
+      if (is_below[child.get<size_t>()]) continue;
+      is_below[child.get<size_t>()] = true;
+      pending.push_back(child.get<size_t>());
+    }
   }
+}
+
+/// Leaves nodes in a scene's list that are shown from there.
+void check_scene(json& listed, const json& nodes, const std::vector<uint32_t>& parent_counts, const std::string& place,
+                 LoadReport& report) {
+  std::vector<bool> is_listed(nodes.size(), false);
+  std::vector<bool> is_below(nodes.size(), false);
+  for (const json& node : listed) mark_below(nodes, node.get<size_t>(), is_below);
+  take_out(listed, [&](size_t node, size_t i) {
+    const std::string at = place + ".nodes[" + std::to_string(i) + "]";
+    const bool is_twice = is_listed[node];
+    is_listed[node] = true;
+    if (is_twice) {
+      report.repair({"a scene lists a node twice", node_place(node), at, "list it once", "it is shown once"});
+    } else if (is_below[node]) {
+      report.repair({"a scene lists a node that lies below another", node_place(node), at, "list root nodes only",
+                     "it is shown where it lies below that"});
+    } else if (parent_counts[node] > 0) {
+      report.repair({"a scene lists a node that has a parent", node_place(node), at, "list root nodes only",
+                     "it is shown as a root, without the parent's transform"});
+    }
+    return is_twice || is_below[node];
+  });
 }
 
 }  // namespace
 
-void check_gltf_nodes(const json& document, LoadReport& report) {
-  const json& nodes = elements_of(document, "nodes");
-  const std::vector<int> parents = find_parents(nodes, report);
-  refuse_cycles(nodes, parents, report);
-  for (size_t i = 0; i < nodes.size(); ++i) check_transform(nodes[i], node_place(i), report);
-
-  const json& scenes = elements_of(document, "scenes");
-  for (size_t s = 0; s < scenes.size(); ++s) {
-    std::vector<bool> is_listed(nodes.size(), false);
-    const json& listed = elements_of(scenes[s], "nodes");
-    for (size_t i = 0; i < listed.size(); ++i) {
-      const size_t node = listed[i];
-      const std::string place = "scenes[" + std::to_string(s) + "].nodes[" + std::to_string(i) + "]";
-      if (parents[node] >= 0) {
-        report.refuse(node_place(node) + " is a child of " + node_place(static_cast<size_t>(parents[node])), place,
-                      "list root nodes only");
-      } else if (is_listed[node]) {
-        report.refuse(node_place(node) + " is listed twice", place, "list it once");
-      }
-      is_listed[node] = true;
-    }
+void check_gltf_nodes(json& document, bool is_strict, LoadReport& report) {
+  if (!document.contains("nodes")) return;
+  json& nodes = document["nodes"];
+  const std::vector<uint32_t> parent_counts = count_parents(nodes, report);
+  refuse_cycles(nodes, parent_counts, report);
+  for (size_t i = 0; i < nodes.size(); ++i) check_transform(nodes[i], node_place(i), is_strict, report);
+  if (!document.contains("scenes")) return;
+  json& scenes = document["scenes"];
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    if (!scenes[i].contains("nodes")) continue;
+    check_scene(scenes[i]["nodes"], nodes, parent_counts, "scenes[" + std::to_string(i) + "]", report);
   }
 }
 

@@ -13,16 +13,18 @@ namespace promin {
 
 // What a glTF document must hold beyond its schema (schema.h), checked before any reader uses it.
 
-/// Checks the version, and that parts which belong together are there.
-void check_gltf_asset(const nlohmann::json& document, LoadReport& report);
+/// Makes cameras without parameters null, with a warning.
+void check_gltf_cameras(nlohmann::json& document, LoadReport& report);
 
-/// Checks that the nodes form trees: there are no cycles, a node has at most one parent, and scenes list roots, once
-/// each. Every transform must be one: a rotation of some length, or an affine matrix.
-void check_gltf_nodes(const nlohmann::json& document, LoadReport& report);
+/// Refuses nodes that are their own ancestors. What else keeps nodes from being trees of transforms is repaired: a
+/// scene lists each node once, and none that lies below another that it lists; a node has each child once; a matrix
+/// counts alone and is affine; a rotation has some length. A node with two parents is warned of and shown below both.
+void check_gltf_nodes(nlohmann::json& document, bool is_strict, LoadReport& report);
 
 /// Checks that buffer views lie within their buffers' byteLength and accessors within their views, and that attributes
-/// have the formats and counts that the specification (section 3.7.2.1) and KHR_mesh_quantization allow.
-void check_gltf_accessors(const nlohmann::json& document, LoadReport& report);
+/// have the formats and counts that the specification (section 3.7.2.1) and KHR_mesh_quantization allow. Attributes
+/// that only shade are left out of their primitives where they do not, and images are left without their views.
+void check_gltf_accessors(nlohmann::json& document, bool is_strict, LoadReport& report);
 
 /// Whether meshes are read with this attribute. Any other is ignored, and the buffer it lies in may lack its bytes.
 bool is_read_attribute(std::string_view name);

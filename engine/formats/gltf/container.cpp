@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/container.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -13,6 +14,7 @@ constexpr uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
 constexpr uint32_t kBinaryChunk = 0x004E4942;  // "BIN"
 constexpr size_t kHeaderBytes = 12;
 constexpr size_t kChunkHeaderBytes = 8;
+constexpr size_t kMostPadding = 3;
 const char* const kExportAgain = "export or copy the file again";
 
 uint32_t read_u32(std::span<const std::byte> bytes, size_t offset) {
@@ -31,44 +33,68 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   throw InputError({what, place, kExportAgain});
 }
 
-GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
+/// Holds the length in the header against where the chunks end.
+void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
+  if (length != end) {
+    report.repair({"the GLB header promises another number of bytes than the chunks have",
+                   std::to_string(length) + " for " + std::to_string(end), "byte 8", kExportAgain,
+                   "the chunks are read"});
+  }
+  if (end < size) report.warn("the " + std::to_string(size - end) + " bytes after the end of the GLB are ignored");
+}
+
+uint32_t read_length(std::span<const std::byte> bytes, LoadReport& report) {
   if (bytes.size() < kHeaderBytes + kChunkHeaderBytes) refuse_file(report, "the GLB header is cut off", "byte 0");
   const uint32_t version = read_u32(bytes, 4);
+  if (version == 1) {
+    report.refuse("the file is glTF 1.0, which is not read", "byte 4", "export it as glTF 2.0");
+    report.throw_if_refused();
+  }
   if (version != 2) refuse_file(report, "GLB version " + std::to_string(version) + " is not 2", "byte 4");
-  const uint32_t length = read_u32(bytes, 8);
-  if (length > bytes.size() || length < kHeaderBytes + kChunkHeaderBytes) {
-    refuse_file(
-        report,
-        "the GLB header promises " + std::to_string(length) + " bytes, the file has " + std::to_string(bytes.size()),
-        "byte 8");
-  }
+  return read_u32(bytes, 8);
+}
 
-  if (length < bytes.size()) {
-    report.warn("the " + std::to_string(bytes.size() - length) + " bytes after the end of the GLB are ignored");
-    bytes = bytes.first(length);
-  }
+/// The bytes of the chunk whose header ends at `offset`. Some exporters count bytes of padding that they do not write.
+std::span<const std::byte> take_chunk(std::span<const std::byte> bytes, size_t offset, size_t length,
+                                      const std::string& place, LoadReport& report) {
+  const size_t left = bytes.size() - offset;
+  if (length <= left) return bytes.subspan(offset, length);
+  const std::string what =
+      "a GLB chunk promises " + std::to_string(length) + " bytes, " + std::to_string(left) + " are left";
+  if (length - left > kMostPadding) refuse_file(report, what, place);
+  report.repair({"a GLB chunk ends behind the file", std::to_string(length - left) + " bytes", place, kExportAgain,
+                 "what is there of it is read"});
+  return bytes.subspan(offset);
+}
 
+GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
+  const size_t length = read_length(bytes, report);
+  const size_t end = length < kHeaderBytes + kChunkHeaderBytes ? bytes.size() : std::min(length, bytes.size());
   GltfContainer container;
   bool is_first = true;
-  for (size_t offset = kHeaderBytes; offset < bytes.size();) {
+  size_t offset = kHeaderBytes;
+  // The header's length says where the chunks end. How long they are they say themselves.
+  while (offset < end) {
     const std::string place = "byte " + std::to_string(offset);
-    if (bytes.size() - offset < kChunkHeaderBytes) refuse_file(report, "a GLB chunk header is cut off", place);
-    const size_t chunk_length = read_u32(bytes, offset);
-    const uint32_t chunk_type = read_u32(bytes, offset + 4);
-    offset += kChunkHeaderBytes;
-    if (chunk_length > bytes.size() - offset) {
-      refuse_file(report,
-                  "a GLB chunk promises " + std::to_string(chunk_length) + " bytes, " +
-                      std::to_string(bytes.size() - offset) + " are left",
-                  place);
+    if (end - offset < kChunkHeaderBytes) {
+      report.repair({"a GLB chunk header is cut off", "", place, kExportAgain, "the bytes are ignored"});
+      offset = end;
+      break;
     }
-    const auto chunk = bytes.subspan(offset, chunk_length);
+    const uint32_t chunk_type = read_u32(bytes, offset + 4);
+    const size_t chunk_length = read_u32(bytes, offset);
+    offset += kChunkHeaderBytes;
+    const auto chunk = take_chunk(bytes, offset, chunk_length, place, report);
     offset += chunk_length;
-    if (is_first != (chunk_type == kJsonChunk)) refuse_file(report, "the first GLB chunk alone must be JSON", place);
+    if (is_first && chunk_type != kJsonChunk) refuse_file(report, "the first GLB chunk must be JSON", place);
+    if (!is_first && chunk_type == kJsonChunk) {
+      report.repair({"a further GLB chunk is JSON", "", place, kExportAgain, "it is ignored"});
+    }
     if (is_first) container.json = as_text(chunk);
     if (chunk_type == kBinaryChunk && !container.binary) container.binary = chunk;
     is_first = false;
   }
+  check_length(length, offset, bytes.size(), report);
   return container;
 }
 

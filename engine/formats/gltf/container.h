@@ -19,7 +19,8 @@ struct GltfContainer {
 };
 
 /// Takes a file apart, GLB by its magic number (glTF 2.0, section 4.4). Every length is checked against the bytes
-/// there are; what follows the GLB's end is warned of. Throws InputError.
+/// there are: a chunk that is cut off by more than padding is refused, a wrong length in the header is repaired, and
+/// what follows the GLB's end is warned of. Throws InputError.
 GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report);
 
 }  // namespace promin

@@ -24,7 +24,10 @@ int index_of(const json& object, const char* name) {
   return object.value(name, -1);
 }
 
+// What nothing uses is null (check_gltf_schema), and its view is empty.
+
 GltfBufferView view_of(const json& source) {
+  if (source.is_null()) return {};
   return {index_of(source, "buffer"), source.value("byteOffset", size_t{0}), source["byteLength"],
           source.value("byteStride", size_t{0})};
 }
@@ -44,6 +47,7 @@ GltfSparse sparse_of(const json& source) {
 
 GltfAccessor accessor_of(const json& source) {
   GltfAccessor accessor;
+  if (source.is_null()) return accessor;
   accessor.view = index_of(source, "bufferView");
   accessor.byte_offset = source.value("byteOffset", size_t{0});
   accessor.component_type = source["componentType"];
@@ -66,8 +70,8 @@ GltfMesh mesh_of(const json& source) {
 }
 
 GltfNode node_of(const json& source) {
-  GltfNode node{source.value("name", ""), index_of(source, "mesh"), index_of(source, "camera"),
-                elements_of(source, "children"), std::nullopt};
+  GltfNode node{source.value("name", ""), index_of(source, "mesh"),        index_of(source, "camera"),
+                index_of(source, "skin"), elements_of(source, "children"), std::nullopt};
   if (source.contains("weights")) node.weights = source["weights"].get<std::vector<double>>();
   return node;
 }
@@ -80,6 +84,31 @@ void fill_views(GltfDocument& document) {
   for (const json& mesh : elements_of(source, "meshes")) document.meshes.push_back(mesh_of(mesh));
   for (const json& node : elements_of(source, "nodes")) document.nodes.push_back(node_of(node));
   document.scene = source.value("scene", size_t{0});
+}
+
+/// Gives an extension's draft, which has its form, its name.
+void rename_extension(json& element, const char* draft, const char* name) {
+  const auto extensions = element.find("extensions");
+  if (extensions == element.end() || !extensions->is_object() || extensions->contains(name)) return;
+  const auto found = extensions->find(draft);
+  if (found == extensions->end()) return;
+  (*extensions)[name] = std::move(*found);
+  extensions->erase(draft);
+}
+
+/// KHR_lights is what KHR_lights_punctual was called before it was ratified.
+void rename_lights(json& document) {
+  rename_extension(document, "KHR_lights", "KHR_lights_punctual");
+  const auto nodes = document.find("nodes");
+  if (nodes == document.end() || !nodes->is_array()) return;
+  for (json& node : *nodes) rename_extension(node, "KHR_lights", "KHR_lights_punctual");
+}
+
+void leave_out_images_without_bytes(GltfDocument& document) {
+  if (!document.json.contains("images")) return;
+  for (json& image : document.json["images"]) {
+    if (image.contains("bufferView") && !has_bytes(document, image["bufferView"])) image.erase("bufferView");
+  }
 }
 
 }  // namespace
@@ -99,19 +128,23 @@ GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) 
   GltfDocument document;
   document.json = parse_json(container.json, report, "export the file again");
 
-  check_gltf_schema(document.json, report);
+  check_gltf_version(document.json, report);
   report.throw_if_refused();
-  fill_views(document);
+  rename_lights(document.json);
+  check_gltf_schema(document.json, options.is_strict, report);
+  report.throw_if_refused();
 
-  check_gltf_asset(document.json, report);
+  check_gltf_cameras(document.json, report);
   document.extensions = check_gltf_extensions(document.json, options.is_strict, report);
-  check_gltf_nodes(document.json, report);
-  check_gltf_accessors(document.json, report);
+  check_gltf_nodes(document.json, options.is_strict, report);
+  check_gltf_accessors(document.json, options.is_strict, report);
   check_gltf_meshopt(document.json, report);
-  const std::vector<bool> is_needed_view = find_needed_views(document);
-  document.buffers = read_gltf_buffers(document, is_needed_view, container.binary, report);
+  fill_views(document);
+  document.buffers = read_gltf_buffers(document, container.binary, report);
   report.throw_if_refused();
 
+  leave_out_images_without_bytes(document);
+  const std::vector<bool> is_needed_view = find_needed_views(document, true);
   decode_gltf_meshopt(document, is_needed_view, report);
   report.throw_if_refused();
   decode_gltf_draco(document, report);

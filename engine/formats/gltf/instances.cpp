@@ -30,16 +30,17 @@ class InstanceReader {
         rotations_(read(attributes, "ROTATION")),
         scales_(read(attributes, "SCALE")) {}
 
-  /// nullopt once the report holds the reason.
-  std::optional<dmat4> transform(size_t instance) {
+  dmat4 transform(size_t instance) {
     dmat4 matrix(1.0);
     if (!rotations_.empty()) {
       const float* r = &rotations_[4 * instance];
       const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-      if (glm::dot(rotation, rotation) < 1e-12) {
-        return refuse("the rotation has length 0", "ROTATION", instance, "use a unit quaternion");
+      if (glm::dot(rotation, rotation) >= 1e-12) {
+        matrix = glm::mat4_cast(glm::normalize(rotation));
+      } else {
+        report_.repair({"a rotation has length 0", "", place_ + "ROTATION, element " + std::to_string(instance),
+                        "use a unit quaternion", "the instance is not turned"});
       }
-      matrix = glm::mat4_cast(glm::normalize(rotation));
     }
     for (int i = 0; i < 3 && !scales_.empty(); ++i) matrix[i] *= scales_[3 * instance + static_cast<size_t>(i)];
     if (!translations_.empty()) {
@@ -57,15 +58,11 @@ class InstanceReader {
     for (size_t i = 0; i < numbers.size(); ++i) {
       if (std::isfinite(numbers[i])) continue;
       const size_t components = document_.accessors[accessor->get<size_t>()].component_count;
-      refuse("a number is not finite", name, i / components, "export the file again");
+      report_.refuse("a number is not finite", place_ + name + ", element " + std::to_string(i / components),
+                     "export the file again");
       break;
     }
     return numbers;
-  }
-
-  std::nullopt_t refuse(const std::string& what, const std::string& name, size_t instance, const std::string& cure) {
-    report_.refuse(what, place_ + name + ", element " + std::to_string(instance), cure);
-    return std::nullopt;
   }
 
   const GltfDocument& document_;
@@ -92,9 +89,7 @@ std::vector<dmat4> place_gltf_instances(const GltfDocument& document, const Plac
   InstanceReader reader(document, *attributes_of(document, placed), placed.node, report);
   places.reserve(*count);
   for (size_t i = 0; i < *count; ++i) {
-    const std::optional<dmat4> transform = reader.transform(i);
-    if (!transform) break;
-    places.push_back(placed.world_from_object * *transform);
+    places.push_back(placed.world_from_object * reader.transform(i));
     if (is_finite(places.back())) continue;
     report.refuse("an instance's place in the world overflows",
                   "nodes[" + std::to_string(placed.node) + "], instance " + std::to_string(i),

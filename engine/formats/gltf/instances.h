@@ -14,7 +14,7 @@ namespace promin {
 std::optional<uint64_t> count_gltf_instances(const GltfDocument& document, const PlacedNode& placed);
 
 /// The places in the world of a node with instances, in their order: the node's transform times that of each. Numbers
-/// that are not finite, and rotations without length, go to the report.
+/// that are not finite go to the report; a rotation without length turns nothing, with a warning.
 std::vector<dmat4> place_gltf_instances(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
 }  // namespace promin

@@ -36,7 +36,8 @@ dvec4 vec4_of(const json& object, const char* name, const dvec4& otherwise) {
 }
 
 std::string title_of(const json& document, const char* array, size_t index) {
-  const std::string name = document[array][index].value("name", "");
+  const json& element = document[array][index];
+  const std::string name = element.is_object() ? element.value("name", "") : "";
   return name.empty() ? std::string(array) + "[" + std::to_string(index) + "]" : quote(name);
 }
 

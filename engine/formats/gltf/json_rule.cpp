@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -22,37 +23,6 @@ std::string written(double x) {
   return text;
 }
 
-/// Calls `use(value, place)` for every value at `path` below `value`.
-template <class Use>
-void visit(json& value, const std::string& place, std::string_view path, const JsonRule& rule, LoadReport& report,
-           const Use& use) {
-  if (path.empty()) {
-    use(value, place);
-  } else if (path.starts_with("[]")) {
-    if (!value.is_array()) return;
-    for (size_t i = 0; i < value.size(); ++i) {
-      visit(value[i], place + "[" + std::to_string(i) + "]", path.substr(2), rule, report, use);
-    }
-  } else if (path.front() == '.') {
-    visit(value, place, path.substr(1), rule, report, use);
-  } else {
-    if (!value.is_object()) return;
-    const size_t end = std::min(path.find_first_of(".["), path.size());
-    const std::string_view name = path.substr(0, end);
-    const std::string prefix = place.empty() ? "" : place + ".";
-    for (auto member = value.begin(); name == "*" && member != value.end(); ++member) {
-      visit(member.value(), prefix + member.key(), path.substr(end), rule, report, use);
-    }
-    if (name == "*") return;
-    const auto member = value.find(std::string(name));
-    if (member != value.end()) {
-      visit(*member, prefix + std::string(name), path.substr(end), rule, report, use);
-    } else if (rule.is_required && end == path.size()) {
-      report.refuse(quote(name) + " is missing", place.empty() ? "the top level" : place, "add it");
-    }
-  }
-}
-
 /// Length of the array at a path without wildcards; 0 where there is none.
 size_t size_of_array(const json& document, std::string_view path) {
   const json* value = &document;
@@ -67,14 +37,126 @@ size_t size_of_array(const json& document, std::string_view path) {
   return value->is_array() ? value->size() : 0;
 }
 
-/// Checks one value against one rule.
-class ValueCheck {
- public:
-  ValueCheck(const json& document, const JsonRule& rule, LoadReport& report) : rule_(rule), report_(report) {
-    if (rule.kind == JsonKind::kIndex) target_size_ = size_of_array(document, rule.target);
+/// The last name of a path: "normalTexture", "cameras[]".
+std::string_view last_name(std::string_view path) {
+  return path.substr(path.find_last_of('.') + 1);
+}
+
+/// How many steps, into members and elements, a path takes.
+int count_steps(std::string_view path) {
+  int steps = 0;
+  for (size_t i = 0; i < path.size(); ++i) {
+    const bool begins_name = path[i] != '.' && path[i] != '[' && path[i] != ']' && (i == 0 || path[i - 1] == '.');
+    if (begins_name || path[i] == '[') ++steps;
+  }
+  return steps;
+}
+
+/// The path of the part that goes where a rule is broken.
+std::string_view part_of(const JsonRule& rule) {
+  if (!rule.part.empty()) return rule.part;
+  if (!rule.is_required) return rule.path;
+  return rule.path.substr(0, rule.path.find_last_of('.'));
+}
+
+std::string say_left_out(const JsonRule& rule) {
+  const std::string_view part = part_of(rule);
+  if (part == rule.path) return "it is ignored";
+  const std::string_view name = last_name(part);
+  if (name.ends_with("Texture")) return "the texture is left out";
+  if (name == "cameras[]") return "the camera is left out";
+  if (name == "lights[]" || name == "KHR_lights_punctual") return "the light is left out";
+  return "what holds it is ignored";
+}
+
+/// Where a value stands in a document, in words only where a message needs them.
+struct Place {
+  static constexpr size_t kNoIndex = std::numeric_limits<size_t>::max();
+
+  const Place* outer = nullptr;
+  std::string_view name = {};
+  size_t index = kNoIndex;
+
+  std::string text() const {
+    if (outer == nullptr) return "";
+    const std::string prefix = outer->text();
+    if (index != kNoIndex) return prefix + "[" + std::to_string(index) + "]";
+    return (prefix.empty() ? "" : prefix + ".") + std::string(name);
   }
 
-  void operator()(json& value, const std::string& place) const {
+  /// Whether it is a member of the document itself, of this name.
+  bool is_part(std::string_view part) const { return outer != nullptr && outer->outer == nullptr && name == part; }
+};
+
+/// Checks the values at the path of one rule.
+class RuleCheck {
+ public:
+  RuleCheck(const json& document, const JsonRule& rule, bool is_strict, LoadReport& report, std::string_view skipped_in,
+            const std::vector<bool>& kept)
+      : rule_(rule),
+        skipped_in_(skipped_in),
+        kept_(kept),
+        is_strict_(is_strict),
+        report_(report),
+        level_(count_steps(rule.path.substr(part_of(rule).size())) + 1) {
+    if (rule.kind == JsonKind::kIndex) used_.resize(size_of_array(document, rule.target));
+  }
+
+  /// Checks every value at `path` below `value`. The result says what of it is left out: 0 nothing, 1 the value, 2 what
+  /// holds it, and so on.
+  int visit(json& value, const Place& place, std::string_view path) {
+    if (path.empty()) return check_value(value, place) ? 0 : level_;
+    if (path.starts_with("[]")) return visit_elements(value, place, path.substr(2));
+    if (path.front() == '.') return visit(value, place, path.substr(1));
+    return visit_member(value, place, path);
+  }
+
+  /// The elements that indices point to.
+  const std::vector<bool>& used() const { return used_; }
+
+ private:
+  int visit_elements(json& array, const Place& place, std::string_view path) {
+    if (!array.is_array()) return 0;
+    const bool is_partial = place.is_part(skipped_in_);
+    int level = 0;
+    for (size_t i = 0; i < array.size(); ++i) {
+      if (is_partial && (i >= kept_.size() || !kept_[i])) continue;
+      const int level_of_element = visit(array[i], Place{.outer = &place, .index = i}, path);
+      const bool is_no_object = path.empty() && rule_.kind == JsonKind::kObject;
+      if (level_of_element == 1) array[i] = is_no_object ? json::object() : json();
+      level = std::max(level, level_of_element - 1);
+    }
+    return level;
+  }
+
+  int visit_member(json& object, const Place& place, std::string_view path) {
+    if (!object.is_object()) return 0;
+    const size_t end = std::min(path.find_first_of(".["), path.size());
+    const std::string_view name = path.substr(0, end);
+    if (name == "*") return visit_all_members(object, place, path.substr(end));
+    const auto member = object.find(name);
+    if (member != object.end()) {
+      const int level = visit(*member, Place{.outer = &place, .name = name}, path.substr(end));
+      if (level == 1) object.erase(member);
+      return std::max(level - 1, 0);
+    }
+    if (!rule_.is_required || end < path.size()) return 0;
+    const bool may_stay = fail(quote(name), "", "is missing", place, "add it");
+    return may_stay ? 0 : level_ - 1;
+  }
+
+  int visit_all_members(json& object, const Place& place, std::string_view path) {
+    int level = 0;
+    for (auto member = object.begin(); member != object.end();) {
+      const int level_of_member = visit(member.value(), Place{.outer = &place, .name = member.key()}, path);
+      member = level_of_member == 1 ? object.erase(member) : std::next(member);
+      level = std::max(level, level_of_member - 1);
+    }
+    return level;
+  }
+
+  /// The checks return whether the value may stay.
+  bool check_value(json& value, const Place& place) {
     switch (rule_.kind) {
       case JsonKind::kObject:
         return expect(value.is_object(), value, place, "an object");
@@ -85,11 +167,9 @@ class ValueCheck {
       case JsonKind::kBoolean:
         return expect(value.is_boolean(), value, place, "true or false");
       case JsonKind::kInteger:
-        if (make_integer(value)) return check_range(value, place);
-        return expect(false, value, place, "an integer");
+        return make_integer(value) ? check_range(value, place) : expect(false, value, place, "an integer");
       case JsonKind::kNumber:
-        if (value.is_number()) return check_range(value, place);
-        return expect(false, value, place, "a number");
+        return check_number(value, place);
       case JsonKind::kNumbers:
         return check_numbers(value, place);
       case JsonKind::kIndex:
@@ -97,13 +177,25 @@ class ValueCheck {
       case JsonKind::kChoice:
         return check_choice(value, place);
     }
+    return true;
   }
 
- private:
-  void expect(bool is_met, const json& value, const std::string& place, const std::string& wanted) const {
-    if (is_met) return;
+  /// Repairs or refuses what is wrong with a value: `shown` is the value, `subject` names its kind.
+  bool fail(const std::string& subject, const std::string& shown, const std::string& predicate, const Place& place,
+            const std::string& cure) {
+    const std::string where = place.outer == nullptr ? "the top level" : place.text();
+    if (rule_.is_repaired) {
+      report_.repair({subject + " " + predicate, shown, where, cure, say_left_out(rule_)});
+      return false;
+    }
+    report_.refuse((shown.empty() ? subject : shown) + " " + predicate, where, cure);
+    return true;
+  }
+
+  bool expect(bool is_met, const json& value, const Place& place, const std::string& wanted) {
+    if (is_met) return true;
     const std::string got = value.is_number() ? value.dump() : std::string("a JSON ") + value.type_name();
-    report_.refuse(got + " stands where " + wanted + " belongs", place, "write " + wanted);
+    return fail("another value", got, "stands where " + wanted + " belongs", place, "write " + wanted);
   }
 
   /// JSON has one kind of number: 3.0 is a valid index, and 1e99 an integer out of range.
@@ -116,38 +208,53 @@ class ValueCheck {
     return true;
   }
 
-  void check_range(const json& value, const std::string& place) const {
-    const double number = value.get<double>();
-    if (number >= rule_.lo && number <= rule_.hi) return;
-    report_.refuse(value.dump() + " is out of range", place,
-                   "use a number from " + written(rule_.lo) + " to " + written(rule_.hi));
+  bool check_number(json& value, const Place& place) {
+    return value.is_number() ? check_range(value, place) : expect(false, value, place, "a number");
   }
 
-  void check_numbers(const json& value, const std::string& place) const {
+  bool check_range(json& value, const Place& place) {
+    const auto number = value.get<double>();
+    if (number >= rule_.lo && number <= rule_.hi) return true;
+    const std::string range = written(rule_.lo) + " to " + written(rule_.hi);
+    const std::string cure = "use a number from " + range;
+    if (!rule_.is_repaired || !rule_.is_clamped || rule_.kind == JsonKind::kInteger) {
+      return fail("a number", value.dump(), "is out of range", place, cure);
+    }
+    const bool is_rounded = number >= rule_.lo - kMostRounding && number <= rule_.hi + kMostRounding;
+    if (!is_rounded || is_strict_) {
+      report_.repair({"a number is out of range", value.dump(), place.text(), cure, "it is clamped to " + range});
+    }
+    value = std::clamp(number, rule_.lo, rule_.hi);
+    return true;
+  }
+
+  bool check_numbers(json& value, const Place& place) {
     if (!value.is_array() || value.size() != rule_.count) {
       return expect(false, value, place, "an array of " + std::to_string(rule_.count) + " numbers");
     }
+    bool may_stay = true;
     for (size_t i = 0; i < value.size(); ++i) {
-      const std::string element = place + "[" + std::to_string(i) + "]";
-      if (value[i].is_number()) {
-        check_range(value[i], element);
-      } else {
-        expect(false, value[i], element, "a number");
-      }
+      const bool is_right = check_number(value[i], Place{.outer = &place, .index = i});
+      may_stay = may_stay && is_right;
     }
+    return may_stay;
   }
 
-  void check_index(json& value, const std::string& place) const {
+  bool check_index(json& value, const Place& place) {
     if (!make_integer(value)) return expect(false, value, place, "an integer");
-    const double number = value.get<double>();
-    if (number >= 0.0 && number < static_cast<double>(target_size_)) return;
+    const auto number = value.get<double>();
+    if (number >= 0.0 && number < static_cast<double>(used_.size())) {
+      used_[value.get<size_t>()] = true;
+      return true;
+    }
     const std::string target(rule_.target);
-    report_.refuse("index " + value.dump() + " is out of range", place,
-                   target_size_ == 0 ? "add the array " + target + " that it points into"
-                                     : "use 0 to " + std::to_string(target_size_ - 1) + ", the elements of " + target);
+    const std::string cure = used_.empty()
+                                 ? "add the array " + target + " that it points into"
+                                 : "use 0 to " + std::to_string(used_.size() - 1) + ", the elements of " + target;
+    return fail("an index", "index " + value.dump(), "is out of range", place, cure);
   }
 
-  void check_choice(json& value, const std::string& place) const {
+  bool check_choice(json& value, const Place& place) {
     make_integer(value);
     const std::string got = value.is_string() ? value.get<std::string>() : value.dump();
     std::string_view rest = rule_.target;
@@ -156,24 +263,44 @@ class ValueCheck {
       if (got == rest.substr(0, end)) return check_choice_type(value, place);
       rest = rest.substr(std::min(end + 1, rest.size()));
     }
-    report_.refuse(quote(got) + " is none of " + std::string(rule_.target), place, "use one of them");
+    return fail("a value", quote(got), "is none of " + std::string(rule_.target), place, "use one of them");
   }
 
   /// "5126", a string, is not the number 5126.
-  void check_choice_type(const json& value, const std::string& place) const {
+  bool check_choice_type(const json& value, const Place& place) {
     const bool is_number_wanted = rule_.target.front() >= '0' && rule_.target.front() <= '9';
-    if (is_number_wanted != value.is_number()) expect(false, value, place, is_number_wanted ? "a number" : "a string");
+    return expect(is_number_wanted == value.is_number(), value, place, is_number_wanted ? "a number" : "a string");
   }
 
   const JsonRule& rule_;
+  /// The array of which only some elements are visited, unless empty.
+  std::string_view skipped_in_;
+  const std::vector<bool>& kept_;
+  bool is_strict_;
   LoadReport& report_;
-  size_t target_size_ = 0;
+  /// What visit() returns where the rule is broken.
+  int level_;
+  std::vector<bool> used_;
 };
 
 }  // namespace
 
+void JsonCheck::check(const JsonRule& rule, std::string_view only_used) {
+  RuleCheck check(document_, rule, is_strict_, report_, only_used, used_[only_used]);
+  check.visit(document_, Place(), rule.path);
+  if (rule.kind != JsonKind::kIndex) return;
+  std::vector<bool>& used = used_[rule.target];
+  used.resize(std::max(used.size(), check.used().size()));
+  for (size_t i = 0; i < check.used().size(); ++i) used[i] = used[i] || check.used()[i];
+}
+
+bool JsonCheck::is_used(std::string_view target, size_t element) const {
+  const auto used = used_.find(target);
+  return used != used_.end() && element < used->second.size() && used->second[element];
+}
+
 void check_json_rule(json& document, const JsonRule& rule, LoadReport& report) {
-  visit(document, "", rule.path, rule, report, ValueCheck(document, rule, report));
+  JsonCheck(document, false, report).check(rule);
 }
 
 }  // namespace promin

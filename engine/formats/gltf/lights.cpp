@@ -17,6 +17,9 @@ namespace {
 
 using nlohmann::json;
 
+/// A narrower cone has no area of a sphere that fp32 can show.
+constexpr float kLeastConeAngle = 1e-3F;
+
 /// The kind of a type that the schema takes. A type that the schema has and this has not is an error of the program.
 LightKind kind_of(const std::string& type) {
   if (type == "directional") return LightKind::kDirectional;
@@ -32,10 +35,11 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   light.inner_cone_angle = static_cast<float>(inner);
   light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
   // Both as they are given and as the light has them.
-  if (!(inner < outer && light.inner_cone_angle < light.outer_cone_angle)) {
-    report.refuse("the spot's inner cone angle is not less than its outer", place + ".spot",
-                  "make innerConeAngle less than outerConeAngle");
-  }
+  if (inner < outer && light.inner_cone_angle < light.outer_cone_angle) return;
+  report.repair({"a spot's inner cone angle is not less than its outer", "", place + ".spot",
+                 "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
+  light.outer_cone_angle = std::max(light.outer_cone_angle, kLeastConeAngle);
+  light.inner_cone_angle = std::nextafter(light.outer_cone_angle, 0.0F);
 }
 
 /// Candela and lux are powers as they stand; a directional light has no distance to fall off with.
@@ -53,7 +57,20 @@ void read_power(const json& source, const std::string& title, Light& light, Load
     }
   }
   if (light.kind == LightKind::kDirectional) light.attenuation = Attenuation::kNone;
-  if (light.attenuation == Attenuation::kInverseSquare) light.range = source.value("range", light.range);
+  // Beyond the largest coordinate a range cuts nothing off.
+  const double range = source.value("range", 2.0 * kMaxCoordinate);
+  if (light.attenuation == Attenuation::kInverseSquare && range <= kMaxCoordinate) {
+    light.range = static_cast<float>(range);
+  }
+}
+
+/// Where a light travels, of length 1: along -Z of its node, or where that has no length, of the rotations alone.
+std::optional<dvec3> direction_of(const PlacedNode& placed) {
+  const dvec3 direction(-placed.world_from_object[2]);
+  const double length = glm::length(direction);
+  if (length > 0.0 && std::isfinite(length)) return direction / length;
+  if (!placed.rotation) return std::nullopt;
+  return glm::normalize(-(*placed.rotation)[2]);
 }
 
 GradientSky gradient_of(const json& source) {
@@ -94,12 +111,15 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
   PictureSource picture;
   read_gltf_image(document, *image, picture, report);
-  if (!picture.problem.empty()) {
-    report.warn(name + " is ignored: " + picture.problem);
+  if (picture.problem) {
+    report.warn(name + " is ignored: " + describe_problem(picture));
     return std::nullopt;
   }
   try {
-    return read_panorama(picture.file, name);
+    std::vector<std::string> warnings;
+    Panorama panorama = read_panorama(picture.file, name, warnings);
+    for (const std::string& warning : warnings) report.warn(warning);
+    return panorama;
   } catch (const InputError& error) {
     report.warn(name + " is ignored: " + error.problems().front().what);
     return std::nullopt;
@@ -126,6 +146,8 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   const auto& extension = document.json["extensions"]["KHR_lights_punctual"];
   const size_t index = (*link)["light"];
   const auto& source = extension["lights"][index];
+  // One that cannot be used is null (JsonCheck).
+  if (source.is_null()) return std::nullopt;
   const std::string place = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "]";
   const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
 
@@ -134,17 +156,17 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   light.name = name.empty() ? source.value("name", "") : name;
   light.kind = kind_of(source["type"]);
   const dvec3 position(placed.world_from_object[3]);
-  const dvec3 direction(-placed.world_from_object[2]);
-  const double length = glm::length(direction);
   if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kMaxCoordinate)) {
-    report.refuse("the light lies beyond 1e15 in the world", node_place,
-                  "use a smaller translation in it and its parents");
+    report.warn({"a light lies beyond 1e15 in the world", "", node_place, "", "it is left out"});
+    return std::nullopt;
   }
   if (light.kind != LightKind::kPoint) {
-    if (!(length > 0.0) || !std::isfinite(length)) {
-      report.refuse("the light has no direction", node_place, "use a scale other than 0");
+    const std::optional<dvec3> direction = direction_of(placed);
+    if (!direction) {
+      report.warn({"a light has no direction", "", node_place, "", "it is left out"});
+      return std::nullopt;
     }
-    light.direction = vec3(direction / length);
+    light.direction = vec3(*direction);
   }
   light.position = vec3(position);
   if (light.kind == LightKind::kSpot) read_cone(source, place, light, report);
@@ -163,6 +185,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
   }
 
   const auto& sky = (*extension)["skies"][index];
+  if (sky.is_null()) return;
   const std::string type = sky["type"];
   dvec3 color(0.0);
   if (type == "gradient" && sky.contains(type)) {

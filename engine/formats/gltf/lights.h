@@ -11,7 +11,8 @@
 namespace promin {
 
 /// The light a node carries (KHR_lights_punctual; PROMIN_lights_phong makes it a classic one), if it does. The node's
-/// scale is ignored; the light travels along its -Z. Problems go to the report.
+/// scale is ignored; the light travels along its -Z. One without a direction, or too far away, is left out with a
+/// warning.
 std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
 /// Sets the scene's surroundings from OMI_environment_sky: background and ambient light of a plain sky, the sky where

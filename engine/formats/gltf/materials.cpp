@@ -31,11 +31,6 @@ Phong phong_of(const json& extension, const dvec3& base) {
   return phong;
 }
 
-/// Of what the specification bounds by 1, exporters write a little more.
-vec3 to_shares(const dvec3& color) {
-  return vec3(glm::min(color, dvec3(1.0)));
-}
-
 float ior_of(const json& extension, const std::string& title, LoadReport& report) {
   const float ior = extension.value("ior", 1.5F);
   if (ior == 0.0F || ior >= 1.0F) return ior;
@@ -55,7 +50,7 @@ void read_clearcoat(const json& extension, GltfTextures& textures, MetallicRough
 }
 
 void read_sheen(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
-  material.sheen_color = to_shares(vec3_of(extension, "sheenColorFactor", dvec3(0.0)));
+  material.sheen_color = vec3(vec3_of(extension, "sheenColorFactor", dvec3(0.0)));
   material.sheen_roughness = extension.value("sheenRoughnessFactor", 0.0F);
   material.sheen_color_texture = textures.read_slot(extension, "sheenColorTexture", ImageUse::kColor);
   material.sheen_roughness_texture = textures.read_slot(extension, "sheenRoughnessTexture", ImageUse::kData);
@@ -68,7 +63,7 @@ void read_transmission(const json& source, GltfTextures& textures, MetallicRough
   }
   if (const json* extension = find_extension(source, "KHR_materials_volume")) {
     material.thickness = extension->value("thicknessFactor", 0.0F);
-    material.attenuation_color = to_shares(vec3_of(*extension, "attenuationColor", dvec3(1.0)));
+    material.attenuation_color = vec3(vec3_of(*extension, "attenuationColor", dvec3(1.0)));
     material.attenuation_distance = extension->value("attenuationDistance", std::numeric_limits<float>::infinity());
   }
   if (const json* extension = find_extension(source, "KHR_materials_dispersion")) {
@@ -90,7 +85,7 @@ void read_shared_textures(const json& source, GltfTextures& textures, MetallicRo
 MetallicRoughness metallic_roughness_of(const json& source, const std::string& title, GltfTextures& textures,
                                         LoadReport& report) {
   MetallicRoughness material;
-  material.base_color = to_shares(base_color_of(source));
+  material.base_color = vec3(base_color_of(source));
   if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
     material.metallic = pbr->value("metallicFactor", 1.0F);
     material.roughness = pbr->value("roughnessFactor", 1.0F);
@@ -122,10 +117,10 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
 MetallicRoughness specular_glossiness_of(const json& source, const json& extension, GltfTextures& textures) {
   const float glossiness = extension.value("glossinessFactor", 1.0F);
   MetallicRoughness material;
-  material.base_color = to_shares(dvec3(vec4_of(extension, "diffuseFactor", dvec4(1.0))));
+  material.base_color = vec3(dvec3(vec4_of(extension, "diffuseFactor", dvec4(1.0))));
   material.metallic = 0.0F;
   material.ior = 0.0F;
-  material.specular_color = to_shares(vec3_of(extension, "specularFactor", dvec3(1.0)));
+  material.specular_color = vec3(vec3_of(extension, "specularFactor", dvec3(1.0)));
   material.specular_color_texture = textures.read_slot(extension, "specularGlossinessTexture", ImageUse::kColor);
   material.base_color_texture = textures.read_slot(extension, "diffuseTexture", ImageUse::kColor);
   material.metallic_roughness_texture =
@@ -172,7 +167,7 @@ void read_alpha(const json& source, Material& material) {
   } else if (const auto pbr = source.find("pbrMetallicRoughness"); pbr != source.end()) {
     base = vec4_of(*pbr, "baseColorFactor", base);
   }
-  material.alpha = std::min(static_cast<float>(base.w), 1.0F);
+  material.alpha = static_cast<float>(base.w);
   material.alpha_cutoff = source.value("alphaCutoff", 0.5F);
   material.is_double_sided = source.value("doubleSided", false);
 }

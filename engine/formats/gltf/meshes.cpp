@@ -7,9 +7,12 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "core/rounding.h"
 #include "formats/gltf/accessors.h"
+#include "formats/gltf/json_rule.h"
+#include "motion/skin.h"
 #include "promin/validate.h"
 #include "scene/world_scene.h"
 #include "shapes/placement.h"
@@ -48,28 +51,40 @@ bool has_length(const dvec3& normal) {
 }
 
 void warn_of_normals(const std::string& place, LoadReport& report) {
-  report.warn(place + " has normals of no length, so it is drawn with sharp edges");
+  report.warn({"a mesh primitive has normals of no length", "", place, "", "it is drawn with sharp edges"});
+}
+
+/// A component of a vertex colour as it can be drawn: not negative, and 1, which colours nothing, where it is no
+/// number.
+float drawable(float component) {
+  return std::isfinite(component) ? std::max(component, 0.0F) : 1.0F;
+}
+
+bool is_coordinate(float uv) {
+  // Written so that NaN fails.
+  return std::abs(uv) <= kMaxCoordinate;
 }
 
 /// One mesh primitive.
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                  LoadReport& report)
+                  const GltfPose* pose, LoadReport& report)
       : document_(document),
         primitive_(document.meshes[mesh].primitives[primitive]),
         place_("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]"),
         weights_(weights),
+        pose_(pose),
         report_(report) {}
 
   Mesh read() {
     const int positions = accessor_of("POSITION");
     if (primitive_.mode < kGltfTriangles) {
-      report_.warn(place_ + " holds points or lines, which are not drawn");
+      report_.warn({"a mesh primitive holds points or lines", "", place_, "", "they are not drawn"});
       return {};
     }
     if (positions < 0) {
-      report_.warn(place_ + " has no POSITION and is not drawn");
+      report_.warn({"a mesh primitive has no POSITION", "", place_, "", "it is not drawn"});
       return {};
     }
     vertex_count_ = document_.accessors[static_cast<size_t>(positions)].count;
@@ -77,7 +92,7 @@ class PrimitiveReader {
     Mesh mesh;
     mesh.triangles = assemble(read_corners());
     if (mesh.triangles.empty()) {
-      report_.warn(place_ + " has too few corners for a triangle and is not drawn");
+      report_.warn({"a mesh primitive has too few corners for a triangle", "", place_, "", "it is not drawn"});
       return {};
     }
     keep_used_vertices(mesh.triangles);
@@ -89,6 +104,7 @@ class PrimitiveReader {
     if (const int tangents = accessor_of("TANGENT"); tangents >= 0 && !mesh.normals.empty() && !mesh.uvs.empty()) {
       read_tangents(tangents, mesh);
     }
+    if (pose_ != nullptr && mesh.positions.size() == used_vertices_.size()) pose(mesh);
     return mesh;
   }
 
@@ -120,7 +136,9 @@ class PrimitiveReader {
     if (primitive_.mode == kGltfTriangles) {
       triangles.reserve(count / 3);
       for (size_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
-      if (count % 3 != 0) report_.warn(place_ + " ends in an incomplete triangle, which is ignored");
+      if (count % 3 != 0) {
+        report_.warn({"a mesh primitive ends in an incomplete triangle", "", place_, "", "that is ignored"});
+      }
     } else if (primitive_.mode == kGltfTriangleStrip) {
       for (size_t i = 0; i + 2 < count; ++i) {
         triangles.emplace_back(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
@@ -158,7 +176,8 @@ class PrimitiveReader {
       if (weights_[target] == 0.0 || found == primitive_.targets[target].end()) continue;
       const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(found->second)];
       if (3 * accessor.count != values.size() || accessor.component_count != 3) {
-        report_.warn(place_ + ".targets[" + std::to_string(target) + "] has another number of vertices and is ignored");
+        report_.warn({"a morph target has another number of vertices", "",
+                      place_ + ".targets[" + std::to_string(target) + "]", "", "it is ignored"});
         continue;
       }
       const std::vector<float> moves = read_floats(document_, found->second, report_);
@@ -206,17 +225,25 @@ class PrimitiveReader {
     mesh.colors.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* c = &values[components * vertex];
-      // Of alpha no more than 0...1 means anything (glTF 2.0, section 3.7.2.1); NaN stays, to be refused.
-      const float alpha = components == 4 ? c[3] : 1.0F;
-      const vec4 color(c[0], c[1], c[2], std::isfinite(alpha) ? std::clamp(alpha, 0.0F, 1.0F) : alpha);
-      if (!(color.r >= 0.0F && color.g >= 0.0F && color.b >= 0.0F && is_finite(vec3(color)) &&
-            std::isfinite(color.a))) {
-        report_.refuse("a vertex colour is negative or not finite", element_place("COLOR_0", vertex),
-                       "export the mesh again");
-        return;
+      // Alpha has a meaning in 0...1 alone (glTF 2.0, section 3.7.2.1).
+      const vec4 given(c[0], c[1], c[2], components == 4 ? c[3] : 1.0F);
+      const vec4 color(drawable(given.r), drawable(given.g), drawable(given.b), std::min(drawable(given.a), 1.0F));
+      if (const int wrong = find_wrong_component(given, color); wrong >= 0) {
+        report_.repair({"a vertex colour is negative or no number", std::to_string(given[wrong]),
+                        element_place("COLOR_0", vertex), "export the mesh again", "0 is taken, or 1 for no number"});
       }
       mesh.colors.push_back(color);
     }
+  }
+
+  /// The component of a vertex colour that was repaired by more than rounding; -1 where none was.
+  static int find_wrong_component(const vec4& given, const vec4& color) {
+    for (int i = 0; i < 4; ++i) {
+      const bool is_alpha_too_large = i == 3 && given[i] > 1.0F && std::isfinite(given[i]);
+      // Written so that NaN fails.
+      if (!is_alpha_too_large && !(std::abs(given[i] - color[i]) <= static_cast<float>(kMostRounding))) return i;
+    }
+    return -1;
   }
 
   void read_uvs(Mesh& mesh) {
@@ -228,11 +255,12 @@ class PrimitiveReader {
       const std::vector<float> values = read_floats(document_, accessors[static_cast<size_t>(set)], report_);
       for (size_t i = 0; i < used_vertices_.size(); ++i) {
         const float* uv = &values[2 * size_t{used_vertices_[i]}];
-        if (!(std::abs(uv[0]) <= kMaxCoordinate && std::abs(uv[1]) <= kMaxCoordinate)) {
-          report_.refuse("a texture coordinate is not finite or beyond 1e15",
-                         element_place(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", used_vertices_[i]),
-                         "export the mesh again");
-          return;
+        if (!is_coordinate(uv[0]) || !is_coordinate(uv[1])) {
+          report_.repair({"a texture coordinate is not finite or beyond 1e15",
+                          std::to_string(is_coordinate(uv[0]) ? uv[1] : uv[0]),
+                          element_place(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", used_vertices_[i]),
+                          "export the mesh again", "0 is taken"});
+          continue;
         }
         mesh.uvs[i][2 * set] = uv[0];
         mesh.uvs[i][2 * set + 1] = uv[1];
@@ -248,7 +276,8 @@ class PrimitiveReader {
       const float* t = &values[4 * size_t{vertex}];
       const vec4 tangent(t[0], t[1], t[2], t[3] < 0.0F ? -1.0F : 1.0F);
       if (!has_length(dvec3(vec3(tangent)))) {
-        report_.warn(place_ + " has tangents of no length, its texture coordinates tell them");
+        report_.warn({"a mesh primitive has tangents of no length", "", place_, "",
+                      "they are taken from its texture coordinates"});
         return;
       }
       tangents.push_back(tangent);
@@ -256,10 +285,90 @@ class PrimitiveReader {
     mesh.tangents = std::move(tangents);
   }
 
+  /// Moves the mesh by its joints.
+  void pose(Mesh& mesh) {
+    std::optional<SkinInfluences> influences = read_influences();
+    if (!influences) return;
+    pose_mesh(pose_->joint_matrices, *influences, mesh);
+    if (std::ranges::all_of(mesh.normals, [](const vec3& normal) { return has_length(dvec3(normal)); })) return;
+    warn_of_normals(place_, report_);
+    mesh.normals.clear();
+    mesh.tangents.clear();
+  }
+
+  /// nullopt where there is nothing to pose by, or once the report holds the reason.
+  std::optional<SkinInfluences> read_influences() {
+    SkinInfluences influences;
+    for (int set = 0; accessor_of(("JOINTS_" + std::to_string(set)).c_str()) >= 0; ++set)
+      add_influences(set, influences);
+    if (influences.per_vertex == 0) {
+      report_.repair({"a primitive of a skinned mesh has no joints and weights", "", place_, "export the mesh again",
+                      "it stands as it is without its skin"});
+      return std::nullopt;
+    }
+    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+      repair_weights(i, influences);
+      if (!has_valid_joints(i, influences)) return std::nullopt;
+    }
+    return influences;
+  }
+
+  /// Adds a set of four joints to each vertex, behind those that it has.
+  void add_influences(int set, SkinInfluences& influences) {
+    const std::string number = std::to_string(set);
+    const int weights = accessor_of(("WEIGHTS_" + number).c_str());
+    if (weights < 0) return;
+    const std::vector<uint32_t> set_joints =
+        read_indices(document_, accessor_of(("JOINTS_" + number).c_str()), report_);
+    const std::vector<float> set_weights = read_floats(document_, weights, report_);
+    const size_t before = influences.per_vertex;
+    SkinInfluences longer{before + 4};
+    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+      const auto append = [&](const auto& old, const auto& added, auto& result) {
+        const auto first_old = old.begin() + static_cast<std::ptrdiff_t>(i * before);
+        result.insert(result.end(), first_old, first_old + static_cast<std::ptrdiff_t>(before));
+        const auto first_added = added.begin() + static_cast<std::ptrdiff_t>(4 * size_t{used_vertices_[i]});
+        result.insert(result.end(), first_added, first_added + 4);
+      };
+      append(influences.joints, set_joints, longer.joints);
+      append(influences.weights, set_weights, longer.weights);
+    }
+    influences = std::move(longer);
+  }
+
+  void repair_weights(size_t vertex, SkinInfluences& influences) {
+    const std::span weights =
+        std::span(influences.weights).subspan(vertex * influences.per_vertex, influences.per_vertex);
+    double sum = 0.0;
+    for (const float weight : weights) sum += static_cast<double>(weight);
+    // Written so that NaN fails.
+    if (std::abs(sum) >= 1e-6 && std::abs(sum) <= kMaxCoordinate) return;
+    report_.repair({"a vertex of a skinned mesh has no weights, or ones that are no numbers", "",
+                    element_place("WEIGHTS_0", used_vertices_[vertex]), "export the mesh again",
+                    "it goes with the first of its joints"});
+    std::ranges::fill(weights, 0.0F);
+    weights[0] = 1.0F;
+  }
+
+  /// A joint without weight may be any number.
+  bool has_valid_joints(size_t vertex, const SkinInfluences& influences) {
+    for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
+      if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;
+      report_.refuse(
+          "joint " + std::to_string(influences.joints[i]) + " is out of range, the skin has " +
+              std::to_string(pose_->joint_matrices.size()) + " joints",
+          element_place(("JOINTS_" + std::to_string(i % influences.per_vertex / 4)).c_str(), used_vertices_[vertex]),
+          "export the file again");
+      return false;
+    }
+    return true;
+  }
+
   const GltfDocument& document_;
   const GltfPrimitive& primitive_;
   std::string place_;
   const std::vector<double>& weights_;
+  const GltfPose* pose_;
   LoadReport& report_;
   size_t vertex_count_ = 0;
   std::vector<uint32_t> used_vertices_;
@@ -268,8 +377,8 @@ class PrimitiveReader {
 }  // namespace
 
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                    LoadReport& report) {
-  return PrimitiveReader(document, mesh, primitive, weights, report).read();
+                    const GltfPose* pose, LoadReport& report) {
+  return PrimitiveReader(document, mesh, primitive, weights, pose, report).read();
 }
 
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive) {

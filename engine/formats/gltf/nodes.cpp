@@ -3,6 +3,7 @@
 #include "formats/gltf/nodes.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -28,10 +29,22 @@ dmat4 local_transform(const nlohmann::json& node) {
   return matrix;
 }
 
-/// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
-std::vector<int> root_nodes(const GltfDocument& document) {
-  const nlohmann::json& scenes = elements_of(document.json, "scenes");
-  if (!scenes.empty()) return elements_of(scenes[document.scene], "nodes");
+/// The rotation of a node alone, as far as it has one.
+std::optional<dmat3> local_rotation(const nlohmann::json& node) {
+  if (!node.contains("matrix")) {
+    const dvec4 q = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
+    return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
+  }
+  const dmat3 matrix(local_transform(node));
+  const dvec3 z = glm::normalize(matrix[2]);
+  const dvec3 x = glm::normalize(glm::cross(matrix[1], z));
+  const dmat3 rotation(x, glm::cross(z, x), z);
+  if (!is_finite(dmat4(rotation))) return std::nullopt;
+  return rotation;
+}
+
+/// The nodes without parents.
+std::vector<int> find_roots(const GltfDocument& document) {
   std::vector<bool> is_child(document.nodes.size(), false);
   for (const GltfNode& node : document.nodes) {
     for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
@@ -43,20 +56,37 @@ std::vector<int> root_nodes(const GltfDocument& document) {
   return roots;
 }
 
+/// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
+std::vector<int> root_nodes(const GltfDocument& document) {
+  const nlohmann::json& scenes = elements_of(document.json, "scenes");
+  return scenes.empty() ? find_roots(document) : elements_of(scenes[document.scene], "nodes").get<std::vector<int>>();
+}
+
+/// Nodes with several parents may stand for more places than the size of the file bounds.
+constexpr size_t kMostFurtherPlaces = size_t{1} << 18;
+
 }  // namespace
+
+bool has_no_area(const dmat4& world_from_object) {
+  const dmat3 m(world_from_object);
+  const dvec3 zero(0.0);
+  return glm::cross(m[0], m[1]) == zero && glm::cross(m[1], m[2]) == zero && glm::cross(m[2], m[0]) == zero;
+}
 
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report) {
   std::vector<PlacedNode> placed;
   // The stack is our own, last node first, because files may nest deeper than the machine's stack.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), true});
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({.node = *root});
   while (!pending.empty()) {
     PlacedNode next = pending.back();
     pending.pop_back();
     const GltfNode& node = document.nodes[static_cast<size_t>(next.node)];
     const nlohmann::json& source = document.json["nodes"][static_cast<size_t>(next.node)];
     next.world_from_object = next.world_from_object * local_transform(source);
+    const std::optional<dmat3> rotation = local_rotation(source);
+    if (next.rotation) next.rotation = rotation ? std::optional(*next.rotation * *rotation) : std::nullopt;
     const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
     if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
     if (!is_finite(next.world_from_object)) {
@@ -65,11 +95,40 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
       continue;
     }
     placed.push_back(next);
+    if (placed.size() > document.nodes.size() + kMostFurtherPlaces) {
+      report.refuse("the nodes with several parents stand in too many places", "nodes", "give each node one parent");
+      return {};
+    }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      pending.push_back({*child, next.world_from_object, next.is_visible});
+      pending.push_back({*child, next.world_from_object, next.rotation, next.is_visible});
     }
   }
   return placed;
+}
+
+std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed) {
+  const size_t count = document.nodes.size();
+  std::vector<dmat4> worlds(count, dmat4(1.0));
+  std::vector<bool> is_placed(count, false);
+  for (const PlacedNode& place : placed) {
+    const auto node = static_cast<size_t>(place.node);
+    if (is_placed[node]) continue;
+    worlds[node] = place.world_from_object;
+    is_placed[node] = true;
+  }
+  std::vector<std::pair<int, dmat4>> pending;
+  for (const int root : find_roots(document)) pending.emplace_back(root, dmat4(1.0));
+  while (!pending.empty()) {
+    const auto [next, world_from_parent] = pending.back();
+    pending.pop_back();
+    const auto node = static_cast<size_t>(next);
+    // What is below a node of the scene is in the scene.
+    if (is_placed[node]) continue;
+    is_placed[node] = true;
+    worlds[node] = world_from_parent * local_transform(document.json["nodes"][node]);
+    for (const int child : document.nodes[node].children) pending.emplace_back(child, worlds[node]);
+  }
+  return worlds;
 }
 
 }  // namespace promin

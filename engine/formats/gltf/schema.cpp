@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/schema.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "formats/gltf/json_rule.h"
 #include "promin/validate.h"
@@ -11,6 +14,7 @@ namespace promin {
 namespace {
 
 using namespace rules;
+using nlohmann::json;
 
 /// The rule for a length: a size that fp32 arithmetic can square.
 constexpr JsonRule length(std::string_view path) {
@@ -18,6 +22,13 @@ constexpr JsonRule length(std::string_view path) {
 }
 constexpr JsonRule length_or_zero(std::string_view path) {
   return number(path, 0.0, kMaxCoordinate);
+}
+/// Factors that share light out.
+constexpr JsonRule share(std::string_view path) {
+  return number(path, 0.0, 1.0);
+}
+constexpr JsonRule shares(std::string_view path, size_t count) {
+  return numbers(path, count, 0.0, 1.0);
 }
 /// Powers and factors of light are not negative, but may exceed 1.
 constexpr JsonRule factor(std::string_view path) {
@@ -30,6 +41,7 @@ constexpr JsonRule color(std::string_view path) {
 constexpr double kMaxBytes = 0x1p53;
 constexpr double kMaxCount = 0x1p31 - 1.0;
 constexpr double kMaxScalar = 1e30;
+constexpr double kMaxFloat = 3.4028234663852886e38;
 /// Exporters that think in fp32 write pi/2 a little too large.
 constexpr double kHalfPi = 1.5707964;
 constexpr double kPi = 3.141592653589793;
@@ -67,13 +79,10 @@ constexpr double kTiny = 1e-9;
       choice(PATH ".filter", "NONE|OCTAHEDRAL|QUATERNION|EXPONENTIAL")
 
 constexpr JsonRule kRules[] = {
-    needed(object("asset")),
-    needed(text("asset.version")),
-    text("asset.minVersion"),
     array("extensionsUsed"),
-    text("extensionsUsed[]"),
+    leaving_out("extensionsUsed", text("extensionsUsed[]")),
     array("extensionsRequired"),
-    text("extensionsRequired[]"),
+    leaving_out("extensionsRequired", text("extensionsRequired[]")),
 
     array("scenes"),
     index("scene", "scenes"),
@@ -88,6 +97,7 @@ constexpr JsonRule kRules[] = {
     index("nodes[].children[]", "nodes"),
     index("nodes[].mesh", "meshes"),
     index("nodes[].camera", "cameras"),
+    index("nodes[].skin", "skins"),
     numbers("nodes[].matrix", 16, -kMaxScalar, kMaxScalar),
     numbers("nodes[].translation", 3, -kMaxCoordinate, kMaxCoordinate),
     numbers("nodes[].rotation", 4, -kMaxScalar, kMaxScalar),
@@ -111,58 +121,27 @@ constexpr JsonRule kRules[] = {
     array("meshes[].weights"),
     number("meshes[].weights[]", -kMaxScalar, kMaxScalar),
 
-    array("buffers"),
-    object("buffers[]"),
-    text("buffers[].uri"),
-    needed(integer("buffers[].byteLength", 1, kMaxBytes)),
-    object("buffers[].extensions"),
-    object("buffers[].extensions.*"),
-
-    array("bufferViews"),
-    object("bufferViews[]"),
-    needed(index("bufferViews[].buffer", "buffers")),
-    integer("bufferViews[].byteOffset", 0, kMaxBytes),
-    needed(integer("bufferViews[].byteLength", 1, kMaxBytes)),
-    integer("bufferViews[].byteStride", 4, 252),
-    object("bufferViews[].extensions"),
-    object("bufferViews[].extensions.*"),
-    PROMIN_MESHOPT("bufferViews[].extensions.EXT_meshopt_compression"),
-    PROMIN_MESHOPT("bufferViews[].extensions.KHR_meshopt_compression"),
-
-    array("accessors"),
-    object("accessors[]"),
-    index("accessors[].bufferView", "bufferViews"),
-    integer("accessors[].byteOffset", 0, kMaxBytes),
-    needed(choice("accessors[].componentType", "5120|5121|5122|5123|5125|5126")),
-    boolean("accessors[].normalized"),
-    needed(integer("accessors[].count", 1, kMaxCount)),
-    needed(choice("accessors[].type", "SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4")),
-    object("accessors[].extensions"),
-    object("accessors[].extensions.*"),
-    object("accessors[].sparse"),
-    needed(integer("accessors[].sparse.count", 1, kMaxCount)),
-    needed(object("accessors[].sparse.indices")),
-    needed(index("accessors[].sparse.indices.bufferView", "bufferViews")),
-    integer("accessors[].sparse.indices.byteOffset", 0, kMaxCount),
-    needed(choice("accessors[].sparse.indices.componentType", "5121|5123|5125")),
-    needed(object("accessors[].sparse.values")),
-    needed(index("accessors[].sparse.values.bufferView", "bufferViews")),
-    integer("accessors[].sparse.values.byteOffset", 0, kMaxCount),
+    array("skins"),
+    object("skins[]"),
+    text("skins[].name"),
+    array("skins[].joints"),
+    index("skins[].joints[]", "nodes"),
+    index("skins[].inverseBindMatrices", "accessors"),
 
     array("materials"),
     object("materials[]"),
     text("materials[].name"),
     object("materials[].pbrMetallicRoughness"),
-    numbers("materials[].pbrMetallicRoughness.baseColorFactor", 4, 0.0, kMaxCoordinate),
-    number("materials[].pbrMetallicRoughness.metallicFactor", 0.0, 1.0),
-    number("materials[].pbrMetallicRoughness.roughnessFactor", 0.0, 1.0),
+    shares("materials[].pbrMetallicRoughness.baseColorFactor", 4),
+    share("materials[].pbrMetallicRoughness.metallicFactor"),
+    share("materials[].pbrMetallicRoughness.roughnessFactor"),
     color("materials[].emissiveFactor"),
     PROMIN_TEXTURE_INFO("materials[].pbrMetallicRoughness.baseColorTexture"),
     PROMIN_TEXTURE_INFO("materials[].pbrMetallicRoughness.metallicRoughnessTexture"),
     PROMIN_TEXTURE_INFO("materials[].normalTexture"),
     number("materials[].normalTexture.scale", -kMaxScalar, kMaxScalar),
     PROMIN_TEXTURE_INFO("materials[].occlusionTexture"),
-    number("materials[].occlusionTexture.strength", 0.0, 1.0),
+    share("materials[].occlusionTexture.strength"),
     PROMIN_TEXTURE_INFO("materials[].emissiveTexture"),
     choice("materials[].alphaMode", "OPAQUE|MASK|BLEND"),
     number("materials[].alphaCutoff", 0.0, kMaxScalar),
@@ -170,30 +149,30 @@ constexpr JsonRule kRules[] = {
     object("materials[].extensions"),
     object("materials[].extensions.*"),
     factor("materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"),
-    number("materials[].extensions.KHR_materials_ior.ior", 0.0, kMaxScalar),
-    number(PROMIN_TRANSMISSION ".transmissionFactor", 0.0, 1.0),
+    unclamped(number("materials[].extensions.KHR_materials_ior.ior", 0.0, kMaxScalar)),
+    share(PROMIN_TRANSMISSION ".transmissionFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_TRANSMISSION ".transmissionTexture"),
     factor(PROMIN_VOLUME ".thicknessFactor"),
-    number(PROMIN_VOLUME ".attenuationDistance", 1e-30, kMaxScalar),
-    color(PROMIN_VOLUME ".attenuationColor"),
+    unclamped(number(PROMIN_VOLUME ".attenuationDistance", 1e-30, kMaxFloat)),
+    shares(PROMIN_VOLUME ".attenuationColor", 3),
     factor("materials[].extensions.KHR_materials_dispersion.dispersion"),
-    number(PROMIN_SPECULAR ".specularFactor", 0.0, 1.0),
+    share(PROMIN_SPECULAR ".specularFactor"),
     color(PROMIN_SPECULAR ".specularColorFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularColorTexture"),
-    color(PROMIN_SHEEN ".sheenColorFactor"),
-    number(PROMIN_SHEEN ".sheenRoughnessFactor", 0.0, 1.0),
+    shares(PROMIN_SHEEN ".sheenColorFactor", 3),
+    share(PROMIN_SHEEN ".sheenRoughnessFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_SHEEN ".sheenColorTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_SHEEN ".sheenRoughnessTexture"),
-    number(PROMIN_COAT ".clearcoatFactor", 0.0, 1.0),
-    number(PROMIN_COAT ".clearcoatRoughnessFactor", 0.0, 1.0),
+    share(PROMIN_COAT ".clearcoatFactor"),
+    share(PROMIN_COAT ".clearcoatRoughnessFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatRoughnessTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_COAT ".clearcoatNormalTexture"),
     number(PROMIN_COAT ".clearcoatNormalTexture.scale", -kMaxScalar, kMaxScalar),
-    numbers(PROMIN_GLOSSY ".diffuseFactor", 4, 0.0, kMaxCoordinate),
-    color(PROMIN_GLOSSY ".specularFactor"),
-    number(PROMIN_GLOSSY ".glossinessFactor", 0.0, 1.0),
+    shares(PROMIN_GLOSSY ".diffuseFactor", 4),
+    shares(PROMIN_GLOSSY ".specularFactor", 3),
+    share(PROMIN_GLOSSY ".glossinessFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_GLOSSY ".diffuseTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_GLOSSY ".specularGlossinessTexture"),
     color(PROMIN_PHONG ".ambientFactor"),
@@ -202,7 +181,7 @@ constexpr JsonRule kRules[] = {
     color(PROMIN_PHONG ".reflectionFactor"),
     factor(PROMIN_PHONG ".shininess"),
     color(PROMIN_PHONG ".transmissionFactor"),
-    number(PROMIN_PHONG ".ior", kTiny, kMaxCoordinate),
+    unclamped(number(PROMIN_PHONG ".ior", kTiny, kMaxCoordinate)),
     boolean(PROMIN_PHONG ".fresnel"),
 
     array("images"),
@@ -216,7 +195,9 @@ constexpr JsonRule kRules[] = {
     index("textures[].sampler", "samplers"),
     object("textures[].extensions"),
     object("textures[].extensions.*"),
+    index("textures[].extensions.EXT_texture_avif.source", "images"),
     index("textures[].extensions.EXT_texture_webp.source", "images"),
+    index("textures[].extensions.KHR_texture_basisu.source", "images"),
     array("samplers"),
     object("samplers[]"),
     choice("samplers[].magFilter", "9728|9729"),
@@ -229,13 +210,13 @@ constexpr JsonRule kRules[] = {
     text("cameras[].name"),
     needed(choice("cameras[].type", "perspective|orthographic")),
     object("cameras[].perspective"),
-    needed(number("cameras[].perspective.yfov", kTiny, kPi* kJustUnder)),
-    number("cameras[].perspective.aspectRatio", kTiny, 1e9),
-    length_or_zero("cameras[].perspective.znear"),
+    leaving_out("cameras[]", needed(unclamped(number("cameras[].perspective.yfov", kTiny, kPi* kJustUnder)))),
+    unclamped(number("cameras[].perspective.aspectRatio", kTiny, 1e9)),
+    unclamped(length_or_zero("cameras[].perspective.znear")),
     object("cameras[].orthographic"),
-    needed(length("cameras[].orthographic.xmag")),
-    needed(length("cameras[].orthographic.ymag")),
-    length_or_zero("cameras[].orthographic.znear"),
+    leaving_out("cameras[]", needed(unclamped(length("cameras[].orthographic.xmag")))),
+    leaving_out("cameras[]", needed(unclamped(length("cameras[].orthographic.ymag")))),
+    unclamped(length_or_zero("cameras[].orthographic.znear")),
 
     object("extensions"),
     object("extensions.*"),
@@ -257,7 +238,7 @@ constexpr JsonRule kRules[] = {
     object(PROMIN_MAPPINGS "[]"),
     needed(index(PROMIN_MAPPINGS "[].material", "materials")),
     needed(array(PROMIN_MAPPINGS "[].variants")),
-    index(PROMIN_MAPPINGS "[].variants[]", PROMIN_VARIANTS),
+    leaving_out(PROMIN_MAPPINGS "[]", index(PROMIN_MAPPINGS "[].variants[]", PROMIN_VARIANTS)),
 
     needed(object(PROMIN_INSTANCES)),
     index(PROMIN_INSTANCES ".*", "accessors"),
@@ -270,7 +251,7 @@ constexpr JsonRule kRules[] = {
     needed(choice(PROMIN_LIGHTS "[].type", "point|directional|spot")),
     color(PROMIN_LIGHTS "[].color"),
     factor(PROMIN_LIGHTS "[].intensity"),
-    length(PROMIN_LIGHTS "[].range"),
+    unclamped(number(PROMIN_LIGHTS "[].range", kMinSize, kMaxFloat)),
     object(PROMIN_LIGHTS "[].spot"),
     number(PROMIN_LIGHTS "[].spot.innerConeAngle", 0.0, kHalfPi),
     number(PROMIN_LIGHTS "[].spot.outerConeAngle", 0.0, kHalfPi),
@@ -287,13 +268,13 @@ constexpr JsonRule kRules[] = {
     object(PROMIN_SKIES "[].plain"),
     color(PROMIN_SKIES "[].plain.color"),
     color(PROMIN_SKIES "[].ambientLightColor"),
-    number(PROMIN_SKIES "[].ambientSkyContribution", 0.0, 1.0),
+    share(PROMIN_SKIES "[].ambientSkyContribution"),
     object(PROMIN_SKIES "[].gradient"),
     needed(color(PROMIN_SKIES "[].gradient.topColor")),
     needed(color(PROMIN_SKIES "[].gradient.horizonColor")),
     needed(color(PROMIN_SKIES "[].gradient.bottomColor")),
-    number(PROMIN_SKIES "[].gradient.topCurve", kTiny, kMaxScalar),
-    number(PROMIN_SKIES "[].gradient.bottomCurve", kTiny, kMaxScalar),
+    unclamped(number(PROMIN_SKIES "[].gradient.topCurve", kTiny, kMaxScalar)),
+    unclamped(number(PROMIN_SKIES "[].gradient.bottomCurve", kTiny, kMaxScalar)),
     object(PROMIN_SKIES "[].panorama"),
     index(PROMIN_SKIES "[].panorama.equirectangular", "textures"),
 
@@ -317,6 +298,50 @@ constexpr JsonRule kRules[] = {
     object(PROMIN_SHAPES "[].plane"),
 };
 
+constexpr JsonRule kAccessorRules[] = {
+    array("accessors"),
+    object("accessors[]"),
+    index("accessors[].bufferView", "bufferViews"),
+    integer("accessors[].byteOffset", 0, kMaxBytes),
+    needed(choice("accessors[].componentType", "5120|5121|5122|5123|5125|5126")),
+    boolean("accessors[].normalized"),
+    needed(integer("accessors[].count", 0, kMaxCount)),
+    needed(choice("accessors[].type", "SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4")),
+    object("accessors[].extensions"),
+    object("accessors[].extensions.*"),
+    object("accessors[].sparse"),
+    needed(integer("accessors[].sparse.count", 0, kMaxCount)),
+    needed(object("accessors[].sparse.indices")),
+    needed(index("accessors[].sparse.indices.bufferView", "bufferViews")),
+    integer("accessors[].sparse.indices.byteOffset", 0, kMaxCount),
+    needed(choice("accessors[].sparse.indices.componentType", "5121|5123|5125")),
+    needed(object("accessors[].sparse.values")),
+    needed(index("accessors[].sparse.values.bufferView", "bufferViews")),
+    integer("accessors[].sparse.values.byteOffset", 0, kMaxCount),
+};
+
+constexpr JsonRule kViewRules[] = {
+    array("bufferViews"),
+    object("bufferViews[]"),
+    needed(index("bufferViews[].buffer", "buffers")),
+    integer("bufferViews[].byteOffset", 0, kMaxBytes),
+    needed(integer("bufferViews[].byteLength", 0, kMaxBytes)),
+    integer("bufferViews[].byteStride", 0, kMaxCount),
+    object("bufferViews[].extensions"),
+    object("bufferViews[].extensions.*"),
+    PROMIN_MESHOPT("bufferViews[].extensions.EXT_meshopt_compression"),
+    PROMIN_MESHOPT("bufferViews[].extensions.KHR_meshopt_compression"),
+};
+
+constexpr JsonRule kBufferRules[] = {
+    array("buffers"),
+    object("buffers[]"),
+    text("buffers[].uri"),
+    needed(integer("buffers[].byteLength", 0, kMaxBytes)),
+    object("buffers[].extensions"),
+    object("buffers[].extensions.*"),
+};
+
 #undef PROMIN_LIGHTS
 #undef PROMIN_SHAPES
 #undef PROMIN_SKIES
@@ -330,14 +355,106 @@ constexpr JsonRule kRules[] = {
 #undef PROMIN_MESHOPT
 #undef PROMIN_DRACO
 
+/// The parts of a document that only colour, show or light: they leave the geometry in no doubt.
+constexpr std::string_view kRepairedParts[] = {
+    "extensionsUsed",
+    "extensionsRequired",
+    "scene",
+    "materials",
+    "textures",
+    "samplers",
+    "images",
+    "cameras",
+    "nodes[].camera",
+    "nodes[].extensions.KHR_lights_punctual",
+    "nodes[].extensions.KHR_node_visibility",
+    "meshes[].primitives[].material",
+    "meshes[].primitives[].extensions.KHR_materials_variants",
+    "extensions.KHR_lights_punctual",
+    "extensions.KHR_materials_variants",
+    "extensions.OMI_environment_sky",
+    "scenes[].extensions.OMI_environment_sky",
+};
+
+bool is_repaired(std::string_view path) {
+  if (path.ends_with(".name")) return true;
+  return std::ranges::any_of(kRepairedParts, [&](std::string_view part) {
+    return path.starts_with(part) &&
+           (path.size() == part.size() || path[part.size()] == '.' || path[part.size()] == '[');
+  });
+}
+
+/// Takes the elements out of an array that nothing uses and that are such.
+template <class IsDropped>
+void drop_unused(json& document, const char* name, const JsonCheck& check, const IsDropped& is_dropped) {
+  const auto array = document.find(name);
+  if (array == document.end() || !array->is_array()) return;
+  for (size_t i = 0; i < array->size(); ++i) {
+    if (!check.is_used(name, i) && is_dropped((*array)[i])) (*array)[i] = nullptr;
+  }
+}
+
+/// Whether a buffer cannot even be asked for its bytes, which the reader does of buffers that nothing uses.
+bool is_broken_buffer(const json& buffer) {
+  if (!buffer.is_object()) return true;
+  const auto length = buffer.find("byteLength");
+  const auto uri = buffer.find("uri");
+  return length == buffer.end() || !length->is_number_unsigned() || (uri != buffer.end() && !uri->is_string());
+}
+
+bool is_of_gltf_1(const json& document) {
+  return std::ranges::any_of(std::initializer_list<const char*>{"scenes", "nodes", "meshes"}, [&](const char* name) {
+    const auto array = document.find(name);
+    return array != document.end() && array->is_object();
+  });
+}
+
 }  // namespace
 
-void check_gltf_schema(nlohmann::json& document, LoadReport& report) {
+void check_gltf_version(json& document, LoadReport& report) {
   if (!document.is_object()) {
     report.refuse("the file is no JSON object", "the top level", "export the file again");
     return;
   }
-  for (const JsonRule& rule : kRules) check_json_rule(document, rule, report);
+  json& asset = document["asset"];
+  if (!asset.is_object()) asset = json::object();
+  const auto given = asset.find("version");
+  const std::string version = given == asset.end() ? ""
+                              : given->is_string() ? given->get<std::string>()
+                                                   : given->dump();
+  if (version.starts_with("1") || (version.empty() && is_of_gltf_1(document))) {
+    report.refuse("the file is glTF 1.0, which is not read", "asset.version", "export it as glTF 2.0");
+  } else if (version.empty()) {
+    report.repair({"the version is missing", "", "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
+  } else if (version != "2" && !version.starts_with("2.")) {
+    report.refuse("glTF version " + quote(version) + " is not 2.x", "asset.version", "export the file as glTF 2.0");
+  } else if (!given->is_string() || version == "2") {
+    report.repair({"the version is not written as glTF has it", version, "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
+  }
+  const auto least = asset.find("minVersion");
+  if (least != asset.end() && *least != "2.0") {
+    report.refuse("the file needs glTF " + quote(least->is_string() ? least->get<std::string>() : least->dump()),
+                  "asset.minVersion", "export it for glTF 2.0");
+  }
+}
+
+void check_gltf_schema(json& document, bool is_strict, LoadReport& report) {
+  JsonCheck check(document, is_strict, report);
+  const auto check_all = [&](std::span<const JsonRule> rules, std::string_view only_used) {
+    for (JsonRule rule : rules) {
+      rule.is_repaired = is_repaired(rule.path);
+      check.check(rule, is_strict ? "" : only_used);
+    }
+  };
+  check_all(kRules, "");
+  check_all(kAccessorRules, "accessors");
+  check_all(kViewRules, "bufferViews");
+  check_all(kBufferRules, "buffers");
+  if (is_strict) return;
+  const auto is_any = [](const json&) { return true; };
+  drop_unused(document, "accessors", check, is_any);
+  drop_unused(document, "bufferViews", check, is_any);
+  drop_unused(document, "buffers", check, is_broken_buffer);
 }
 
 }  // namespace promin

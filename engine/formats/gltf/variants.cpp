@@ -42,7 +42,10 @@ std::vector<std::string> list_gltf_variants(const json& document) {
   std::vector<std::string> names;
   const json* extension = find_extension(document, kExtension);
   if (extension == nullptr) return names;
-  for (const json& variant : elements_of(*extension, "variants")) names.push_back(variant["name"]);
+  // One that cannot be used is null (JsonCheck), and keeps its number.
+  for (const json& variant : elements_of(*extension, "variants")) {
+    names.push_back(variant.is_object() ? variant["name"].get<std::string>() : "");
+  }
   return names;
 }
 

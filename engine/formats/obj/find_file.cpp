@@ -14,7 +14,7 @@ std::string last_part(const std::string& name) {
 
 /// As find_beside_scene, but what is wrong is no problem of the scene's.
 std::optional<std::filesystem::path> try_file(const std::string& name, LoadReport& report) {
-  LoadReport attempt(report.file());
+  LoadReport attempt(report.file(), false, report.root());
   const std::optional<std::filesystem::path> file = find_beside_scene(name, "", true, attempt);
   for (const SourceFile& source : attempt.sources()) report.add_source(source.file);
   return file;

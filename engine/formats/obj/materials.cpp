@@ -30,7 +30,7 @@ double illum_of(const MtlMaterial& source) {
 
 /// Where a file of materials is, if it is there; the report is none of the scene's.
 std::optional<std::filesystem::path> try_library(const std::string& name, LoadReport& report) {
-  LoadReport attempt(report.file());
+  LoadReport attempt(report.file(), false, report.root());
   const auto file = find_named_file("", name, attempt);
   for (const SourceFile& source : attempt.sources()) report.add_source(source.file);
   return file;
