@@ -127,7 +127,7 @@ FileKind kind_of_text(std::string_view text) {
   return take_word(line) == "from" ? readable_kind("NFF", ".nff") : FileKind{};
 }
 
-/// Of what promin reads.
+/// The kinds that promin reads.
 FileKind find_readable_kind(std::string_view bytes, uint64_t size_bytes) {
   const std::string_view text = skip_to_text(bytes);
   if (bytes.starts_with("glTF")) return readable_kind("glTF", ".glb");

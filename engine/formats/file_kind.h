@@ -23,7 +23,7 @@ struct FileKind {
 inline constexpr uint64_t kKindBytes = 4096;
 
 /// The kind that the first bytes of a file show beyond doubt. `ending`, in lower case with its dot, is that of its
-/// name: it tells archives that are scenes of another program. `size_bytes` is that of the whole file.
+/// name: some endings show that an archive is a scene of another program. `size_bytes` is that of the whole file.
 FileKind find_file_kind(std::string_view first_bytes, std::string_view ending, uint64_t size_bytes);
 /// Reads what it needs. Nothing is known of a file that cannot be read.
 FileKind find_file_kind(const std::filesystem::path& file);

@@ -14,11 +14,19 @@ namespace {
 
 constexpr std::string_view kSpace = " \t\r\f\v";
 
-std::string_view take_up_to(std::string_view& line, std::string_view ends) {
-  const size_t begin = std::min(line.find_first_not_of(kSpace), line.size());
-  line.remove_prefix(begin);
-  const size_t end = std::min(line.find_first_of(ends), line.size());
-  const std::string_view word = line.substr(0, end);
+/// Whether a character is in kSpace.
+constexpr bool is_space(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n');
+}
+
+/// Words are looked through more often than anything else of a text.
+template <bool kHasComments>
+std::string_view take_part(std::string_view& line) {
+  size_t begin = 0;
+  while (begin < line.size() && is_space(line[begin])) ++begin;
+  size_t end = begin;
+  while (end < line.size() && !is_space(line[end]) && !(kHasComments && line[end] == '#')) ++end;
+  const std::string_view word = line.substr(begin, end - begin);
   line.remove_prefix(end);
   return word;
 }
@@ -63,11 +71,11 @@ bool TextLines::advance() {
 }
 
 std::string_view take_word(std::string_view& line) {
-  return take_up_to(line, " \t\r\f\v#");
+  return take_part<true>(line);
 }
 
 std::string_view take_field(std::string_view& line) {
-  return take_up_to(line, kSpace);
+  return take_part<false>(line);
 }
 
 std::string_view trim(std::string_view line) {

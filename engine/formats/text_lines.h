@@ -52,8 +52,8 @@ std::string_view trim(std::string_view line);
 /// A finite decimal number that is the whole word; nullopt for anything else ("nan", "inf", "0,5", "1e999").
 std::optional<double> parse_number(std::string_view word);
 
-/// A number as programs write any: also infinite or NaN ("nan", "-inf", "1.#QNAN"), which "1e999" is too; nullopt where
-/// the word is none of these.
+/// A number as programs write any: also infinite or NaN ("nan", "-inf", "1.#QNAN"), which "1e999" is too; nullopt for
+/// any other word.
 std::optional<double> parse_any_number(std::string_view word);
 
 /// An integer that is the whole word and fits.

@@ -42,7 +42,7 @@ std::string small_3ds() {
 
 struct Kind {
   const char* name;
-  /// Of the file that has the bytes.
+  /// What a file with these bytes should end in; empty where promin does not read it.
   const char* ending;
   std::string bytes;
   const char* what;

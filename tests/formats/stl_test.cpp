@@ -194,7 +194,7 @@ TEST_F(StlTest, ColorsAreThoseOfVisCam) {
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(colors[i], vec4(1, light_of(16), light_of(1), 1)) << "red is high";
     EXPECT_EQ(colors[3 + i], vec4(0, 0, 0, 1));
-    EXPECT_EQ(colors[6 + i], vec4(1, 1, 1, 1)) << "has none of its own";
+    EXPECT_EQ(colors[6 + i], vec4(1, 1, 1, 1)) << "it has no own colour";
   }
   EXPECT_THAT(scene.warnings, IsEmpty());
   StlBuilder plain;

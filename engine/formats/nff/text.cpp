@@ -41,7 +41,7 @@ class NffParser {
     /// What follows it, for messages.
     const char* form;
     void (NffParser::*read)();
-    /// Whether it is a shape: the number of its words tells where the next statement begins.
+    /// Whether it is a shape. The next statement begins behind the words that it needs.
     bool is_shape = true;
   };
   static constexpr size_t kStatementCount = 8;
@@ -273,7 +273,7 @@ class NffParser {
     out_.cameras.push_back(camera);
   }
 
-  /// 0 where it is none.
+  /// 0 where the file has no resolution that can be taken.
   uvec2 take_resolution() {
     dvec2 size;
     for (int i = 0; i < 2; ++i) size[i] = take_any_number();

@@ -63,7 +63,7 @@ struct NffText {
 
 /// Parses an NFF file; all numbers are in the ranges that validate() asks for, but normals, which may be 0. Shapes,
 /// lights and views without a place are left out. A word that is no statement, or no number of a shape, ends it,
-/// because nothing tells where the next statement begins. Problems go to the report with their line.
+/// because the next statement could begin anywhere. Problems go to the report with their line.
 NffText parse_nff_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

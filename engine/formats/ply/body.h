@@ -33,7 +33,7 @@ struct PlyBody {
   /// Indices into PlyHeader::texture_files, one per polygon; empty where that is 0 for all of them.
   std::vector<uint32_t> face_textures = {};
 
-  /// The texture of a polygon that has none.
+  /// Marks a polygon without a texture.
   static constexpr uint32_t kNoTexture = std::numeric_limits<uint32_t>::max();
 };
 

@@ -79,7 +79,8 @@ bool is_in_range(const vec3& p) {
 /// Makes a mesh of what a file has.
 class MeshMaker {
  public:
-  /// `material_of_texture` has what the faces of each texture file are made of; kUnused where its picture is none.
+  /// `material_of_texture` has what the faces of each texture file are made of; kUnused where its picture cannot be
+  /// shown.
   MeshMaker(const PlyBody& body, const std::vector<uint32_t>& material_of_texture, LoadReport& report)
       : body_(body),
         material_of_texture_(material_of_texture),
@@ -251,17 +252,17 @@ class MeshMaker {
   /// The polygon that is being added, and where its corners begin.
   size_t polygon_ = 0;
   size_t first_corner_ = 0;
-  /// Of each vertex of the file, where nothing is split.
+  /// What each vertex of the file is in the mesh, where nothing is split.
   std::vector<uint32_t> new_index_;
-  /// Of each vertex of the file, where anything is.
+  /// The newest vertex of the mesh in the place of each of the file, where anything is split.
   std::vector<uint32_t> newest_vertex_;
-  /// Of each vertex of the mesh.
+  /// The one before it in the same place, for each vertex of the mesh.
   std::vector<uint32_t> previous_vertex_;
   std::vector<vec3> polygon_positions_;
 };
 
 /// Adds a material for each texture file whose picture can be shown, with its image and texture. Returns the index of
-/// each file's material, kUnused where it has none.
+/// each file's material, kUnused where there is no material for it.
 std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool takes_texels, Scene& scene,
                                    LoadReport& report) {
   std::vector<PictureSource> sources;
