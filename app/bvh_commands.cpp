@@ -55,6 +55,7 @@ void add_file_row(OptionTable& table, BvhOptions& options) {
 
 void add_common_rows(OptionTable& table, BvhOptions& options) {
   add_strict_option(table, options.load);
+  add_root_option(table, options.load);
   table.add("--threads", "N", fmt::format("Threads to use, 1 to {} [one a core]", kMaxThreads),
             [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
   table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);

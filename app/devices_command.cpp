@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "arguments.h"
+#include "device/driver_files.h"
 #include "promin/device_info.h"
 #include "promin/error.h"
 
@@ -35,7 +36,7 @@ void print_json(const std::vector<gpu::DeviceInfo>& devices) {
 void print_devices(bool is_json) {
   const std::vector<gpu::DeviceInfo> devices = gpu::list_devices();
   if (devices.empty()) {
-    throw DeviceError({"no Vulkan device found", "", "install a driver, e.g. the package mesa-vulkan-drivers"});
+    throw DeviceError(gpu::explain_missing_driver());
   }
   if (is_json) {
     print_json(devices);

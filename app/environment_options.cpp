@@ -26,7 +26,7 @@ void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
 EnvironmentChoice::EnvironmentChoice(const EnvironmentOptions& options)
     : rotation_(static_cast<float>(glm::radians(options.rotation_deg))),
       intensity_(static_cast<float>(options.intensity)) {
-  if (options.panorama) panorama_ = read_panorama(*options.panorama);
+  if (options.panorama) panorama_ = read_panorama(*options.panorama, warnings_);
 }
 
 void EnvironmentChoice::replace_sky(Scene& scene) const {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "promin/scene.h"
@@ -32,6 +33,9 @@ class EnvironmentChoice {
   /// Throws InputError where the panorama is none.
   explicit EnvironmentChoice(const EnvironmentOptions& options);
 
+  /// What was amiss with the panorama.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
   /// Puts the panorama around a scene. Comes before a scene without a sky gets one.
   void replace_sky(Scene& scene) const;
   /// Turns the scene's sky, whichever it has got, and makes it brighter.
@@ -39,6 +43,7 @@ class EnvironmentChoice {
 
  private:
   std::optional<Panorama> panorama_;
+  std::vector<std::string> warnings_;
   float rotation_ = 0.0F;
   float intensity_ = 1.0F;
 };

@@ -154,6 +154,7 @@ void print_info(const InfoOptions& options) {
   load.decodes_images = false;
   Scene scene = load_scene(options.file, load);
   const EnvironmentChoice surroundings(options.environment);
+  for (const std::string& warning : surroundings.warnings()) scene.warnings.push_back(warning);
   const SceneCounts counts = count_scene(scene);
   print_row("scene", options.file.string());
   print_row("objects", describe_objects(counts, scene));
@@ -197,6 +198,7 @@ Command add_info_command(CLI::App& program) {
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
                      [options](const OptionValues& w) { options->file = w.text(); });
   add_strict_option(table, options->load);
+  add_root_option(table, options->load);
   add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
   return {&command, [options] { print_info(*options); }};

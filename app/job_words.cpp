@@ -71,6 +71,7 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "--builder", .is_in_manifest = false},
     {.name = "--features", .is_in_manifest = false},
     {.name = "--pieces", .is_in_manifest = false},
+    {.name = "--root", .is_in_manifest = false, .names_file = true},
     {.name = "--repeat", .is_in_manifest = false},
     {.name = "--shading", .default_word = "full"},
     {.name = "--spp", .default_word = "1"},

@@ -12,6 +12,14 @@ void add_strict_option(OptionTable& table, LoadOptions& options) {
                  options.is_strict);
 }
 
+void add_root_option(OptionTable& table, LoadOptions& options) {
+  table.add("--root", "DIR", "Let the scene name files in this folder, links resolved [its own folder]",
+            [&](const OptionValues& w) {
+              if (w.text().empty()) w.refuse("--root takes a folder, not \"\"");
+              options.root = w.text();
+            });
+}
+
 void add_variant_option(OptionTable& table, LoadOptions& options) {
   table.add("--variant", "NAME",
             "Variant of the scene's materials; `promin info` lists them [the file's own materials]",

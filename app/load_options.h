@@ -10,6 +10,8 @@ class OptionTable;
 
 /// Adds the row of --strict, for commands that load a scene. `options` must outlive the parsing.
 void add_strict_option(OptionTable& table, LoadOptions& options);
+/// The same of --root.
+void add_root_option(OptionTable& table, LoadOptions& options);
 /// The same of --variant, for commands that show materials.
 void add_variant_option(OptionTable& table, LoadOptions& options);
 

@@ -11,7 +11,6 @@
 #include "cast_options.h"
 #include "console.h"
 #include "core/count_of.h"
-#include "image/open_pictures.h"
 #include "jobs/job.h"
 #include "merge_job.h"
 #include "outputs.h"
@@ -37,7 +36,6 @@ void merge(const MergeOptions& options) {
         {"--offsets is of answers to rays, and the job is of pictures", job.folder().string(), "leave --offsets out"});
   }
   check_job_files(job, files);
-  if (job.manifest().kind == kPictureJob) find_pictures();
   check_outputs({}, files, {});
   const std::string made = merge_job_deferring(job, files);
   if (!options.is_quiet) fmt::print("{}: {}\n", count_of(job.piece_count(), "piece"), made);

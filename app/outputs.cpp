@@ -22,7 +22,7 @@ namespace {
 /// One spelling for each file, whether it exists or not.
 fs::path resolve(const fs::path& file) {
   std::error_code error;
-  const fs::path resolved = fs::weakly_canonical(fs::absolute(file, error), error);
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(follow_links(file), error), error);
   return error ? file : resolved;
 }
 

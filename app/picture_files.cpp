@@ -94,7 +94,8 @@ void PictureFiles::write_rows(Image rows, std::vector<Channel> channels) {
   wait();
   rows_ = std::move(rows);
   channels_ = std::move(channels);
-  writing_ = std::async(std::launch::async, [this] {
+  // Without a thread for it, when it is waited for.
+  writing_ = std::async([this] {
     for (PictureWriter& writer : writers_) writer.write_rows(rows_, channels_);
     // The next band takes as much.
     rows_ = {};

@@ -31,7 +31,9 @@ PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFra
   stats.view = make_view(scene, view, console);
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
-  const AssumedLight assumed = light_up(scene, view.look, EnvironmentChoice(view.environment));
+  const EnvironmentChoice surroundings(view.environment);
+  for (const std::string& warning : surroundings.warnings()) console.warn(warning);
+  const AssumedLight assumed = light_up(scene, view.look, surroundings);
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
   // Errors as they are shown bring it to the bits of an EXR, too.

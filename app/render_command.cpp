@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <future>
 #include <memory>
 
 #include "command_job.h"
@@ -19,7 +18,6 @@
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
-#include "image/open_pictures.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"
@@ -262,13 +260,6 @@ std::vector<std::filesystem::path> pictures_of(const std::vector<PlannedFrame>& 
   return files;
 }
 
-/// Opens the plugin for pictures on a thread, while the tree is built and the pipeline compiled. Not before there is a
-/// device: the dynamic loader takes turns, and a Vulkan driver that has to wait for the plugin's libraries costs a
-/// tenth of a second.
-std::future<void> open_pictures_aside() {
-  return std::async(std::launch::async, [] { open_pictures(); });
-}
-
 bool is_file_there(const std::filesystem::path& file) {
   std::error_code error;
   return std::filesystem::exists(file, error);
@@ -312,8 +303,6 @@ void render(const RenderOptions& given, const CLI::App& command) {
   if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames));
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
-  const bool has_pictures = !options.pictures.empty();
-  if (has_pictures) find_pictures();
   const Console console(tracing.verbosity());
   if (skipped > 0) {
     console.note(
@@ -338,8 +327,6 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const Scene& scene = run.scene;
   RunStats& stats = run.stats;
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
-  std::future<void> pictures;
-  if (has_pictures) pictures = open_pictures_aside();
   Renderer renderer = make_renderer(
       *device, scene, make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
   take_setup(renderer.setup_stats(), stats, console);
@@ -349,8 +336,6 @@ void render(const RenderOptions& given, const CLI::App& command) {
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }
-  // A plugin that does not load is told of before the tracing, which may take long.
-  pictures.get();
   render_frames(run.frames, options, *device, scene, renderer, stats, console);
 
   const DeferredSignals while_writing;

@@ -4,13 +4,21 @@
 
 #include <fmt/format.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <new>
+#include <system_error>
 #include <vector>
 
+#include "core/address_space.h"
+#include "core/parallel.h"
 #include "manual.h"
 #include "promin/error.h"
 
@@ -63,6 +71,27 @@ void name_option(Problem& problem) {
     }
   }
   if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
+}
+
+/// What the system has refused, where no function has made a sentence of its own of that.
+Problem explain(const std::system_error& error) {
+  std::error_code no_folder;
+  std::filesystem::current_path(no_folder);
+  if (no_folder == std::errc::no_such_file_or_directory) {
+    return {"the current folder is gone", "", "change to a folder that exists"};
+  }
+  if (error.code() == std::errc::resource_unavailable_try_again) return explain_no_threads();
+  const auto* file_error = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+  const std::string where = file_error == nullptr ? "" : file_error->path1().string();
+  return {fmt::format("the system refuses what is asked for ({})", error.code().message()), where,
+          "check its limits and permissions"};
+}
+
+/// Has all threads share one heap where address space is limited: each heap of glibc's takes 64 MiB of it.
+void share_heap() {
+#ifdef __GLIBC__
+  if (address_space_limit()) mallopt(M_ARENA_MAX, 1);
+#endif
 }
 
 const Problem kDeafOutput{"cannot write", "the standard output", "check where it leads"};
@@ -118,6 +147,7 @@ int run_program(const std::string& name, const std::string& help,
   // At the file size limit (ulimit -f) this signal would end the program before it can say so and remove its temporary
   // files; where it is ignored, the write fails.
   std::signal(SIGXFSZ, SIG_IGN);
+  share_heap();
   try {
     run_command(name, help, commands, argc, argv);
     if (std::fflush(stdout) != 0) {
@@ -135,10 +165,14 @@ int run_program(const std::string& name, const std::string& help,
   } catch (const Error& error) {
     return report(kRunFailed, message_of(error));
   } catch (const std::bad_alloc&) {
-    return report(kRunFailed, fmt::format("out of memory, in {}; use a smaller picture or scene", name));
+    return report(kRunFailed,
+                  fmt::format("out of memory, in {}; {}", name, cure_short_memory("use a smaller picture or scene")));
   } catch (const std::exception& error) {
     // What a command prints may fail at any line, by an exception of fmt's.
     if (std::ferror(stdout) != 0) return report(kRunFailed, message_of(kDeafOutput));
+    if (const auto* refusal = dynamic_cast<const std::system_error*>(&error)) {
+      return report(kRunFailed, message_of(explain(*refusal)));
+    }
     return report(kRunFailed, fmt::format("unexpected failure ({}), in {}; report it as a bug", error.what(), name));
   }
 }

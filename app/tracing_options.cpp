@@ -38,6 +38,7 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
   table.add("--bvh", "FILE.pbvh", "Take the BVH from a file of promin-bvh build",
             [&](const OptionValues& w) { options.bvh = w.text(); });
   add_strict_option(table, options.load);
+  add_root_option(table, options.load);
   table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
   table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
 }

@@ -82,6 +82,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
   command += options_of(scene.look) + options_of(scene.environment);
   if (!scene.variant.empty()) command += " --variant " + quote(scene.variant);
+  if (!scene.root.empty()) command += " --root " + quote(scene.root.string());
   if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
   command +=
       fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));

@@ -22,6 +22,7 @@ struct DescribedScene {
   LookOptions look = {};
   EnvironmentOptions environment = {};
   std::string variant = {};
+  std::filesystem::path root = {};
   /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
   /// The tree, which decides the steps that a picture may show.

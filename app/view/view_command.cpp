@@ -107,6 +107,7 @@ void view(const WindowOptions& options) {
   start.file = tracing.scene;
   auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
   const EnvironmentChoice environment(options.view.environment);
+  for (const std::string& warning : environment.warnings()) console.warn(warning);
   ViewOptions view_options = options.view;
   if (options.replay) {
     start.replay.emplace(read_camera_path(*options.replay), options.fps);
@@ -121,6 +122,7 @@ void view(const WindowOptions& options) {
   start.look = look;
   start.environment = options.view.environment;
   start.variant = tracing.load.material_variant;
+  start.root = tracing.load.root;
   start.error_target = options.error.target_or(ErrorTarget{}.error);
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;

@@ -32,6 +32,8 @@ struct ViewerStart {
   EnvironmentOptions environment;
   /// LoadOptions::material_variant.
   std::string variant;
+  /// LoadOptions::root.
+  std::filesystem::path root;
   View view;
   /// Of pictures at rest that show light; what hangs on how they are shown follows from the scene.
   ErrorTarget error_target;

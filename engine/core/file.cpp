@@ -30,12 +30,26 @@ std::string lower_case_ending(const fs::path& file) {
   return ending;
 }
 
+namespace {
+
+/// Throws RunError where a path begins at the current folder, and that was removed.
+void refuse_lost_folder(const fs::path& file) {
+  std::error_code error;
+  if (file.is_absolute()) return;
+  fs::current_path(error);
+  if (error != std::errc::no_such_file_or_directory) return;
+  throw RunError({"the current folder is gone", file.string(), "change to a folder that exists"});
+}
+
+}  // namespace
+
 fs::file_status find_input(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::none) {
     throw InputError({"cannot reach the file (" + error.message() + ")", file.string(), "check its permissions"});
   }
+  if (!fs::exists(status)) refuse_lost_folder(file);
   if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
   return status;
 }
@@ -75,6 +89,10 @@ std::string host_name() {
 
 namespace {
 
+/// Before the name of an old file that AtomicFile::commit_together keeps.
+constexpr const char* kOldMark = "old-";
+constexpr mode_t kModeBits = 07777;
+
 /// The temporary files that this process is at: another of its threads may write the same file, and what is left by a
 /// process that had this one's id is told from them.
 class LiveFiles {
@@ -82,18 +100,24 @@ class LiveFiles {
   /// False where there is one of this name.
   bool add(const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    return files_.insert(fs::absolute(file).lexically_normal()).second;
+    return files_.insert(spell(file)).second;
   }
   void remove(const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    files_.erase(fs::absolute(file).lexically_normal());
+    files_.erase(spell(file));
   }
   bool has(const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    return files_.contains(fs::absolute(file).lexically_normal());
+    return files_.contains(spell(file));
   }
 
  private:
+  static fs::path spell(const fs::path& file) {
+    std::error_code error;
+    const fs::path whole = fs::absolute(file, error);
+    return (error ? file : whole).lexically_normal();
+  }
+
   std::mutex mutex_;
   std::set<fs::path> files_;
 };
@@ -105,13 +129,55 @@ LiveFiles& live_files() {
 
 }  // namespace
 
+fs::path follow_links(const fs::path& file) {
+  std::error_code error;
+  const fs::path resolved = fs::canonical(file, error);
+  if (!error) return resolved;
+  // The C library follows so many.
+  constexpr int kMostLinks = 40;
+  fs::path target = file;
+  for (int link = 0; fs::is_symlink(target, error); ++link) {
+    if (link == kMostLinks) return file;
+    // An absolute path replaces the folder.
+    target = target.parent_path() / fs::read_symlink(target, error);
+  }
+  return target;
+}
+
+namespace {
+
+/// The first bytes of a text, without half a character at their end.
+std::string cut_utf8(std::string text, size_t most_bytes) {
+  const auto continues = [&](size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80; };
+  if (text.size() <= most_bytes) return text;
+  while (most_bytes > 0 && continues(most_bytes)) --most_bytes;
+  text.resize(most_bytes);
+  return text;
+}
+
+/// A name in the folder of the form that AtomicFile::temporary() has, short enough for the file system: the target's
+/// own name may be as long as that allows.
+fs::path name_temporary(const fs::path& folder, const fs::path& target, int writer) {
+  constexpr size_t kUsualMost = 255;
+  constexpr size_t kLongestEnding = 16;
+  // A folder may be seen by several machines.
+  std::string mark = ".tmp" + std::to_string(getpid()) + "-" + host_name();
+  if (writer > 1) mark = "." + std::to_string(writer) + mark;
+  mark += target.extension().string().substr(0, kLongestEnding);
+  const long told = pathconf(folder.c_str(), _PC_NAME_MAX);
+  const size_t most = told > 0 ? static_cast<size_t>(told) : kUsualMost;
+  // Room for what commit_together puts before it.
+  const size_t taken = mark.size() + std::string_view(kOldMark).size();
+  return folder / (cut_utf8(target.stem().string(), most > taken ? most - taken : 0) + mark);
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
   // rename() would replace a symbolic link, not what it points to.
-  if (fs::is_symlink(target_, error)) {
-    const fs::path resolved = fs::weakly_canonical(target_, error);
-    if (!error) target_ = resolved;
-  }
+  if (fs::is_symlink(target_, error)) target_ = follow_links(target_);
+  refuse_lost_folder(target_);
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
     throw RunError({"the folder of the output file does not exist", target_.string(), "create " + folder.string()});
@@ -124,13 +190,19 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     throw RunError({"the output file is a device or a pipe", target_.string(), "name a file"});
   }
   for (int writer = 1; temporary_.empty() || !live_files().add(temporary_); ++writer) {
-    fs::path name = target_.stem();
-    if (writer > 1) name.concat(".").concat(std::to_string(writer));
-    // A folder may be seen by several machines.
-    name.concat(".tmp").concat(std::to_string(getpid())).concat("-").concat(host_name());
-    name += target_.extension();
-    temporary_ = folder / name;
+    temporary_ = name_temporary(folder, target_, writer);
   }
+  begin_with_mode();
+}
+
+void AtomicFile::begin_with_mode() {
+  struct stat old {};
+  if (stat(target_.c_str(), &old) != 0) return;
+  mode_ = old.st_mode & kModeBits;
+  const int descriptor = open(temporary_.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor < 0) return;
+  fchmod(descriptor, *mode_ | S_IWUSR);
+  close(descriptor);
 }
 
 AtomicFile::~AtomicFile() {
@@ -148,6 +220,8 @@ void AtomicFile::fail() const {
 void AtomicFile::flush() const {
   // rename() alone may reach the disk before the data does; a crash would leave an empty file.
   const int descriptor = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  // Where the file system has no modes it is the same without.
+  if (descriptor >= 0 && mode_) fchmod(descriptor, *mode_);
   const bool is_flushed = descriptor >= 0 && fsync(descriptor) == 0;
   if (descriptor >= 0) close(descriptor);
   if (!is_flushed) fail();
@@ -186,7 +260,7 @@ void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
   // temporary file, so that what a kill leaves is cleared.
   std::vector<fs::path> old_files(files.size());
   const auto name_old = [&](size_t i) {
-    fs::path name = files[i]->temporary_.parent_path() / "old-";
+    fs::path name = files[i]->temporary_.parent_path() / kOldMark;
     name += files[i]->temporary_.filename();
     if (keep_old(files[i]->target_, name)) old_files[i] = name;
   };

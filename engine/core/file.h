@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -18,7 +20,8 @@ namespace promin {
 /// The file's ending in lower case, with its dot; empty if it has none.
 std::string lower_case_ending(const std::filesystem::path& file);
 
-/// The status of a file that is to be read. Throws InputError if it is missing or cannot be reached.
+/// The status of a file that is to be read. Throws InputError if it is missing or cannot be reached, and RunError where
+/// the current folder, at which the path begins, was removed.
 std::filesystem::file_status find_input(const std::filesystem::path& file);
 
 /// Identifies a version of a file: it differs when the file is written or another takes its place.
@@ -39,13 +42,18 @@ std::vector<std::byte> read_file(const std::filesystem::path& file,
 /// The machine's name.
 std::string host_name();
 
+/// Where a file lies that is reached by symbolic links, whether it exists or not; the path itself where they lead in a
+/// circle.
+std::filesystem::path follow_links(const std::filesystem::path& file);
+
 /// A file that appears whole or not at all: write to temporary(), then commit() renames it to the target. Without a
 /// commit the destructor removes the temporary file and the target stays as it was. A program that may reach the file
 /// size limit must ignore SIGXFSZ, because the signal would end it before the destructor runs.
 class AtomicFile {
  public:
-  /// Follows a symbolic link. Throws RunError if the target's folder does not exist or the target is anything but a
-  /// regular file.
+  /// Follows a symbolic link. A file that is there gives its mode to the new one. Throws RunError if the target's
+  /// folder does not exist, the target is anything but a regular file, or the current folder, at which the path begins,
+  /// was removed.
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -53,7 +61,7 @@ class AtomicFile {
 
   /// The temporary file lies beside the target and has its ending, so that writers which pick the format by the ending
   /// see the right one: NAME.tmpPID-HOST.ENDING; NAME.2.tmp… where another thread of the process writes the same
-  /// target.
+  /// target. NAME and ENDING are cut where the whole would be longer than the file system allows.
   const std::filesystem::path& temporary() const { return temporary_; }
 
   /// Flushes the temporary file to disk and renames it. Throws RunError.
@@ -64,12 +72,17 @@ class AtomicFile {
   static void commit_together(std::span<AtomicFile* const> files);
 
  private:
+  /// Makes the temporary file with the mode of the file that it replaces, so that nobody reads it meanwhile who may not
+  /// read that one.
+  void begin_with_mode();
   void flush() const;
   void rename_to_target();
   [[noreturn]] void fail() const;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
+  /// Of the file that is replaced.
+  std::optional<mode_t> mode_ = std::nullopt;
   bool committed_ = false;
 };
 

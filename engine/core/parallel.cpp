@@ -5,15 +5,39 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <latch>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "core/address_space.h"
+
 namespace promin {
 
 unsigned core_count() {
   return std::max(1U, std::thread::hardware_concurrency());
+}
+
+bool can_start_threads(size_t count) {
+  std::latch end(1);
+  bool has_started = true;
+  {
+    std::vector<std::jthread> probes;
+    try {
+      while (probes.size() < count) probes.emplace_back([&] { end.wait(); });
+    } catch (const std::system_error&) {
+      has_started = false;
+    }
+    end.count_down();
+  }
+  return has_started;
+}
+
+Problem explain_no_threads() {
+  // The stack of a thread takes address space.
+  const char* cure = address_space_limit() ? "raise pids.max, ulimit -u or ulimit -v" : "raise pids.max or ulimit -u";
+  return {"the system gives no more threads", "", cure};
 }
 
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task) {

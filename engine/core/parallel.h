@@ -6,13 +6,22 @@
 #include <cstddef>
 #include <functional>
 
+#include "promin/error.h"
+
 namespace promin {
 
 /// The machine's number of cores, or 1 where it is not known.
 unsigned core_count();
 
+/// Whether the system gives so many more threads now.
+bool can_start_threads(size_t count);
+
+/// What is wrong where it does not.
+Problem explain_no_threads();
+
 /// Calls task(i) once for every i in [0, count) and returns when all calls have. The calls share up to `thread_count`
-/// threads (0: as many as the machine has cores) and start in the order of i. After an exception no further call
+/// threads (0: as many as the machine has cores) and start in the order of i; where the
+/// system gives fewer, those do it all. After an exception no further call
 /// starts, and the first one is rethrown here.
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task);
 

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/address_space.h"
 #include "core/parallel.h"
 #include "device/buffer.h"
 #include "device/instance.h"
@@ -193,16 +194,36 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
                      "choose one of: " + list_names(infos), Setting::kDevice});
 }
 
+[[noreturn]] void refuse_few_threads(const std::string& name) {
+  Problem problem = explain_no_threads();
+  problem.where = "for " + name;
+  throw DeviceError(problem);
+}
+
+/// Drivers of CPUs start their threads here. Where they get too few, they fail for a reason that they do not tell, or
+/// they say nothing and wait for them in the first dispatch without an end: who lacks one lacks another right after.
+vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, const vk::DeviceCreateInfo& info,
+                             const std::string& name) {
+  try {
+    vk::raii::Device device(physical, info);
+    if (!can_start_threads(1)) refuse_few_threads(name);
+    return device;
+  } catch (const vk::SystemError&) {
+    if (!can_start_threads(1)) refuse_few_threads(name);
+    throw;
+  }
+}
+
 }  // namespace
 
 void translate_vulkan_errors(const std::function<void()>& work) {
   try {
     work();
   } catch (const vk::OutOfDeviceMemoryError& error) {
-    throw RunError(
-        {"out of device memory", error.what(), "use a smaller scene or picture, or another device", Setting::kDevice});
+    throw RunError({"out of device memory", error.what(),
+                    cure_short_memory("use a smaller scene or picture, or another device"), Setting::kDevice});
   } catch (const vk::OutOfHostMemoryError& error) {
-    throw RunError({"out of host memory", error.what(), "use a smaller scene or picture"});
+    throw RunError({"out of host memory", error.what(), cure_short_memory("use a smaller scene or picture")});
   } catch (const vk::DeviceLostError& error) {
     throw RunError({"the device was lost", error.what(), "try again, or another device", Setting::kDevice});
   } catch (const vk::SystemError& error) {
@@ -246,8 +267,8 @@ Device::Device(const DeviceOptions& options)
     }
     if (options.presentation != nullptr) enabled_extensions_.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     enabled_features_ = pick_features(physical_.getFeatures(), options.features, info_.name);
-    device_ =
-        vk::raii::Device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_, &enabled_features_));
+    device_ = make_device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_, &enabled_features_),
+                          info_.name);
     queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));
@@ -310,6 +331,7 @@ DeviceHandle open_device(const std::optional<std::string>& selection) {
 }
 
 DeviceHandle open_device(const DeviceOptions& options) {
+  if (const auto problem = find_lack_of_address_space()) throw DeviceError(*problem);
   return DeviceHandle(new Device(options));
 }
 

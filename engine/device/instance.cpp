@@ -52,7 +52,9 @@ vk::raii::Context load_vulkan() {
   }
 }
 
-vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<const char*> extensions) {
+namespace {
+
+vk::raii::Instance try_make_instance(const vk::raii::Context& context, std::vector<const char*> extensions) {
   const std::string mode = validation_mode();
   std::vector<const char*> layers;
   vk::InstanceCreateFlags flags;
@@ -77,11 +79,19 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<c
   const vk::ValidationFeaturesEXT features(synchronization);
   vk::InstanceCreateInfo info(flags, &application, layers, extensions);
   if (mode == "sync") info.pNext = &features;
+  return {context, info};
+}
+
+}  // namespace
+
+vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<const char*> extensions) {
   try {
-    return {context, info};
+    return try_make_instance(context, std::move(extensions));
   } catch (const vk::IncompatibleDriverError&) {
     throw NoDriverError();
   } catch (const vk::SystemError& error) {
+    // A manifest that is no JSON is OutOfHostMemory to the loader.
+    if (find_manifest_fault()) throw NoDriverError();
     throw DeviceError({std::string("Vulkan does not start (") + error.what() + ")", "on this machine",
                        "install a Vulkan 1.1 driver such as mesa-vulkan-drivers"});
   }

@@ -37,9 +37,14 @@ void LoadReport::warn(const std::string& sentence) {
   if (said_.insert(sentence).second) warnings_.push_back({make_visible(sentence), "", 0});
 }
 
+void LoadReport::refuse(const Fault& fault) {
+  if (!refused_fault_) refused_fault_ = fault;
+  refuse(fault.what + (fault.value.empty() ? "" : " (" + fault.value + ")"), fault.place, fault.cure);
+}
+
 void LoadReport::repair(const Fault& fault) {
   if (!is_strict_) return warn(fault);
-  refuse(fault.what + (fault.value.empty() ? "" : " (" + fault.value + ")"), fault.place, fault.cure);
+  refuse(fault);
 }
 
 void LoadReport::warn(const Fault& fault) {

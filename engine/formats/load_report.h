@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -37,14 +38,18 @@ struct Fault {
 /// occurs.
 class LoadReport {
  public:
-  explicit LoadReport(std::filesystem::path file, bool is_strict = false)
-      : file_(std::move(file)), is_strict_(is_strict) {}
+  explicit LoadReport(std::filesystem::path file, bool is_strict = false, std::filesystem::path root = {})
+      : file_(std::move(file)), is_strict_(is_strict), root_(std::move(root)) {}
 
   const std::filesystem::path& file() const { return file_; }
+  /// LoadOptions::root.
+  const std::filesystem::path& root() const { return root_; }
 
   /// `place` is inside the file: a JSON path or a line; empty for the file as a whole. Control characters that come
   /// from the file are made visible as '?', so that each message stays on its line.
   void refuse(const std::string& what, const std::string& place, const std::string& cure);
+  /// Refuses a fault whose `repair` is not needed.
+  void refuse(const Fault& fault);
   void warn(const std::string& sentence);
   /// Warns as repair() does of what the format allows and the loader cannot show: no report refuses it.
   void warn(const Fault& fault);
@@ -59,6 +64,9 @@ class LoadReport {
   /// Is called for each file before it is read, or found missing.
   void add_source(const std::filesystem::path& file);
   const std::vector<SourceFile>& sources() const { return sources_; }
+
+  /// The first that was refused as a fault, if any was.
+  const std::optional<Fault>& refused_fault() const { return refused_fault_; }
 
   /// Throws InputError with all problems so far, if there are any.
   void throw_if_refused() const;
@@ -77,6 +85,8 @@ class LoadReport {
   std::filesystem::path file_;
   bool is_strict_;
   bool has_lost_geometry_ = false;
+  std::filesystem::path root_;
+  std::optional<Fault> refused_fault_;
   std::vector<Problem> problems_;
   size_t problem_count_ = 0;
   std::vector<Warning> warnings_;

@@ -116,21 +116,29 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
   const auto* const own = std::ranges::find_if(kFormats, has_ending);
   const bool is_right = own != std::end(kFormats) && own->load == format.load;
   if (kind.name.empty() || is_right) return;
-  throw InputError({"the file is " + kind.name + ", whatever its ending says", file.string(), kind.cure});
+  throw InputError({"the file is " + kind.name, file.string(), kind.cure});
 }
 
 /// A picture of nothing is taken for one of the scene: throws InputError where a mesh has nothing to draw, or a scene
-/// nothing of what it shows. One that shows nothing stays, with a warning.
+/// nothing of what it shows. A scene that shows nothing gets a warning.
 void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
   if (has_anything_to_draw(scene)) return;
+  refuse_wrong_ending(report.file(), format);
   const std::string what = "the scene holds nothing to draw";
   if (!format.is_mesh && !report.has_lost_geometry()) return scene.warnings.push_back(what);
   const std::string reason = scene.warnings.empty() ? "" : " (" + scene.warnings.front() + ")";
   throw InputError({what + reason, report.file().string(), "export it with triangles"});
 }
 
+void check_root(const std::filesystem::path& root) {
+  std::error_code error;
+  if (root.empty() || is_directory(root, error)) return;
+  throw UsageError({"the root of a scene's files is no folder", root.string(), "name a folder"});
+}
+
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
+  check_root(options.root);
   if (!options.material_variant.empty() && !format.has_variants) {
     throw UsageError({std::string("files that end in ") + format.ending + " have no variants of materials",
                       file.string(), "ask for none"});
@@ -158,7 +166,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
 }
 
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources) {
-  LoadReport report(file, options.is_strict);
+  LoadReport report(file, options.is_strict, options.root);
   report.add_source(file);
   try {
     Scene scene = load_by_format(file, options, report);

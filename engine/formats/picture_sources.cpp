@@ -31,16 +31,17 @@ void encode_light(std::span<uint32_t> texels) {
 constexpr uint64_t kHeadBytes = uint64_t{1} << 16;
 
 void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureBytes& read, uint64_t most_bytes) {
-  LoadReport attempt(report.file());
+  LoadReport attempt(report.file(), false, report.root());
   std::optional<std::vector<std::byte>> bytes;
   try {
     bytes = read(attempt, most_bytes);
     attempt.throw_if_refused();
   } catch (const InputError& error) {
-    source.problem = error.problems().front().what;
+    const Problem& problem = error.problems().front();
+    source.problem = attempt.refused_fault().value_or(Fault{.what = problem.what, .cure = problem.cure});
   }
   for (const SourceFile& file : attempt.sources()) report.add_source(file.file);
-  if (!source.problem.empty()) return;
+  if (source.problem) return;
   source.own = std::move(*bytes);
   source.file = source.own;
 }
@@ -54,37 +55,68 @@ bool tells_size(std::span<const std::byte> head) {
   }
 }
 
+/// What is decoded, though libraries complain; empty where they do not.
+std::string decode(PictureSource& source) {
+  TextureImage& image = *source.image;
+  if (!source.takes_texels) {
+    image.size = read_picture_size(source.file);
+    return "";
+  }
+  DecodedPicture picture = decode_picture(source.file);
+  image.size = picture.size;
+  image.texels = std::move(picture.texels);
+  if (image.use == ImageUse::kColor && holds_light(source.file)) encode_light(image.texels);
+  return picture.warning;
+}
+
+/// Materials that share a picture for several uses have a source for each.
+void report_problem(const PictureSource& source, LoadReport& report) {
+  Fault fault = *source.problem;
+  if (!fault.value.starts_with(source.title)) fault.place = "image " + source.title;
+  fault.repair = "materials are drawn without it" + (fault.cure.empty() ? "" : ": " + fault.cure);
+  source.is_file_at_fault ? report.repair(fault) : report.warn(fault);
+}
+
+void report_damage(const PictureSource& source, const std::string& warning, LoadReport& report) {
+  report.repair({.what = "a picture is damaged",
+                 .value = warning,
+                 .place = "image " + source.title,
+                 .cure = "write or export it again",
+                 .repair = "it is shown as it is decoded"});
+}
+
 }  // namespace
+
+std::string describe_problem(const PictureSource& source) {
+  const Fault& fault = *source.problem;
+  return fault.what + (fault.value.empty() ? "" : " (" + fault.value + ")");
+}
 
 void read_picture(PictureSource& source, LoadReport& report, const ReadPictureBytes& read) {
   if (!source.takes_texels) {
     take_bytes(source, report, read, kHeadBytes);
     const bool is_whole = source.file.size() < kHeadBytes;
-    if (!source.problem.empty() || is_whole || tells_size(source.file)) return;
+    if (source.problem || is_whole || tells_size(source.file)) return;
   }
   take_bytes(source, report, read, std::numeric_limits<uint64_t>::max());
 }
 
 void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
+  std::vector<std::string> warnings(sources.size());
   for_each_index(sources.size(), 0, [&](size_t i) {
     PictureSource& source = sources[i];
-    if (!source.problem.empty()) return;
+    if (source.problem) return;
     try {
-      if (source.takes_texels) {
-        DecodedPicture picture = decode_picture(source.file);
-        source.image->size = picture.size;
-        source.image->texels = std::move(picture.texels);
-        if (source.image->use == ImageUse::kColor && holds_light(source.file)) encode_light(source.image->texels);
-      } else {
-        source.image->size = read_picture_size(source.file);
-      }
+      warnings[i] = decode(source);
     } catch (const PictureError& error) {
-      source.problem = error.what();
+      source.problem = Fault{.what = std::string("a picture cannot be used: ") + error.what()};
+      source.is_file_at_fault = error.is_file_at_fault();
     }
     source.own = {};
   });
-  for (const PictureSource& source : sources) {
-    if (!source.problem.empty()) report.warn("image " + source.title + " is ignored: " + source.problem);
+  for (size_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].problem) report_problem(sources[i], report);
+    if (!warnings[i].empty()) report_damage(sources[i], warnings[i], report);
   }
 }
 

@@ -27,9 +27,14 @@ struct PictureSource {
   std::vector<std::byte> own = {};
   /// What messages call it.
   std::string title = {};
-  /// Why it cannot be used; empty where it can.
-  std::string problem = {};
+  /// Why it cannot be used; nothing where it can.
+  std::optional<Fault> problem = std::nullopt;
+  /// Whether the file is broken or missing. It is not where its format allows what promin does not read.
+  bool is_file_at_fault = true;
 };
+
+/// The problem in one line.
+std::string describe_problem(const PictureSource& source);
 
 /// Gives the first `most_bytes` of a picture's file, or all where it has no more; a few more are no harm. nullopt once
 /// the report holds the reason.
@@ -40,8 +45,9 @@ using ReadPictureBytes = std::function<std::optional<std::vector<std::byte>>(Loa
 /// than the source's problem: the scene can be shown without.
 void read_picture(PictureSource& source, LoadReport& report, const ReadPictureBytes& read);
 
-/// Decodes all pictures on all cores, or reads the sizes of those that take no texels. One for which that fails is
-/// warned about, and its image stays without.
+/// Decodes all pictures on all cores, or reads the sizes of those that take no texels. Those for which that fails, and
+/// those that are damaged but decoded, are warned about once for each kind; the images of the former stay without. A
+/// strict report refuses those whose files are at fault.
 void decode_pictures(std::span<PictureSource> sources, LoadReport& report);
 
 }  // namespace promin

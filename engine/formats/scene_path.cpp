@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
+#include <vector>
+
+#include "core/suggest.h"
 
 namespace promin {
 namespace fs = std::filesystem;
@@ -17,48 +21,96 @@ bool has_scheme(const std::string& name) {
          });
 }
 
-bool leaves_folder(const fs::path& folder, const fs::path& file) {
+/// The path that a name means: both slashes divide it, and dot segments are removed first (RFC 3986, 5.2.4).
+fs::path path_of(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return fs::path(name).lexically_normal();
+}
+
+/// Whether a file lies in a folder, links resolved.
+bool lies_in(const fs::path& folder, const fs::path& file) {
   std::error_code error;
-  const fs::path real_folder = fs::weakly_canonical(folder, error);
-  if (error) return true;
+  const fs::path real_folder = fs::canonical(folder, error);
+  if (error) return false;
   const fs::path real_file = fs::weakly_canonical(file, error);
-  if (error) return true;
-  return std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end()).first !=
+  if (error) return false;
+  return std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end()).first ==
          real_folder.end();
+}
+
+std::vector<std::string> list_names(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  // A folder has them in any order.
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The path in a folder that is nearest to one that does not exist there; empty where none is near.
+fs::path nearest_path(const fs::path& folder, const fs::path& missing) {
+  fs::path nearest;
+  for (const fs::path& part : missing) {
+    std::error_code error;
+    if (fs::exists(folder / nearest / part, error)) {
+      nearest /= part;
+      continue;
+    }
+    const std::vector<std::string> names = list_names(folder / nearest);
+    const std::string_view name =
+        nearest_name(part.string(), std::vector<std::string_view>(names.begin(), names.end()));
+    if (name.empty()) return {};
+    nearest /= name;
+  }
+  return nearest;
+}
+
+std::string suggest_path(const fs::path& folder, const fs::path& missing) {
+  const fs::path nearest = nearest_path(folder, missing);
+  return nearest.empty() ? "" : ", did you mean " + quote(nearest.string()) + "?";
+}
+
+constexpr const char* kStayInside =
+    "keep the file in the scene's folder, or name a folder that holds it as the root (--root DIR)";
+
+/// Why a name is the path of no file that a scene may name; empty where it may be one.
+std::string find_fault(const std::string& name, const fs::path& path, const fs::path& folder, const fs::path& root) {
+  if (has_scheme(name)) return "a file's name is no relative path";
+  if (path.is_absolute() && root.empty()) return "a file's name is an absolute path";
+  const fs::path file = folder / path;
+  if (lies_in(folder, file) || (!root.empty() && lies_in(root, file))) return "";
+  const bool is_through_link = !path.is_absolute() && *path.begin() != fs::path("..");
+  return std::string("a file's name leaves the scene's folder") + (root.empty() ? "" : " and the root") +
+         (is_through_link ? " through a link" : "");
 }
 
 }  // namespace
 
 std::optional<fs::path> find_beside_scene(const std::string& name, const std::string& place, bool must_exist,
                                           LoadReport& report) {
-  const auto refuse = [&](const std::string& what, const std::string& cure) {
-    report.refuse(what, place, cure);
+  const auto refuse = [&](const std::string& what, const std::string& cure, const std::string& hint = "") {
+    report.refuse({.what = what, .value = quote(name) + hint, .place = place, .cure = cure});
     return std::nullopt;
   };
-  const std::string quoted = quote(name);
-  const std::string keep_inside = "keep the file in the scene's folder and name it relative to the scene";
   if (name.empty()) return refuse("a file name is empty", "name a file");
   if (name.find('\0') != std::string::npos) return refuse("a file name holds a zero byte", "name a file");
-  if (has_scheme(name)) return refuse(quoted + " is no relative path", keep_inside);
-  if (name.front() == '/' || name.front() == '\\') return refuse(quoted + " is an absolute path", keep_inside);
 
-  std::string slashed = name;
-  std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  const fs::path relative(slashed);
-  if (std::find(relative.begin(), relative.end(), fs::path("..")) != relative.end()) {
-    return refuse(quoted + " leaves the scene's folder", keep_inside);
+  const fs::path path = path_of(name);
+  const fs::path folder = report.file().has_parent_path() ? report.file().parent_path() : fs::path(".");
+  if (const std::string fault = find_fault(name, path, folder, report.root()); !fault.empty()) {
+    return refuse(fault, kStayInside);
   }
 
-  const fs::path folder = report.file().has_parent_path() ? report.file().parent_path() : fs::path(".");
-  const fs::path file = folder / relative;
-  if (leaves_folder(folder, file)) return refuse(quoted + " leaves the scene's folder through a link", keep_inside);
+  const fs::path file = folder / path;
   std::error_code error;
   report.add_source(file);
   const fs::file_status status = fs::status(file, error);
-  if (fs::is_directory(status)) return refuse(quoted + " is a folder", "name a file");
-  if (fs::exists(status) && !fs::is_regular_file(status)) return refuse(quoted + " is no regular file", "name a file");
+  if (fs::is_directory(status)) return refuse("a file is a folder", "name a file");
+  if (fs::exists(status) && !fs::is_regular_file(status)) return refuse("a file is no regular file", "name a file");
   if (!fs::exists(status)) {
-    if (must_exist) return refuse(quoted + " does not exist", "put the file beside the scene");
+    if (must_exist) return refuse("a file does not exist", "put it beside the scene", suggest_path(folder, path));
     return std::nullopt;
   }
   return file;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 namespace promin {
@@ -44,10 +45,19 @@ std::string_view without_zero_bytes_at_end(std::string_view text) {
 
 bool TextLines::advance() {
   if (rest_.empty()) return false;
-  const size_t end = rest_.find('\n');
-  line_ = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  const char* const begin = rest_.data();
+  const char* const end = begin + rest_.size();
+  // Kept from line to line, so that a file whose lines end in \r alone is not searched to its end for each.
+  if (line_feed_ == nullptr || line_feed_ < begin) {
+    const void* const found = std::memchr(begin, '\n', rest_.size());
+    line_feed_ = found == nullptr ? end : static_cast<const char*>(found);
+  }
+  const void* const found = std::memchr(begin, '\r', static_cast<size_t>(line_feed_ - begin));
+  const char* const stop = found == nullptr ? line_feed_ : static_cast<const char*>(found);
+  line_ = std::string_view(begin, static_cast<size_t>(stop - begin));
+  const char* next = stop == end ? end : stop + 1;
+  if (stop != line_feed_ && next == line_feed_ && next != end) ++next;
+  rest_.remove_prefix(static_cast<size_t>(next - begin));
   ++number_;
   return true;
 }

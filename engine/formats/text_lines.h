@@ -15,7 +15,7 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// A text without the zero bytes that some programs write behind it.
 std::string_view without_zero_bytes_at_end(std::string_view text);
 
-/// Walks the lines of a text, whether they end in \n or \r\n, without the byte order mark of a file.
+/// Walks the lines of a text, whether they end in \n, \r\n or \r, without the byte order mark of a file.
 class TextLines {
  public:
   /// `lines_before` of the file come before the text.
@@ -35,6 +35,8 @@ class TextLines {
  private:
   std::string_view rest_;
   std::string_view line_;
+  /// The next \n from rest_ on, or the end of the text; stale where it lies before rest_.
+  const char* line_feed_ = nullptr;
   uint64_t number_;
 };
 

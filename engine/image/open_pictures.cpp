@@ -4,15 +4,19 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <sys/auxv.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "core/address_space.h"
+#include "core/parallel.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -22,17 +26,24 @@ namespace {
 
 constexpr const char* kFileName = "libpromin_pictures.so";
 constexpr const char* kListEnding = ".libraries";
-constexpr const char* kProgram = "/proc/self/exe";
 constexpr const char* kCure = "install promin whole, or name the plugin's folder in PROMIN_PLUGINS";
+
+/// The file of the program: as the system tells, else as it was called.
+fs::path find_program() {
+  const fs::path link = "/proc/self/exe";
+  std::error_code error;
+  const auto* called = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  return fs::exists(link, error) || called == nullptr ? link : fs::path(called);
+}
 
 /// The file that holds this code: a shared library, or the program itself.
 fs::path find_own_file() {
   Dl_info info{};
   link_map* map = nullptr;
-  const bool is_found = dladdr1(reinterpret_cast<const void*>(&find_pictures), &info, reinterpret_cast<void**>(&map),
+  const bool is_found = dladdr1(reinterpret_cast<const void*>(&open_pictures), &info, reinterpret_cast<void**>(&map),
                                 RTLD_DL_LINKMAP) != 0;
   // The loader has an empty name for the program, and dladdr only knows the name that it was called by.
-  return is_found && map != nullptr && *map->l_name != '\0' ? map->l_name : kProgram;
+  return is_found && map != nullptr && *map->l_name != '\0' ? fs::path(map->l_name) : find_program();
 }
 
 /// Where the loader looks for libraries of the program: folders linked into it, of the environment and of the system.
@@ -55,7 +66,7 @@ std::vector<fs::path> list_folders() {
     const fs::path normal = folder.lexically_normal();
     if (std::find(folders.begin(), folders.end(), normal) == folders.end()) folders.push_back(normal);
   };
-  for (const fs::path& file : {find_own_file(), fs::path(kProgram)}) {
+  for (const fs::path& file : {find_own_file(), find_program()}) {
     std::error_code error;
     const fs::path folder = fs::canonical(file, error).parent_path();
     if (error) continue;
@@ -91,8 +102,7 @@ template <typename Function>
 void find_function(void* library, const char* name, const fs::path& file, Function& function) {
   function = reinterpret_cast<Function>(dlsym(library, name));
   if (function == nullptr) {
-    throw RunError(
-        {"the plugin that reads and writes pictures is damaged (" + take_loader_error() + ")", file.string(), kCure});
+    throw RunError({"the plugin that reads pictures is damaged (" + take_loader_error() + ")", file.string(), kCure});
   }
 }
 
@@ -109,26 +119,36 @@ void open_libraries_of(const fs::path& plugin) {
   for (std::string name; std::getline(list, name);) dlopen(name.c_str(), kHow);
 }
 
+/// One of OpenImageIO's libraries starts four threads before anyone calls it, and ends the process where it cannot.
+constexpr size_t kThreads = 6;
+
+fs::path find_plugin() {
+  const std::vector<fs::path> folders = list_folders();
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    if (fs::is_regular_file(folder / kFileName, error)) return folder / kFileName;
+  }
+  throw RunError({std::string("the plugin that reads pictures, ") + kFileName + ", is missing",
+                  "sought in " + list_names(folders), kCure});
+}
+
 PicturesPlugin load_plugin() {
-  const fs::path file = find_pictures();
+  const fs::path file = find_plugin();
+  if (!can_start_threads(kThreads)) throw RunError(explain_no_threads());
   open_libraries_of(file);
   void* library = dlopen(file.c_str(), kHow);
   if (library == nullptr) {
-    throw RunError({"cannot load the plugin that reads and writes pictures (" + take_loader_error() + ")",
-                    file.string(), "install OpenImageIO, for example with the package libopenimageio-dev"});
+    const char* cure = "install OpenImageIO, for example with the package libopenimageio-dev";
+    throw RunError({"cannot load the plugin that reads pictures (" + take_loader_error() + ")", file.string(),
+                    cure_short_memory(cure)});
   }
   PicturesPlugin plugin;
   find_function(library, "promin_pictures_interface", file, plugin.interface);
   if (const uint32_t version = plugin.interface(); version != PROMIN_PICTURES_INTERFACE) {
-    throw RunError(
-        {"the plugin that reads and writes pictures belongs to another version of promin (its interface is " +
-             std::to_string(version) + ", not " + std::to_string(PROMIN_PICTURES_INTERFACE) + ")",
-         file.string(), kCure});
+    throw RunError({"the plugin that reads pictures belongs to another version of promin (its interface is " +
+                        std::to_string(version) + ", not " + std::to_string(PROMIN_PICTURES_INTERFACE) + ")",
+                    file.string(), kCure});
   }
-  find_function(library, "promin_pictures_begin", file, plugin.begin);
-  find_function(library, "promin_pictures_write_rows", file, plugin.write_rows);
-  find_function(library, "promin_pictures_finish", file, plugin.finish);
-  find_function(library, "promin_pictures_end", file, plugin.end);
   find_function(library, "promin_pictures_open", file, plugin.open);
   find_function(library, "promin_pictures_open_bytes", file, plugin.open_bytes);
   find_function(library, "promin_pictures_read_rgb", file, plugin.read_rgb);
@@ -140,16 +160,6 @@ PicturesPlugin load_plugin() {
 }
 
 }  // namespace
-
-fs::path find_pictures() {
-  const std::vector<fs::path> folders = list_folders();
-  for (const fs::path& folder : folders) {
-    std::error_code error;
-    if (fs::is_regular_file(folder / kFileName, error)) return folder / kFileName;
-  }
-  throw RunError({std::string("the plugin that reads and writes pictures, ") + kFileName + ", is missing",
-                  "sought in " + list_names(folders), kCure});
-}
 
 const PicturesPlugin& open_pictures() {
   static const PicturesPlugin plugin = load_plugin();

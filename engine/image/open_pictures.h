@@ -2,19 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-
 #include "image/plugin/pictures.h"
 
 namespace promin {
 
-/// The plugin that reads and writes picture files, by the functions of image/plugin/pictures.h.
+/// The plugin that reads picture files, by the functions of image/plugin/pictures.h.
 struct PicturesPlugin {
   decltype(&promin_pictures_interface) interface = nullptr;
-  decltype(&promin_pictures_begin) begin = nullptr;
-  decltype(&promin_pictures_write_rows) write_rows = nullptr;
-  decltype(&promin_pictures_finish) finish = nullptr;
-  decltype(&promin_pictures_end) end = nullptr;
   decltype(&promin_pictures_open) open = nullptr;
   decltype(&promin_pictures_open_bytes) open_bytes = nullptr;
   decltype(&promin_pictures_read_rgb) read_rgb = nullptr;
@@ -24,13 +18,10 @@ struct PicturesPlugin {
   decltype(&promin_pictures_close) close = nullptr;
 };
 
-/// Where the plugin lies: in the folder that the environment variable PROMIN_PLUGINS names or, where it is not set,
-/// beside the library or program that holds this code, as CMake builds and installs it. Quick: nothing is opened.
-/// Throws RunError if there is none.
-std::filesystem::path find_pictures();
-
 /// Opens the plugin where no call before has, which takes a fifth of a second, and keeps it to the end of the process.
-/// Any thread may call it. Throws RunError if it is missing, cannot be loaded or has another interface.
+/// Any thread may call it. It lies in the folder that the environment variable PROMIN_PLUGINS names or, where it is not
+/// set, beside the library or program that holds this code, as CMake builds and installs it. Throws RunError if it is
+/// missing, cannot be loaded or has another interface.
 const PicturesPlugin& open_pictures();
 
 }  // namespace promin

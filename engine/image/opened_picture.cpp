@@ -30,7 +30,7 @@ Image OpenedPicture::read(const uvec2& most) {
   }
   check_flat(info_.is_flat != 0, info_.width, info_.height);
   if (info_.first_rgb_channel < 0) {
-    throw InputError({"the picture has no channels R, G, B", name_, "convert it to RGB"});
+    throw InputError({"the picture has neither channels R, G, B nor a luminance Y", name_, "convert it to RGB"});
   }
   Image image;
   image.size = uvec2(info_.width, info_.height);

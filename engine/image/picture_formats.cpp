@@ -11,10 +11,14 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-constexpr std::array<PictureFormat, 11> kFormats = {{
+constexpr std::array<PictureFormat, 15> kFormats = {{
     {"png", "\x89PNG\r\n\x1A\n"sv},
     {"jpeg", "\xFF\xD8\xFF"sv},
     {"webp", "RIFF????WEBP"sv},
+    {"avif", "????ftypavif"sv},
+    {"avif", "????ftypavis"sv},
+    {"avif", "????ftypmif1"sv},
+    {"ktx2", "\xABKTX 20\xBB\r\n\x1A\n"sv},
     {"bmp", "BM????????????\x0C"sv, 18, 20, 2},
     {"bmp", "BM"sv, 18, 22, 4},
     {"dds", "DDS "sv, 16, 12, 4},

@@ -13,7 +13,7 @@ namespace promin {
 
 /// A format that the plugin for pictures reads from memory.
 struct PictureFormat {
-  /// OpenImageIO's name of it.
+  /// OpenImageIO's name of it, or one of image/plugin/own_formats.h.
   const char* name = "";
   /// What files begin with, '?' for any byte; empty where only is_targa tells.
   std::string_view magic;
@@ -24,7 +24,7 @@ struct PictureFormat {
   size_t size_bytes = 0;
 };
 
-/// The format of a file: PNG, JPEG, WebP, BMP, DDS, GIF, OpenEXR or Radiance by their first bytes, else Targa, which
+/// The format of a file: PNG, JPEG, WebP, AVIF, KTX 2.0, BMP, DDS, GIF, OpenEXR or Radiance by their first bytes, else Targa, which
 /// has none, by whether its header can be one. Null where it is none of these.
 const PictureFormat* find_picture_format(std::span<const std::byte> file);
 

@@ -42,6 +42,17 @@ bool is_of_phong(const Scene& scene) {
   return has_any<Phong>(scene.materials) && !has_any<MetallicRoughness>(scene.materials);
 }
 
+/// Whether the scene shows nothing but colours that no light changes.
+bool is_all_unlit(const Scene& scene) {
+  bool is_any_unlit = false;
+  for (const Object& object : scene.objects) {
+    if (object.geometry == Object::kNoGeometry) continue;
+    if (!std::holds_alternative<Unlit>(scene.materials[object.material].model)) return false;
+    is_any_unlit = true;
+  }
+  return is_any_unlit;
+}
+
 /// The power that a light of one lux needs for materials of the scene's models (docs/model.md, "Light").
 double power_per_lux(const Scene& scene) {
   return is_of_phong(scene) ? 1.0 / kPi : 1.0;
@@ -152,7 +163,7 @@ float exposure_of(const Scene& scene) {
 }
 
 DisplayTransform display_of(const Scene& scene, LightChoice choice) {
-  if (scene.is_classic || (choice == LightChoice::kHeadlight && is_of_phong(scene))) return {};
+  if (scene.is_classic || (choice == LightChoice::kHeadlight && is_of_phong(scene)) || is_all_unlit(scene)) return {};
   return {exposure_of(scene), ToneMapping::kNeutral};
 }
 

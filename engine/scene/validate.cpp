@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <sstream>
 #include <string>
 
 #include "core/rounding.h"
@@ -36,6 +38,18 @@ std::string place_of(const char* array, size_t index) {
 bool is_color(const vec3& color) {
   const auto is_power = [](float value) { return value >= 0.0F && value <= kMaxPower; };
   return is_power(color.r) && is_power(color.g) && is_power(color.b);
+}
+
+/// The first of a pixel's numbers that makes it no colour.
+std::string describe_wrong_pixel(const vec3& pixel, const uvec2& place) {
+  int channel = 0;
+  while (channel < 2 && pixel[channel] >= 0.0F && pixel[channel] <= kMaxPower) ++channel;
+  const float value = pixel[channel];
+  const char* what = std::isnan(value) ? "not a number" : value < 0.0F ? "negative" : "beyond 1e15";
+  std::ostringstream sentence;
+  sentence << "a pixel of the panorama is " << what << " ("
+           << "RGB"[channel] << " is " << value << " in pixel " << place.x << ", " << place.y << ")";
+  return sentence.str();
 }
 
 bool is_in_range(const dvec3& p) {
@@ -226,8 +240,10 @@ class Validation {
                "the panorama is larger than 16384x8192", place + ".size", "make it smaller")) {
       return;
     }
-    check(std::ranges::all_of(image.pixels, is_color),
-          "a pixel of the panorama is negative, beyond 1e15 or not a number", place + ".pixels",
+    const auto wrong = std::ranges::find_if_not(image.pixels, is_color);
+    if (wrong == image.pixels.end()) return;
+    const auto index = static_cast<size_t>(wrong - image.pixels.begin());
+    check(false, describe_wrong_pixel(*wrong, {index % image.size.x, index / image.size.x}), place + ".pixels",
           "use numbers from 0 to 1e15");
   }
 

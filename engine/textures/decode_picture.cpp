@@ -27,7 +27,7 @@ static_assert(std::endian::native == std::endian::little, "texels have red in th
 void check_size(uint64_t width, uint64_t height) {
   if (width == 0 || height == 0) throw PictureError("it has no pixels");
   if (width <= kMaxTextureSide && height <= kMaxTextureSide && width * height <= kMaxTextureTexels) return;
-  throw PictureError("its size of " + std::to_string(width) + "x" + std::to_string(height) + " is too large");
+  throw PictureError("its size of " + std::to_string(width) + "x" + std::to_string(height) + " is too large", false);
 }
 
 /// A PNG file on its way through libpng, which returns from errors by longjmp: nothing with a destructor may be made
@@ -107,24 +107,31 @@ class JpegReader {
     int height = 0;
     int subsampling = 0;
     int colors = 0;
-    if (tjDecompressHeader3(handle_.get(), data_, bytes_, &width, &height, &subsampling, &colors) != 0) throw_error();
-    if (colors == TJCS_CMYK || colors == TJCS_YCCK) throw PictureError("its colours are CMYK");
+    check(tjDecompressHeader3(handle_.get(), data_, bytes_, &width, &height, &subsampling, &colors));
+    if (colors == TJCS_CMYK || colors == TJCS_YCCK) throw PictureError("its colours are CMYK", false);
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
   }
 
   void read_texels(const uvec2& size, uint32_t* texels) {
-    const int result = tjDecompress2(handle_.get(), data_, bytes_, reinterpret_cast<unsigned char*>(texels),
-                                     static_cast<int>(size.x), 0, static_cast<int>(size.y), TJPF_RGBA,
-                                     TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS);
-    if (result != 0) throw_error();
+    check(tjDecompress2(handle_.get(), data_, bytes_, reinterpret_cast<unsigned char*>(texels),
+                        static_cast<int>(size.x), 0, static_cast<int>(size.y), TJPF_RGBA,
+                        TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
   }
 
+  const std::string& warning() const { return warning_; }
+
  private:
-  [[noreturn]] void throw_error() { throw PictureError(tjGetErrorStr2(handle_.get())); }
+  /// A result of a library's call: after a warning all is decoded, as far as there is something.
+  void check(int result) {
+    if (result == 0) return;
+    if (tjGetErrorCode(handle_.get()) != TJERR_WARNING) throw PictureError(tjGetErrorStr2(handle_.get()));
+    warning_ = tjGetErrorStr2(handle_.get());
+  }
 
   std::unique_ptr<void, int (*)(tjhandle)> handle_;
   const unsigned char* data_;
   unsigned long bytes_;
+  std::string warning_;
 };
 
 /// A file of any other format that the plugin for pictures reads.
@@ -140,7 +147,7 @@ class PluginReader {
     ProminPicturesReader* opened = nullptr;
     check(plugin_.open_bytes(file_.data(), file_.size(), format_.name, &opened, &info, &message_));
     reader_.reset(opened);
-    if (info.is_flat == 0) throw PictureError("it is not a flat picture");
+    if (info.is_flat == 0) throw PictureError("it is not a flat picture", false);
     check_size(info.width, info.height);
     return {static_cast<uint32_t>(info.width), static_cast<uint32_t>(info.height)};
   }
@@ -154,7 +161,7 @@ class PluginReader {
     try {
       return open_pictures();
     } catch (const RunError& error) {
-      throw PictureError(error.problems().front().what);
+      throw PictureError(error.problems().front().what, false);
     }
   }
   void check(int status) {
@@ -205,6 +212,7 @@ DecodedPicture decode_picture(std::span<const std::byte> file) {
     picture.size = read_checked_header(reader);
     picture.texels.resize(uint64_t{picture.size.x} * picture.size.y);
     reader.read_texels(picture.size, picture.texels.data());
+    if constexpr (requires { reader.warning(); }) picture.warning = reader.warning();
     return picture;
   });
 }

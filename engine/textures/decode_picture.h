@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "promin/math.h"
@@ -15,7 +16,14 @@ namespace promin {
 /// Why a picture is no use as a texture, in a few words.
 class PictureError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit PictureError(const std::string& why, bool is_file_at_fault = true)
+      : std::runtime_error(why), is_file_at_fault_(is_file_at_fault) {}
+
+  /// Whether the file is broken. False for what its format allows and promin does not read.
+  bool is_file_at_fault() const { return is_file_at_fault_; }
+
+ private:
+  bool is_file_at_fault_;
 };
 
 /// A picture of 8 bits a channel.
@@ -23,6 +31,8 @@ struct DecodedPicture {
   uvec2 size{0};
   /// As TextureImage::texels.
   std::vector<uint32_t> texels;
+  /// What the library complains about while it decodes a damaged file; empty where it does not.
+  std::string warning = {};
 };
 
 /// The size of a picture, whose first bytes tell its format: one of image/picture_formats.h; for any but PNG and
@@ -31,8 +41,8 @@ struct DecodedPicture {
 uvec2 read_picture_size(std::span<const std::byte> file);
 
 /// The texels of such a file: grey ones in three channels, without alpha 1, numbers of more bits rounded to 8, what is
-/// beyond 0...1 clamped. Profiles and gamma of the file are ignored, as glTF 2.0, section 3.8.3, asks for. Throws
-/// PictureError, before it takes memory for a picture that is too large.
+/// beyond 0...1 clamped. What is missing of a JPEG that ends early is grey. Profiles and gamma of the file are ignored,
+/// as glTF 2.0, section 3.8.3, asks for. Throws PictureError, before it takes memory for a picture that is too large.
 DecodedPicture decode_picture(std::span<const std::byte> file);
 
 /// Most texels of an image: 512 MiB.

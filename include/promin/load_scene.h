@@ -16,6 +16,9 @@ struct LoadOptions {
   /// does not know (glTF 2.0, section 3.12). Otherwise geometry that can be drawn is drawn: a fault of what only
   /// colours, shades, views or lights it costs one warning (docs/usage.md, "What is read").
   bool is_strict = false;
+  /// A folder besides the scene's own in which files may lie that the scene names, links resolved; empty: none. It
+  /// widens what a trusted scene may read: files whose links lead into a store, textures in "../textures".
+  std::filesystem::path root = {};
   /// The variant of materials that is shown (KHR_materials_variants), one of Scene::variants; empty: the materials that
   /// hold without any.
   std::string material_variant = {};
@@ -27,8 +30,8 @@ struct LoadOptions {
 
 /// Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. The scene comes back valid (promin/validate.h).
 /// A scene without lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem
-/// found, each with place and cure, and UsageError where it has no such variant of materials; warnings lie in
-/// Scene::warnings. Any thread may call it.
+/// found, each with place and cure, and UsageError where it has no such variant of materials or the root is no folder;
+/// warnings lie in Scene::warnings. Any thread may call it.
 PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace promin

@@ -46,10 +46,11 @@ dmat4 read_matrix(const Matrix& matrix) {
   return result;
 }
 
-Scene load(const std::filesystem::path& file, bool is_strict, const std::string& variant) {
+Scene load(const std::filesystem::path& file, bool is_strict, const std::string& variant,
+           const std::filesystem::path& root) {
   Scene scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
-    scene = load_scene(file, {.is_strict = is_strict, .material_variant = variant});
+    scene = load_scene(file, {.is_strict = is_strict, .root = root, .material_variant = variant});
   });
   return scene;
 }
@@ -120,7 +121,8 @@ nb::list find_problems(const Scene& scene) {
 void bind_scene(nb::module_& module) {
   nb::class_<Scene>(module, "Scene")
       .def(nb::init<>())
-      .def_static("load", &load, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"))
+      .def_static("load", &load, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"),
+                  nb::arg("root"))
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions").noconvert(), nb::arg("triangles").noconvert(),
            nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("material"),
            nb::arg("matrix").noconvert())

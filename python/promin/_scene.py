@@ -42,6 +42,7 @@ class _File:
     sha256: str
     is_strict: bool
     variant: str
+    root: str
 
 
 @dataclass(frozen=True)
@@ -117,15 +118,24 @@ class Scene:
         self._make_private()
 
     @staticmethod
-    def load(path: str | os.PathLike[str], *, strict: bool = False, variant: str = "") -> Scene:
+    def load(
+        path: str | os.PathLike[str],
+        *,
+        strict: bool = False,
+        variant: str = "",
+        root: str | os.PathLike[str] | None = None,
+    ) -> Scene:
         """Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a file for anything
         that its format forbids, and for required extensions of glTF that are not known; otherwise geometry that can be
         drawn is drawn, and `warnings` lists what was repaired. variant: the one of the file's `variants` that is shown.
-        Raises InputError with every problem of the file, UsageError where it has no such variant."""
+        root: a folder besides the scene's own in which the files may lie that it names, links resolved. Raises
+        InputError with every problem of the file, UsageError where it has no such variant or root is no
+        folder."""
         scene = Scene(center=(0.0, 0.0, 0.0))
         file = Path(os.fsdecode(path))
-        base = _promin.Scene.load(str(file), bool(strict), str(variant))
-        scene._file = _File(os.path.abspath(file), _hash(file), bool(strict), str(variant))
+        folder = "" if root is None else os.path.abspath(os.fsdecode(root))
+        base = _promin.Scene.load(str(file), bool(strict), str(variant), folder)
+        scene._file = _File(os.path.abspath(file), _hash(file), bool(strict), str(variant), folder)
         scene._base = base
         return scene
 
@@ -409,7 +419,7 @@ class Scene:
                 file = Path(self._file.path)
                 if _hash(file) != self._file.sha256:
                     raise InputError(f"the scene is not what it was when it was pickled, {file}; load it anew")
-                self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant)
+                self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
             return self._base
 
     def _base_material_count(self) -> int:

@@ -176,6 +176,18 @@ def test_long_values_are_cut_between_characters(renderer: promin.Renderer) -> No
             renderer.render(promin.View(crop=" " * spaces + "ü" * 100))
 
 
+def test_the_root_widens_what_a_scene_may_name(tmp_path: Path) -> None:
+    (tmp_path / "models").mkdir()
+    (tmp_path / "a.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    scene = tmp_path / "models" / "a.obj"
+    scene.write_text("mtllib ../a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")
+    loaded = promin.Scene.load(scene, root=tmp_path)
+    for each in (loaded, pickle.loads(pickle.dumps(loaded))):
+        assert [material.name for material in each.materials] == ["red"]
+    with pytest.raises(promin.UsageError, match="is no folder"):
+        promin.Scene.load(scene, root=tmp_path / "none")
+
+
 def test_text_that_is_not_utf8(tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.obj"
     wrong.write_bytes(b"v 0 0 0\nf 1 2 \xe9\xe9\n")

@@ -455,6 +455,18 @@ TEST_F(CliTest, VariantsAreChosenByName) {
                  "files that end in .obj have no variants of materials");
 }
 
+TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
+  std::filesystem::create_directories(folder() / "models");
+  std::string text = square_with("\"indices\": 1", R"("indices": 1, "material": 0)");
+  text.insert(text.rfind('}'), R"(, "materials": [{"normalTexture": {"index": 0}}], "textures": [{"source": 0}],
+      "images": [{"uri": "../pictures/none.png"}])");
+  write("models/square.gltf", text);
+  EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leaves the scene's folder"));
+  EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a file does not exist"));
+  expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "is no folder, none");
+  expect_failure(run({"info", "models/square.gltf", "--strict"}), 3, "--root DIR");
+}
+
 TEST_F(CliTest, InfoTellsTexturesBySize) {
   const std::string pixel =
       "data:image/"
@@ -467,7 +479,7 @@ TEST_F(CliTest, InfoTellsTexturesBySize) {
   const ProcessResult info = run({"info", "pixel.gltf"});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, ContainsRegex("textures +2 of 2 images \\(1 of 1x1, 1 absent\\), 0.000 MB on the device\n"));
-  EXPECT_THAT(info.out, HasSubstr("image images[1] is ignored: "));
+  EXPECT_THAT(info.out, HasSubstr("a file does not exist (\"none.png\"), image images[1]; "));
 }
 
 TEST_F(CliTest, InfoSaysWhatIsAssumed) {

@@ -21,7 +21,8 @@ std::vector<std::string> arguments_of_files(CLI::App& program, CLI::App& command
   std::vector<std::string> words = {"promin", command.get_name()};
   for (const CLI::Option* option : command.get_options()) {
     const bool is_file = option->get_positional() || option->get_type_name().find("FILE") != std::string::npos ||
-                         option->get_type_name().find(".npy") != std::string::npos;
+                         option->get_type_name().find(".npy") != std::string::npos ||
+                         option->get_type_name().find("DIR") != std::string::npos;
     if (!is_file) continue;
     if (!option->get_positional()) words.push_back("--" + option->get_lnames().front());
     words.emplace_back("here");
@@ -49,9 +50,9 @@ TEST(JobWordsTest, EveryFileIsKeptByItsAbsolutePath) {
   const std::vector<std::string> of_cast = arguments_of_files(of_rays, cast);
   EXPECT_THAT(of_render, testing::Not(testing::Contains("here")));
   EXPECT_THAT(of_cast, testing::Not(testing::Contains("here")));
-  // The scene, --bvh, --environment and --path; the scene, the rays and --bvh.
-  EXPECT_EQ(std::ranges::count(of_render, here), 4) << testing::PrintToString(of_render);
-  EXPECT_EQ(std::ranges::count(of_cast, here), 3) << testing::PrintToString(of_cast);
+  // The scene, --bvh, --environment, --path and --root; the scene, the rays, --bvh and --root.
+  EXPECT_EQ(std::ranges::count(of_render, here), 5) << testing::PrintToString(of_render);
+  EXPECT_EQ(std::ranges::count(of_cast, here), 4) << testing::PrintToString(of_cast);
 }
 
 /// The manifest's options of a picture's job, but for the first two, and what is kept of its arguments.

@@ -183,6 +183,72 @@ TEST_F(FileTest, ASymbolicLinkIsFollowed) {
   EXPECT_EQ(text_of(folder_ / "a.txt"), "new");
 }
 
+TEST_F(FileTest, ADanglingLinkIsFollowed) {
+  fs::create_directory(folder_ / "store");
+  fs::create_symlink("store/new.txt", folder_ / "link.txt");
+  fs::create_symlink("link.txt", folder_ / "link_of_link.txt");
+  write_text_file(folder_ / "link_of_link.txt", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link_of_link.txt"));
+  EXPECT_EQ(text_of(folder_ / "store/new.txt"), "new");
+
+  fs::create_symlink("circle.txt", folder_ / "circle.txt");
+  EXPECT_EQ(follow_links(folder_ / "circle.txt"), folder_ / "circle.txt");
+}
+
+TEST_F(FileTest, AFileKeepsTheModeOfTheOneItReplaces) {
+  const auto mode_of = [](const fs::path& file) { return static_cast<unsigned>(fs::status(file).permissions()); };
+  for (const unsigned mode : {0600U, 0640U, 0664U, 0755U, 0444U}) {
+    const fs::path file = folder_ / "a.txt";
+    fs::remove(file);
+    write_text_file(file, "old");
+    fs::permissions(file, static_cast<fs::perms>(mode));
+    AtomicFile output(file);
+    // Nobody may read meanwhile who may not afterwards.
+    EXPECT_EQ(mode_of(output.temporary()), mode | 0200U);
+    std::ofstream(output.temporary()) << "new";
+    output.commit();
+    EXPECT_EQ(mode_of(file), mode);
+    EXPECT_EQ(text_of(file), "new");
+  }
+}
+
+TEST_F(FileTest, NamesMayBeAsLongAsTheFileSystemAllows) {
+  constexpr size_t kMost = 255;
+  std::string umlauts;
+  while (umlauts.size() + 6 <= kMost) umlauts += "\xC3\xA4";
+  for (const std::string& stem : {std::string(kMost - 4, 'n'), umlauts}) {
+    const fs::path file = folder_ / (stem + ".txt");
+    write_text_file(file, "old");
+    AtomicFile first(file);
+    AtomicFile second(file);
+    const std::string name = first.temporary().filename();
+    EXPECT_LE(name.size() + 4, kMost) << "commit_together puts old- before it";
+    EXPECT_NE(first.temporary(), second.temporary());
+    EXPECT_EQ(name.find("\xC3."), std::string::npos) << "half a character";
+    EXPECT_EQ(first.temporary().extension(), ".txt");
+    for (const AtomicFile* output : {&first, &second}) std::ofstream(output->temporary()) << "new";
+    AtomicFile* const files[] = {&first};
+    AtomicFile::commit_together(files);
+    EXPECT_EQ(text_of(file), "new");
+  }
+  // One whose ending is the longer part.
+  write_text_file(folder_ / ("a." + std::string(kMost - 2, 'e')), "new");
+}
+
+TEST_F(FileTest, ARemovedFolderIsNamedAsTheCause) {
+  const fs::path old_folder = fs::current_path();
+  fs::create_directory(folder_ / "gone");
+  fs::current_path(folder_ / "gone");
+  fs::remove(folder_ / "gone");
+  const std::string reading = message_of_reading("a.obj");
+  const std::string writing = message_of([] { write_text_file("a.txt", "x"); });
+  write_text_file(folder_ / "elsewhere.txt", "x");
+  fs::current_path(old_folder);
+  EXPECT_THAT(reading, HasSubstr("the current folder is gone, a.obj"));
+  EXPECT_THAT(writing, HasSubstr("the current folder is gone, a.txt"));
+}
+
 TEST(ErrorTest, SeveralProblemsAreCountedAndIndented) {
   const InputError error({Problem{"a", "b", "c"}, Problem{"d", "", ""}});
   EXPECT_STREQ(error.what(), "a, b; c (1 of 2 problems)\n  d");

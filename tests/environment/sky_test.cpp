@@ -396,20 +396,36 @@ class ReadPanoramaTest : public TempFolder {
  protected:
   std::string refusal_of(const uvec2& size, const vec3& pixel) const {
     write_image(folder_ / "sky.exr", {size, std::vector<vec3>(size_t{size.x} * size.y, pixel)});
-    return message_of([&] { read_panorama(folder_ / "sky.exr"); });
+    return message_of([&] { read_panorama(folder_ / "sky.exr", warnings_); });
   }
+
+  mutable std::vector<std::string> warnings_;
 };
 
 TEST_F(ReadPanoramaTest, PicturesThatAreNoneAreRefusedInASentence) {
   EXPECT_EQ(refusal_of({4, 2}, vec3(1e4F)), "");
   EXPECT_THAT(refusal_of({4, 2}, vec3(NAN)), HasSubstr("not a number"));
-  EXPECT_THAT(refusal_of({4, 2}, vec3(0.5F, -0.1F, 0.0F)), HasSubstr("negative"));
-  EXPECT_THAT(refusal_of({4, 2}, vec3(INFINITY)), HasSubstr("beyond 1e15"));
+  EXPECT_THAT(refusal_of({4, 2}, vec3(0.0F, INFINITY, 0.0F)), HasSubstr("beyond 1e15 (G is inf in pixel 0, 0)"));
+  EXPECT_THAT(refusal_of({4, 2}, vec3(0.0F, 0.0F, -INFINITY)), HasSubstr("negative (B is -inf in pixel 0, 0)"));
+  EXPECT_THAT(warnings_, IsEmpty());
   EXPECT_THAT(refusal_of({16385, 1}, vec3(1)), HasSubstr("too large"));
   EXPECT_THAT(refusal_of({1, 8193}, vec3(1)), HasSubstr("16384x8192"));
-  EXPECT_THAT(message_of([&] { read_panorama(folder_ / "none.hdr"); }), HasSubstr("none.hdr"));
+  EXPECT_THAT(message_of([&] { read_panorama(folder_ / "none.hdr", warnings_); }), HasSubstr("none.hdr"));
   std::ofstream(folder_ / "broken.hdr") << "#?RADIANCE";
-  EXPECT_THAT(message_of([&] { read_panorama(folder_ / "broken.hdr"); }), HasSubstr("broken.hdr"));
+  EXPECT_THAT(message_of([&] { read_panorama(folder_ / "broken.hdr", warnings_); }), HasSubstr("broken.hdr"));
+}
+
+TEST_F(ReadPanoramaTest, NegativeNumbersCountAsZero) {
+  Image image = {{3, 2}, std::vector<vec3>(6, vec3(0.5F))};
+  image.at(2, 1) = vec3(-0.25F, 0.5F, -1.0F);
+  write_image(folder_ / "sky.exr", image);
+  const Panorama panorama = read_panorama(folder_ / "sky.exr", warnings_);
+  EXPECT_EQ(panorama.image->at(2, 1), vec3(0.0F, 0.5F, 0.0F));
+  EXPECT_EQ(panorama.image->at(1, 1), vec3(0.5F));
+  EXPECT_THAT(
+      warnings_,
+      testing::ElementsAre(testing::EndsWith("sky.exr are negative, the first -0.25 in pixel 2, 1; they count as 0")));
+  EXPECT_THAT(warnings_.front(), testing::StartsWith("2 numbers of "));
 }
 
 TEST_F(ReadPanoramaTest, OtherFormatsAreOfTheCurveOfSrgb) {
@@ -417,7 +433,7 @@ TEST_F(ReadPanoramaTest, OtherFormatsAreOfTheCurveOfSrgb) {
   write_image(folder_ / "sky.png", image);
   write_image(folder_ / "sky.exr", image);
   for (const char* name : {"sky.png", "sky.exr"}) {
-    const Panorama panorama = read_panorama(folder_ / name);
+    const Panorama panorama = read_panorama(folder_ / name, warnings_);
     for (size_t i = 0; i < 2; ++i) {
       EXPECT_LT(max_abs_component(panorama.image->pixels[i] - image.pixels[i]), 0.005F) << name;
     }

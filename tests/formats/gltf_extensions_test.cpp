@@ -131,32 +131,36 @@ GltfBuilder textured_gltf(const json& texture) {
 }
 
 TEST_F(GltfExtensionsTest, TexturesFallBackOnTheImageOfCoreGltf) {
-  GltfBuilder gltf = textured_gltf({{"source", 1}, {"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}});
-  gltf.json["extensionsUsed"] = {"KHR_texture_basisu"};
+  GltfBuilder gltf = textured_gltf({{"source", 1}, {"extensions", {{"MSFT_texture_dds", {{"source", 0}}}}}});
+  gltf.json["extensionsUsed"] = {"MSFT_texture_dds"};
   const Scene scene = load(gltf);
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("1 texture uses KHR_texture_basisu, which is not known; an image that is named "
-                          "beside it is taken, or none"));
+  EXPECT_THAT(scene.warnings, ElementsAre("1 texture uses MSFT_texture_dds, which is not known; an image that is named "
+                                          "beside it is taken, or none"));
   ASSERT_EQ(scene.images.size(), 1U);
   EXPECT_EQ(scene.images[0]->texels, std::vector<uint32_t>{0xFF204080});
 }
 
 TEST_F(GltfExtensionsTest, TexturesWithoutAKnownImageAreAbsent) {
-  GltfBuilder gltf = textured_gltf({{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}});
-  gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
+  GltfBuilder gltf = textured_gltf({{"extensions", {{"MSFT_texture_dds", {{"source", 0}}}}}});
+  gltf.json["extensionsRequired"] = {"MSFT_texture_dds"};
   const Scene scene = load(gltf);
   EXPECT_THAT(scene.warnings,
-              ElementsAre("1 texture uses KHR_texture_basisu, which is required but not known; an image that is named "
+              ElementsAre("1 texture uses MSFT_texture_dds, which is required but not known; an image that is named "
                           "beside it is taken, or none",
                           "1 texture has no image that is known; materials are drawn without"));
   EXPECT_FALSE(std::get<MetallicRoughness>(scene.materials[0].model).base_color_texture.exists());
 }
 
-TEST_F(GltfExtensionsTest, TexturesOfWebpNameTheirImage) {
-  GltfBuilder gltf = textured_gltf({{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}});
-  EXPECT_EQ(load(gltf).images.at(0)->texels, std::vector<uint32_t>{0xFF204080}) << "its bytes tell what it is";
-  gltf.json["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 2;
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("textures[0].extensions.EXT_texture_webp.source")));
+TEST_F(GltfExtensionsTest, TexturesOfOtherFormatsNameTheirImage) {
+  for (const std::string name : {"EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu"}) {
+    GltfBuilder gltf = textured_gltf({{"extensions", {{name, {{"source", 1}}}}}});
+    gltf.json["extensionsRequired"] = {name};
+    const Scene scene = load(gltf, {.is_strict = true});
+    EXPECT_THAT(scene.warnings, IsEmpty()) << name;
+    EXPECT_EQ(scene.images.at(0)->texels, std::vector<uint32_t>{0xFF204080}) << "its bytes tell what it is";
+    gltf.json["textures"][0]["extensions"][name]["source"] = 2;
+    EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("textures[0].extensions." + name + ".source")));
+  }
 }
 
 const MetallicRoughness& model_of(const Scene& scene) {

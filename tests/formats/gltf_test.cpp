@@ -635,9 +635,24 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
   gltf.json["images"] = {{{"uri", "missing.png"}, {"name", "bumps"}}, {{"uri", "data:;base64,AAAA"}}};
   gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
   const LoadedScene scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre("image \"bumps\" is ignored: \"missing.png\" does not exist",
-                                          "image images[1] is ignored: it is of no known format"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("a file does not exist (\"missing.png\"), image \"bumps\"; materials are drawn "
+                          "without it: put it beside the scene",
+                          "a picture cannot be used: it is of no known format, image images[1]; materials "
+                          "are drawn without it"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
+  EXPECT_THAT(message_of([&] { load_scene(folder_ / "scene.gltf", {.is_strict = true}); }),
+              testing::AllOf(HasSubstr("a file does not exist"), HasSubstr("no known format")));
+}
+
+TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
+  GltfBuilder gltf = material_gltf(
+      {{"normalTexture", {{"index", 0}}}, {"emissiveTexture", {{"index", 1}}}, {"occlusionTexture", {{"index", 2}}}});
+  gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}, {{"uri", "../c.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}};
+  EXPECT_THAT(load(gltf).warnings,
+              UnorderedElementsAre(HasSubstr(" and 1 more; materials"),
+                                   testing::AllOf(HasSubstr("leaves the scene's folder"), HasSubstr("--root DIR"))));
 }
 
 // Lights and sky
@@ -929,8 +944,7 @@ TEST_F(GltfTest, MotionIsLeftOut) {
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   EXPECT_THAT(
       load(gltf).warnings,
-      ElementsAre("the scene stands still: animations are ignored, skins are in their bind pose, morph targets have "
-                  "their default weights"));
+      ElementsAre("the scene stands still: animations are ignored, morph targets have their default weights"));
 }
 
 TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {

@@ -78,6 +78,8 @@ TEST_F(NffTest, LinesMeanNothing) {
   EXPECT_EQ(same.cameras[0].resolution, scene.cameras[0].resolution);
   EXPECT_EQ(same.lights[0].position, scene.lights[0].position);
   EXPECT_THAT(load(with_carriage_returns("s 0 0 0\n\n1\n")).objects, SizeIs(1));
+  EXPECT_THAT(load("# comments end with a line\rs 0 0 0\r1\r#too").objects, SizeIs(1));
+  EXPECT_THAT(load("s 0 0 0 1" + std::string(3, '\0')).objects, SizeIs(1));
 }
 
 TEST_F(NffTest, LightsShareWhatTheyHave) {
@@ -218,7 +220,10 @@ TEST_F(NffTest, PatchesHaveNormals) {
 
   const Scene flat = load(kMaterial + "pp 3 0 0 0 0 0 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
   EXPECT_THAT(shape_of<Mesh>(flat, 0).normals, IsEmpty());
-  EXPECT_THAT(flat.warnings, Contains(HasSubstr("normals of no length")));
+  EXPECT_THAT(flat.warnings, Contains(HasSubstr("a normal of no length")));
+  const Scene unknown = load(kMaterial + "pp 3 0 0 0 nan inf 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
+  EXPECT_THAT(shape_of<Mesh>(unknown, 0).normals, IsEmpty());
+  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is drawn sharp")));
 }
 
 TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
@@ -234,6 +239,90 @@ TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
   }
 }
 
+// What is forgiven
+
+/// A file with one thing that is wrong, and the warning that it costs.
+struct Repair {
+  const char* name;
+  const char* text;
+  const char* warning;
+};
+
+class NffRepairTest : public NffTest, public testing::WithParamInterface<Repair> {};
+
+TEST_P(NffRepairTest, CostsAWarning) {
+  const Scene scene = load(GetParam().text + std::string("\ns 0 0 0 1\n"));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr(GetParam().warning)));
+  ASSERT_FALSE(scene.objects.empty());
+  EXPECT_EQ(shape_of<Sphere>(scene, scene.objects.size() - 1).radius, 1.0);
+  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_THAT(validate(scene), IsEmpty());
+  EXPECT_THROW(load_scene(folder_ / "scene.nff", {.is_strict = true}), InputError);
+}
+
+const Repair kRepairs[] = {
+    {"NegativeColor", "f 1 -1 1 1 1 1 0 0",
+     "\"f\" has a number that is not from 0 to 1e7 (\"-1\"), line 1; the nearest"},
+    {"NegativeKd", "f 1 1 1 -0.5 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"-0.5\")"},
+    {"NanInMaterial", "f nan 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"nan\")"},
+    {"WordInMaterial", "f 0,5 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"0,5\")"},
+    {"ShortMaterial", "f 1 1 1 1 1 1 0", "\"f\" has too few numbers, line 1; those that lack are taken for the least"},
+    {"LongMaterial", "f 1 1 1 1 1 1 0 0 1 2", "\"f\" has more numbers than it takes (\"1\"), line 1 and 1 more"},
+    {"NegativeBackground", "b 0 0 -1", "\"b\" has a number that is not from 0 to 1e7"},
+    {"LongBackground", "b 0 0 1 1", "\"b\" has more numbers"},
+    {"NegativeLight", "l 0 0 0 1 1 -1", "\"l\" has a number that is not from 0 to 1e7"},
+    {"LightOfTwo", "l 0 0 0 1 1", "\"l\" has too few numbers"},
+    {"LightNowhere", "l 0 nan 0 1 1 1", "\"l\" has a coordinate that is no number up to 1e15 (\"nan\"), line 1; it is"},
+    {"ShortLight", "l 0 0", "\"l\" has a coordinate"},
+    {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" is without from, at, up or angle"},
+    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in one place"},
+    {"ViewOfNan", "v from 1 nan 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
+    {"ViewOfTwo", "v from 1 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
+    {"UpAlongView", "v from 0 0 1 at 0 0 0 up 0 0 2 angle 45", "an up that is 0 or along it"},
+    {"NoUp", "v from 0 0 1 at 0 0 0 up 0 0 0 angle 45", "an up that is 0 or along it"},
+    {"AngleZero", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 0", "an angle that is not from 0.001 to 179.9"},
+    {"AngleFlat", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 180", "an angle that is not"},
+    {"AngleNan", "v from 0 0 1 at 0 0 0 up 0 1 0 angle nan", "an angle that is not"},
+    {"NegativeHither", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither -1", "not from 0 to 1e15 (\"-1\")"},
+    {"NoPixels", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 512", "a resolution that is not of whole"},
+    {"TooManyPixels", "v resolution 99999 512", "a resolution that is not of whole"},
+    {"HalfAPixel", "v resolution 5.5 512", "a resolution that is not of whole"},
+    {"SphereNan", "s nan 0 0 1", "\"s\" has a coordinate that is no number up to 1e15 (\"nan\"), line 1; it is left"},
+    {"SphereInfinite", "s 0 0 inf 1", "\"s\" has a coordinate"},
+    {"SphereBeyondDouble", "s 1e999 0 0 1", "\"s\" has a coordinate"},
+    {"SphereTooFar", "s 1e16 0 0 1", "\"s\" has a coordinate"},
+    {"RadiusNan", "s 0 0 0 nan", "\"s\" has a coordinate"},
+    {"RadiusZero", "s 0 0 0 0", "\"s\" has a radius that is 0 or too small"},
+    {"RadiusTooSmall", "s 0 0 0 1e-30", "\"s\" has a radius"},
+    {"Radii", "c 0 0 0 0 1 0 0 0", "\"c\" has two radii of 0"},
+    {"Signs", "c 0 0 0 1 1 0 0 -1", "\"c\" has one radius that is negative"},
+    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "\"c\" has base and apex in one point, or too far from each other, line 2"},
+    {"ConeNan", "c 0 0 0 nan 1 1 1 1", "\"c\" has a coordinate"},
+    {"TwoCorners", "p 2 0 0 0 1 1 1", "\"p\" has fewer than 3 corners"},
+    {"NoCorners", "pp 0", "\"pp\" has fewer than 3 corners"},
+    {"PolygonNan", "p 3 0 0 0 1 nan 0 1 1 nan", "\"p\" has a coordinate"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Files, NffRepairTest, testing::ValuesIn(kRepairs),
+                         [](const testing::TestParamInfo<Repair>& repair) { return repair.param.name; });
+
+TEST_F(NffTest, WhatIsForgivenKeepsTheRest) {
+  const Scene scene = load(
+      "l 1 2 nan\nl 1 2 3\nv from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 3 hither -1\n"
+      "f -1 0.5 nan 1 1e9 10 0 0\ns 0 0 0 1\n");
+  ASSERT_THAT(scene.lights, SizeIs(1));
+  EXPECT_EQ(scene.lights[0].diffuse, vec3(0.5F)) << "that of one source";
+  ASSERT_THAT(scene.cameras, SizeIs(1));
+  EXPECT_EQ(scene.cameras[0].resolution, uvec2(0));
+  EXPECT_EQ(scene.cameras[0].near, 0.0F);
+  EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(0, 0.5F, 0));
+  EXPECT_EQ(scene.materials.at(0).phong().specular, vec3(1e7F));
+}
+
+TEST_F(NffTest, AFileWhoseShapesAreAllLeftOutIsRefused) {
+  EXPECT_THAT(refusal("s 0 0 0 0\np 1 0 0 0\n"), HasSubstr("nothing to draw (\"s\" has a radius that is 0"));
+}
+
 // Refusals
 
 class BadNffTest : public BadFileTest {};
@@ -246,23 +335,8 @@ const BadFile kBadNff[] = {
     {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is no statement of NFF", ": line 2"},
     {"UpperCase", "S 0 0 0 1", "\"S\" is no statement", ": line 1"},
     {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is no statement", ": line 2"},
-    {"NoNumber", "s 0 0\nx 1\n", "\"x\" is no number up to 1e15", ": line 2"},
-    {"Nan", "s nan 0 0 1", "\"nan\" is no number", ": line 1"},
-    {"Infinite", "s inf 0 0 1", "\"inf\" is no number", ": line 1"},
-    {"BeyondDouble", "s 1e999 0 0 1", "\"1e999\" is no number", ": line 1"},
-    {"TooFar", "s 1e16 0 0 1", "\"1e16\" is no number up to 1e15", ": line 1"},
-    {"RadiusNan", "s 0 0 0 nan", "\"nan\" is no number", ": line 1"},
-    {"RadiusZero", "s 0 0 0 0", "the radius is 0 or too small", ": line 1"},
-    {"RadiusTooSmall", "s 0 0 0 1e-30", "the radius is 0 or too small", ": line 1"},
-    {"Radii", "c 0 0 0 0 1 0 0 0", "both radii are 0", ": line 1"},
-    {"Signs", "c 0 0 0 1 1 0 0 -1", "one radius is negative", ": line 1"},
-    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "base and apex are one point", ": line 2"},
-    {"NegativeColor", "f 1 -1 1 1 1 1 0 0", "\"-1\" is no number from 0", ": line 1"},
-    {"NegativeKd", "f 1 1 1 -0.5 1 1 0 0", "\"-0.5\" is no number from 0", ": line 1"},
-    {"NegativeBackground", "b 0 0 -1", "\"-1\" is no number from 0", ": line 1"},
-    {"NegativeLight", "l 0 0 0 1 1 -1", "\"-1\" is no number from 0", ": line 1"},
-    {"LightOfTwo", "l 0 0 0 1 1\ns 0 0 0 1", "\"s\" is no number from 0", ": line 2"},
-    {"TwoCorners", "p 2 0 0 0 1 1 1", "\"2\" is no number of corners", ": line 1; give 3 to 10000"},
+    {"NoNumber", "s 0 0\nx 1\n", "\"x\" is no number", ": line 2"},
+    {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "\"s\" is no number", ": line 2; write s x y z radius"},
     {"HugeCount", "p 99999999999999999999 0 0 0", "is no number of corners", ": line 1"},
     {"LargeCount", "p 4000000000 0 0 0", "is no number of corners", ": line 1"},
     {"NegativeCount", "pp -3 0 0 0", "\"-3\" is no number of corners", ": line 1"},
@@ -273,16 +347,6 @@ const BadFile kBadNff[] = {
     {"CutInMaterial", "f 1 1 1 0.5", "the file ends within \"f\"", ": line 1"},
     {"CutInCone", "c 1 1 1 0.5 2 2 2", "the file ends within \"c\"", ": line 1"},
     {"CutInView", "v\nfrom 0 0 1\nat 0", "the file ends within \"v\"", ": line 3"},
-    {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "a view is without from, at, up or angle", ": line 1"},
-    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in one place", ": line 1"},
-    {"UpAlongView", "v from 0 0 1 at 0 0 0 up 0 0 2 angle 45", "an up that is 0 or along it", ": line 1"},
-    {"NoUp", "v from 0 0 1 at 0 0 0 up 0 0 0 angle 45", "an up that is 0 or along it", ": line 1"},
-    {"AngleZero", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 0", "\"0\" is no number of degrees", ": line 1"},
-    {"AngleFlat", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 180", "\"180\" is no number of degrees", ": line 1"},
-    {"NegativeHither", "v hither -1", "\"-1\" is no number from 0", ": line 1"},
-    {"NoPixels", "v resolution 0 512", "\"0\" is no number of pixels", ": line 1"},
-    {"TooManyPixels", "v resolution 99999 512", "\"99999\" is no number of pixels", ": line 1"},
-    {"HalfAPixel", "v resolution 5.5 512", "a resolution is no whole number", ": line 1"},
     {"Binary", "\x01\x02\xff\n", "is no statement of NFF", ": line 1"},
 };
 
@@ -290,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff), name_of_
 
 /// A problem ends the parsing, so one is told, whatever comes after.
 TEST_F(NffTest, OneProblemIsTold) {
-  EXPECT_THAT(refusal("s 0 0 0 0\nq\nq\n"), testing::Not(HasSubstr("\"q\"")));
+  EXPECT_THAT(refusal("s 0 0 0 x\nq\nq\n"), testing::Not(HasSubstr("\"q\"")));
 }
 
 }  // namespace

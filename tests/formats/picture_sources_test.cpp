@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/gltf/image_bytes.h"
+#include "promin/error.h"
 #include "support/gltf_builder.h"
 #include "support/make_jpeg.h"
 #include "support/make_png.h"
@@ -98,6 +99,22 @@ TEST_F(PictureSourcesTest, WhatIsBrokenIsReadOnceWhereItIsShort) {
   EXPECT_EQ(report_.warnings().size(), 1U);
 }
 
+TEST_F(PictureSourcesTest, WhatIsDamagedButDecodedIsShownWithAWarning) {
+  Bytes file = make_jpeg({16, 16}, std::vector<uint8_t>(size_t{3} * 16 * 16, 100));
+  file.insert(file.end() - 2, 4, std::byte{0});
+  PictureSource source;
+  source.title = "\"photo\"";
+  read(file, source);
+  EXPECT_EQ(source.image->texels.size(), 256U);
+  EXPECT_THAT(report_.warnings(),
+              ElementsAre(AllOf(testing::StartsWith("a picture is damaged (Corrupt JPEG data: "),
+                                testing::EndsWith("), image \"photo\"; it is shown as it is decoded"))));
+  LoadReport strict(folder_ / "scene.gltf", true);
+  source.file = file;
+  decode_pictures({&source, 1}, strict);
+  EXPECT_THROW(strict.throw_if_refused(), InputError);
+}
+
 /// Radiance stores a mantissa and an exponent: 128 / 256 * 2^(127 - 128) is a quarter, the byte 64, and the code 137.
 TEST_F(PictureSourcesTest, OfPicturesOfLightColorsBecomeCodes) {
   const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x7F";
@@ -121,7 +138,7 @@ TEST_F(PictureSourcesTest, GltfReadsHeadsOfFilesAndOfDataUris) {
       PictureSource source;
       source.takes_texels = takes_texels;
       read_gltf_image(document, image, source, report_);
-      EXPECT_EQ(source.problem, "");
+      EXPECT_FALSE(source.problem);
       if (takes_texels) {
         EXPECT_EQ(source.file.size(), file.size());
       } else {

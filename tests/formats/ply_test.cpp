@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "promin/validate.h"
 #include "support/bad_file.h"
+#include "support/make_png.h"
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
 
@@ -53,6 +56,37 @@ TEST_F(PlyTest, TextIsRead) {
 
 TEST_F(PlyTest, LineEndsAndEmptyLinesWork) {
   EXPECT_THAT(mesh_of(load(with_carriage_returns(square("\n3 0 1 2\n\n3 +0 2 3", 2)))).triangles, SizeIs(2));
+}
+
+TEST_F(PlyTest, LinesMayEndInCarriageReturnsAlone) {
+  std::string text = square("3 0 1 2\n3 0 2 3\n", 2);
+  std::ranges::replace(text, '\n', '\r');
+  EXPECT_THAT(mesh_of(load(text)).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
+}
+
+/// A triangle of which the first byte of numbers looks like the end of a line; `end` is that of the header's lines.
+std::string tricky_binary(const std::string& end) {
+  PlyBuilder ply(std::endian::little);
+  ply.header("element face 1\nproperty uchar flags\n" + kCornerList + "element vertex 3\n" + kPlace);
+  std::string header;
+  for (const char c : ply.bytes()) header += c == '\n' ? end : std::string(1, c);
+  PlyBuilder rows(std::endian::little);
+  for (const double number : {10.0, 3.0}) rows.add("uchar", number);
+  for (const double number : {0.0, 1.0, 2.0}) rows.add("int", number);
+  for (const double number : {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0}) rows.add("float", number);
+  return header + rows.bytes();
+}
+
+TEST_F(PlyTest, ABinaryBodyBeginsBehindTheEndOfALineAsTheFirstLineHasIt) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const LoadedScene scene = load(tricky_binary(end));
+    EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0))) << end.size();
+    EXPECT_THAT(scene.warnings, IsEmpty());
+  }
+}
+
+TEST_F(PlyTest, ZeroBytesBehindATextAreCutOff) {
+  EXPECT_THAT(mesh_of(load(square("3 0 1 2", 1) + std::string(5, '\0'))).triangles, SizeIs(1));
 }
 
 /// Each type of numbers holds what it can, in both orders of bytes.
@@ -122,7 +156,7 @@ TEST_F(PlyTest, PolygonsAreCutIntoTriangles) {
 TEST_F(PlyTest, SmallFacesAreSaidAndNotDrawn) {
   const LoadedScene scene = load(square("2 0 1\n3 0 1 2\n0\n", 3));
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1));
-  EXPECT_THAT(scene.warnings, ElementsAre("faces of fewer than 3 corners are not drawn"));
+  EXPECT_THAT(scene.warnings, ElementsAre("a face has fewer than 3 corners, line 16 and 1 more; the face is left out"));
 }
 
 TEST_F(PlyTest, DegenerateTrianglesKeepTheirNumber) {
@@ -144,6 +178,23 @@ TEST_F(PlyTest, VerticesThatNoFaceUsesMayHoldAnything) {
   const std::string file = text_header("element vertex 4\n" + kPlace + "element face 1\n" + kCornerList) +
                            "nan inf 0\n0 0 0\n1 0 0\n0 1 0\n3 1 2 3\n";
   EXPECT_THAT(mesh_of(load(file)).positions, SizeIs(3));
+}
+
+TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
+  const std::string file = text_header("element vertex 5\n" + kPlace + "element face 4\n" + kCornerList) + kSquare +
+                           "1.#QNAN 0 0\n3 0 1 4\n3 0 1 2\n4 0 1 2 4\n3 0 2 3\n";
+  const LoadedScene scene = load(file);
+  EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
+  EXPECT_THAT(mesh_of(scene).positions, SizeIs(4));
+  EXPECT_THAT(scene.warnings, ElementsAre("a face has a vertex coordinate that is no number up to 1e15, vertex 4 "
+                                          "and 1 more; the face is left out"));
+  EXPECT_THROW(load_scene(folder_ / "scene.ply", {.is_strict = true}), InputError);
+}
+
+TEST_F(PlyTest, NumbersBeyondDoubleAreThoseOfTheirSide) {
+  const std::string file = text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList);
+  EXPECT_EQ(mesh_of(load(file + "1e-999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")).positions[0], vec3(0.0F));
+  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasSubstr("no number up to 1e15"));
 }
 
 // Normals and colours
@@ -177,7 +228,7 @@ TEST_F(PlyTest, NormalsOfNoLengthMakeTheirFacesSharp) {
     EXPECT_EQ(mesh.normals.at(corners.x), mesh.normals.at(corners.z));
     EXPECT_NE(mesh.normals.at(corners.x), vec3(1, 0, 0));
   }
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("normals of no length")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a face has a normal of no length")));
   EXPECT_THAT(validate(load_scene(folder_ / "scene.ply")), IsEmpty());
 }
 
@@ -211,25 +262,206 @@ TEST_F(PlyTest, AlphaAndOtherNamesOfColors) {
 TEST_F(PlyTest, ColorsOutOfRangeAreClamped) {
   const LoadedScene scene =
       load(triangle("property float red\nproperty float green\nproperty float blue\n", {"-1 2 nan", "0 0 0", "0 0 0"}));
-  EXPECT_EQ(mesh_of(scene).colors.at(0), vec4(0, 1, 0, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("vertex colours below 0 or above 1 are clamped"));
+  EXPECT_EQ(mesh_of(scene).colors.at(0), vec4(0, 1, 1, 1));
+  EXPECT_THAT(scene.warnings, ElementsAre("a colour is no number, line 15; 1 is taken",
+                                          "vertex colours below 0 or above 1 are clamped"));
 }
 
 TEST_F(PlyTest, WhatIsIgnoredIsSaid) {
   EXPECT_THAT(load(triangle("property float s\nproperty float t\n", {"0 0", "0 0", "0 0"})).warnings,
-              ElementsAre("texture coordinates of PLY are ignored"));
-  const std::string colored = text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList +
-                                          "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
-                              "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n";
-  EXPECT_THAT(load(colored).warnings, ElementsAre("colours of faces are ignored"));
+              ElementsAre("texture coordinates are ignored, as no comment TextureFile names a picture"));
   EXPECT_THAT(load(triangle("", {"4", "", ""})).warnings,
               ElementsAre("numbers beyond the properties of an element are ignored"));
 }
 
-TEST_F(PlyTest, WithoutVerticesThereIsNothingToShow) {
-  const LoadedScene scene = load(text_header("element vertex 0\n" + kPlace + "element face 0\n" + kCornerList));
-  EXPECT_THAT(scene.objects, IsEmpty());
-  EXPECT_THAT(scene.warnings, Contains("the scene holds nothing to draw"));
+TEST_F(PlyTest, WordsThatAreNoNumbersCostWhatTheySay) {
+  const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const LoadedScene colored = load(triangle(colors, {"x 0 0", "0 0 0", "0 0 0"}));
+  EXPECT_EQ(mesh_of(colored).colors.at(0), vec4(1, 0, 0, 1));
+  const LoadedScene smooth = load(triangle(kNormal, {"-1.#IND 0 x", "0 0 1", "0 0 1"}));
+  EXPECT_THAT(mesh_of(smooth).normals, testing::Each(vec3(0, 0, 1)));
+  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is drawn sharp")));
+  EXPECT_THAT(load(triangle("property float quality\n", {"x", "y", "z"})).warnings, IsEmpty());
+}
+
+const std::string kFaceColor = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+
+TEST_F(PlyTest, FacesOfOtherColorsHaveVerticesOfTheirOwn) {
+  const std::string file =
+      text_header("element vertex 4\n" + kPlace + "element face 3\nproperty uchar blue\n" + kCornerList +
+                  "property uchar flags\nproperty uchar green\nproperty uchar red\n") +
+      kSquare + "0 3 0 1 2 7 0 255\n0 3 0 2 3 7 0 255\n255 4 0 1 2 3 7 0 0\n";
+  const LoadedScene scene = load(file);
+  const Mesh& mesh = mesh_of(scene);
+  EXPECT_THAT(mesh.triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3), uvec3(4, 5, 6), uvec3(4, 6, 7)))
+      << "the red ones share theirs";
+  EXPECT_THAT(corners_of(mesh),
+              ElementsAre(vec3(0), vec3(1, 0, 0), vec3(1, 1, 0), vec3(0), vec3(1, 1, 0), vec3(0, 1, 0), vec3(0),
+                          vec3(1, 0, 0), vec3(1, 1, 0), vec3(0), vec3(1, 1, 0), vec3(0, 1, 0)));
+  const vec4 red(1, 0, 0, 1);
+  const vec4 blue(0, 0, 1, 1);
+  EXPECT_THAT(mesh.colors, ElementsAre(red, red, red, red, blue, blue, blue, blue));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(PlyTest, SharpFacesAndStripsKeepTheirColors) {
+  const std::string file = text_header("element vertex 4\n" + kPlace + kNormal + "element tristrips 1\n" + kCornerList +
+                                       "element face 2\n" + kFaceColor + kCornerList) +
+                           "0 0 0 0 0 2\n1 0 0 0 0 2\n1 1 0 0 0 2\n0 1 0 0 0 0\n3 0 1 2\n255 0 0 3 0 1 2\n"
+                           "0 255 0 3 0 2 3\n";
+  const LoadedScene scene = load(file);
+  const Mesh& mesh = mesh_of(scene);
+  ASSERT_THAT(mesh.normals, SizeIs(9));
+  ASSERT_THAT(mesh.colors, SizeIs(9));
+  EXPECT_EQ(mesh.colors[mesh.triangles.at(0).x], vec4(1.0F));
+  EXPECT_EQ(mesh.colors[mesh.triangles.at(1).x], vec4(1, 0, 0, 1));
+  EXPECT_EQ(mesh.colors[mesh.triangles.at(2).x], vec4(0, 1, 0, 1));
+  EXPECT_THAT(validate(load_scene(folder_ / "scene.ply")), IsEmpty());
+}
+
+/// Around one vertex each of very many faces may have another colour.
+TEST_F(PlyTest, TimeStaysInBoundsWhereManyColorsMeet) {
+  PlyBuilder ply(std::endian::little);
+  const int count = 200'000;
+  ply.header("element vertex 3\n" + kPlace + "element face " + std::to_string(count) + "\n" + kCornerList +
+             "property ushort red\nproperty ushort green\nproperty ushort blue\n");
+  for (const double number : {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0}) ply.add("float", number);
+  for (int i = 0; i < count; ++i) {
+    ply.add("uchar", 3);
+    for (const double corner : {0.0, 1.0, 2.0}) ply.add("int", corner);
+    ply.add("ushort", i % 65536);
+    for (const int rest : {i / 65536, 0}) ply.add("ushort", rest);
+  }
+  EXPECT_THAT(mesh_of(load(ply.bytes())).triangles, SizeIs(static_cast<size_t>(count)));
+}
+
+TEST_F(PlyTest, ColorsOfVerticesComeBeforeThoseOfFaces) {
+  const std::string file =
+      text_header("element vertex 3\n" + kPlace + kFaceColor + "element face 1\n" + kCornerList + kFaceColor) +
+      "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n3 0 1 2 0 0 255\n";
+  const LoadedScene scene = load(file);
+  EXPECT_THAT(mesh_of(scene).colors, testing::Each(vec4(1, 0, 0, 1)));
+  EXPECT_THAT(scene.warnings, ElementsAre("colours of faces are ignored, as the vertices have colours"));
+}
+
+// Textures
+
+/// Files of textures lie in the folder of the test.
+class PlyTextureTest : public PlyTest {
+ protected:
+  PlyTextureTest() {
+    const std::vector<std::byte> png = make_png({2, 1}, PNG_COLOR_TYPE_RGB, 8, {255, 0, 0, 0, 0, 255});
+    for (const char* name : {"a.png", "b c.png"}) write(name, {reinterpret_cast<const char*>(png.data()), png.size()});
+  }
+
+  Scene load_textured(const std::string& file) const {
+    write("scene.ply", file);
+    return load_scene(folder_ / "scene.ply");
+  }
+};
+
+const Mesh& only_mesh(const Scene& scene) {
+  return std::get<Mesh>(scene.geometries.at(0));
+}
+
+TEST_F(PlyTextureTest, VerticesHaveTextureCoordinatesOfSeveralNames) {
+  for (const auto& [u, v] : {std::pair("s", "t"), {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}) {
+    const std::string names = std::string("property float ") + v + "\nproperty float " + u + "\n";
+    const Scene scene = load_textured(triangle("comment TextureFile a.png\n" + names, {"0.25 0", "0 1", "1 0.5"}));
+    EXPECT_THAT(only_mesh(scene).uvs, ElementsAre(vec4(0, 0.75F, 0, 0), vec4(1, 1, 0, 0), vec4(0.5F, 0, 0, 0))) << u;
+    EXPECT_THAT(scene.warnings, IsEmpty());
+    ASSERT_THAT(scene.materials, SizeIs(1));
+    EXPECT_EQ(scene.materials[0].name, "a.png");
+    EXPECT_EQ(scene.materials[0].phong().diffuse, vec3(1.0F));
+    EXPECT_EQ(scene.materials[0].phong().diffuse_texture.texture, 0U);
+    EXPECT_EQ(scene.images.at(0)->size, uvec2(2, 1));
+    EXPECT_THAT(scene.images.at(0)->texels, SizeIs(2));
+    EXPECT_EQ(scene.images.at(0)->use, ImageUse::kColor);
+  }
+}
+
+TEST_F(PlyTextureTest, FacesHaveTextureCoordinatesAndTexturesOfTheirOwn) {
+  const std::string file =
+      text_header("comment TextureFile a.png\ncomment TextureFile b c.png\nelement vertex 4\n" + kPlace +
+                  "property float s\nproperty float t\nelement face 5\nproperty int texnumber\n"
+                  "property list uchar float texcoord\n" +
+                  kCornerList) +
+      "0 0 0 9 9\n1 0 0 9 9\n1 1 0 9 9\n0 1 0 9 9\n"
+      "0 6 0 0 1 0 1 1 3 0 1 2\n0 6 0 0 1 1 0 0.5 3 0 2 3\n1 8 0 0 1 0 1 1 0 1 4 0 1 2 3\n"
+      "-1 0 3 0 1 2\n1 4 0 0 1 1 3 0 1 2\n";
+  const Scene scene = load_textured(file);
+  const Mesh& mesh = only_mesh(scene);
+  ASSERT_THAT(scene.materials, SizeIs(3));
+  EXPECT_EQ(scene.materials[1].name, "b c.png");
+  EXPECT_EQ(scene.materials[2].name, "default");
+  EXPECT_THAT(mesh.triangle_materials, ElementsAre(0, 0, 1, 1, 2, 2));
+  EXPECT_EQ(mesh.triangles.at(0), uvec3(0, 1, 2));
+  EXPECT_EQ(mesh.triangles.at(1), uvec3(0, 2, 3)) << "corners with the same coordinates are shared";
+  EXPECT_EQ(mesh.uvs.at(3), vec4(0, 0.5F, 0, 0));
+  EXPECT_EQ(mesh.triangles.at(2), uvec3(0, 1, 2));
+  EXPECT_THAT(scene.warnings, ElementsAre("a face has not two texture coordinates for each corner, line 26; it is "
+                                          "drawn without a texture"));
+  EXPECT_THAT(validate(scene), IsEmpty());
+}
+
+TEST_F(PlyTextureTest, BinaryFilesHaveThemInAnyOrder) {
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    PlyBuilder ply(order);
+    ply.header("comment TextureFile a.png\nelement face 1\nproperty list int double texcoord\nproperty float red\n" +
+               kCornerList +
+               "property float blue\nproperty short texnumber\nproperty float green\n"
+               "element vertex 3\nproperty float t\n" +
+               kPlace);
+    ply.add("int", 6);
+    for (const double number : {0.0, 0.25, 0.5, 1.0, 0.75, 0.0}) ply.add("double", number);
+    ply.add("float", 1);
+    ply.add("uchar", 3);
+    for (const double number : {2.0, 1.0, 0.0}) ply.add("int", number);
+    ply.add("float", 0);
+    ply.add("short", 0);
+    ply.add("float", 1);
+    for (int i = 0; i < 12; ++i) ply.add("float", i % 5);
+    const Scene scene = load_textured(ply.bytes());
+    EXPECT_THAT(only_mesh(scene).uvs, ElementsAre(vec4(0, 0.75F, 0, 0), vec4(0.5F, 0, 0, 0), vec4(0.75F, 1, 0, 0)));
+    EXPECT_THAT(only_mesh(scene).colors, testing::Each(vec4(1, 1, 0, 1)));
+    EXPECT_THAT(corners_of(only_mesh(scene)), ElementsAre(vec3(4, 0, 1), vec3(0, 1, 2), vec3(1, 2, 3)));
+    EXPECT_THAT(scene.warnings, IsEmpty());
+  }
+}
+
+TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
+  const std::string uvs = "property float s\nproperty float t\n";
+  const auto warnings = [&](const std::string& name, const std::string& properties, const std::string& values) {
+    const Scene scene =
+        load_textured(triangle("comment TextureFile " + name + "\n" + properties, {values, values, values}));
+    EXPECT_EQ(scene.materials.at(0).name == "default", !only_mesh(scene).uvs.size()) << name;
+    return scene.warnings;
+  };
+  EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("\"none.png\" does not exist")));
+  EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leaves the scene's folder")));
+  EXPECT_THAT(warnings("C:\\scans\\a.png", uvs, "0 0"), IsEmpty()) << "a path of another machine";
+  EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("no known format")));
+  EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));
+  EXPECT_THAT(warnings("a.png", uvs, "nan 0"),
+              ElementsAre("a texture coordinate is not finite or beyond 1e15, line 15 and 2 more; 0 is taken"));
+}
+
+TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {
+  const std::string file =
+      text_header("comment TextureFile a.png\nelement vertex 3\n" + kPlace + "property float s\nproperty float t\n" +
+                  "element face 2\n" + kCornerList + "property int texnumber\n") +
+      "0 0 0 0 0\n1 0 0 0 0\n0 1 0 0 0\n3 0 1 2 1\n3 0 1 2 0\n";
+  const Scene scene = load_textured(file);
+  EXPECT_THAT(only_mesh(scene).triangle_materials, ElementsAre(1, 0));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a face names a texture that is not there")));
+}
+
+TEST_F(PlyTextureTest, SizesAreReadAloneWhereAskedFor) {
+  write("scene.ply",
+        triangle("comment TextureFile a.png\nproperty float s\nproperty float t\n", {"0 0", "0 0", "0 0"}));
+  const Scene scene = load_scene(folder_ / "scene.ply", {.decodes_images = false});
+  EXPECT_EQ(scene.images.at(0)->size, uvec2(2, 1));
+  EXPECT_THAT(scene.images.at(0)->texels, IsEmpty());
 }
 
 // Refusals
@@ -253,6 +485,12 @@ std::string cut_binary(const std::string& count_of_faces) {
 }
 
 const BadFile kBadPly[] = {
+    {"Empty", text_header("element vertex 0\n" + kPlace + "element face 0\n" + kCornerList), "holds nothing to draw",
+     ""},
+    {"SmallFacesAlone", square("2 0 1\n", 1), "holds nothing to draw (a face has fewer than 3 corners", ""},
+    {"NoPosition",
+     text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0,5 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+     "\"0,5\" is no number", ": line 12"},
     {"NoPly", "solid x\n", "first line is not \"ply\"", ""},
     {"NoEnd", "ply\nformat ascii 1.0\nelement vertex 3\n", "the header has no end", ": line 3"},
     {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "tells no format", ": line 6"},
@@ -285,11 +523,11 @@ const BadFile kBadPly[] = {
     {"CountOfALong", square("99999999 0 1 2\n", 1), "a count that the file has no room for", ": line 16"},
     {"Nan",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0 0\n0 nan 0\n1 0 0\n3 0 1 2\n",
-     "not finite or beyond 1e15", ": vertex 1"},
+     "no number up to 1e15, vertex 1", ""},
     {"TooLarge",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) +
          "0 0 0\n0 1 0\n1e16 0 0\n3 0 1 2\n",
-     "not finite or beyond 1e15", ": vertex 2"},
+     "no number up to 1e15, vertex 2", ""},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly), name_of_bad_file);

@@ -169,9 +169,41 @@ TEST_F(ImageTest, UnreadablePicturesSayWhy) {
   EXPECT_THAT(message_of_reading(folder_ / "whole.exr"), HasSubstr("damaged"));
 }
 
-TEST_F(ImageTest, PicturesWithoutRgbOrOfAbsurdSizeAreRefused) {
-  std::ofstream(folder_ / "grey.pgm") << "P2 1 1 255 7";
-  EXPECT_THAT(message_of_reading(folder_ / "grey.pgm"), HasSubstr("no channels R, G, B"));
+TEST_F(ImageTest, LuminanceIsReadAsGrey) {
+  std::ofstream(folder_ / "grey.pgm") << "P2 2 1 255 0 51";
+  const Image image = read_image(folder_ / "grey.pgm");
+  EXPECT_EQ(image.pixels.at(0), vec3(0.0F));
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(image.pixels.at(1)[channel], 0.2F, 1e-6F);
+}
+
+/// The pixels of a Radiance file, row after row from the top: of each the number that it has in the file.
+std::vector<int> read_order(const fs::path& file, const std::string& resolution) {
+  std::ofstream out(file, std::ios::binary);
+  out << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" << resolution << "\n";
+  // A mantissa of 128 + i and an exponent of 129 are 1 + i / 128.
+  for (int i = 0; i < 6; ++i) out << static_cast<char>(128 + i) << "\x80\x80\x81";
+  out.close();
+  const Image image = read_image(file);
+  EXPECT_EQ(image.size, uvec2(3, 2)) << resolution;
+  std::vector<int> order;
+  for (const vec3& pixel : image.pixels) order.push_back(static_cast<int>((pixel.r - 1.0F) * 128.0F));
+  return order;
+}
+
+TEST_F(ImageTest, RadianceFilesSayInWhichOrderTheirPixelsLie) {
+  const auto order_of = [&](const std::string& resolution) { return read_order(folder_ / "a.hdr", resolution); };
+  EXPECT_THAT(order_of("-Y 2 +X 3"), testing::ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(order_of("-Y 2 -X 3"), testing::ElementsAre(2, 1, 0, 5, 4, 3));
+  EXPECT_THAT(order_of("+Y 2 -X 3"), testing::ElementsAre(5, 4, 3, 2, 1, 0));
+  EXPECT_THAT(order_of("+Y 2 +X 3"), testing::ElementsAre(3, 4, 5, 0, 1, 2));
+  // Columns follow each other.
+  EXPECT_THAT(order_of("+X 3 -Y 2"), testing::ElementsAre(0, 2, 4, 1, 3, 5));
+  EXPECT_THAT(order_of("+X 3 +Y 2"), testing::ElementsAre(1, 3, 5, 0, 2, 4));
+  EXPECT_THAT(order_of("-X 3 +Y 2"), testing::ElementsAre(5, 3, 1, 4, 2, 0));
+  EXPECT_THAT(order_of("-X 3 -Y 2"), testing::ElementsAre(4, 2, 0, 5, 3, 1));
+}
+
+TEST_F(ImageTest, PicturesOfAbsurdSizeAreRefused) {
   std::ofstream(folder_ / "huge.ppm") << "P6 65000 65000 255\n";
   EXPECT_THAT(message_of_reading(folder_ / "huge.ppm"), HasSubstr("too large"));
 }

@@ -115,6 +115,18 @@ TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
   EXPECT_EQ(display_of(lit), DisplayTransform());
 }
 
+TEST(LightSceneTest, UnlitColoursAreShownAsTheyAre) {
+  Scene scene = physical_scene();
+  scene.materials[0].model = Unlit{vec3(0.5F)};
+  for (Object& object : scene.objects) object.material = 0;
+  scene.lights = {light_of(LightKind::kPoint, 1e4F)};
+  EXPECT_EQ(display_of(scene), DisplayTransform());
+  scene.materials.push_back({.name = "lit", .model = MetallicRoughness{}});
+  EXPECT_EQ(display_of(scene), DisplayTransform()) << "nothing shows it";
+  scene.objects.back().material = static_cast<uint32_t>(scene.materials.size() - 1);
+  EXPECT_EQ(display_of(scene).tone_mapping, ToneMapping::kNeutral);
+}
+
 TEST(LightSceneTest, TheChoiceIsTheUsers) {
   Scene headlight = physical_scene();
   light_scene(headlight, LightChoice::kHeadlight);

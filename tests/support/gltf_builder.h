@@ -38,7 +38,8 @@ struct GltfBuilder {
                           : std::is_same_v<Number, uint16_t> ? 5123
                           : std::is_same_v<Number, uint32_t> ? 5125
                                                              : 5126;
-    const size_t components = type == "SCALAR" ? 1 : static_cast<size_t>(type.back() - '0');
+    const size_t rows = type == "SCALAR" ? 1 : static_cast<size_t>(type.back() - '0');
+    const size_t components = type.starts_with("MAT") ? rows * rows : rows;
     json["accessors"].push_back({{"bufferView", add_view(numbers)},
                                  {"componentType", kType},
                                  {"count", numbers.size() / components},

@@ -28,6 +28,13 @@ std::string read_capture(int descriptor) {
   return text;
 }
 
+void set_limit(__rlimit_resource resource, size_t most) {
+  rlimit limit{};
+  getrlimit(resource, &limit);
+  limit.rlim_cur = most;
+  setrlimit(resource, &limit);
+}
+
 [[noreturn]] void become(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                          const ProcessOptions& options, int out, int err) {
   if (options.standard_output) out = open(options.standard_output->c_str(), O_WRONLY);
@@ -38,11 +45,9 @@ std::string read_capture(int descriptor) {
   if (options.max_file_bytes) {
     // As a shell starts it, whatever this process ignores.
     std::signal(SIGXFSZ, SIG_DFL);
-    rlimit limit{};
-    getrlimit(RLIMIT_FSIZE, &limit);
-    limit.rlim_cur = *options.max_file_bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
+    set_limit(RLIMIT_FSIZE, *options.max_file_bytes);
   }
+  if (options.max_address_bytes) set_limit(RLIMIT_AS, *options.max_address_bytes);
   std::vector<char*> words = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);

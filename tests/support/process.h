@@ -18,6 +18,8 @@ struct ProcessOptions {
   std::map<std::string, std::string> environment;
   /// No file may grow beyond this, by the process's file size limit; see full_disk.cpp for what stands for a full disk.
   std::optional<size_t> max_file_bytes;
+  /// The most address space, as by ulimit -v.
+  std::optional<size_t> max_address_bytes;
   /// The standard output; captured where not given.
   std::optional<std::filesystem::path> standard_output;
 };

@@ -7,14 +7,17 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <random>
+#include <string>
 #include <tuple>
 
+#include "formats/gltf/buffers.h"
 #include "image/picture_formats.h"
 #include "promin/textures.h"
 #include "support/make_jpeg.h"
@@ -27,6 +30,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 using Bytes = std::vector<std::byte>;
+using std::string_literals::operator""s;
 
 TEST(DecodePicture, PngOfEveryKindBecomesRgba) {
   EXPECT_THAT(decode_picture(make_png({2, 1}, PNG_COLOR_TYPE_RGB, 8, {1, 2, 3, 4, 5, 6})).texels,
@@ -71,10 +75,33 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   EXPECT_THAT(decoding({}), ThrowsMessage<PictureError>(HasSubstr("of no known format")));
   EXPECT_THAT(decoding(Bytes(100, std::byte{'x'})), ThrowsMessage<PictureError>(HasSubstr("of no known format")));
   Bytes jpeg = make_jpeg({16, 16}, std::vector<uint8_t>(16 * 16 * 3, 100));
-  for (const size_t length : {size_t{4}, size_t{40}, jpeg.size() / 2, jpeg.size() - 2}) {
+  for (const size_t length : {4, 40, 160}) {
     const Bytes part(jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(length));
     EXPECT_THROW(decode_picture(part), PictureError) << length;
   }
+}
+
+/// The library complains about such JPEGs, and decodes what there is.
+TEST(DecodePicture, JpegsWithWarningsAreDecoded) {
+  std::mt19937 random(3);
+  std::vector<uint8_t> pixels(size_t{64} * 64 * 3);
+  for (uint8_t& sample : pixels) sample = static_cast<uint8_t>(random());
+  const Bytes whole = make_jpeg({64, 64}, pixels);
+  const std::vector<uint32_t> texels = decode_picture(whole).texels;
+  EXPECT_EQ(decode_picture(whole).warning, "");
+  // Phones write padding before the end marker.
+  Bytes padded = whole;
+  padded.insert(padded.end() - 2, 8, std::byte{0});
+  EXPECT_EQ(decode_picture(padded).texels, texels);
+  EXPECT_THAT(decode_picture(padded).warning, HasSubstr("extraneous bytes before marker 0xd9"));
+
+  Bytes cut = whole;
+  cut.resize(cut.size() / 2);
+  const DecodedPicture upper = decode_picture(cut);
+  EXPECT_THAT(upper.warning, HasSubstr("Premature end"));
+  constexpr std::ptrdiff_t kQuarter = 64 * 16;
+  EXPECT_TRUE(std::equal(texels.begin(), texels.begin() + kQuarter, upper.texels.begin()));
+  EXPECT_EQ(upper.texels.back(), 0xFF808080U) << "grey";
 }
 
 TEST(DecodePicture, AbsurdSizesAreRefusedBeforeTheyTakeMemory) {
@@ -179,6 +206,204 @@ TEST(DecodePicture, WebP) {
   EXPECT_THROW(decode_picture(cut), PictureError);
 }
 
+/// As libavif encodes the pixels (200, 100, 50) with alpha 128 and (1, 2, 3) with alpha 0, losslessly.
+constexpr std::string_view kAvif =
+    "AAAAIGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZk1BMUEAAAGNbWV0YQAAAAAAAAAoaGRscgAAAAAAAAAAcGljdAAAAAAAAAAAAAAAAGxpYmF2"
+    "aWYAAAAADnBpdG0AAAAAAAEAAAAsaWxvYwAAAABEAAACAAEAAAABAAABzgAAADYAAgAAAAEAAAG1AAAAGQAAAEJpaW5mAAAAAAACAAAAGmlu"
+    "ZmUCAAAAAAEAAGF2MDFDb2xvcgAAAAAaaW5mZQIAAAAAAgAAYXYwMUFscGhhAAAAABppcmVmAAAAAAAAAA5hdXhsAAIAAQABAAAAw2lwcnAA"
+    "AACdaXBjbwAAABRpc3BlAAAAAAAAAAIAAAABAAAAEHBpeGkAAAAAAwgICAAAAAxhdjFDgSAAAAAAABNjb2xybmNseAACAAIAAIAAAAAOcGl4"
+    "aQAAAAABCAAAAAxhdjFDgQAcAAAAADhhdXhDAAAAAHVybjptcGVnOm1wZWdCOmNpY3A6c3lzdGVtczphdXhpbGlhcnk6YWxwaGEAAAAAHmlw"
+    "bWEAAAAAAAAAAgABBAECgwQAAgQBBYYHAAAAV21kYXQSAAoEGAAmFTIPEACG0okpoqTPSS0ktKOAEgAKBzgAJhAgIAkyKRAAAIu7FZWwXzk9"
+    "n1Z9YeYBb/1X36zAc5w50N1JZex9RC6rxFTEVM+g";
+
+TEST(DecodePicture, Avif) {
+  const Bytes file = decode_base64(kAvif).value();
+  EXPECT_EQ(read_picture_size(file), uvec2(2, 1));
+  EXPECT_THAT(decode_picture(file).texels, ElementsAre(0x803264C8U, 0x00030201U));
+  const Bytes cut(file.begin(), file.end() - 40);
+  EXPECT_THROW(decode_picture(cut), PictureError);
+}
+
+/// What a KTX 2.0 file is made of.
+struct Ktx2 {
+  uint32_t vk_format = 37;
+  uvec2 size{2, 1};
+  std::vector<uint8_t> level = {200, 100, 50, 128, 1, 2, 3, 0};
+  uint32_t supercompression = 0;
+  /// The colour model of Khronos' data format: RGBSDA.
+  uint8_t color_model = 1;
+  std::string notes = {};
+};
+
+void append(std::string& text, std::initializer_list<uint32_t> numbers) {
+  for (const uint32_t number : numbers) {
+    for (uint32_t i = 0; i < 4; ++i) text += static_cast<char>(number >> (8 * i) & 0xFF);
+  }
+}
+
+/// A key with its value.
+std::string make_note(const std::string& key, const std::string& value) {
+  std::string note;
+  append(note, {static_cast<uint32_t>(key.size() + value.size() + 2)});
+  note += key + '\0' + value + '\0';
+  note.resize((note.size() + 3) / 4 * 4);
+  return note;
+}
+
+Bytes make_ktx2(const Ktx2& ktx2) {
+  constexpr uint32_t kDescriptorBytes = 44;
+  constexpr uint32_t kDescriptorAt = 80 + 24;
+  const auto note_bytes = static_cast<uint32_t>(ktx2.notes.size());
+  const auto level_bytes = static_cast<uint32_t>(ktx2.level.size());
+  constexpr uint32_t kNotesAt = kDescriptorAt + kDescriptorBytes;
+  std::string file = "\xABKTX 20\xBB\r\n\x1A\n";
+  append(file, {ktx2.vk_format, 1, ktx2.size.x, ktx2.size.y, 0, 0, 1, 1, ktx2.supercompression});
+  append(file, {kDescriptorAt, kDescriptorBytes, note_bytes == 0 ? 0 : kNotesAt, note_bytes, 0, 0, 0, 0});
+  append(file, {kNotesAt + note_bytes, 0, level_bytes, 0, level_bytes, 0});
+  append(file, {kDescriptorBytes, 0, 2 | 40U << 16, ktx2.color_model});
+  file.resize(kNotesAt);
+  file += ktx2.notes;
+  file.append(ktx2.level.begin(), ktx2.level.end());
+  const auto* first = reinterpret_cast<const std::byte*>(file.data());
+  return {first, first + file.size()};
+}
+
+/// A frame of Zstandard (RFC 8878) of one block, which repeats a byte.
+std::vector<uint8_t> repeat_by_zstd(uint8_t byte, uint8_t count) {
+  return {0x28, 0xB5, 0x2F, 0xFD, 0x20, count, static_cast<uint8_t>(count << 3 | 3), static_cast<uint8_t>(count >> 5),
+          0,    byte};
+}
+
+TEST(DecodePicture, Ktx2OfPlainChannels) {
+  const auto decode = [](const Ktx2& ktx2) { return decode_picture(make_ktx2(ktx2)).texels; };
+  EXPECT_EQ(read_picture_size(make_ktx2({})), uvec2(2, 1));
+  for (const uint32_t rgba : {37, 43}) {
+    EXPECT_THAT(decode({.vk_format = rgba}), ElementsAre(0x803264C8U, 0x00030201U));
+  }
+  EXPECT_THAT(decode({.vk_format = 50}), ElementsAre(0x80C86432U, 0x00010203U)) << "BGRA";
+  EXPECT_THAT(decode({.vk_format = 29, .level = {1, 2, 3, 4, 5, 6}}), ElementsAre(0xFF030201U, 0xFF060504U));
+  EXPECT_THAT(decode({.vk_format = 30, .level = {1, 2, 3, 4, 5, 6}}), ElementsAre(0xFF010203U, 0xFF040506U)) << "BGR";
+  EXPECT_THAT(decode({.vk_format = 16, .level = {1, 2, 3, 4}}), ElementsAre(0xFF000201U, 0xFF000403U));
+  EXPECT_THAT(decode({.vk_format = 9, .level = {7, 8}}), ElementsAre(0xFF000007U, 0xFF000008U));
+  EXPECT_THAT(
+      decode(
+          {.vk_format = 9, .level = {7, 8}, .notes = make_note("KTXwriter", "me") + make_note("KTXswizzle", "rrr1")}),
+      ElementsAre(0xFF070707U, 0xFF080808U))
+      << "grey";
+  EXPECT_THAT(decode({.vk_format = 9, .size = {1, 2}, .level = {7, 8}, .notes = make_note("KTXorientation", "ru")}),
+              ElementsAre(0xFF000008U, 0xFF000007U))
+      << "from the bottom";
+}
+
+TEST(DecodePicture, Ktx2BySupercompression) {
+  EXPECT_THAT(decode_picture(make_ktx2({.level = repeat_by_zstd(9, 8), .supercompression = 2})).texels,
+              ElementsAre(0x09090909U, 0x09090909U));
+  const auto decoding = [](const Ktx2& ktx2) { return [ktx2] { return decode_picture(make_ktx2(ktx2)).size; }; };
+  EXPECT_THAT(decoding({.level = repeat_by_zstd(9, 7), .supercompression = 2}),
+              ThrowsMessage<PictureError>(HasSubstr("Zstandard")));
+  EXPECT_THAT(decoding({.supercompression = 3}),
+              ThrowsMessage<PictureError>(HasSubstr("supercompression 3 is not read")));
+  EXPECT_THAT(decoding({.level = {1, 2, 3}}), ThrowsMessage<PictureError>(HasSubstr("another length")));
+}
+
+/// A picture of 16x12 with alpha that basisu 1.15 encodes with -ktx2, and the RGBA that it unpacks of it, as ETC1 and,
+/// for alpha, ETC2.
+constexpr std::string_view kEtc1s =
+    "q0tUWCAyMLsNChoKAAAAAAEAAAAQAAAADAAAAAAAAAAAAAAAAQAAAAEAAAABAAAAaAAAADwAAACkAAAAJAAAAMgAAAAAAAAABAEAAAAAAADM"
+    "AQAAAAAAABUAAAAAAAAAAAAAAAAAAAA8AAAAAAAAAAIAOACjAQIAAwMAAAAAAAAAAAAAAAA/AAAAAAAAAAAA/////0AAPw8AAAAAAAAAAP//"
+    "//8fAAAAS1RYd3JpdGVyAEJhc2lzIFVuaXZlcnNhbCAxLjE1AAATABcASgAAAF0AAAA1AAAAAAAAAAAAAAAAAAAACQAAAAkAAAAMAAAAH8Dc"
+    "AAAAgGAA1qgrDECANwACAADBDmTl4pFMPoDIAQIAAEDA7msCCgjAFAAAAAAACJRFGjXW2Oad3wdabMvptwYWXHlZlyUZAAB8XdOyeF2zKPh9"
+    "0yj4/9UK+FetAlBVrQL4VasK+FWrCFjTsijY0jAoAIKiLAcAAAQFBAUFBQBAVQWoKtUHqkz3p6pM168sTdenLC3PhyJN9wdQ9f9Hx8fHLy2t"
+    "ogIAwUQAAAAAAADyX20CmAMgAAAgCMCavUEgD9BGUAAAQUQE0RN0cHD1CmoAMAEAAAAAAIAAAgZEApQokTEMca7q+jLabMv0f48UFw==";
+constexpr std::string_view kEtc1sTexels =
+    "oNkLAKDZCwCq4xUAquMVAO/OMQDvzjEA784xAO/OMQD/vlsA/75bAPSyTwD0sk8AyqF3AMqhdwC2jWMAto1jAKDZCwCg2QsAquMVAKrjFQDv"
+    "zjEA784xAO/OMQDpyCsA/75bAvSyTwL0sk8C6qhFAsqhdwa2jWMGto1jBqR7UQag2QsAoNkLAKDZCwCg2QsC6cgrAOnIKwXlxCcF5cQnBfSy"
+    "TwLqqEUI6qhFCN6cOQi2jWMGto1jBqR7UQqke1EKlM0AAKDZCwCg2QsCoNkLAuXEJwXfviEF374hBd++IQXqqEUI6qhFCN6cOQjenDkIto1j"
+    "CqR7UQqke1EQkGc9EKrCJgCqwiYAqsImAKrCJgX4rUoG+K1KBuyhPgbsoT4K/4RjCP+EYw70eFcO9HhXDtJ3kBC+Y3wQvmN8EKxRahaqwiYA"
+    "qsImAKrCJgWqwiYF+K1KBuyhPgbsoT4K4pc0Cv+EYw70eFcO9HhXDupuTRK+Y3wWvmN8FqxRahasUWoaoLgcAKC4HACguBwFoLgcBeyhPgbi"
+    "lzQK4pc0CtaLKBD0eFcO6m5NEupuTRLeYkEYvmN8FqxRahqsUWoamD1WIJSsEACUrBAAlKwQBZSsEAXilzQK4pc0CtaLKBDWiygQ6m5NEupu"
+    "TRLeYkEY3mJBGKxRahqsUWogmD1WIJg9ViCqiS4AqokuAqqJLgKqiS4I+HRTCPh0Uw7saEcO7GhHEv9TdBn/U3QZ9EdoGfRHaB/GQowhujaA"
+    "Ibo2gCewLHYnqokuAKqJLgKqiS4IqokuCPh0Uw7saEcO7GhHEuJePRL/U3QZ9EdoGfRHaB/qPV4fujaAIbo2gCewLHYrsCx2K6B/JACgfyQC"
+    "oH8kCKB/JAjsaEcO4l49DuJePRLWUjEY9EdoGeo9Xh/qPV4f3jFSI7o2gCewLHYrsCx2K6QgajGUcxgAlHMYApRzGAiUcxgI4l49DuJePRLW"
+    "UjEY1lIxGOo9Xh/qPV4f3jFSI94xUimwLHYrsCx2MaQgajGkIGox";
+
+TEST(DecodePicture, Ktx2OfEtc1sByBasisLz) {
+  const Bytes file = decode_base64(kEtc1s).value();
+  const Bytes expected = decode_base64(kEtc1sTexels).value();
+  const DecodedPicture picture = decode_picture(file);
+  EXPECT_EQ(picture.size, uvec2(16, 12));
+  ASSERT_EQ(4 * picture.texels.size(), expected.size());
+  EXPECT_EQ(std::memcmp(picture.texels.data(), expected.data(), expected.size()), 0);
+}
+
+/// A UASTC block of each of the 19 modes, side by side, that basisu 1.15 encodes, and the RGBA that it unpacks of them
+/// as ASTC.
+constexpr std::string_view kUastc =
+    "YUmzVJO1XNsQMlR2mLrc/vUJh8KDFoWHGwDw/w8AAACdWNCgoaGfn0GUJEmABEgAQzg20GSExRAJgADlcnk+ABOctIcOCRAEMUhK29jYWABL"
+    "SA7fBt+mIAlggIQkAAAA21plkhrdUmiombru3CITRIeEBohKRwLqxV0S5XJycgAXHl7hv+QcAAAAAAAAAAAAT37w/4SFhTXh4eEfAP//KyrQ"
+    "0clmumH+n1YIrz6Q+WkogmwtMIvvBgADdESLuMzPLtDxjqJIMln2zhEN9Vmf9Z8l3gHHx4GClhb8Owr69QXtgd5hZeUCpKXFvAyoUv0HBUW+"
+    "BJjVZyoAAAAg8z/zH5UmfLhBAQL8I+EB/MvJ5eTlDGL1HxDgD/gH+Af4B/gH+UCruuqqQZBzEnsPylqv5g==";
+constexpr std::string_view kUastcTexels =
+    "NDU1/zc6Pv86QEf/PUVR/xS0PP8UtDz/FLQ8/xS0PP/x8Qn/8fEJ//HxCf/x8Qn/AAAA/0QHD/+MDx//0Rcu/x0o3f8NDQ3/NDqx/zxBmv/w"
+    "8Ar/8PAK//DwCv9/f3//u9Rm/2dkrv+Snq7/kp6u/xOxOv8dokD/KZNH/zSETv/w8Ar/8PAK//DwCv/w8Ar/AAAA/wAAAP8AAAD/AAAA/+qT"
+    "b4jqk5SI6pNgiOqTUohsG6n/bBup/2wbqQBsG6n/3SZakd4xWpHePVqQ3khajxwHWvAcB1rwHwda8B8HWvBWLlrMVi5azFYuWsxWLlrMYGBg"
+    "n2BgYJ9gYGCfYGBgn0hISABYWFhUaGhoq3h4eP////8A////AICAgH+AgIB/ra2t/7CwsP+ysrL/tra2/0FMXP9EUmX/R1dv/0pdeP8UtDz/"
+    "FLQ8/xS0PP8UtDz/8fEJ//HxCf/x8Qn/8fEJ/y4XF/9rHib/qyY2/+guRf8dKN3/DQ0N/zQ6sf88QZr/8PAK//DwCv+kpFj/pKRY/2dkrv8+"
+    "Lq7/Z2Tz/2dk8//FICf/tCgv/6IxOP+ROkH/8PAK//DwCv/w8Ar/8PAK/////wD///8A////AP///wDqk4WI6pMFiOqT74jqk6KIbDep/2w3"
+    "qQBsN6n/bDep/90mWpHeMVqR3kNakN5OWo8cB1rwHAda8B8HWvAfB1rwVjRazFY0WsxWNFrMVjRazGBgYJ9gYGCfYGBgn2BgYJ9ISEgAWFhY"
+    "VGhoaKt4eHj/////AP///wCAgIB/gICAf7a2tv+5ubn/vb29/8DAwP9PZYb/UmuP/1Vwmf9ZdqL/Hijc/x4o3P8eKNz/Hijc/wAAAP8AAAD/"
+    "gICA/4CAgP9cLi7/kj09/8pNTf//XFz/HSjd/w0NDf80OrH/PEGa//DwCv/LyzD/y8sw/8vLMP+71PP/kp7z/2dkIf9nZCH/E7E6/x2iQP8p"
+    "k0f/NIRO//DwCv/w8Ar/8PAK//DwCv////8A////AP///wD///8A6pPhiOqTMYjqkwWI6pOUiGxVqQBsVan/bFWp/2xVqQDeK1qR3jdakN5D"
+    "WpDeTlqPHwpa7x8KWu8cClrvHApa71Y6WsxWOlrMVjpazFY6WsxaWlqlWlpapVZWVqlWVlapUFBQAGBgYFRwcHCrgICA/////wD///8AgICA"
+    "f4CAgH/AwMD/w8PD/8bGxv/Jycn/XHyt/2CCt/9jiMD/Zo3J/x4o3P8eKNz/Hijc/x4o3P8AAAD/AAAA/4CAgP+AgID/kj09/8pNTf//XFz/"
+    "/1xc/x0o3f8NDQ3/NDqx/zxBmv/w8Ar/8PAK//DwCv/w8Ar/Pi4h/5KeIf+71Gb/u9Rm/xOxOv8dokD/KZNH/zSETv/w8Ar/8PAK//DwCv/w"
+    "8Ar/WlpapVpaWqVaWlqlWlpapeqTlIjqk++I6pOUiOqTYIhscan/bHGp/2xxqQBscan/3itakd43WpDeQ1qQ3k5ajx8KWu8fClrvHApa7xwK"
+    "Wu9WQFrLVkBay1ZAWstWQFrLWlpapVpaWqVWVlapVlZWqVBQUABgYGBUcHBwq4CAgP////8A////AICAgH+AgIB/ycnJ/8zMzP/Q0ND/0tLS"
+    "/w==";
+
+TEST(DecodePicture, Ktx2OfUastcInEachMode) {
+  const Bytes blocks = decode_base64(kUastc).value();
+  const Bytes expected = decode_base64(kUastcTexels).value();
+  Ktx2 ktx2 = {.vk_format = 0, .size = {76, 4}, .level = {}, .color_model = 166};
+  for (const std::byte byte : blocks) ktx2.level.push_back(std::to_integer<uint8_t>(byte));
+  const DecodedPicture picture = decode_picture(make_ktx2(ktx2));
+  ASSERT_EQ(4 * picture.texels.size(), expected.size());
+  EXPECT_EQ(std::memcmp(picture.texels.data(), expected.data(), expected.size()), 0);
+  // Where sides are no multiples of 4, blocks are cut.
+  ktx2.size = {75, 3};
+  const DecodedPicture cut = decode_picture(make_ktx2(ktx2));
+  EXPECT_EQ(cut.texels.at(75 + 74), picture.texels.at(76 + 74));
+  // No mode has seven bits of 69.
+  ktx2.level[0] = 69;
+  EXPECT_THAT([&] { return decode_picture(make_ktx2(ktx2)).size; },
+              ThrowsMessage<PictureError>(HasSubstr("a UASTC block is damaged")));
+}
+
+/// Whatever the bits, there is a picture or an error.
+TEST(DecodePicture, DamagedEtc1sIsToldOf) {
+  std::mt19937 random(11);
+  const Bytes file = decode_base64(kEtc1s).value();
+  int broken = 0;
+  for (int i = 0; i < 300; ++i) {
+    Bytes mutant = file;
+    mutant[80 + random() % (mutant.size() - 80)] = static_cast<std::byte>(random());
+    if (i % 3 == 0) mutant.resize(random() % mutant.size());
+    try {
+      const DecodedPicture picture = decode_picture(mutant);
+      EXPECT_EQ(picture.texels.size(), 16U * 12U);
+    } catch (const PictureError&) {
+      ++broken;
+    }
+  }
+  EXPECT_GT(broken, 100);
+}
+
+TEST(DecodePicture, Ktx2OfOtherFormatsNamesWhatConvertsIt) {
+  const auto decoding = [](const Ktx2& ktx2) { return [ktx2] { return read_picture_size(make_ktx2(ktx2)); }; };
+  EXPECT_THAT(decoding({.vk_format = 145}), ThrowsMessage<PictureError>(HasSubstr("VkFormat 145 is not read")));
+  EXPECT_THAT(decoding({.vk_format = 0, .color_model = 200}), ThrowsMessage<PictureError>(HasSubstr("ktx extract")));
+}
+
 TEST(DecodePicture, ColoursAreNotMultipliedByAlpha) {
   EXPECT_THAT(decode_picture(bytes_of(kWebpAlphas)).texels, ElementsAre(0x803264C8U, 0x00030201U));
   const std::vector<float> rgba = {200 * kByte, 100 * kByte, 50 * kByte, 128 * kByte};
@@ -209,6 +434,12 @@ TEST(DecodePicture, AbsurdSizesOfOtherFormatsAreRefusedByTheirHeader) {
               ThrowsMessage<PictureError>(HasSubstr("65536x16777216 is too large")));
   EXPECT_THAT(size_of(make_dds({100000, 2}, {})), ThrowsMessage<PictureError>(HasSubstr("100000x2 is too large")));
   EXPECT_THAT(size_of(make_dds({0, 2}, {})), ThrowsMessage<PictureError>(HasSubstr("no pixels")));
+}
+
+TEST(DecodePicture, RadianceStandsUprightWhateverTheOrderOfItsRows) {
+  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 1\n\xFF\0\0\x80\0\0\xFF\x80"s;
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  EXPECT_THAT(decode_picture(Bytes(first, first + text.size())).texels, ElementsAre(0xFFFF0000U, 0xFF0000FFU));
 }
 
 /// Whatever the bytes, there is a picture of the size that was told, or an error.
@@ -246,6 +477,11 @@ TEST(DecodePicture, FormatsAreToldByTheirFirstBytes) {
   using std::string_view_literals::operator""sv;
   EXPECT_STREQ(format_of("RIFF\x01\x02\x03\x04WEBPVP8 "sv), "webp");
   EXPECT_STREQ(format_of("RIFF\x01\x02\x03\x04WAVE"sv), "");
+  EXPECT_STREQ(format_of("\x00\x00\x00\x20"
+                         "ftypavif"sv),
+               "avif");
+  EXPECT_STREQ(format_of("\xABKTX 20\xBB\r\n\x1A\n"sv), "ktx2");
+  EXPECT_STREQ(format_of("\xABKTX 11\xBB\r\n\x1A\n"sv), "");
   EXPECT_STREQ(format_of("#?RADIANCE\n"sv), "hdr");
   EXPECT_STREQ(format_of("\x00\x00\x02\x00\x00\x00\x00\x00\x00\x00\x00\x00\x01\x00\x01\x00\x18\x00xyz"sv), "targa");
   EXPECT_STREQ(format_of("\x00\x00\x02\x00\x00\x00\x00\x00\x00\x00\x00\x00\x01\x00\x01\x00\x19\x00xyz"sv), "");

@@ -75,9 +75,10 @@ TEST(DescribeCommand, NamesTheSurroundingsAndTheVariant) {
   scene.environment.rotation_deg = 12.5;
   scene.environment.intensity = 0.3;
   scene.variant = "red one";
+  scene.root = "the store";
   EXPECT_THAT(describe_command(scene, View()),
               testing::HasSubstr(" --environment 'a sky.hdr' --environment-rotation 12.5 --environment-intensity 0.3 "
-                                 "--variant 'red one' --eye"));
+                                 "--variant 'red one' --root 'the store' --eye"));
 }
 
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {

@@ -85,7 +85,7 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
 
 /// The number of bytes that a URI names; 0 where they cannot be read.
 uint64_t size_of_uri(const std::string& uri, const std::string& place, const LoadReport& report) {
-  LoadReport attempt(report.file());
+  LoadReport attempt(report.file(), false, report.root());
   if (is_data(uri)) return read_data_uri(uri, place, attempt).value_or(Bytes{}).size();
   const auto file = find_file(uri, place, false, attempt);
   if (!file) return 0;
@@ -155,6 +155,7 @@ class NeededViews {
       const bool is_morphed = node.mesh >= 0 && node.weights && has_morph(*node.weights);
       if (is_morphed) need_targets(document.meshes[static_cast<size_t>(node.mesh)]);
     }
+    for (const json& skin : elements_of(document.json, "skins")) need_accessor(skin.value("inverseBindMatrices", -1));
     if (!with_images) return;
     for (const json& image : elements_of(document.json, "images")) need_view(image.value("bufferView", -1));
   }
@@ -281,7 +282,7 @@ class BufferReader {
 
   /// Reads a buffer that only images lie in: they are left out where it cannot be read.
   void try_buffer(const json& source, size_t index) {
-    LoadReport attempt(report_.file());
+    LoadReport attempt(report_.file(), false, report_.root());
     try {
       read_buffer(source, index, attempt);
       attempt.throw_if_refused();

@@ -24,7 +24,8 @@ struct Format {
   std::optional<bool> normalized;
 };
 
-/// The attributes of vertices and of instances that the loader reads; "indices" stands for a primitive's indices.
+/// The attributes of vertices and of instances that the loader reads; "indices" stands for a primitive's indices,
+/// "inverseBindMatrices" for those of a skin.
 constexpr Format kFormats[] = {
     {"POSITION", "VEC3", kGltfFloat, {}},
     {"POSITION", "VEC3", kGltfByte, {}},
@@ -53,6 +54,12 @@ constexpr Format kFormats[] = {
     {"TANGENT", "VEC4", kGltfFloat, {}},
     {"TANGENT", "VEC4", kGltfByte, true},
     {"TANGENT", "VEC4", kGltfShort, true},
+    {"JOINTS_0", "VEC4", kGltfUnsignedByte, false},
+    {"JOINTS_0", "VEC4", kGltfUnsignedShort, false},
+    {"WEIGHTS_0", "VEC4", kGltfFloat, {}},
+    {"WEIGHTS_0", "VEC4", kGltfUnsignedByte, true},
+    {"WEIGHTS_0", "VEC4", kGltfUnsignedShort, true},
+    {"inverseBindMatrices", "MAT4", kGltfFloat, {}},
     {"indices", "SCALAR", kGltfUnsignedByte, {}},
     {"indices", "SCALAR", kGltfUnsignedShort, {}},
     {"indices", "SCALAR", kGltfUnsignedInt, {}},
@@ -82,10 +89,10 @@ uint64_t needed_bytes(const std::string& type, int component_type) {
   return bytes - ((column + 3) / 4 * 4 - column);
 }
 
-/// Whether an attribute changes how vertices look and not where they are.
-bool shades_only(std::string_view attribute) {
-  constexpr std::string_view kShading[] = {"NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
-  return std::ranges::find(kShading, attribute) != std::end(kShading) || !is_read_attribute(attribute);
+/// All sets of joints and weights are read, and have the formats of the first.
+std::string_view first_of_sets(std::string_view attribute) {
+  if (attribute.starts_with("JOINTS_")) return "JOINTS_0";
+  return attribute.starts_with("WEIGHTS_") ? "WEIGHTS_0" : attribute;
 }
 
 /// Refuses `count` elements that do not fit into a buffer view. In 64 bits nothing wraps: the schema keeps offsets
@@ -144,6 +151,7 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
 }
 
 bool has_format(const json& accessor, std::string_view attribute) {
+  attribute = first_of_sets(attribute);
   const auto& type = accessor["type"].get_ref<const std::string&>();
   const int component_type = accessor["componentType"];
   const bool normalized = accessor.value("normalized", false);
@@ -196,15 +204,8 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   return has_wrong_format || count != vertex_count;
 }
 
-void check_vertex_count(const json& accessor, uint64_t vertex_count, const std::string& place, LoadReport& report) {
-  const auto count = accessor["count"].get<uint64_t>();
-  if (count == vertex_count) return;
-  report.refuse("the attribute has " + std::to_string(count) + " elements, there are " + std::to_string(vertex_count) +
-                    " vertices",
-                place, "give all attributes one count");
-}
-
-/// Checks what is beside each other in each vertex. What only shades is left out where it is wrong.
+/// Checks what is beside each other in each vertex. Attributes other than the position are left out where they are
+/// wrong; without joints a mesh stands as it is.
 void check_vertices(json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   const auto positions = attributes.find("POSITION");
   if (positions == attributes.end()) return;
@@ -213,12 +214,11 @@ void check_vertices(json& attributes, const json& accessors, const std::string& 
     const std::string& name = attribute.key();
     const std::string at = place + "." + name;
     const json& accessor = accessors[attribute->get<size_t>()];
-    if (shades_only(name) && is_left_out(name, accessor, vertex_count, at, report)) {
+    if (name != "POSITION" && is_left_out(name, accessor, vertex_count, at, report)) {
       attribute = attributes.erase(attribute);
       continue;
     }
     check_format(accessor, name, at, report);
-    check_vertex_count(accessor, vertex_count, at, report);
     ++attribute;
   }
 }
@@ -328,6 +328,7 @@ std::vector<bool> find_plain_accessors(const json& document) {
 }  // namespace
 
 bool is_read_attribute(std::string_view name) {
+  name = first_of_sets(name);
   return std::any_of(std::begin(kFormats), std::end(kFormats), [&](auto& format) { return format.attribute == name; });
 }
 
@@ -360,6 +361,13 @@ void check_gltf_accessors(json& document, bool is_strict, LoadReport& report) {
 
   const json& nodes = elements_of(document, "nodes");
   for (size_t i = 0; i < nodes.size(); ++i) check_instances(nodes[i], accessors, at("nodes", i), report);
+  const json& skins = elements_of(document, "skins");
+  for (size_t i = 0; i < skins.size(); ++i) {
+    const auto matrices = skins[i].find("inverseBindMatrices");
+    if (matrices == skins[i].end()) continue;
+    check_format(accessors[matrices->get<size_t>()], "inverseBindMatrices", at("skins", i) + ".inverseBindMatrices",
+                 report);
+  }
 
   if (!document.contains("meshes")) return;
   json& meshes = document["meshes"];

@@ -70,8 +70,8 @@ GltfMesh mesh_of(const json& source) {
 }
 
 GltfNode node_of(const json& source) {
-  GltfNode node{source.value("name", ""), index_of(source, "mesh"), index_of(source, "camera"),
-                elements_of(source, "children"), std::nullopt};
+  GltfNode node{source.value("name", ""), index_of(source, "mesh"),        index_of(source, "camera"),
+                index_of(source, "skin"), elements_of(source, "children"), std::nullopt};
   if (source.contains("weights")) node.weights = source["weights"].get<std::vector<double>>();
   return node;
 }

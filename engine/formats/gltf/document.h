@@ -71,6 +71,7 @@ struct GltfNode {
   std::string name;
   int mesh = -1;
   int camera = -1;
+  int skin = -1;
   std::vector<int> children;
   /// Of its mesh's morph targets.
   std::optional<std::vector<double>> weights;

@@ -111,12 +111,15 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
   PictureSource picture;
   read_gltf_image(document, *image, picture, report);
-  if (!picture.problem.empty()) {
-    report.warn(name + " is ignored: " + picture.problem);
+  if (picture.problem) {
+    report.warn(name + " is ignored: " + describe_problem(picture));
     return std::nullopt;
   }
   try {
-    return read_panorama(picture.file, name);
+    std::vector<std::string> warnings;
+    Panorama panorama = read_panorama(picture.file, name, warnings);
+    for (const std::string& warning : warnings) report.warn(warning);
+    return panorama;
   } catch (const InputError& error) {
     report.warn(name + " is ignored: " + error.problems().front().what);
     return std::nullopt;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/nodes.h"
 #include "formats/gltf/shapes.h"
+#include "formats/gltf/skins.h"
 #include "formats/gltf/variants.h"
 
 namespace promin {
@@ -42,7 +44,9 @@ class SceneReader {
     GltfTextures textures(document_, decodes_images_, report_);
     scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);
-    for (const PlacedNode& placed : place_gltf_nodes(document_, report_)) read_node(placed);
+    const std::vector<PlacedNode> placed_nodes = place_gltf_nodes(document_, report_);
+    skins_.emplace(document_, placed_nodes, report_);
+    for (const PlacedNode& placed : placed_nodes) read_node(placed);
     const auto is_phong = [](const Material& material) { return std::holds_alternative<Phong>(material.model); };
     scene_.is_classic = !scene_.materials.empty() && std::ranges::all_of(scene_.materials, is_phong);
     if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
@@ -61,12 +65,28 @@ class SceneReader {
     }
     const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
     if (node.mesh < 0) return;
+    if (is_skinned(node)) return read_skinned_mesh(placed);
     const std::optional<uint64_t> instance_count = count_gltf_instances(document_, placed);
     if (!instance_count) return read_mesh(placed);
     if (*instance_count == 0 || !has_room_for(*instance_count, placed)) return;
     for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
       read_mesh({placed.node, place, placed.rotation, placed.is_visible});
     }
+  }
+
+  bool is_skinned(const GltfNode& node) const { return node.skin >= 0 && skins_->has_joints(node.skin); }
+
+  /// Of a skinned mesh the node's own place counts for nothing (glTF 2.0, section 3.7.3.3).
+  void read_skinned_mesh(const PlacedNode& placed) {
+    if (count_gltf_instances(document_, placed)) {
+      report_.warn({"a skinned mesh has instances", "", "nodes[" + std::to_string(placed.node) + "]", "",
+                    "it is drawn once, where its joints are"});
+    }
+    const GltfPose& pose = skins_->find(document_.nodes[static_cast<size_t>(placed.node)].skin);
+    PlacedNode posed = placed;
+    posed.world_from_object = pose.world_from_mesh;
+    posed.is_visible = placed.is_visible && !pose.is_hidden;
+    read_mesh(posed);
   }
 
   /// Whether a node's instances can be taken, told before any of them is.
@@ -130,14 +150,16 @@ class SceneReader {
   }
 
   /// The geometry of a primitive of a node's mesh, read once for all nodes that show it with the same weights of morph
-  /// targets; kNoGeometry where nothing is drawn.
+  /// targets and the same skin; kNoGeometry where nothing is drawn.
   uint32_t find_mesh(int node, size_t primitive) {
     const GltfNode& shown = document_.nodes[static_cast<size_t>(node)];
     const auto mesh = static_cast<size_t>(shown.mesh);
     const std::vector<double>& weights = shown.weights ? *shown.weights : document_.meshes[mesh].weights;
-    const auto [known, is_new] = mesh_geometries_.try_emplace({mesh, primitive, weights}, Object::kNoGeometry);
+    const int skin = is_skinned(shown) ? shown.skin : -1;
+    const auto [known, is_new] = mesh_geometries_.try_emplace({mesh, primitive, weights, skin}, Object::kNoGeometry);
     if (is_new) {
-      Mesh triangles = read_gltf_mesh(document_, mesh, primitive, weights, report_);
+      const GltfPose* pose = skin < 0 ? nullptr : &skins_->find(skin);
+      Mesh triangles = read_gltf_mesh(document_, mesh, primitive, weights, pose, report_);
       if (!triangles.triangles.empty()) known->second = add(std::move(triangles));
     }
     return known->second;
@@ -167,7 +189,6 @@ class SceneReader {
     std::string parts;
     const auto say = [&](const char* part) { parts += (parts.empty() ? ": " : ", ") + std::string(part); };
     if (!elements_of(document_.json, "animations").empty()) say("animations are ignored");
-    if (!elements_of(document_.json, "skins").empty()) say("skins are in their bind pose");
     if (std::ranges::any_of(document_.meshes, is_morphed)) say("morph targets have their default weights");
     if (!parts.empty()) report_.warn("the scene stands still" + parts);
   }
@@ -178,7 +199,8 @@ class SceneReader {
   bool decodes_images_;
   LoadReport& report_;
   Scene scene_;
-  std::map<std::tuple<size_t, size_t, std::vector<double>>, uint32_t> mesh_geometries_;
+  std::optional<GltfSkins> skins_;
+  std::map<std::tuple<size_t, size_t, std::vector<double>, int>, uint32_t> mesh_geometries_;
   uint64_t triangle_count_ = 0;
   uint32_t default_material_ = kNoMaterial;
 };

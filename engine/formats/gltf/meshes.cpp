@@ -7,10 +7,12 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "core/rounding.h"
 #include "formats/gltf/accessors.h"
 #include "formats/gltf/json_rule.h"
+#include "motion/skin.h"
 #include "promin/validate.h"
 #include "scene/world_scene.h"
 #include "shapes/placement.h"
@@ -67,11 +69,12 @@ bool is_coordinate(float uv) {
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                  LoadReport& report)
+                  const GltfPose* pose, LoadReport& report)
       : document_(document),
         primitive_(document.meshes[mesh].primitives[primitive]),
         place_("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]"),
         weights_(weights),
+        pose_(pose),
         report_(report) {}
 
   Mesh read() {
@@ -101,6 +104,7 @@ class PrimitiveReader {
     if (const int tangents = accessor_of("TANGENT"); tangents >= 0 && !mesh.normals.empty() && !mesh.uvs.empty()) {
       read_tangents(tangents, mesh);
     }
+    if (pose_ != nullptr && mesh.positions.size() == used_vertices_.size()) pose(mesh);
     return mesh;
   }
 
@@ -281,10 +285,90 @@ class PrimitiveReader {
     mesh.tangents = std::move(tangents);
   }
 
+  /// Moves the mesh by its joints.
+  void pose(Mesh& mesh) {
+    std::optional<SkinInfluences> influences = read_influences();
+    if (!influences) return;
+    pose_mesh(pose_->joint_matrices, *influences, mesh);
+    if (std::ranges::all_of(mesh.normals, [](const vec3& normal) { return has_length(dvec3(normal)); })) return;
+    warn_of_normals(place_, report_);
+    mesh.normals.clear();
+    mesh.tangents.clear();
+  }
+
+  /// nullopt where there is nothing to pose by, or once the report holds the reason.
+  std::optional<SkinInfluences> read_influences() {
+    SkinInfluences influences;
+    for (int set = 0; accessor_of(("JOINTS_" + std::to_string(set)).c_str()) >= 0; ++set)
+      add_influences(set, influences);
+    if (influences.per_vertex == 0) {
+      report_.repair({"a primitive of a skinned mesh has no joints and weights", "", place_, "export the mesh again",
+                      "it stands as it is without its skin"});
+      return std::nullopt;
+    }
+    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+      repair_weights(i, influences);
+      if (!has_valid_joints(i, influences)) return std::nullopt;
+    }
+    return influences;
+  }
+
+  /// Adds a set of four joints to each vertex, behind those that it has.
+  void add_influences(int set, SkinInfluences& influences) {
+    const std::string number = std::to_string(set);
+    const int weights = accessor_of(("WEIGHTS_" + number).c_str());
+    if (weights < 0) return;
+    const std::vector<uint32_t> set_joints =
+        read_indices(document_, accessor_of(("JOINTS_" + number).c_str()), report_);
+    const std::vector<float> set_weights = read_floats(document_, weights, report_);
+    const size_t before = influences.per_vertex;
+    SkinInfluences longer{before + 4};
+    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+      const auto append = [&](const auto& old, const auto& added, auto& result) {
+        const auto first_old = old.begin() + static_cast<std::ptrdiff_t>(i * before);
+        result.insert(result.end(), first_old, first_old + static_cast<std::ptrdiff_t>(before));
+        const auto first_added = added.begin() + static_cast<std::ptrdiff_t>(4 * size_t{used_vertices_[i]});
+        result.insert(result.end(), first_added, first_added + 4);
+      };
+      append(influences.joints, set_joints, longer.joints);
+      append(influences.weights, set_weights, longer.weights);
+    }
+    influences = std::move(longer);
+  }
+
+  void repair_weights(size_t vertex, SkinInfluences& influences) {
+    const std::span weights =
+        std::span(influences.weights).subspan(vertex * influences.per_vertex, influences.per_vertex);
+    double sum = 0.0;
+    for (const float weight : weights) sum += static_cast<double>(weight);
+    // Written so that NaN fails.
+    if (std::abs(sum) >= 1e-6 && std::abs(sum) <= kMaxCoordinate) return;
+    report_.repair({"a vertex of a skinned mesh has no weights, or ones that are no numbers", "",
+                    element_place("WEIGHTS_0", used_vertices_[vertex]), "export the mesh again",
+                    "it goes with the first of its joints"});
+    std::ranges::fill(weights, 0.0F);
+    weights[0] = 1.0F;
+  }
+
+  /// A joint without weight may be any number.
+  bool has_valid_joints(size_t vertex, const SkinInfluences& influences) {
+    for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
+      if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;
+      report_.refuse(
+          "joint " + std::to_string(influences.joints[i]) + " is out of range, the skin has " +
+              std::to_string(pose_->joint_matrices.size()) + " joints",
+          element_place(("JOINTS_" + std::to_string(i % influences.per_vertex / 4)).c_str(), used_vertices_[vertex]),
+          "export the file again");
+      return false;
+    }
+    return true;
+  }
+
   const GltfDocument& document_;
   const GltfPrimitive& primitive_;
   std::string place_;
   const std::vector<double>& weights_;
+  const GltfPose* pose_;
   LoadReport& report_;
   size_t vertex_count_ = 0;
   std::vector<uint32_t> used_vertices_;
@@ -293,8 +377,8 @@ class PrimitiveReader {
 }  // namespace
 
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                    LoadReport& report) {
-  return PrimitiveReader(document, mesh, primitive, weights, report).read();
+                    const GltfPose* pose, LoadReport& report) {
+  return PrimitiveReader(document, mesh, primitive, weights, pose, report).read();
 }
 
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive) {

@@ -4,6 +4,7 @@
 
 #include "formats/gltf/document.h"
 #include "formats/gltf/nodes.h"
+#include "formats/gltf/skins.h"
 #include "promin/scene.h"
 #include "promin/shapes.h"
 
@@ -12,8 +13,11 @@ namespace promin {
 /// A mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space, with the vertices
 /// they use alone, moved by the morph targets that have weights other than 0. Points, lines and primitives without a
 /// triangle come back empty, with a warning; bad indices and coordinates go to the report.
+///
+/// Where there is a `pose`, the joints of the vertices place them in the world. A vertex without weights goes with the
+/// first joint that it names, and a primitive without joints stands as it is; both are repaired.
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                    LoadReport& report);
+                    const GltfPose* pose, LoadReport& report);
 
 /// Number of these triangles, as far as the file tells before anything is read.
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive);

@@ -3,6 +3,7 @@
 #include "formats/gltf/nodes.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -42,10 +43,8 @@ std::optional<dmat3> local_rotation(const nlohmann::json& node) {
   return rotation;
 }
 
-/// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
-std::vector<int> root_nodes(const GltfDocument& document) {
-  const nlohmann::json& scenes = elements_of(document.json, "scenes");
-  if (!scenes.empty()) return elements_of(scenes[document.scene], "nodes");
+/// The nodes without parents.
+std::vector<int> find_roots(const GltfDocument& document) {
   std::vector<bool> is_child(document.nodes.size(), false);
   for (const GltfNode& node : document.nodes) {
     for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
@@ -55,6 +54,12 @@ std::vector<int> root_nodes(const GltfDocument& document) {
     if (!is_child[i]) roots.push_back(static_cast<int>(i));
   }
   return roots;
+}
+
+/// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
+std::vector<int> root_nodes(const GltfDocument& document) {
+  const nlohmann::json& scenes = elements_of(document.json, "scenes");
+  return scenes.empty() ? find_roots(document) : elements_of(scenes[document.scene], "nodes").get<std::vector<int>>();
 }
 
 /// Nodes with several parents may stand for more places than the size of the file bounds.
@@ -99,6 +104,31 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
     }
   }
   return placed;
+}
+
+std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed) {
+  const size_t count = document.nodes.size();
+  std::vector<dmat4> worlds(count, dmat4(1.0));
+  std::vector<bool> is_placed(count, false);
+  for (const PlacedNode& place : placed) {
+    const auto node = static_cast<size_t>(place.node);
+    if (is_placed[node]) continue;
+    worlds[node] = place.world_from_object;
+    is_placed[node] = true;
+  }
+  std::vector<std::pair<int, dmat4>> pending;
+  for (const int root : find_roots(document)) pending.emplace_back(root, dmat4(1.0));
+  while (!pending.empty()) {
+    const auto [next, world_from_parent] = pending.back();
+    pending.pop_back();
+    const auto node = static_cast<size_t>(next);
+    // What is below a node of the scene is in the scene.
+    if (is_placed[node]) continue;
+    is_placed[node] = true;
+    worlds[node] = world_from_parent * local_transform(document.json["nodes"][node]);
+    for (const int child : document.nodes[node].children) pending.emplace_back(child, worlds[node]);
+  }
+  return worlds;
 }
 
 }  // namespace promin

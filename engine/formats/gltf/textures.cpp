@@ -59,8 +59,11 @@ void take_transform(const json& transform, TextureSlot& slot) {
 /// The image that a texture shows, or -1. Where there is one of core glTF, it shows what an extension's shows.
 int image_of(const json& texture) {
   if (texture.contains("source")) return texture["source"];
-  const json* webp = find_extension(texture, "EXT_texture_webp");
-  return webp == nullptr ? -1 : webp->value("source", -1);
+  for (const char* name : {"EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu"}) {
+    const json* extension = find_extension(texture, name);
+    if (extension != nullptr && extension->contains("source")) return (*extension)["source"];
+  }
+  return -1;
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ class NffParser {
     // Written so that NaN fails.
     if (std::abs(number) <= kMaxCoordinate) return number;
     if (is_placed_ && !is_broken_) {
-      repair("has a coordinate that is not finite or beyond 1e15", word_, "it is left out");
+      repair("has a coordinate that is no number up to 1e15", word_, "it is left out");
       if (statement_->is_shape) report_.lose_geometry();
     }
     is_placed_ = false;

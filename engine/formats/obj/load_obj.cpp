@@ -3,10 +3,13 @@
 #include "formats/obj/load_obj.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
+#include <span>
 
 #include "core/file.h"
+#include "formats/obj/find_file.h"
 #include "formats/obj/materials.h"
 #include "formats/obj/text.h"
 #include "formats/obj/textures.h"
@@ -30,22 +33,35 @@ class MeshBuilder {
     needs_uvs_ = needs_uvs;
     const auto* faces = &text_.faces[group.first_face];
     has_normals_ = std::any_of(faces, faces + group.face_count, [&](const ObjFace& f) { return has_normals(f); });
+    std::for_each(faces, faces + group.face_count, [&](const ObjFace& face) { repair_normals(face); });
     for (uint32_t i = 0; i < group.face_count; ++i) add_face(faces[i]);
     for (uint32_t i = 0; i < group.face_count; ++i) forget_vertices(faces[i]);
     return std::move(mesh_);
   }
 
  private:
-  bool has_normals(const ObjFace& face) {
-    for (uint32_t i = 0; i < face.corner_count; ++i) {
-      const uint32_t normal = text_.corners[face.first_corner + i].normal;
-      if (normal == kNoObjIndex) return false;
-      if (!(glm::length(dvec3(text_.normals[normal])) > 0.0)) {
-        report_.warn("there are normals of no length, faces that use them are drawn sharp");
-        return false;
-      }
+  std::span<const ObjCorner> corners_of(const ObjFace& face) const {
+    return std::span(text_.corners).subspan(face.first_corner, face.corner_count);
+  }
+
+  bool has_normal(const ObjCorner& corner) const {
+    if (corner.normal == kNoObjIndex) return false;
+    const double length = glm::length(dvec3(text_.normals[corner.normal]));
+    return length > 0.0 && std::isfinite(length);
+  }
+
+  bool has_normals(const ObjFace& face) const {
+    return std::ranges::all_of(corners_of(face), [&](const ObjCorner& corner) { return has_normal(corner); });
+  }
+
+  /// Reports a face that names a normal which is of no use.
+  void repair_normals(const ObjFace& face) {
+    for (const ObjCorner& corner : corners_of(face)) {
+      if (corner.normal == kNoObjIndex || has_normal(corner)) continue;
+      return report_.repair({"a face has a normal of no length, or one that is no number", "",
+                             "normal " + std::to_string(uint64_t{corner.normal} + 1), "export the mesh again",
+                             "the face is drawn sharp"});
     }
-    return true;
   }
 
   void add_face(const ObjFace& face) {
@@ -130,19 +146,26 @@ class MeshBuilder {
   std::vector<vec3> polygon_;
 };
 
+/// The material of a usemtl line; names in comments behind it do not count where there is none of the whole name.
+MtlMaterial* find_material(std::map<std::string, MtlMaterial>& known, const std::string& name) {
+  auto found = known.find(name);
+  if (found == known.end()) found = known.find(without_comment(name));
+  return found == known.end() ? nullptr : &found->second;
+}
+
 /// Appends the materials that faces use; where each usemtl name lies in Scene::materials.
 std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadReport& report) {
   std::map<std::string, MtlMaterial> known = read_mtl_files(text.libraries, report);
   std::vector<MtlMaterial*> used;
   for (const std::string& name : text.material_names) {
-    if (const auto found = known.find(name); found != known.end()) used.push_back(&found->second);
+    if (MtlMaterial* found = find_material(known, name); found != nullptr) used.push_back(found);
   }
   ObjTextures textures(used, report);
   std::vector<uint32_t> indices;
   for (const std::string& name : text.material_names) {
     indices.push_back(static_cast<uint32_t>(scene.materials.size()));
-    if (const auto found = known.find(name); found != known.end()) {
-      add_obj_material(found->second, textures, scene, report);
+    if (const MtlMaterial* found = find_material(known, name); found != nullptr) {
+      add_obj_material(*found, textures, scene, report);
       continue;
     }
     scene.materials.emplace_back().name = name;
@@ -179,9 +202,13 @@ Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
   const std::vector<std::byte> bytes = read_file(file);
   const ObjText text = parse_obj_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, report);
   report.throw_if_refused();
-  if (text.faces.empty() && !text.positions.empty()) {
-    report.refuse("the file has " + std::to_string(text.positions.size()) + " vertices but no faces", "",
-                  "export it with faces");
+  if (text.faces.empty()) {
+    // What was left out says more.
+    const std::vector<std::string> warnings = report.warnings();
+    report.refuse("the file has " + std::to_string(text.positions.size()) + " vertices but no face that can be drawn" +
+                      (warnings.empty() ? "" : " (" + warnings.front() + ")"),
+                  "", "export it with faces");
+    report.throw_if_refused();
   }
 
   Scene scene;
@@ -210,6 +237,7 @@ Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
     if (has_one_material) mesh.triangle_materials.clear();
     scene.add(group.name, std::move(mesh), first);
   }
+  report.throw_if_refused();
   scene.warnings = report.warnings();
   return scene;
 }

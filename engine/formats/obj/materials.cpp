@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/file.h"
-#include "formats/scene_path.h"
+#include "formats/obj/find_file.h"
 #include "formats/text_lines.h"
 #include "promin/validate.h"
 
@@ -27,14 +28,21 @@ double illum_of(const MtlMaterial& source) {
   return std::floor(source.find("illum", 2.0).x);
 }
 
+/// Where a file of materials is, if it is there; the report is none of the scene's.
+std::optional<std::filesystem::path> try_library(const std::string& name, LoadReport& report) {
+  LoadReport attempt(report.file(), false, report.root());
+  const auto file = find_named_file("", name, attempt);
+  for (const SourceFile& source : attempt.sources()) report.add_source(source.file);
+  return file;
+}
+
 /// The files that a mtllib line names: the whole rest of the line, because names may hold spaces, or else each word.
 std::vector<std::filesystem::path> find_library(const std::string& line, LoadReport& report) {
-  const std::string place = "mtllib " + line;
-  if (const auto file = find_beside_scene(line, place, false, report)) return {*file};
+  if (const auto file = try_library(line, report)) return {*file};
   std::vector<std::filesystem::path> files;
   std::string_view rest = line;
   for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
-    if (const auto file = find_beside_scene(std::string(word), place, false, report)) {
+    if (const auto file = try_library(std::string(word), report)) {
       files.push_back(*file);
     } else {
       report.warn("the material file " + quote(word) + " does not exist: its materials are grey");
@@ -55,9 +63,15 @@ void warn_of_unused_maps(const MtlMaterial& source, std::initializer_list<const 
   }
 }
 
-/// Where a material has both, d holds.
+bool is_invisible_by_tr(const MtlMaterial& source) {
+  return !source.numbers.contains("d") && source.find("Tr", 0.0).x >= 1.0;
+}
+
+/// Where a material has both, d holds. Tr is transparency, as most programs read it; but others write opacity by this
+/// name, so a material that would be invisible by Tr alone is opaque.
 float opacity_of(const MtlMaterial& source) {
   const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
+  if (is_invisible_by_tr(source)) return 1.0F;
   return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
@@ -152,6 +166,12 @@ void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& ma
 
 void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
+  if (is_invisible_by_tr(source)) {
+    report.warn(title + " has a Tr of " + (source.find("Tr", 0.0).x == 1.0 ? "1" : "more than 1") +
+                " and no d, it is drawn opaque; give it d 0 if it is to be invisible");
+  } else if (opacity_of(source) == 0.0F && !source.maps.contains("map_d") && !is_filtering(source)) {
+    report.warn(title + " has a d of 0, it is invisible");
+  }
   if (opacity_of(source) == 1.0F && (illum_of(source) == 4.0 || illum_of(source) == 9.0)) {
     report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
                 ") with a d of 1, it is drawn opaque");
@@ -186,6 +206,7 @@ std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>
       const std::string folder = folder_of(file, report.file());
       for (MtlMaterial& source : parse_mtl(text, file.filename().string(), folder, report)) {
         warn_about_what_is_ignored(source, report);
+        materials.emplace(without_comment(source.name), source);
         materials.emplace(source.name, std::move(source));
       }
     }

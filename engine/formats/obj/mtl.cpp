@@ -139,23 +139,34 @@ class MtlParser {
     if (count > 0) materials_.back().numbers[std::string(number.keyword)] = count == 1 ? dvec3(numbers.x) : numbers;
   }
 
+  /// A fault in the current line.
+  void repair(const std::string& what, std::string_view value, const char* cure, const char* repair) {
+    report_.repair({what, quote(value), "mtllib " + name_ + " " + lines_.place(), cure, repair});
+  }
+
+  /// A statement with a word that is no number is left out; a negative factor is 0, one beyond all light the most.
   void read_factors(const std::string& keyword, std::string_view rest) {
     dvec3 numbers(0.0);
     int count = 0;
     for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
-      const double number = parse_number(word).value_or(-1.0);
-      if (count < 3) numbers[count] = number;
-      if (number >= 0.0 && number <= kMaxCoordinate) continue;
-      report_.refuse(quote(word) + " is no factor of light", "mtllib " + name_ + " " + lines_.place(),
-                     "use numbers from 0, with a decimal point");
+      const std::optional<double> number = parse_number(word);
+      if (!number) {
+        return repair(keyword + " has a word that is no number", word, "use numbers from 0, with a decimal point",
+                      "the statement is left out");
+      }
+      const double clamped = std::clamp(*number, 0.0, double{kMaxCoordinate});
+      if (clamped != *number) {
+        repair(keyword + " is negative or beyond 1e15", word, "use numbers from 0 to 1e15", "it is clamped");
+      }
+      if (count < 3) numbers[count] = clamped;
     }
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
   }
 
   void read_map(const std::string& keyword, std::string_view rest) {
     MtlMap map = MapParser(rest).parse();
-    if (map.file.empty()) return;
-    map.file = folder_ + map.file;
+    if (map.file.empty() || map.file.starts_with("# ")) return;
+    map.folder = folder_;
     materials_.back().maps[keyword] = std::move(map);
   }
 

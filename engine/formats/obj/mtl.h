@@ -14,8 +14,10 @@ namespace promin {
 
 /// A texture map as its line has it.
 struct MtlMap {
-  /// Relative to the scene; may not exist.
+  /// As written, with slashes as dividers; may not exist.
   std::string file = {};
+  /// That of the MTL, relative to the scene: empty or with a slash at its end.
+  std::string folder = {};
   /// u' = scale u + offset, and v likewise, which grows upwards.
   dvec2 scale{1.0};
   dvec2 offset{0.0};
@@ -40,7 +42,7 @@ struct MtlMaterial {
   const MtlMap* find_map(const std::string& keyword) const;
 };
 
-/// Parses the statements Ka, Kd, Ks, Ke, Ns, illum, Pr and Pm, which are checked, d, Tr, Tf and Ni, of which
+/// Parses the statements Ka, Kd, Ks, Ke, Ns, illum, Pr and Pm, which the report repairs, d, Tr, Tf and Ni, of which
 /// what is no number counts as not there, and map_Ka, map_Kd, map_d, map_Ks, map_Ke, map_Pr, map_Pm and norm with their
 /// options; other maps are warned about. `name` is that of the file for messages, `folder` its own, relative to the
 /// scene: empty or with a slash at its end.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <unordered_map>
 
 #include "formats/text_lines.h"
@@ -16,6 +17,7 @@ namespace {
 
 /// Statements that other programs need and that change nothing here.
 constexpr std::array<std::string_view, 1> kHarmless = {"s"};
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 class ObjParser {
  public:
@@ -32,6 +34,8 @@ class ObjParser {
     }
     refuse_indices_past_the_end();
     forget_uvs_past_the_end();
+    forget_normals_past_the_end();
+    if (!bad_positions_.empty()) leave_out_faces_of_bad_positions();
     if (!out_.colors.empty()) out_.colors.resize(out_.positions.size(), vec3(1.0F));
     return std::move(out_);
   }
@@ -76,32 +80,63 @@ class ObjParser {
 
   void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
 
-  /// Reads the numbers of a line into `numbers`; their count, or nullopt once a problem is reported.
-  std::optional<size_t> read_numbers(std::string_view rest, std::array<double, 6>& numbers) {
-    size_t count = 0;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++count) {
-      const std::optional<double> number = parse_number(word);
-      if (!number || std::abs(*number) > kMaxCoordinate) {
-        refuse(quote(word) + " is no number up to 1e15", "write it with a decimal point");
-        return std::nullopt;
-      }
-      if (count < numbers.size()) numbers[count] = *number;
-    }
-    return count;
+  /// A fault in the current line.
+  void repair(const char* what, std::string_view value, const char* cure, const char* repair) {
+    report_.repair({what, value.empty() ? "" : quote(value), lines_.place(), cure, repair});
   }
 
-  /// x y z, maybe a weight or a colour.
-  void read_vertex(std::string_view rest) {
-    std::array<double, 6> n{};
-    const std::optional<size_t> count = read_numbers(rest, n);
-    if (count && *count != 3 && *count != 4 && *count != 6) {
-      refuse("a vertex has " + std::to_string(*count) + " numbers", "give it x y z, or x y z red green blue");
+  /// The numbers of a line, of which no more than these are kept.
+  struct Numbers {
+    std::array<double, 6> values{};
+    /// Also of those that are not kept.
+    size_t count = 0;
+    /// The first word that is no number up to 1e15, and its place; empty where all are.
+    std::string_view bad_word = {};
+    size_t first_bad = std::numeric_limits<size_t>::max();
+  };
+
+  static Numbers read_numbers(std::string_view rest) {
+    Numbers numbers;
+    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest), ++numbers.count) {
+      const std::optional<double> number = parse_number(word);
+      const bool is_good = number && std::abs(*number) <= kMaxCoordinate;
+      if (!is_good && numbers.bad_word.empty()) {
+        numbers.bad_word = word;
+        numbers.first_bad = numbers.count;
+      }
+      if (numbers.count < numbers.values.size()) numbers.values[numbers.count] = is_good ? *number : kNotANumber;
     }
-    out_.positions.emplace_back(n[0], n[1], n[2]);
-    if (count != 6U) return;
-    if (n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) refuse("a vertex colour is negative", "use numbers from 0");
+    return numbers;
+  }
+
+  /// x y z, maybe a weight, or a colour and its alpha.
+  void read_vertex(std::string_view rest) {
+    const Numbers numbers = read_numbers(rest);
+    const auto& n = numbers.values;
+    if (numbers.count < 3 || numbers.first_bad < 3) {
+      out_.positions.emplace_back(kNotANumber);
+      bad_positions_.push_back({static_cast<uint32_t>(out_.positions.size() - 1), lines_.number()});
+    } else {
+      out_.positions.emplace_back(n[0], n[1], n[2]);
+    }
+    if (numbers.count >= 6) return add_color(vec3(n[3], n[4], n[5]));
+    if (numbers.count == 5) {
+      repair("a vertex has 5 numbers", "", "give it x y z, or x y z red green blue", "x y z count");
+    }
+  }
+
+  void add_color(vec3 color) {
+    const bool is_number = color.x == color.x && color.y == color.y && color.z == color.z;
+    if (!is_number) {
+      repair("a vertex colour is no number", "", "use numbers from 0", "the vertex is white");
+      color = vec3(1.0F);
+    }
+    if (color.x < 0.0F || color.y < 0.0F || color.z < 0.0F) {
+      repair("a vertex colour is negative", "", "use numbers from 0", "it counts as 0");
+      color = glm::max(color, vec3(0.0F));
+    }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
-    out_.colors.emplace_back(n[3], n[4], n[5]);
+    out_.colors.push_back(color);
   }
 
   /// u, and mostly v; a third number is for textures of three dimensions. Files for which textures do not matter may
@@ -121,11 +156,11 @@ class ObjParser {
     out_.uvs.push_back(uv);
   }
 
+  /// What is no number matters where a face uses it.
   void read_normal(std::string_view rest) {
-    std::array<double, 6> n{};
-    const std::optional<size_t> count = read_numbers(rest, n);
-    if (count && *count != 3) refuse("a normal has " + std::to_string(*count) + " numbers", "give it x y z");
-    out_.normals.emplace_back(n[0], n[1], n[2]);
+    const Numbers numbers = read_numbers(rest);
+    const auto& n = numbers.values;
+    out_.normals.push_back(numbers.count < 3 ? vec3(kNotANumber) : vec3(n[0], n[1], n[2]));
   }
 
   void read_face(std::string_view rest) {
@@ -139,10 +174,14 @@ class ObjParser {
       out_.corners.push_back(corner);
     }
     const size_t count = out_.corners.size() - first;
-    if (count < 3 || count > kMaxPolygonCorners) {
-      refuse("a face has " + std::to_string(count) + " corners",
-             "give it 3 to " + std::to_string(kMaxPolygonCorners) + ", on one line");
-      return;
+    if (count < 3) {
+      out_.corners.resize(first);
+      return repair("a face has fewer than 3 corners", "", "give it 3 corners or more, on one line",
+                    "the face is left out");
+    }
+    if (count > kMaxPolygonCorners) {
+      return refuse("a face has " + std::to_string(count) + " corners",
+                    "give it up to " + std::to_string(kMaxPolygonCorners));
     }
     if (!is_group_open_) {
       out_.groups.push_back({group_name_, static_cast<uint32_t>(out_.faces.size()), 0});
@@ -161,11 +200,9 @@ class ObjParser {
       parts[i] = word.substr(0, end);
       word.remove_prefix(std::min(end + 1, word.size()));
     }
-    bool is_good = word.empty() && read_index(parts[0], out_.positions.size(), last_position_, corner.position);
-    if (is_good && !parts[1].empty()) is_good = read_uv_index(parts[1], corner.uv);
-    if (is_good && !parts[2].empty()) {
-      is_good = read_index(parts[2], out_.normals.size(), last_normal_, corner.normal);
-    }
+    const bool is_good = word.empty() && read_index(parts[0], out_.positions.size(), last_position_, corner.position);
+    if (is_good && !parts[1].empty()) corner.uv = read_optional_index(parts[1], out_.uvs.size());
+    if (is_good && !parts[2].empty()) corner.normal = read_optional_index(parts[2], out_.normals.size());
     if (!is_good) {
       refuse(quote(whole) + " is no corner of a face", "use indices from 1, or from -1 back to the first vertex");
     }
@@ -188,13 +225,13 @@ class ObjParser {
     return true;
   }
 
-  /// False where it is no number; where there are no such coordinates, the corner stays without.
-  bool read_uv_index(std::string_view word, uint32_t& index) {
-    const std::optional<int64_t> written = parse_integer(word);
-    if (!written) return false;
-    const int64_t from_zero = *written > 0 ? *written - 1 : static_cast<int64_t>(out_.uvs.size()) + *written;
-    if (*written != 0 && from_zero >= 0 && from_zero < int64_t{kNoObjIndex}) index = static_cast<uint32_t>(from_zero);
-    return true;
+  /// An index of texture coordinates or normals. Where it leads nowhere, it is one that is past the end for sure.
+  static uint32_t read_optional_index(std::string_view word, size_t count_so_far) {
+    constexpr uint32_t kNowhere = kNoObjIndex - 1;
+    const int64_t written = parse_integer(word).value_or(0);
+    const int64_t from_zero = written > 0 ? written - 1 : static_cast<int64_t>(count_so_far) + written;
+    const bool is_index = written != 0 && from_zero >= 0 && from_zero < int64_t{kNowhere};
+    return is_index ? static_cast<uint32_t>(from_zero) : kNowhere;
   }
 
   void forget_uvs_past_the_end() {
@@ -203,15 +240,60 @@ class ObjParser {
     }
   }
 
+  /// A face whose corners have no normals, or not all of them, is drawn sharp.
+  void forget_normals_past_the_end() {
+    for (size_t i = 0; i < out_.faces.size(); ++i) {
+      bool is_past_the_end = false;
+      for (ObjCorner& corner : corners_of(out_.faces[i])) {
+        if (corner.normal == kNoObjIndex || corner.normal < out_.normals.size()) continue;
+        corner.normal = kNoObjIndex;
+        is_past_the_end = true;
+      }
+      if (!is_past_the_end) continue;
+      report_.repair({"a face names a normal that is not there", "", "face " + std::to_string(i + 1),
+                      "export the mesh again", "the face is drawn sharp"});
+    }
+  }
+
+  std::span<ObjCorner> corners_of(const ObjFace& face) {
+    return std::span(out_.corners).subspan(face.first_corner, face.corner_count);
+  }
+
+  bool has_positions(const ObjFace& face) {
+    for (const ObjCorner& corner : corners_of(face)) {
+      const vec3& position = out_.positions[corner.position];
+      if (position.x == position.x && position.y == position.y && position.z == position.z) continue;
+      const auto line = std::ranges::lower_bound(bad_positions_, corner.position, {}, &BadPosition::index)->line;
+      report_.repair({"a face has a vertex coordinate that is no number up to 1e15", "", "line " + std::to_string(line),
+                      "give the vertex x y z", "the face is left out"});
+      return false;
+    }
+    return true;
+  }
+
+  void leave_out_faces_of_bad_positions() {
+    std::vector<ObjFace> kept;
+    for (ObjGroup& group : out_.groups) {
+      const auto first = static_cast<uint32_t>(kept.size());
+      for (uint32_t i = 0; i < group.face_count; ++i) {
+        const ObjFace& face = out_.faces[group.first_face + i];
+        if (has_positions(face)) kept.push_back(face);
+      }
+      group.first_face = first;
+      group.face_count = static_cast<uint32_t>(kept.size()) - first;
+    }
+    out_.faces = std::move(kept);
+    std::erase_if(out_.groups, [](const ObjGroup& group) { return group.face_count == 0; });
+  }
+
   void refuse_indices_past_the_end() {
-    const auto check = [&](const LastIndex& last, size_t count, const char* what) {
-      if (last.place.empty() || last.index < count) return;
-      report_.refuse("index " + std::to_string(uint64_t{last.index} + 1) + " is out of range, there are " +
-                         std::to_string(count) + " " + what,
-                     last.place, "use an index up to their number");
-    };
-    check(last_position_, out_.positions.size(), "vertices");
-    check(last_normal_, out_.normals.size(), "normals");
+    if (last_position_.place.empty() || last_position_.index < out_.positions.size()) return;
+    report_.refuse("index " + std::to_string(uint64_t{last_position_.index} + 1) + " is out of range, there are " +
+                       std::to_string(out_.positions.size()) + " vertices",
+                   last_position_.place, "use an index up to their number");
+    // Nothing looks up what is not there.
+    out_.faces.clear();
+    out_.groups.clear();
   }
 
   void use_material(const std::string& name) {
@@ -230,7 +312,12 @@ class ObjParser {
   uint32_t material_ = kNoObjIndex;
   std::unordered_map<std::string, uint32_t> materials_;
   LastIndex last_position_;
-  LastIndex last_normal_;
+  struct BadPosition {
+    uint32_t index;
+    uint64_t line;
+  };
+  /// By rising index.
+  std::vector<BadPosition> bad_positions_;
   uint64_t ignored_count_ = 0;
   std::string first_ignored_;
 };
@@ -238,6 +325,7 @@ class ObjParser {
 }  // namespace
 
 ObjText parse_obj_text(std::string_view text, LoadReport& report) {
+  text = without_zero_bytes_at_end(text);
   if (text.find('\0') != std::string_view::npos) {
     report.refuse("the file is not text", "", "name a Wavefront OBJ file");
     return {};

@@ -39,14 +39,15 @@ struct ObjGroup {
   uint32_t face_count = 0;
 };
 
-/// What an OBJ file says, checked: every index is in range, every number finite.
+/// What an OBJ file says, checked: every index is in range, and every position that a face uses is finite.
 struct ObjText {
+  /// Not a number where the file has none; no face uses such a position.
   std::vector<vec3> positions;
   /// Empty, or one per position, and white where the file gives none.
   std::vector<vec3> colors;
   /// Texture coordinates; v grows upwards.
   std::vector<dvec2> uvs;
-  /// The normals as written, which are not of unit length.
+  /// The normals as written, which are not of unit length; not a number where the file has none.
   std::vector<vec3> normals;
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
@@ -58,8 +59,8 @@ struct ObjText {
 };
 
 /// Parses the statements v, vt, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning where they would
-/// show. Texture coordinates that are no numbers or not there only lead to a warning. Problems go to the report with
-/// their line.
+/// show. Zero bytes at the end do not count. The report repairs bad texture coordinates, normals and colours, and faces
+/// that cannot be drawn, which are left out. It refuses indices of positions that are out of range, with their line.
 ObjText parse_obj_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

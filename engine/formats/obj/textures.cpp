@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "formats/obj/find_file.h"
 #include "formats/picture_sources.h"
-#include "formats/scene_path.h"
 
 namespace promin {
 namespace {
@@ -27,9 +27,8 @@ constexpr std::array<MapUse, 7> kMapUses = {{{"map_Kd", ImageUse::kColor},
                                              {"map_Pm", ImageUse::kData},
                                              {"norm", ImageUse::kNormal}}};
 
-std::optional<std::vector<std::byte>> read_beside_scene(const std::string& name, LoadReport& report,
-                                                        uint64_t most_bytes) {
-  const auto file = find_beside_scene(name, "", true, report);
+std::optional<std::vector<std::byte>> read_map_file(const MtlMap& map, LoadReport& report, uint64_t most_bytes) {
+  const auto file = find_named_file(map.folder, map.file, report);
   if (!file) return std::nullopt;
   return read_file(*file, most_bytes);
 }
@@ -43,6 +42,11 @@ void for_each_map(const std::vector<MtlMaterial*>& materials, const Task& task) 
       if (found != kMapUses.end()) task(map, found->use);
     }
   }
+}
+
+/// A map's file, as messages name it.
+std::string title_of(const MtlMap& map) {
+  return map.folder + map.file;
 }
 
 uint64_t texel_count(const uvec2& size) {
@@ -66,16 +70,15 @@ bool has_alpha(const TextureImage& image) {
 ObjTextures::ObjTextures(const std::vector<MtlMaterial*>& materials, LoadReport& report) : report_(report) {
   std::vector<PictureSource> sources;
   for_each_map(materials, [&](const MtlMap& map, ImageUse use) {
-    const auto [known, is_new] = pictures_.try_emplace({map.file, use});
+    const auto [known, is_new] = pictures_.try_emplace({title_of(map), use});
     if (!is_new) return;
     PictureSource& source = sources.emplace_back();
     source.image->use = use;
-    source.image->name = map.file;
-    source.title = quote(map.file);
+    source.image->name = title_of(map);
+    source.title = quote(title_of(map));
     known->second = source.image;
-    read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
-      return read_beside_scene(map.file, attempt, most_bytes);
-    });
+    read_picture(source, report,
+                 [&](LoadReport& attempt, uint64_t most_bytes) { return read_map_file(map, attempt, most_bytes); });
   });
   decode_pictures(sources, report);
   for_each_map(materials, [&](MtlMap& map, ImageUse use) { map.is_usable = !find_picture(&map, use)->texels.empty(); });
@@ -123,7 +126,7 @@ void ObjTextures::finish(Scene& scene) {
 }
 
 ObjTextures::ImagePointer ObjTextures::find_picture(const MtlMap* map, ImageUse use) const {
-  return map == nullptr ? nullptr : pictures_.at({map->file, use});
+  return map == nullptr ? nullptr : pictures_.at({title_of(*map), use});
 }
 
 /// OBJ's v grows upwards, from the lowest row of a picture. The mesh's is 1 - v.

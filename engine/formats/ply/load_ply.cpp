@@ -10,10 +10,10 @@
 #include <string>
 
 #include "core/file.h"
+#include "formats/obj/find_file.h"
 #include "formats/picture_sources.h"
 #include "formats/ply/body.h"
 #include "formats/ply/header.h"
-#include "formats/scene_path.h"
 #include "formats/triangulate.h"
 #include "promin/validate.h"
 
@@ -180,7 +180,7 @@ class MeshMaker {
   bool is_drawable(std::span<const uint32_t> corners) {
     for (const uint32_t corner : corners) {
       if (is_in_range(body_.positions[corner])) continue;
-      report_.repair({"a face has a vertex coordinate that is not finite or beyond 1e15", "",
+      report_.repair({"a face has a vertex coordinate that is no number up to 1e15", "",
                       "vertex " + std::to_string(corner), "export the mesh again, in a larger unit of length",
                       "the face is left out"});
       return false;
@@ -271,7 +271,7 @@ std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool t
     source.image->name = name;
     source.title = quote(name);
     read_picture(source, report, [&](LoadReport& attempt, uint64_t most_bytes) {
-      const auto file = find_beside_scene(name, "", true, attempt);
+      const auto file = find_named_file("", name, attempt);
       return file ? std::optional(read_file(*file, most_bytes)) : std::nullopt;
     });
   }

@@ -126,7 +126,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
   for (uint64_t i = 0; i < count; ++i) {
     const auto corners = read_number<std::array<vec3, 3>>(file, kFirstFacet + kFacetBytes * i + kNormalBytes);
     if (!is_in_range(corners)) {
-      report.repair({"a vertex coordinate of a facet is not finite or beyond 1e15", "", "facet " + std::to_string(i),
+      report.repair({"a facet has a vertex coordinate that is no number up to 1e15", "", "facet " + std::to_string(i),
                      "export the mesh again, in a larger unit of length", "the facet is left out"});
       continue;
     }

@@ -19,8 +19,11 @@ namespace {
 std::string_view name_in(std::string_view behind) {
   std::string_view rest = behind;
   for (std::string_view word = take_field(rest); !word.empty(); word = take_field(rest)) {
-    std::string_view next = rest;
-    const bool is_facet = is_stl_keyword(word, "facet") && is_stl_keyword(take_field(next), "normal");
+    std::string_view behind_word = rest;
+    const std::string_view next = take_field(behind_word);
+    const bool is_facet =
+        is_stl_keyword(word, "facet") &&
+        (is_stl_keyword(next, "normal") || is_stl_keyword(next, "outer") || is_stl_keyword(next, "vertex"));
     if (is_facet || is_stl_keyword(word, "endsolid")) {
       return behind.substr(0, static_cast<size_t>(word.data() - behind.data()));
     }
@@ -98,7 +101,7 @@ class StlParser {
       // Written so that NaN fails.
       if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
         is_placed_ = false;
-        repair("a vertex coordinate of a facet is not finite or beyond 1e15", quote(word), "the facet is left out");
+        repair("a facet has a vertex coordinate that is no number up to 1e15", quote(word), "the facet is left out");
       }
       corner[i] = static_cast<float>(*number);
     }

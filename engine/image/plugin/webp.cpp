@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "image/plugin/webp.h"
+#include "image/plugin/own_formats.h"
 
 #include <webp/decode.h>
 

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "device/driver_files.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "core/address_space.h"
+#include "core/parallel.h"
+
+namespace promin::gpu {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What is wrong with a manifest; empty where it is one. A folder holds manifests.
+std::string find_fault(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return "does not exist";
+  if (fs::is_directory(file, error)) return "";
+  std::ifstream stream(file);
+  if (!stream) return "cannot be read";
+  return nlohmann::json::accept(stream) ? "" : "is no JSON";
+}
+
+/// The first fault among the files of a variable, which colons part.
+std::optional<Problem> find_fault_in(const std::string& variable, const std::string& files) {
+  std::istringstream list(files);
+  for (std::string file; std::getline(list, file, ':');) {
+    const std::string fault = file.empty() ? "" : find_fault(file);
+    if (fault.empty()) continue;
+    return Problem{"no Vulkan device: the manifest of a driver " + fault, file + ", named by " + variable,
+                   "correct " + variable + " or unset it"};
+  }
+  return std::nullopt;
+}
+
+constexpr const char* kVariables[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"};
+
+}  // namespace
+
+std::optional<Problem> find_lack_of_address_space() {
+  // What lavapipe of Mesa 22.3 takes: LLVM, its kernels, a small scene, and of each core the stacks of two threads, or
+  // what stands for them in newer ones.
+  constexpr uint64_t kDriverBytes = uint64_t{256} << 20;
+  constexpr uint64_t kCoreBytes = uint64_t{2 * 8} << 20;
+  constexpr unsigned kMostCores = 32;
+  const auto limit = address_space_limit();
+  const uint64_t bytes = kDriverBytes + kCoreBytes * std::min(core_count(), kMostCores);
+  if (!limit || has_address_space(bytes)) return std::nullopt;
+  return Problem{"too little address space for a Vulkan driver",
+                 "of the " + std::to_string(*limit >> 20) + " MiB that ulimit -v allows fewer than " +
+                     std::to_string(bytes >> 20) + " are free",
+                 "raise ulimit -v"};
+}
+
+std::optional<Problem> find_manifest_fault() {
+  for (const char* variable : kVariables) {
+    const char* files = std::getenv(variable);
+    auto fault = files == nullptr ? std::nullopt : find_fault_in(variable, files);
+    if (fault) return fault;
+  }
+  return std::nullopt;
+}
+
+Problem explain_missing_driver() {
+  if (auto lack = find_lack_of_address_space()) return *lack;
+  if (auto fault = find_manifest_fault()) return *fault;
+  for (const std::string variable : kVariables) {
+    const char* files = std::getenv(variable.c_str());
+    if (files == nullptr) continue;
+    return {"no Vulkan device", "with " + variable + " set to \"" + files + "\"",
+            "name a driver's manifest in " + variable + " or unset it"};
+  }
+  return {"no Vulkan device", "on this machine", "install a driver such as mesa-vulkan-drivers"};
+}
+
+}  // namespace promin::gpu

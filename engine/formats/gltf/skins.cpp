@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/gltf/skins.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/rounding.h"
+#include "formats/gltf/accessors.h"
+#include "formats/gltf/json_lookup.h"
+
+namespace promin {
+namespace {
+
+using nlohmann::json;
+
+/// Identities where a skin has none.
+std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, const json& skin, const std::string& place,
+                                              LoadReport& report) {
+  const size_t joint_count = elements_of(skin, "joints").size();
+  std::vector<dmat4> matrices(joint_count, dmat4(1.0));
+  const auto accessor = skin.find("inverseBindMatrices");
+  if (accessor == skin.end()) return matrices;
+  const std::vector<float> numbers = read_floats(document, *accessor, report);
+  if (numbers.size() < 16 * joint_count) {
+    report.refuse("a skin has " + std::to_string(numbers.size() / 16) + " inverse bind matrices for " +
+                      std::to_string(joint_count) + " joints",
+                  place, "give each joint one");
+    return matrices;
+  }
+  for (size_t joint = 0; joint < joint_count; ++joint) {
+    for (int i = 0; i < 16; ++i) {
+      matrices[joint][i / 4][i % 4] = static_cast<double>(numbers[16 * joint + static_cast<size_t>(i)]);
+    }
+    // Nothing but rounding stands there in a valid file.
+    for (int column = 0; column < 4; ++column) matrices[joint][column][3] = column == 3 ? 1.0 : 0.0;
+  }
+  return matrices;
+}
+
+}  // namespace
+
+GltfSkins::GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>& placed, LoadReport& report)
+    : document_(document), report_(report) {
+  if (!elements_of(document.json, "skins").empty()) world_from_node_ = place_all_gltf_nodes(document, placed);
+}
+
+bool GltfSkins::has_joints(int skin) const {
+  return !elements_of(document_.json["skins"][static_cast<size_t>(skin)], "joints").empty();
+}
+
+const GltfPose& GltfSkins::find(int skin) {
+  const auto [known, is_new] = poses_.try_emplace(skin);
+  if (is_new) known->second = make_pose(skin);
+  return known->second;
+}
+
+GltfPose GltfSkins::make_pose(int skin) const {
+  const json& source = document_.json["skins"][static_cast<size_t>(skin)];
+  const std::string place = "skins[" + std::to_string(skin) + "]";
+  GltfPose pose;
+  pose.joint_matrices = read_inverse_bind_matrices(document_, source, place + ".inverseBindMatrices", report_);
+  for (size_t joint = 0; joint < pose.joint_matrices.size(); ++joint) {
+    dmat4& matrix = pose.joint_matrices[joint];
+    matrix = world_from_node_[source["joints"][joint].get<size_t>()] * matrix;
+    if (!is_finite(matrix)) {
+      report_.refuse("a joint's place in the world overflows", place + ".joints[" + std::to_string(joint) + "]",
+                     "use smaller translations and scales in it and its parents");
+      return {};
+    }
+  }
+  const auto mirrors = [](const dmat4& matrix) { return glm::determinant(dmat3(matrix)) < 0.0; };
+  pose.is_hidden = std::ranges::all_of(pose.joint_matrices, has_no_area);
+  if (!pose.is_hidden && std::ranges::all_of(pose.joint_matrices, mirrors)) {
+    pose.world_from_mesh[0][0] = -1.0;
+    for (dmat4& matrix : pose.joint_matrices) matrix = pose.world_from_mesh * matrix;
+  }
+  return pose;
+}
+
+}  // namespace promin

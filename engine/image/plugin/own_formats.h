@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <utility>
+
+/// A format that is read from memory without OpenImageIO. Its functions throw std::runtime_error with the reason.
+struct OwnFormat {
+  std::string_view name;
+  /// Width and height of a file.
+  std::pair<uint32_t, uint32_t> (*read_size)(std::span<const unsigned char> file);
+  /// Fills the pixels, of 4 bytes each, with RGBA from the highest row.
+  void (*read)(std::span<const unsigned char> file, std::span<unsigned char> pixels);
+};
+
+/// "avif", "ktx2" or "webp"; null for any other name.
+const OwnFormat* find_own_format(std::string_view name);
+
+// OpenImageIO multiplies the colours of WebP by their alpha, whatever it is asked for, and so loses those under alpha 0
+// (OpenImageIO#3917): libwebp itself keeps them apart.
+std::pair<uint32_t, uint32_t> read_webp_size(std::span<const unsigned char> file);
+void read_webp(std::span<const unsigned char> file, std::span<unsigned char> pixels);
+
+// OpenImageIO reads AVIF where it is built with a libheif that does: libavif itself does everywhere.
+std::pair<uint32_t, uint32_t> read_avif_size(std::span<const unsigned char> file);
+void read_avif(std::span<const unsigned char> file, std::span<unsigned char> pixels);
+
+/// KTX 2.0 (Khronos Texture File Format Specification): the largest level of 1 to 4 channels of 8 bits or of UASTC
+/// blocks, as it is or supercompressed by Zstandard, or of ETC1S blocks supercompressed by BasisLZ.
+std::pair<uint32_t, uint32_t> read_ktx2_size(std::span<const unsigned char> file);
+void read_ktx2(std::span<const unsigned char> file, std::span<unsigned char> pixels);

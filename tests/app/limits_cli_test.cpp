@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+
+// What the programs do where the system gives a process little: a picture comes, or a sentence; nothing hangs, and
+// nothing ends by a signal.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "cli_fixture.h"
+
+namespace promin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+/// How often each limit is tried: the long test tries more, as which thread meets it first is chance.
+int count_runs() {
+  const char* text = std::getenv("PROMIN_TEST_LIMIT_RUNS");
+  return text == nullptr ? 1 : std::atoi(text);
+}
+
+class LimitsCliTest : public CliTest {
+ protected:
+  /// The exit code; the test fails where neither a picture nor a sentence with one of the parts comes.
+  int render_or_say(const std::string& part, const std::string& other_part) const {
+    fs::remove(folder() / "a.png");
+    const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8", "-o", "a.png", "--quiet"});
+    EXPECT_EQ(result.signal, 0) << result.err;
+    if (result.exit_code == 0) {
+      EXPECT_TRUE(fs::exists(folder() / "a.png"));
+    } else {
+      EXPECT_THAT(result.exit_code, AnyOf(1, 4));
+      EXPECT_THAT(result.err, AnyOf(HasSubstr(part), HasSubstr(other_part)));
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    }
+    return result.exit_code;
+  }
+};
+
+TEST_F(LimitsCliTest, FewThreadsGiveAPictureOrASentence) {
+  options_.environment["LD_PRELOAD"] = PROMIN_FEW_THREADS_LIBRARY;
+  options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
+  for (int threads = 0; threads <= 16; ++threads) {
+    options_.environment["PROMIN_TEST_THREADS"] = std::to_string(threads);
+    for (int i = 0; i < count_runs(); ++i) {
+      SCOPED_TRACE(std::to_string(threads) + " threads");
+      render_or_say("the system gives no more threads", "raise pids.max or ulimit -u");
+    }
+  }
+}
+
+TEST_F(LimitsCliTest, LittleAddressSpaceGivesAPictureOrASentence) {
+  for (const size_t mib : {128U, 192U, 256U, 384U, 512U, 768U, 1024U, 1536U, 2048U}) {
+    options_.max_address_bytes = mib << 20;
+    for (int i = 0; i < count_runs(); ++i) {
+      SCOPED_TRACE(std::to_string(mib) + " MiB");
+      render_or_say("ulimit -v", "ulimit -v");
+    }
+  }
+}
+
+TEST_F(LimitsCliTest, ARemovedFolderIsNamedAsTheCause) {
+  fs::create_directory(folder() / "gone");
+  const fs::path scene = folder() / "square.gltf";
+  ProcessOptions options = options_;
+  options.folder = folder() / "gone";
+  const ProcessResult result = Process("/bin/sh",
+                                       {"-c", std::string("rmdir ../gone; exec ") + PROMIN_EXECUTABLE + " render " +
+                                                  scene.string() + " -o a.png"},
+                                       options)
+                                   .wait();
+  expect_failure(result, 1, "the current folder is gone, a.png; change to a folder that exists");
+}
+
+TEST_F(LimitsCliTest, AManifestThatIsNoneIsNamed) {
+  write("bad.json", "{");
+  for (const char* variable : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
+    options_.environment = {{"VK_DRIVER_FILES", ""}, {"VK_ICD_FILENAMES", ""}};
+    for (const std::string other : {"", ":none.json"}) {
+      options_.environment[variable] = "bad.json" + other;
+      const std::string said =
+          std::string("no Vulkan device: the manifest of a driver is no JSON, bad.json, named by ") + variable;
+      expect_failure(run({"render", "square.gltf", "-o", "a.png"}), 4, said);
+      expect_failure(run({"devices"}), 4, said);
+    }
+    options_.environment[variable] = "none.json";
+    expect_failure(run({"devices"}), 4, std::string("does not exist, none.json, named by ") + variable);
+  }
+}
+
+TEST_F(LimitsCliTest, AnOutputKeepsItsMode) {
+  fs::create_directory(folder() / "store");
+  fs::create_symlink("store/new.png", folder() / "link.png");
+  const std::string longest = std::string(251, 'n') + ".exr";
+  const OptionValues arguments = {"render", "square.gltf", "--size", "8",     "8",       "-o",     "a.exr",
+                                  "-o",     "link.png",    "-o",     longest, "--stats", "s.json", "--quiet"};
+  for (const char* name : {"a.exr", "s.json"}) {
+    write(name, "old");
+    fs::permissions(folder() / name, fs::perms(0600));
+  }
+  const ProcessResult result = run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const char* name : {"a.exr", "s.json"}) {
+    EXPECT_EQ(fs::status(folder() / name).permissions(), fs::perms(0600)) << name;
+    EXPECT_GT(fs::file_size(folder() / name), 3U) << name;
+  }
+  EXPECT_TRUE(fs::is_symlink(folder() / "link.png"));
+  EXPECT_TRUE(fs::is_regular_file(folder() / "store/new.png"));
+  EXPECT_TRUE(fs::is_regular_file(folder() / longest));
+}
+
+}  // namespace
+}  // namespace promin
