@@ -278,7 +278,7 @@ std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool t
   decode_pictures(sources, report);
   std::vector<uint32_t> materials;
   for (const PictureSource& source : sources) {
-    if (!source.problem.empty()) {
+    if (source.problem) {
       materials.push_back(kUnused);
       continue;
     }
