@@ -437,7 +437,7 @@ TEST(DecodePicture, AbsurdSizesOfOtherFormatsAreRefusedByTheirHeader) {
 }
 
 TEST(DecodePicture, RadianceStandsUprightWhateverTheOrderOfItsRows) {
-  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 1\n\xFF\0\0\x80\0\0\xFF\x80"s;
+  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 1\n\x80\0\0\x81\0\0\x80\x81"s;
   const auto* first = reinterpret_cast<const std::byte*>(text.data());
   EXPECT_THAT(decode_picture(Bytes(first, first + text.size())).texels, ElementsAre(0xFFFF0000U, 0xFF0000FFU));
 }
