@@ -24,8 +24,8 @@ struct PictureFormat {
   size_t size_bytes = 0;
 };
 
-/// The format of a file: PNG, JPEG, WebP, AVIF, KTX 2.0, BMP, DDS, GIF, OpenEXR or Radiance by their first bytes, else Targa, which
-/// has none, by whether its header can be one. Null where it is none of these.
+/// The format of a file: PNG, JPEG, WebP, AVIF, KTX 2.0, BMP, DDS, GIF, OpenEXR or Radiance by their first bytes, else
+/// Targa, which has none, by whether its header can be one. Null where it is none of these.
 const PictureFormat* find_picture_format(std::span<const std::byte> file);
 
 /// Whether a file of such a format holds numbers of light, as OpenEXR and Radiance do, and not codes of sRGB.

@@ -74,7 +74,8 @@ PROMIN_EXPORT Light make_studio_light(float front, float power = kStudioLightPow
 PROMIN_EXPORT float exposure_of(const Scene& scene);
 
 /// How pictures of a scene are shown: with exposure_of() and Khronos PBR Neutral. Classic scenes are shown as they are,
-/// and so are those all of whose objects are unlit, and any of Phong's materials where the headlight is chosen. Throws as exposure_of() does.
+/// and so are those all of whose objects are unlit, and any of Phong's materials where the headlight is chosen. Throws
+/// as exposure_of() does.
 PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
 
 /// From where to frame a scene: classic ones from the front, others from three quarters.

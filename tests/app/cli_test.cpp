@@ -225,12 +225,13 @@ TEST_F(CliTest, BadScenesAreRefused) {
 
 TEST_F(CliTest, BadPanoramasAreRefused) {
   write("broken.hdr", "#?RADIANCE");
-  write_image(folder() / "negative.exr", {{4, 2}, std::vector<vec3>(8, vec3(-1.0F))});
+  write_image(folder() / "bright.exr", {{4, 2}, std::vector<vec3>(8, vec3(2e15F))});
   write_image(folder() / "wide.exr", {{16385, 1}, std::vector<vec3>(16385, vec3(1.0F))});
-  const std::pair<std::string, std::string> cases[] = {{"none.hdr", "no such picture, none.hdr"},
-                                                       {"broken.hdr", "broken.hdr"},
-                                                       {"negative.exr", "negative, beyond 1e15 or not a number"},
-                                                       {"wide.exr", "too large (16385x1 pixels), wide.exr"}};
+  const std::pair<std::string, std::string> cases[] = {
+      {"none.hdr", "no such picture, none.hdr"},
+      {"broken.hdr", "broken.hdr"},
+      {"bright.exr", "is beyond 1e15 (R is 2e+15 in pixel 0, 0), bright.exr"},
+      {"wide.exr", "too large (16385x1 pixels), wide.exr"}};
   for (const auto& [panorama, part] : cases) {
     SCOPED_TRACE(panorama);
     expect_failure(run({"render", "square.gltf", "--environment", panorama, "-o", "a.exr"}), 3, part);
@@ -238,6 +239,16 @@ TEST_F(CliTest, BadPanoramasAreRefused) {
   }
   expect_failure(run({"info", "square.gltf", "--environment-intensity", "-1"}), 2, "--environment-intensity takes");
   expect_failure(run({"render", "square.gltf", "--environment", "wide.exr", "-o", "wide.exr"}), 2, "wide.exr");
+}
+
+TEST_F(CliTest, NegativeNumbersOfPanoramasAreWarnedOf) {
+  write_image(folder() / "negative.exr", {{4, 2}, std::vector<vec3>(8, vec3(-1.0F))});
+  const std::string warning = "24 numbers of negative.exr are negative, the first -1 in pixel 0, 0; they count as 0";
+  EXPECT_THAT(run({"info", "square.gltf", "--environment", "negative.exr"}).out, HasSubstr(warning));
+  const ProcessResult render =
+      run({"render", "square.gltf", "--environment", "negative.exr", "-o", "a.exr", "--size", "4", "4"});
+  EXPECT_EQ(render.exit_code, 0);
+  EXPECT_THAT(render.err, HasSubstr(warning));
 }
 
 TEST_F(CliTest, InfoSaysWhatSurroundsAScene) {

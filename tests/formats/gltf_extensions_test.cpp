@@ -157,7 +157,7 @@ TEST_F(GltfExtensionsTest, TexturesOfOtherFormatsNameTheirImage) {
     gltf.json["extensionsRequired"] = {name};
     const Scene scene = load(gltf, {.is_strict = true});
     EXPECT_THAT(scene.warnings, IsEmpty()) << name;
-    EXPECT_EQ(scene.images.at(0)->texels, std::vector<uint32_t>{0xFF204080}) << "its bytes tell what it is";
+    EXPECT_EQ(scene.images.at(0)->texels, std::vector<uint32_t>{0xFF204080}) << "its bytes say what it is";
     gltf.json["textures"][0]["extensions"][name]["source"] = 2;
     EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("textures[0].extensions." + name + ".source")));
   }

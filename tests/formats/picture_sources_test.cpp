@@ -101,7 +101,7 @@ TEST_F(PictureSourcesTest, WhatIsBrokenIsReadOnceWhereItIsShort) {
 
 TEST_F(PictureSourcesTest, WhatIsDamagedButDecodedIsShownWithAWarning) {
   Bytes file = make_jpeg({16, 16}, std::vector<uint8_t>(size_t{3} * 16 * 16, 100));
-  file.insert(file.end() - 2, 4, std::byte{0});
+  file.insert(file.end() - 2, 64, std::byte{0});
   PictureSource source;
   source.title = "\"photo\"";
   read(file, source);

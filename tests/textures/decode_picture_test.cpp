@@ -306,34 +306,35 @@ TEST(DecodePicture, Ktx2BySupercompression) {
   EXPECT_THAT(decoding({.level = {1, 2, 3}}), ThrowsMessage<PictureError>(HasSubstr("another length")));
 }
 
-/// A picture of 16x12 with alpha that basisu 1.15 encodes with -ktx2, and the RGBA that it unpacks of it, as ETC1 and,
-/// for alpha, ETC2.
+/// A picture of 43x38 with alpha that basisu 1.15 encodes with -ktx2.
 constexpr std::string_view kEtc1s =
-    "q0tUWCAyMLsNChoKAAAAAAEAAAAQAAAADAAAAAAAAAAAAAAAAQAAAAEAAAABAAAAaAAAADwAAACkAAAAJAAAAMgAAAAAAAAABAEAAAAAAADM"
-    "AQAAAAAAABUAAAAAAAAAAAAAAAAAAAA8AAAAAAAAAAIAOACjAQIAAwMAAAAAAAAAAAAAAAA/AAAAAAAAAAAA/////0AAPw8AAAAAAAAAAP//"
-    "//8fAAAAS1RYd3JpdGVyAEJhc2lzIFVuaXZlcnNhbCAxLjE1AAATABcASgAAAF0AAAA1AAAAAAAAAAAAAAAAAAAACQAAAAkAAAAMAAAAH8Dc"
-    "AAAAgGAA1qgrDECANwACAADBDmTl4pFMPoDIAQIAAEDA7msCCgjAFAAAAAAACJRFGjXW2Oad3wdabMvptwYWXHlZlyUZAAB8XdOyeF2zKPh9"
-    "0yj4/9UK+FetAlBVrQL4VasK+FWrCFjTsijY0jAoAIKiLAcAAAQFBAUFBQBAVQWoKtUHqkz3p6pM168sTdenLC3PhyJN9wdQ9f9Hx8fHLy2t"
-    "ogIAwUQAAAAAAADyX20CmAMgAAAgCMCavUEgD9BGUAAAQUQE0RN0cHD1CmoAMAEAAAAAAIAAAgZEApQokTEMca7q+jLabMv0f48UFw==";
-constexpr std::string_view kEtc1sTexels =
-    "oNkLAKDZCwCq4xUAquMVAO/OMQDvzjEA784xAO/OMQD/vlsA/75bAPSyTwD0sk8AyqF3AMqhdwC2jWMAto1jAKDZCwCg2QsAquMVAKrjFQDv"
-    "zjEA784xAO/OMQDpyCsA/75bAvSyTwL0sk8C6qhFAsqhdwa2jWMGto1jBqR7UQag2QsAoNkLAKDZCwCg2QsC6cgrAOnIKwXlxCcF5cQnBfSy"
-    "TwLqqEUI6qhFCN6cOQi2jWMGto1jBqR7UQqke1EKlM0AAKDZCwCg2QsCoNkLAuXEJwXfviEF374hBd++IQXqqEUI6qhFCN6cOQjenDkIto1j"
-    "CqR7UQqke1EQkGc9EKrCJgCqwiYAqsImAKrCJgX4rUoG+K1KBuyhPgbsoT4K/4RjCP+EYw70eFcO9HhXDtJ3kBC+Y3wQvmN8EKxRahaqwiYA"
-    "qsImAKrCJgWqwiYF+K1KBuyhPgbsoT4K4pc0Cv+EYw70eFcO9HhXDupuTRK+Y3wWvmN8FqxRahasUWoaoLgcAKC4HACguBwFoLgcBeyhPgbi"
-    "lzQK4pc0CtaLKBD0eFcO6m5NEupuTRLeYkEYvmN8FqxRahqsUWoamD1WIJSsEACUrBAAlKwQBZSsEAXilzQK4pc0CtaLKBDWiygQ6m5NEupu"
-    "TRLeYkEY3mJBGKxRahqsUWogmD1WIJg9ViCqiS4AqokuAqqJLgKqiS4I+HRTCPh0Uw7saEcO7GhHEv9TdBn/U3QZ9EdoGfRHaB/GQowhujaA"
-    "Ibo2gCewLHYnqokuAKqJLgKqiS4IqokuCPh0Uw7saEcO7GhHEuJePRL/U3QZ9EdoGfRHaB/qPV4fujaAIbo2gCewLHYrsCx2K6B/JACgfyQC"
-    "oH8kCKB/JAjsaEcO4l49DuJePRLWUjEY9EdoGeo9Xh/qPV4f3jFSI7o2gCewLHYrsCx2K6QgajGUcxgAlHMYApRzGAiUcxgI4l49DuJePRLW"
-    "UjEY1lIxGOo9Xh/qPV4f3jFSI94xUimwLHYrsCx2MaQgajGkIGox";
+    "q0tUWCAyMLsNChoKAAAAAAEAAAArAAAAJgAAAAAAAAAAAAAAAQAAAAEAAAABAAAAaAAAADwAAACkAAAAJAAAAMgAAAAAAAAAQgIAAAAAAAAK"
+    "AwAAAAAAAAUBAAAAAAAAAAAAAAAAAAA8AAAAAAAAAAIAOACjAQIAAwMAAAAAAAAAAAAAAAA/AAAAAAAAAAAA/////0AAPw8AAAAAAAAAAP//"
+    "//8fAAAAS1RYd3JpdGVyAEJhc2lzIFVuaXZlcnNhbCAxLjE1AABTAD8A4wAAAM0AAABqAAAAAAAAAAAAAAAAAAAAoAAAAKAAAABlAAAAIEAE"
+    "gEIYAgLo59TKvVbEmJkDAR5ADIAgCHRXUQ6fdE7TAEGABwACIAjDzqq7VDjmi7+QEIAJCAAAAIIAiFbLfNxaOfUNW2y2XGujq+eX/9cal9bn"
+    "9z9mzybmhDlfdzVJeobzneNsF2zrK/aaPs+v0VuqvtaPdfm6pvYzdx8RkTMzZkZVtdZEBABI8t4TETFGAABIa03OOZkJQAAAUKp6++Hv/dnX"
+    "qHDPl0TfaXx4HGrp5WNDtpvSdgDvVco61SLRhfaE9JsQbvYZO+OIhNfXMvit/Les+O5SavVeQzYAAAAAAACIB+IITAJBFIY/Zt8GQzBOzJpQ"
+    "jsQCrWhJLH4IBeUUFpaU2HmEt2NjyRHGI3iDjQW1CXoIO///AQAYrhqG5VQixhgjDP9t27YQLZCfRkCDV0gXOOD7nSTVuhfEruuMlFL66e4W"
+    "wPRvMZs1gEopsHwUEEIIm6/LUc7Qtg8TcAaoRZL3fT82M0l6c/ecc/ZSSprP52Mzk6T1ev3Zu7/eVn/H98/brdnhcNiBH1NKqQE+aq0bQYN0"
+    "HWMcAd9H9/uX81k+CTe/k3A6rVZmZkgCAEGcAAIAhGGgBCTVeAccdIiAiMhIj58C4gAMwUAUhvP1PadnqKSsEiEaA5OBSRquiVac3g8IvKKW"
+    "hKEATA97Q/QTrCgqpQfVjT35vrONVlCes010KrLNoZuKL1TwQjEAmAAAAAAAAEAAASzTTVJ6eeXqaY28r93YdujzivmvKNjX/1Z1W+/Mmyys"
+    "4/U8VhuU53dLl3ijFp8276ejOStTzvnyRS66rT/2rwsbOaytaa66X1emt+GG+4e99MeVW3brp7wP+mPbouoplhljpvGm+s50xKm3epD+Dxk8"
+    "vWukxO2uBPfi/FiM8HdVnbkxpkj6tlxESUZ7Oe8mshn++DEODhX0IpboZNtcJwEc02TAy4kbKMIlEsyvXDOe8sYJM1DDzh8JIK6LpswjXSI2"
+    "03BIAXxAIFQhICqG/Aw62hIUAk6uJwJcENJEwQhAIgDyAV6AoOADXEQLAdEIIMh2IohrbEgcUYgRDTg4AAUIBAUBAQ==";
+/// checksum_of() its texels. The colours are those that basisu unpacks as ETC1. Alpha is within 3 of what it unpacks as
+/// ETC2, whose blocks of alpha are of another kind.
+constexpr uint64_t kEtc1sChecksum = 0x3556D1FF91637501;
+
+uint64_t checksum_of(const std::vector<uint32_t>& texels) {
+  uint64_t sum = 0;
+  for (const uint32_t texel : texels) sum = 31 * sum + texel;
+  return sum;
+}
 
 TEST(DecodePicture, Ktx2OfEtc1sByBasisLz) {
-  const Bytes file = decode_base64(kEtc1s).value();
-  const Bytes expected = decode_base64(kEtc1sTexels).value();
-  const DecodedPicture picture = decode_picture(file);
-  EXPECT_EQ(picture.size, uvec2(16, 12));
-  ASSERT_EQ(4 * picture.texels.size(), expected.size());
-  EXPECT_EQ(std::memcmp(picture.texels.data(), expected.data(), expected.size()), 0);
+  const DecodedPicture picture = decode_picture(decode_base64(kEtc1s).value());
+  EXPECT_EQ(picture.size, uvec2(43, 38));
+  EXPECT_EQ(checksum_of(picture.texels), kEtc1sChecksum);
 }
 
 /// A UASTC block of each of the 19 modes, side by side, that basisu 1.15 encodes, and the RGBA that it unpacks of them
@@ -390,7 +391,7 @@ TEST(DecodePicture, DamagedEtc1sIsToldOf) {
     if (i % 3 == 0) mutant.resize(random() % mutant.size());
     try {
       const DecodedPicture picture = decode_picture(mutant);
-      EXPECT_EQ(picture.texels.size(), 16U * 12U);
+      EXPECT_EQ(picture.texels.size(), 43U * 38U);
     } catch (const PictureError&) {
       ++broken;
     }
@@ -437,7 +438,7 @@ TEST(DecodePicture, AbsurdSizesOfOtherFormatsAreRefusedByTheirHeader) {
 }
 
 TEST(DecodePicture, RadianceStandsUprightWhateverTheOrderOfItsRows) {
-  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 1\n\xFF\0\0\x80\0\0\xFF\x80"s;
+  const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 1\n\x80\0\0\x81\0\0\x80\x81"s;
   const auto* first = reinterpret_cast<const std::byte*>(text.data());
   EXPECT_THAT(decode_picture(Bytes(first, first + text.size())).texels, ElementsAre(0xFFFF0000U, 0xFF0000FFU));
 }

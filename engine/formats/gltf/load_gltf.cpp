@@ -53,6 +53,7 @@ class SceneReader {
     warn_about_motion();
     report_.throw_if_refused();
     textures.finish(scene_);
+    report_.throw_if_refused();
     scene_.warnings = report_.warnings();
     return std::move(scene_);
   }

@@ -159,7 +159,7 @@ uint32_t weight_of(uint32_t stored, uint32_t bits) {
   return stored == most ? 64 : six + (six > 32 ? 1 : 0);
 }
 
-/// Of each texel, that of each plane. The first texel of each subset lacks its highest bit, which is 0.
+/// The weight of each texel in each plane. The first texel of each subset lacks its highest bit, which is 0.
 std::array<std::array<uint32_t, 2>, kTexels> read_weights(BitReader& bits, const Mode& mode, const Subsets& subsets) {
   std::array<std::array<uint32_t, 2>, kTexels> weights{};
   for (size_t i = 0; i < kTexels; ++i) {
