@@ -50,6 +50,10 @@ std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& 
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
   if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, std::move(aovs.FIELD), channels);
 #include "promin/kinds/aovs.def"
+  if (choice.position && scene.center != dvec3(0.0)) {
+    header.metadata.emplace_back("promin:center",
+                                 fmt::format("{} {} {}", scene.center.x, scene.center.y, scene.center.z));
+  }
   if (choice.cryptomatte) {
     for (Channel& channel : make_cryptomatte(scene, aovs).channels) channels.push_back(std::move(channel));
   }

@@ -22,6 +22,8 @@ struct DescribedScene {
   LookOptions look = {};
   EnvironmentOptions environment = {};
   std::string variant = {};
+  /// Scene::center.
+  dvec3 center = dvec3(0.0);
   /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
   /// The tree, which decides the steps that a picture may show.

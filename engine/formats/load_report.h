@@ -13,6 +13,7 @@
 
 #include "formats/source_file.h"
 #include "promin/error.h"
+#include "promin/math.h"
 
 namespace promin {
 
@@ -37,10 +38,16 @@ struct Fault {
 /// occurs.
 class LoadReport {
  public:
-  explicit LoadReport(std::filesystem::path file, bool is_strict = false)
-      : file_(std::move(file)), is_strict_(is_strict) {}
+  explicit LoadReport(std::filesystem::path file, bool is_strict = false, const dvec3& center = dvec3(0.0))
+      : file_(std::move(file)), is_strict_(is_strict), center_(center) {}
 
   const std::filesystem::path& file() const { return file_; }
+
+  /// What coordinates of the file lose in double, before they are rounded to fp32 (Scene::center).
+  const dvec3& center() const { return center_; }
+  /// A loader's note that the file has its coordinates in fp32: they were rounded before they were written.
+  void note_rounded_coordinates() { has_rounded_coordinates_ = true; }
+  bool has_rounded_coordinates() const { return has_rounded_coordinates_; }
 
   /// `place` is inside the file: a JSON path or a line; empty for the file as a whole. Control characters that come
   /// from the file are made visible as '?', so that each message stays on its line.
@@ -70,6 +77,8 @@ class LoadReport {
 
   std::filesystem::path file_;
   bool is_strict_;
+  dvec3 center_;
+  bool has_rounded_coordinates_ = false;
   std::vector<Problem> problems_;
   size_t problem_count_ = 0;
   std::vector<Warning> warnings_;

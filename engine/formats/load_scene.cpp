@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/rounding.h"
 #include "core/utf8.h"
+#include "formats/far_scene.h"
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
 #include "formats/nff/load_nff.h"
@@ -83,7 +84,27 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   if (!is_regular_file(status) && !is_directory(status)) {
     throw InputError({"not a regular file", file.string(), "name the scene's file"});
   }
-  return format.load(options, report);
+  Scene scene = format.load(options, report);
+  scene.center = report.center();
+  return scene;
+}
+
+/// Each time that a file is read again, fp32 resolves what lies around its center 2^24 times as finely.
+constexpr int kMostMoves = 3;
+
+/// Reads a file, and again around a center where its coordinates are too coarse in fp32.
+Scene load_near_center(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
+  Scene scene = load_by_format(file, options, report);
+  for (int i = 0; i < kMostMoves; ++i) {
+    const Bounds bounds = bounds_of_vertices(scene);
+    if (!is_too_coarse(bounds)) break;
+    scene = {};
+    report = LoadReport(file, options.is_strict, report.center() + round_middle(bounds));
+    report.add_source(file);
+    scene = load_by_format(file, options, report);
+  }
+  warn_of_coarse_coordinates(report.has_rounded_coordinates(), scene);
+  return scene;
 }
 
 }  // namespace
@@ -97,7 +118,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
   LoadReport report(file, options.is_strict);
   report.add_source(file);
   try {
-    Scene scene = load_by_format(file, options, report);
+    Scene scene = load_near_center(file, options, report);
     sources = report.sources();
     warn_of_tiny_meshes(scene);
     show_names_in_utf8(scene);

@@ -50,7 +50,9 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
   // The stack is our own, last node first, because files may nest deeper than the machine's stack.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, dmat4(1.0), true});
+  dmat4 from_world(1.0);
+  from_world[3] = dvec4(dvec3(0.0) - report.center(), 1.0);
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, from_world, true});
   while (!pending.empty()) {
     PlacedNode next = pending.back();
     pending.pop_back();

@@ -87,6 +87,7 @@ class NffParser {
     for (int i = 0; i < 3; ++i) point[i] = take_coordinate();
     return point;
   }
+  dvec3 take_place() { return take_point() - report_.center(); }
   vec3 take_color() {
     vec3 color;
     for (int i = 0; i < 3; ++i) color[i] = take_factor();
@@ -104,7 +105,7 @@ class NffParser {
   void read_background() { out_.background = take_color(); }
 
   void read_light() {
-    NffLight light{vec3(take_point())};
+    NffLight light{vec3(take_place())};
     if (parse_number(tokens_.next())) light.color = take_color();
     out_.lights.push_back(light);
   }
@@ -130,14 +131,14 @@ class NffParser {
   }
 
   void read_sphere() {
-    const dvec3 center = take_point();
+    const dvec3 center = take_place();
     add(Sphere{center, std::abs(take_radius(false))});
   }
 
   void read_cone() {
-    const dvec3 base = take_point();
+    const dvec3 base = take_place();
     const double base_radius = take_radius(true);
-    const dvec3 apex = take_point();
+    const dvec3 apex = take_place();
     const double apex_radius = take_radius(true);
     if (is_broken_) return;
     if (base_radius == 0.0 && apex_radius == 0.0) return refuse("both radii are 0", "give at least one another size");
@@ -170,7 +171,7 @@ class NffParser {
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {
-      out_.corners.emplace_back(take_point());
+      out_.corners.emplace_back(take_place());
       if (has_normals) out_.normals.emplace_back(take_point());
     }
     add(polygon);
@@ -189,8 +190,8 @@ class NffParser {
       is_part =
           part == "from" || part == "at" || part == "up" || part == "angle" || part == "hither" || part == "resolution";
       if (is_part) tokens_.take();
-      if (part == "from") from = take_point();
-      if (part == "at") at = take_point();
+      if (part == "from") from = take_place();
+      if (part == "at") at = take_place();
       if (part == "up") up = take_point();
       if (part == "angle") angle = take_number(1e-3, 179.9, "of degrees from 0.001 to 179.9");
       if (part == "hither") camera.near = static_cast<float>(take_number(0.0, kMaxCoordinate, "from 0 to 1e15"));

@@ -97,7 +97,7 @@ class ObjParser {
     if (count && *count != 3 && *count != 4 && *count != 6) {
       refuse("a vertex has " + std::to_string(*count) + " numbers", "give it x y z, or x y z red green blue");
     }
-    out_.positions.emplace_back(n[0], n[1], n[2]);
+    out_.positions.emplace_back(dvec3(n[0], n[1], n[2]) - report_.center());
     if (count != 6U) return;
     if (n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) refuse("a vertex colour is negative", "use numbers from 0");
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));

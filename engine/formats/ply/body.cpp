@@ -153,7 +153,7 @@ class BodyReader {
   }
 
   void add_vertex(const VertexLayout& layout, const Row& row) {
-    out_.positions.emplace_back(row[kX], row[kY], row[kZ]);
+    out_.positions.emplace_back(dvec3(row[kX], row[kY], row[kZ]) - report_.center());
     if (layout.has_all(kNx)) out_.normals.emplace_back(row[kNx], row[kNy], row[kNz]);
     if (!layout.has_all(kRed)) return;
     const auto share = [&](Column column) { return clamp(row[column] / layout.full[column]); };

@@ -48,6 +48,7 @@ bool is_text(std::string_view file) {
 
 /// nullopt where a coordinate is out of range.
 std::optional<StlSolid> read_facets(std::string_view file, uint64_t count, LoadReport& report) {
+  report.note_rounded_coordinates();
   StlSolid solid;
   solid.corners.resize(3 * count);
   bool has_attributes = false;
@@ -67,7 +68,7 @@ std::optional<StlSolid> read_facets(std::string_view file, uint64_t count, LoadR
     }
     for (uint64_t corner = 0; corner < 3; ++corner) {
       const float* p = &coordinates[3 * corner];
-      solid.corners[3 * i + corner] = vec3(p[0], p[1], p[2]);
+      solid.corners[3 * i + corner] = dvec3(p[0], p[1], p[2]) - report.center();
     }
   }
   if (has_attributes) report.warn("colours of binary STL are ignored");

@@ -65,7 +65,7 @@ class StlParser {
       if (!number || std::abs(*number) > kMaxCoordinate) {
         return refuse(quote(word) + " is no number up to 1e15", "give each vertex x y z");
       }
-      corner[i] = static_cast<float>(*number);
+      corner[i] = static_cast<float>(*number - report_.center()[i]);
     }
     ++corner_count_;
     solids_.back().corners.push_back(corner);
