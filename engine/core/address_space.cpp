@@ -13,11 +13,18 @@ std::optional<uint64_t> address_space_limit() {
   return limit.rlim_cur;
 }
 
-bool has_address_space(uint64_t bytes) {
+std::optional<Problem> find_lack_of_space(const std::string& what, uint64_t bytes) {
+  const auto limit = address_space_limit();
+  if (!limit || bytes == 0) return std::nullopt;
   void* probe = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (probe == MAP_FAILED) return false;
-  munmap(probe, bytes);
-  return true;
+  if (probe != MAP_FAILED) {
+    munmap(probe, bytes);
+    return std::nullopt;
+  }
+  return Problem{"too little address space for " + what,
+                 "of the " + std::to_string(*limit >> 20) + " MiB that ulimit -v allows fewer than " +
+                     std::to_string(bytes >> 20) + " are free",
+                 "raise ulimit -v"};
 }
 
 std::string cure_short_memory(std::string cure) {

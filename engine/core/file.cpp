@@ -36,7 +36,7 @@ namespace {
 void refuse_lost_folder(const fs::path& file) {
   std::error_code error;
   if (file.is_absolute()) return;
-  fs::current_path(error);
+  static_cast<void>(fs::current_path(error));
   if (error != std::errc::no_such_file_or_directory) return;
   throw RunError({"the current folder is gone", file.string(), "change to a folder that exists"});
 }

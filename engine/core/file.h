@@ -81,7 +81,7 @@ class AtomicFile {
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  /// Of the file that is replaced.
+  /// The mode of the file that is replaced.
   std::optional<mode_t> mode_ = std::nullopt;
   bool committed_ = false;
 };

@@ -47,18 +47,12 @@ constexpr const char* kVariables[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK
 }  // namespace
 
 std::optional<Problem> find_lack_of_address_space() {
-  // What lavapipe of Mesa 22.3 takes: LLVM, its kernels, a small scene, and of each core the stacks of two threads, or
-  // what stands for them in newer ones.
-  constexpr uint64_t kDriverBytes = uint64_t{256} << 20;
+  // What lavapipe of Mesa 22.3 takes: LLVM, the kernels of a usual scene, and for each core the stacks of two threads,
+  // or what stands for them in newer ones.
+  constexpr uint64_t kDriverBytes = uint64_t{512} << 20;
   constexpr uint64_t kCoreBytes = uint64_t{2 * 8} << 20;
   constexpr unsigned kMostCores = 32;
-  const auto limit = address_space_limit();
-  const uint64_t bytes = kDriverBytes + kCoreBytes * std::min(core_count(), kMostCores);
-  if (!limit || has_address_space(bytes)) return std::nullopt;
-  return Problem{"too little address space for a Vulkan driver",
-                 "of the " + std::to_string(*limit >> 20) + " MiB that ulimit -v allows fewer than " +
-                     std::to_string(bytes >> 20) + " are free",
-                 "raise ulimit -v"};
+  return find_lack_of_space("a Vulkan driver", kDriverBytes + kCoreBytes * std::min(core_count(), kMostCores));
 }
 
 std::optional<Problem> find_manifest_fault() {

@@ -81,8 +81,7 @@ struct ExrOptions {
 /// "A", by which the pixels are taken as multiplied; a crop is a picture of its own). Equal arguments give equal bytes.
 /// Atomic: the picture is written to a temporary file beside the target and renamed; on failure the target is as it
 /// was. Any thread may call it. Throws UsageError for another ending, for a picture without pixels and where the
-/// pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be written, and where
-/// libpromin_pictures.so, the plugin that encodes pictures, is missing.
+/// pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be written.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
                                std::span<const Channel> channels = {}, const DisplayTransform& display = {},
@@ -92,8 +91,8 @@ PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& i
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
 /// Reads R, G, B, or a luminance as all three, of any format OpenImageIO knows, as fp32 without conversion; of an EXR
-/// the data window. Any thread may call it. Throws InputError where the file is no such picture, RunError where the
-/// plugin is missing.
+/// the data window. Any thread may call it. Throws InputError where the file is no such picture, RunError where
+/// libpromin_pictures.so, the plugin that reads pictures, is missing.
 PROMIN_EXPORT Image read_image(const std::filesystem::path& file);
 
 /// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.

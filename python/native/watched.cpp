@@ -6,6 +6,7 @@
 #include <chrono>
 #include <future>
 #include <optional>
+#include <system_error>
 
 #include "promin/error.h"
 
@@ -36,7 +37,11 @@ void run_watched(const nb::object& progress, const Work& work) {
       fraction = done;
       return !stops;
     };
-    result = std::async(std::launch::async, [&] { work(tell); });
+    try {
+      result = std::async(std::launch::async, [&] { work(tell); });
+    } catch (const std::system_error&) {
+      throw RunError(Problem{"the system gives no more threads", "", "raise pids.max or ulimit -u"});
+    }
     while (!stops && result.wait_for(kLook) != std::future_status::ready) {
       const nb::gil_scoped_acquire acquire;
       try {

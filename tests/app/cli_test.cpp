@@ -338,7 +338,7 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
       EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
     }
   }
-  // There is room for what waits, but not for the file, which OpenImageIO opens itself where it has parts.
+  // There is room for what waits, but not for the file.
   const OptionValues large = {"render", "square.gltf", "--size",  "300",         "300",           "--aov", "object",
                               "-o",     "old.exr",     "--quiet", "--multipart", "--compression", "none"};
   expect_failure(run(large), 1, "cannot write the output file (");

@@ -5,7 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/App.hpp>
+#include <filesystem>
 #include <functional>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
 
 #include "trace/cut_loops.h"
 
@@ -42,6 +49,35 @@ TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
 TEST(MessageTest, EachProblemHasItsOption) {
   const InputError error({{"one", "", "take a smaller depth", Setting::kDepth}, {"two", "there", ""}});
   EXPECT_EQ(message_of(error), "one; lower --max-depth (1 of 2 problems)\n  two, there");
+}
+
+/// What a program says that does this, and its exit code.
+std::pair<int, std::string> run_work(const std::function<void()>& work) {
+  static std::function<void()> does;
+  does = work;
+  const auto add = [](CLI::App& program) {
+    CLI::App& command = add_command(program, "work", "Work");
+    return Command{&command, [] { does(); }};
+  };
+  const char* const arguments[] = {"promin", "work"};
+  testing::internal::CaptureStderr();
+  const int code = run_program("promin", "", {add}, 2, arguments);
+  return {code, testing::internal::GetCapturedStderr()};
+}
+
+// Only what nobody has thought of is called a bug.
+TEST(RunProgramTest, WhatTheSystemRefusesIsNoBug) {
+  const auto system_error = [](std::errc code) { return std::system_error(std::make_error_code(code)); };
+  EXPECT_EQ(
+      run_work([&] { throw system_error(std::errc::resource_unavailable_try_again); }),
+      std::pair(1, std::string("promin: error: the system gives no more threads; raise pids.max or ulimit -u\n")));
+  EXPECT_EQ(run_work([] {
+              throw std::filesystem::filesystem_error("cannot", "there", std::make_error_code(std::errc::io_error));
+            }).second,
+            "promin: error: the system refuses what is asked for (Input/output error), there; check its limits and "
+            "permissions\n");
+  EXPECT_THAT(run_work([] { throw std::bad_alloc(); }).second, testing::HasSubstr("out of memory, in promin"));
+  EXPECT_THAT(run_work([] { throw std::logic_error("x"); }).second, testing::HasSubstr("report it as a bug"));
 }
 
 }  // namespace

@@ -111,7 +111,6 @@ TEST_F(ImageTest, PngIsSrgbOf8Bits) {
 }
 
 TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
-  // OpenImageIO writes files of several parts itself.
   const Channel depth{"Z", false, std::vector<uint32_t>(40000, 0x3F800000U)};
   const std::tuple<const char*, std::vector<Channel>, ExrOptions> kinds[] = {
       {"a.exr", {}, {}},
