@@ -10,6 +10,8 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "console.h"
@@ -20,8 +22,10 @@
 #include "load_options.h"
 #include "promin/load_scene.h"
 #include "rows.h"
+#include "run_program.h"
 #include "scene/features.h"
 #include "scene_counts.h"
+#include "scene_json.h"
 #include "textures/pack_images.h"
 #include "view_setup.h"
 
@@ -156,37 +160,74 @@ struct InfoOptions {
   std::filesystem::path file;
   LoadOptions load;
   EnvironmentOptions environment;
+  /// Whether images are not decoded.
+  bool skips_texels = false;
+  bool is_json = false;
 };
 
-void print_info(const InfoOptions& options) {
-  LoadOptions load = options.load;
-  load.decodes_images = false;
-  Scene scene = load_scene(options.file, load);
-  const EnvironmentChoice surroundings(options.environment);
+/// Adds what `promin render` warns of beside what was found in the file, as far as the scene decides it.
+void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surroundings) {
   for (const std::string& warning : surroundings.warnings()) scene.warnings.push_back(warning);
+  const std::optional<Problem> halved = warn_of(fit_images(scene.images, scene.textures, kDefaultTextureBytes));
+  if (halved) scene.warnings.push_back(message_of(*halved));
+  if (scene.cameras.empty() || default_size(scene.cameras.front())) return;
+  scene.warnings.push_back(fmt::format("the camera's aspect ratio of {} gives no sensible width; give --size",
+                                       scene.cameras.front().aspect_ratio));
+}
+
+/// A scene as it would be rendered, with the light that stands in.
+struct LitScene {
+  AssumedLight assumed;
+  world::Scene flat;
+  /// Without texels.
+  PackedScene packed;
+};
+
+LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
+  LitScene lit{.assumed = light_up(scene, {}, surroundings), .flat = world::flatten(scene), .packed = {}};
+  for (auto& image : lit.flat.images) {
+    image = std::make_shared<const TextureImage>(TextureImage{image->name, image->size, {}, image->use});
+  }
+  lit.packed = pack_scene(lit.flat, builder_names().front());
+  for (const Problem& warning : lit.packed.warnings) scene.warnings.push_back(message_of(warning));
+  return lit;
+}
+
+void print_json(Scene scene, const EnvironmentChoice& surroundings) {
+  nlohmann::json json = json_of(scene);
+  const LitScene lit = light_and_pack(scene, surroundings);
+  const DisplayTransform display = display_of(scene);
+  json["counts"]["degenerate_triangles"] = lit.packed.degenerate_count;
+  json["environment"] = json_of(scene.environment);
+  json["display"] = json_of(display);
+  json["assumed"] = list_assumptions(scene, {}, lit.assumed, display);
+  json["features"] = feature_names(features_of(lit.flat));
+  json["warnings"] = scene.warnings;
+  fmt::print("{}", write_json(json));
+}
+
+void print_table(Scene scene, const std::filesystem::path& file, const EnvironmentChoice& surroundings) {
   const SceneCounts counts = count_scene(scene);
-  print_row("scene", options.file.string());
+  const uint64_t image_bytes = packed_image_bytes(scene.images, scene.textures);
+  std::string lights = count_lights(scene.lights);
+  const LitScene lit = light_and_pack(scene, surroundings);
+  if (const std::string light = describe_light(lit.assumed); !light.empty()) lights.append("; assumed: ").append(light);
+  const PackedScene& packed = lit.packed;
+  print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene));
   print_row("primitives", std::to_string(counts.primitives));
-  std::string lights = count_lights(scene.lights);
-  // The features and the tree are of the scene as it would be rendered, with the light that stands in.
-  const AssumedLight assumed = light_up(scene, {}, surroundings);
-  if (const std::string light = describe_light(assumed); !light.empty()) lights.append("; assumed: ").append(light);
-  const world::Scene flat = world::flatten(scene);
-  const PackedScene packed = pack_scene(flat, builder_names().front());
   print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
   print_row("materials", std::to_string(scene.materials.size()));
-  const uint64_t image_bytes = packed_image_bytes(scene.images, scene.textures);
   print_row("textures", describe_textures(scene, image_bytes));
   if (!scene.variants.empty()) print_rows("variants", scene.variants);
   print_row("lights", lights);
-  print_row("background", describe_background(scene.environment, assumed));
+  print_row("background", describe_background(scene.environment, lit.assumed));
   print_row("sky", describe_sky(scene.environment));
   print_row("display", describe_display(display_of(scene)));
   print_rows("cameras", describe_cameras(scene));
   print_row("bounds", describe_bounds(bounds_of(scene), scene.center));
   if (scene.center != dvec3(0.0)) print_row("center", describe_place(vec3(0.0F), scene.center, 6));
-  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(flat)), ", ")));
+  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(lit.flat)), ", ")));
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
                                packed.bvh.depth, packed.bvh.sah_cost));
   const uint64_t shading_bytes = scene.materials.size() * sizeof(layout::MaterialRecord) +
@@ -197,6 +238,19 @@ void print_info(const InfoOptions& options) {
                                   1e-6 * static_cast<double>(packed.size_bytes() + shading_bytes)));
   print_rows("extensions", describe_extensions(scene));
   print_rows("warnings", scene.warnings.empty() ? std::vector<std::string>{"none"} : scene.warnings);
+}
+
+void print_info(const InfoOptions& options) {
+  LoadOptions load = options.load;
+  load.decodes_images = !options.skips_texels;
+  Scene scene = load_scene(options.file, load);
+  const EnvironmentChoice surroundings(options.environment);
+  add_warnings_of_pictures(scene, surroundings);
+  if (options.is_json) {
+    print_json(std::move(scene), surroundings);
+  } else {
+    print_table(std::move(scene), options.file, surroundings);
+  }
 }
 
 }  // namespace
@@ -211,6 +265,9 @@ Command add_info_command(CLI::App& program) {
   add_root_option(table, options->load);
   add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
+  table.add_flag("--json", "Print JSON (docs/usage.md, \"Scenes as JSON\")", options->is_json);
+  table.add_flag("--no-texels", "Read the sizes of images alone: faster, and faults of their texels are not found",
+                 options->skips_texels);
   return {&command, [options] { print_info(*options); }};
 }
 

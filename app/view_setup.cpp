@@ -156,8 +156,8 @@ std::string describe_light(const AssumedLight& light) {
   return light.has_headlight ? "a headlight along the view" : "";
 }
 
-std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
-                                 const std::optional<DisplayTransform>& display) {
+std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                          const std::optional<DisplayTransform>& display) {
   const LookOptions& look = options.look;
   std::vector<std::string> parts;
   if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, look)));
@@ -169,6 +169,12 @@ std::string describe_assumptions(const Scene& scene, const ViewOptions& options,
   if (display && !look.tone_mapping && display->tone_mapping != ToneMapping::kNone) {
     parts.push_back(fmt::format("tone mapping {}", tone_mapping_names()[static_cast<size_t>(display->tone_mapping)]));
   }
+  return parts;
+}
+
+std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                 const std::optional<DisplayTransform>& display) {
+  const std::vector<std::string> parts = list_assumptions(scene, options, light, display);
   return parts.empty() ? "" : fmt::format("assumed: {}", fmt::join(parts, ", "));
 }
 

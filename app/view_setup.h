@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "console.h"
 #include "promin/lighting.h"
@@ -32,8 +33,11 @@ AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentCh
 /// How pictures of a scene are shown, lit up or not. Debug views are shown as they are.
 DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view);
 
-/// One sentence of what is assumed where neither the file nor the options say it, for promin's notes; empty if nothing
-/// is. The light is what light_up has added to the scene; `display` is what the picture is shown with, if it is.
+/// What is assumed where neither the file nor the options say it, a few words each. The light is what light_up has
+/// added to the scene; `display` is what the picture is shown with, if it is.
+std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                          const std::optional<DisplayTransform>& display);
+/// The same as one sentence, for promin's notes; empty if nothing is assumed.
 std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
                                  const std::optional<DisplayTransform>& display);
 

@@ -173,19 +173,6 @@ std::string to_mib(uint64_t bytes) {
 constexpr uint64_t kMostBytes = uint64_t{8} << 30;
 constexpr const char* kCure = "raise the memory of textures, or make images smaller";
 
-/// Says what was halved, if anything was.
-std::optional<Problem> warn_of(const TextureFit& fit) {
-  const auto count_from = [&](uint32_t least) {
-    return std::ranges::count_if(fit.halvings, [=](uint32_t count) { return count >= least; });
-  };
-  if (count_from(1) == 0) return std::nullopt;
-  std::string what = std::to_string(count_from(1)) + " of " + std::to_string(fit.halvings.size()) +
-                     " images of textures are halved in size";
-  if (count_from(2) > 0) what += ", " + std::to_string(count_from(2)) + " of these more than once";
-  what += ", so that " + to_mib(fit.whole_bytes) + " become " + to_mib(fit.bytes);
-  return Problem{what, "", kCure, Setting::kTextureMemory};
-}
-
 }  // namespace
 
 TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
@@ -218,6 +205,18 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
     std::ranges::push_heap(heap, is_after);
   }
   return fit;
+}
+
+std::optional<Problem> warn_of(const TextureFit& fit) {
+  const auto count_from = [&](uint32_t least) {
+    return std::ranges::count_if(fit.halvings, [=](uint32_t count) { return count >= least; });
+  };
+  if (count_from(1) == 0) return std::nullopt;
+  std::string what = std::to_string(count_from(1)) + " of " + std::to_string(fit.halvings.size()) +
+                     " images of textures are halved in size";
+  if (count_from(2) > 0) what += ", " + std::to_string(count_from(2)) + " of these more than once";
+  what += ", so that " + to_mib(fit.whole_bytes) + " become " + to_mib(fit.bytes);
+  return Problem{what, "", kCure, Setting::kTextureMemory};
 }
 
 uint64_t packed_image_bytes(std::span<const std::shared_ptr<const TextureImage>> images,

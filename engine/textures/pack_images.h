@@ -28,6 +28,9 @@ struct TextureFit {
 TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                       uint64_t most_bytes);
 
+/// Says which images are halved, if any are.
+std::optional<Problem> warn_of(const TextureFit& fit);
+
 /// Where an image lies among the words of PackedImages.
 struct PlacedImage {
   /// The first word: the places of its levels, counted from here, then their texels.
@@ -42,7 +45,7 @@ struct PlacedImage {
 struct PackedImages {
   UnsetVector<uint32_t> words;
   std::vector<PlacedImage> images;
-  /// Says which were halved, if any were.
+  /// See warn_of.
   std::optional<Problem> warning;
 };
 

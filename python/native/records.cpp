@@ -17,83 +17,14 @@
 
 #include "picture_arrays.h"
 #include "promin/error.h"
+#include "scene/members.h"
 
 namespace nb = nanobind;
 
 namespace promin::python {
 namespace {
 
-constexpr std::string_view kLightKinds[] = {"point", "directional", "spot", "headlight"};
-constexpr std::string_view kAttenuations[] = {"none", "inverse_square"};
-constexpr std::string_view kAlphaModes[] = {"opaque", "mask", "blend"};
-constexpr std::string_view kProjections[] = {"perspective", "orthographic"};
-
-using Model = decltype(Material::model);
-using Sky = decltype(Environment::sky);
 using Shape = std::variant<Sphere, Plane, Cylinder, Cone, Box, Capsule>;
-
-// Names of alternatives, in their order.
-constexpr std::string_view kModels[] = {"phong", "metallic_roughness", "unlit"};
-constexpr std::string_view kSkies[] = {"none", "studio", "gradient", "panorama"};
-constexpr std::string_view kShapes[] = {"sphere", "plane", "cylinder", "cone", "box", "capsule"};
-
-/// Has the visitor see members by their names, which stand in one text with ", " between.
-template <typename Visitor, typename... Members>
-void visit_members(Visitor& visitor, std::string_view names, Members&... members) {
-  const auto next = [&] {
-    const std::string name(names.substr(0, names.find(',')));
-    names.remove_prefix(std::min(names.size(), name.size() + 2));
-    return name;
-  };
-  (visitor.field(next(), members), ...);
-}
-
-// PROMIN_MEMBERS(STRUCT, members...): what a struct is made of, for a visitor that reads or writes. All its members are
-// listed, in their order; where one is left out it does not compile.
-#define PROMIN_MEMBERS(STRUCT, ...)                    \
-  template <typename Visitor>                          \
-  void visit(Visitor& visitor, STRUCT& record) {       \
-    auto& [__VA_ARGS__] = record;                      \
-    visit_members(visitor, #__VA_ARGS__, __VA_ARGS__); \
-  }
-
-// clang-format off
-PROMIN_MEMBERS(Light, name, kind, position, direction, diffuse, specular, attenuation, range, inner_cone_angle,
-               outer_cone_angle, is_on)
-PROMIN_MEMBERS(TextureSlot, texture, uv_set, to_u, to_v)
-PROMIN_MEMBERS(Phong, ambient, diffuse, specular, shininess, reflection, transmission, ior, fresnel, diffuse_texture,
-               specular_texture, normal_texture)
-PROMIN_MEMBERS(MetallicRoughness, base_color, metallic, roughness, ior, specular, specular_color, specular_texture,
-               specular_color_texture, transmission, transmission_texture, thickness, attenuation_color,
-               attenuation_distance, dispersion, base_color_texture, metallic_roughness_texture, normal_texture,
-               normal_scale, occlusion_texture, occlusion_strength, clearcoat, clearcoat_roughness, clearcoat_texture,
-               clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale, sheen_color,
-               sheen_roughness, sheen_color_texture, sheen_roughness_texture)
-PROMIN_MEMBERS(Unlit, color, color_texture)
-PROMIN_MEMBERS(Material, name, model, emissive, emissive_texture, alpha_mode, alpha, alpha_cutoff, is_double_sided)
-PROMIN_MEMBERS(Camera, name, projection, eye, look, up, yfov, ymag, aspect_ratio, resolution, near)
-PROMIN_MEMBERS(Studio, front)
-PROMIN_MEMBERS(GradientSky, top, horizon, bottom, top_curve, bottom_curve)
-PROMIN_MEMBERS(Panorama, image)
-PROMIN_MEMBERS(Environment, ambient, background, sky, shows_sky, rotation, intensity)
-PROMIN_MEMBERS(DisplayTransform, exposure_ev, tone_mapping, dithers)
-PROMIN_MEMBERS(ExrOptions, is_half, compression, is_multipart)
-PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, display, max_samples)
-PROMIN_MEMBERS(PixelWindow, lo, hi)
-PROMIN_MEMBERS(RenderMode, debug_view, has_shadows)
-PROMIN_MEMBERS(View, camera, size, crop, samples_per_pixel, error_target, depth_kind, filter, filter_width, max_depth,
-               mode)
-PROMIN_MEMBERS(Sphere, center, radius)
-PROMIN_MEMBERS(Plane, point, normal)
-PROMIN_MEMBERS(Cylinder, center, axis, half_height, radius, is_open)
-PROMIN_MEMBERS(Cone, center, axis, half_height, radius_bottom, radius_top, is_open)
-PROMIN_MEMBERS(Box, center, half_size)
-PROMIN_MEMBERS(Capsule, center, axis, half_height, radius_bottom, radius_top)
-// clang-format on
-#undef PROMIN_MEMBERS
-
-template <typename Visitor>
-void visit(Visitor&, std::monostate&) {}
 
 template <int N, typename T>
 using Vec = glm::vec<N, T, glm::defaultp>;
@@ -146,14 +77,14 @@ class Reader {
     value.reset();
     if (!find(name).is_none()) value = read_one<T>(convert<nb::dict>(find(name), name, "a record"));
   }
-  void field(const std::string& name, Model& value) const {
-    read_kind(value, kModels, find_text(name), "model of materials", record_);
+  void field(const std::string& name, MaterialModel& value) const {
+    read_kind(value, kModelNames, find_text(name), "model of materials", record_);
   }
-  void field(const std::string& name, Sky& value) const {
+  void field(const std::string& name, SkyModel& value) const {
     value = {};
     if (find(name).is_none()) return;
     const auto sky = convert<nb::dict>(find(name), name, "a record");
-    read_kind(value, kSkies, Reader(sky).find_text("kind"), "kind of sky", sky);
+    read_kind(value, kSkyNames, Reader(sky).find_text("kind"), "kind of sky", sky);
   }
   void field(const std::string& name, std::shared_ptr<const Image>& value) const {
     PictureArray pixels;
@@ -186,7 +117,7 @@ template <typename T>
 T read_one(const nb::dict& record) {
   T value;
   const Reader reader(record);
-  visit(reader, value);
+  visit_members(reader, value);
   return value;
 }
 
@@ -196,7 +127,7 @@ class Writer {
   template <typename T>
   static nb::dict write_one(T value) {
     Writer writer;
-    visit(writer, value);
+    visit_members(writer, value);
     return writer.record_;
   }
 
@@ -225,13 +156,13 @@ class Writer {
   void field(const std::string& name, TextureSlot& value) {
     put(name, value.exists() ? nb::object(write_one(value)) : nb::none());
   }
-  void field(const std::string& name, Model& value) {
-    put(name, nb::cast(std::string(kModels[value.index()])));
+  void field(const std::string& name, MaterialModel& value) {
+    put(name, nb::cast(std::string(kModelNames[value.index()])));
     std::visit([&](const auto& model) { record_.update(write_one(model)); }, value);
   }
-  void field(const std::string& name, Sky& value) {
+  void field(const std::string& name, SkyModel& value) {
     nb::dict sky = std::visit([](const auto& one) { return write_one(one); }, value);
-    sky["kind"] = std::string(kSkies[value.index()]);
+    sky["kind"] = std::string(kSkyNames[value.index()]);
     put(name, value.index() == 0 ? nb::none() : nb::object(sky));
   }
   void field(const std::string& name, std::shared_ptr<const Image>& value) { put(name, write_image_array(*value)); }
@@ -251,18 +182,6 @@ std::optional<T> read_optional(const nb::dict& record, const std::string& name) 
 }
 
 }  // namespace
-
-// clang-format off
-Names names_of(LightKind) { return kLightKinds; }
-Names names_of(Attenuation) { return kAttenuations; }
-Names names_of(AlphaMode) { return kAlphaModes; }
-Names names_of(Projection) { return kProjections; }
-Names names_of(DepthKind) { return depth_kind_names(); }
-Names names_of(ToneMapping) { return tone_mapping_names(); }
-Names names_of(PixelFilter) { return pixel_filter_names(); }
-Names names_of(DebugView) { return debug_view_names(); }
-Names names_of(ExrCompression) { return exr_compression_names(); }
-// clang-format on
 
 size_t find_name(Names names, const std::string& name, const std::string& what) {
   const auto found = std::ranges::find(names, name);
@@ -346,7 +265,8 @@ RenderMode read_mode(const nb::dict& record) {
 
 Geometry read_shape(const std::string& kind, const nb::dict& record) {
   Shape shape;
-  read_kind(shape, kShapes, kind, "shape", record);
+  // A mesh, the first kind of geometry, is none.
+  read_kind(shape, Names(kShapeNames).subspan(1), kind, "shape", record);
   return std::visit([](const auto& one) -> Geometry { return one; }, shape);
 }
 

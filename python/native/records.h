@@ -5,9 +5,7 @@
 #include <nanobind/nanobind.h>
 
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 
 #include "promin/camera.h"
 #include "promin/display.h"
@@ -17,25 +15,13 @@
 #include "promin/materials.h"
 #include "promin/shapes.h"
 #include "promin/view.h"
+#include "scene/members.h"
 
 namespace promin::python {
 
 // The library's structs as dicts of plain values and back: keys are the members' names, vectors are tuples, enumerators
 // are their names, what may be missing is None. The dataclasses of promin._records have the same fields. Reading throws
 // UsageError where a value is missing or none of the right kind, with the field's name.
-
-using Names = std::span<const std::string_view>;
-
-// Names of enumerators, by their values.
-Names names_of(LightKind);
-Names names_of(Attenuation);
-Names names_of(AlphaMode);
-Names names_of(Projection);
-Names names_of(DepthKind);
-Names names_of(ToneMapping);
-Names names_of(PixelFilter);
-Names names_of(DebugView);
-Names names_of(ExrCompression);
 
 /// The place of a name among others; throws UsageError with all of them, which says what there is none of.
 size_t find_name(Names names, const std::string& name, const std::string& what);
