@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/far_scene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -48,6 +48,13 @@ std::vector<Bounds> bounds_of_meshes(const Scene& scene) {
 double scale_of(const dmat4& transform) {
   return greatest_of(
       {glm::length(dvec3(transform[0])), glm::length(dvec3(transform[1])), glm::length(dvec3(transform[2]))});
+}
+
+/// Two digits.
+std::string to_text(double number) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, number, std::chars_format::general, 2);
+  return {text, end.ptr};
 }
 
 }  // namespace
@@ -94,10 +101,9 @@ void warn_of_coarse_coordinates(bool is_rounded, Scene& scene) {
     step = std::max(step, step_at(magnitude) * scale_of(object.world_from_object));
   }
   if (!(step > kCoarsestStep * size)) return;
-  scene.warnings.push_back(fmt::format(
-      "the file has coordinates in fp32, whose steps of {:.2g} are coarse for a scene of size {:.2g}: export it nearer "
-      "to the origin, and the distance as a node's translation or as doubles",
-      step, size));
+  scene.warnings.push_back("the file has coordinates in fp32, whose steps of " + to_text(step) +
+                           " are coarse for a scene of size " + to_text(size) +
+                           ": export it nearer to the origin, and the distance as a node's translation or as doubles");
 }
 
 }  // namespace promin
