@@ -150,7 +150,7 @@ def test_a_file_far_from_the_origin_has_a_centre(tmp_path: Path) -> None:
     hits = promin.Caster(pickle.loads(pickle.dumps(scene))).cast(rays)
     assert hits["object"].tolist() == [0, 1] and hits["t"] == pytest.approx(0.75, abs=1e-6)
     assert np.abs(scene.positions(rays, hits)[0] - (center + [0.1, 0.05, 0.25])).max() < 1e-6
-    near = promin.Scene.load(_write_obj(tmp_path / "near.obj", *make_box((100.0, 0.0, 0.0), 0.5)))
+    near = promin.Scene.load(_write_obj(tmp_path / "near.obj", *make_box((10.0, 0.0, 0.0), 0.5)))
     assert not near.center.any()
 
 
