@@ -493,6 +493,126 @@ TEST_F(CliTest, InfoTellsTexturesBySize) {
   EXPECT_THAT(info.out, HasSubstr("a file does not exist (\"none.png\"), image images[1]; "));
 }
 
+/// The square with a texture whose PNG has a wrong byte among its texels.
+std::string square_with_broken_texels() {
+  std::string text = square_with("\"indices\": 1", R"("indices": 1, "material": 0)");
+  text.insert(text.rfind('}'), R"(, "materials": [{"normalTexture": {"index": 0}}], "textures": [{"source": 0}],
+      "images": [{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNoAAAAAAAkAOGVpLGLAAAAAElFTkSuQmCC"}])");
+  return text;
+}
+
+TEST_F(CliTest, InfoWarnsOfTexels) {
+  write("broken.gltf", square_with_broken_texels());
+  const std::string decoded = run({"info", "broken.gltf"}).out;
+  EXPECT_THAT(decoded, ContainsRegex("warnings +an image cannot be read .*images\\[0\\]; "));
+  const std::string skipped = run({"info", "broken.gltf", "--no-texels"}).out;
+  EXPECT_THAT(skipped, ContainsRegex("textures +1 of 1 images \\(1 of 1x1\\)"));
+  EXPECT_THAT(skipped, ContainsRegex("warnings +none\n"));
+}
+
+TEST_F(CliTest, InfoWarnsOfCamerasWithoutASensibleSize) {
+  write("narrow.gltf", square_with("\"yfov\"", "\"aspectRatio\": 1e-6, \"yfov\""));
+  EXPECT_THAT(run({"info", "narrow.gltf"}).out,
+              HasSubstr("the camera's aspect ratio of 1e-06 gives no sensible width; give --size"));
+}
+
+/// What `promin info --json` says of a scene.
+class InfoJsonTest : public CliTest {
+ protected:
+  json info(const std::string& scene, const OptionValues& more = {}) {
+    OptionValues arguments = {"info", scene, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    text_ = result.out;
+    return json::parse(text_);
+  }
+
+  /// The keys in which two values differ, with the members of those that are objects.
+  static std::set<std::string> differences(const json& a, const json& b) {
+    std::set<std::string> places;
+    for (const json& change : json::diff(a, b)) places.insert(change["path"].get<std::string>());
+    return places;
+  }
+
+  std::string text_;
+};
+
+TEST_F(InfoJsonTest, SaysWhatASceneHolds) {
+  const json scene = info("square.gltf");
+  EXPECT_EQ(scene["file"], "square.gltf");
+  EXPECT_EQ(scene["counts"]["objects"]["meshes"], 1);
+  EXPECT_EQ(scene["counts"]["triangles"], 2);
+  EXPECT_EQ(scene["counts"]["degenerate_triangles"], 0);
+  EXPECT_EQ(scene["bounds"], json({{"lo", {-1, -1, 0}}, {"hi", {1, 1, 0}}}));
+  const json& object = scene["objects"].at(0);
+  EXPECT_EQ(object["number"], 0);
+  EXPECT_EQ(object["world_from_object"], nullptr);
+  EXPECT_EQ(object["geometry"]["kind"], "mesh");
+  EXPECT_EQ(object["geometry"]["vertices"], 4);
+  EXPECT_THAT(object["geometry"]["hashes"]["positions"].get<std::string>(), MatchesRegex("[0-9a-f]{16}"));
+  EXPECT_EQ(object["geometry"]["hashes"]["normals"], nullptr);
+  const json& material = scene["materials"].at(object["material"].get<size_t>());
+  EXPECT_EQ(material["model"], "metallic_roughness");
+  EXPECT_EQ(material["attenuation_distance"], nullptr) << "infinite";
+  EXPECT_EQ(material["base_color_texture"], nullptr);
+  EXPECT_EQ(scene["lights"].at(0)["kind"], "point");
+  EXPECT_EQ(scene["lights"].at(0)["diffuse"], json({3, 3, 3}));
+  EXPECT_EQ(scene["cameras"].at(0)["name"], "main");
+  EXPECT_EQ(scene["environment"]["sky"]["kind"], "studio");
+  EXPECT_EQ(scene["display"]["tone_mapping"], "neutral");
+  EXPECT_THAT(scene["assumed"].dump(), HasSubstr("a studio's weaker light"));
+  EXPECT_EQ(scene["extensions"], json({{{"is_required", false}, {"is_used", true}, {"name", "KHR_lights_punctual"}}}));
+  EXPECT_THAT(scene["warnings"], IsEmpty());
+  // The shortest decimal of the fp32 number.
+  EXPECT_THAT(text_, HasSubstr("\"yfov\": 0.7853982\n"));
+  EXPECT_EQ(scene.dump(1) + "\n", text_) << "keys are sorted";
+}
+
+TEST_F(InfoJsonTest, TellsWhatDiffers) {
+  const json square = info("square.gltf");
+  fs::create_directories(folder() / "other");
+  write("other/square.gltf", kSquareGltf);
+  EXPECT_EQ(info("other/square.gltf"), square);
+  // The first vertex is at x = -1, of the bytes 00 00 80 BF; -1.0625 has 00 00 88 BF.
+  write("square.gltf", square_with("AACAvwAAgL8AAAAA", "AACIvwAAgL8AAAAA"));
+  EXPECT_THAT(differences(square, info("square.gltf")),
+              testing::ElementsAre("/bounds/lo/0", "/objects/0/geometry/hashes/positions"));
+  write("square.gltf", square_with("{\"mesh\": 0}", R"({"mesh": 0, "rotation": [0, 0, 0, -1]})"));
+  EXPECT_EQ(info("square.gltf"), square);
+  write("square.gltf", square_with("{\"mesh\": 0}", R"({"mesh": 0, "translation": [0, 0, 1]})"));
+  EXPECT_THAT(
+      differences(square, info("square.gltf")),
+      testing::ElementsAre("/bounds/hi/2", "/bounds/lo/2", "/environment/intensity", "/objects/0/world_from_object"));
+}
+
+TEST_F(InfoJsonTest, DoesNotTellWhetherObjectsShareAMesh) {
+  json gltf = json::parse(kSquareGltf);
+  gltf["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 1}}});
+  gltf["scenes"][0]["nodes"].push_back(4);
+  write("square.gltf", gltf.dump());
+  const json shared = info("square.gltf");
+  EXPECT_THAT(shared["objects"], testing::SizeIs(2));
+  gltf["meshes"].push_back(gltf["meshes"][0]);
+  gltf["nodes"][4]["mesh"] = 1;
+  write("square.gltf", gltf.dump());
+  EXPECT_EQ(info("square.gltf"), shared);
+}
+
+TEST_F(InfoJsonTest, HoldsTexelsByTheirHash) {
+  std::string text = square_with_broken_texels();
+  const std::string broken = "mNoAAAAAAAkAOGV";
+  text.replace(text.find(broken), broken.size(), "mNocFAAAAIkAOGV");
+  write("pixel.gltf", text);
+  const json decoded = info("pixel.gltf");
+  EXPECT_EQ(decoded["images"].at(0)["size"], json({1, 1}));
+  EXPECT_EQ(decoded["images"].at(0)["use"], "normal");
+  EXPECT_THAT(decoded["images"].at(0)["hash"].get<std::string>(), MatchesRegex("[0-9a-f]{16}"));
+  EXPECT_EQ(decoded["textures"].at(0)["wrap_u"], "repeat");
+  EXPECT_EQ(decoded["materials"].at(0)["normal_texture"]["texture"], 0);
+  EXPECT_THAT(differences(decoded, info("pixel.gltf", {"--no-texels"})), testing::ElementsAre("/images/0/hash"));
+}
+
 TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   const std::string lit = run({"info", "square.gltf"}).out;
   EXPECT_THAT(lit, ContainsRegex("lights +1 \\(point: 1.*; assumed: a studio's weaker light around the scene's own\n"));

@@ -14,6 +14,7 @@
 #include "formats/picture_sources.h"
 #include "formats/ply/body.h"
 #include "formats/ply/header.h"
+#include "formats/scene_path.h"
 #include "formats/triangulate.h"
 #include "promin/validate.h"
 
