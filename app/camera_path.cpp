@@ -68,12 +68,22 @@ TimedCamera read_frame(const json& frame, const std::string& place, LoadReport& 
     timed.camera.ymag = frame["ymag"].get<float>();
   }
   timed.camera.near = frame.value("near", 0.0F);
+  for (int i = 0; i < 3; ++i) {
+    timed.rest[i] = frame["eye"][static_cast<size_t>(i)].get<double>() - double{timed.camera.eye[i]};
+  }
   return timed;
 }
 
 /// Nine digits tell any two floats apart.
 std::string write_vector(const vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x, v.y, v.z);
+}
+
+/// Of a place far from the origin more digits are needed; these bring back what is near it.
+std::string write_eye(const TimedCamera& frame) {
+  if (frame.rest == dvec3(0.0)) return write_vector(frame.camera.eye);
+  const dvec3 eye = frame.eye();
+  return fmt::format("[{}, {}, {}]", eye.x, eye.y, eye.z);
 }
 
 std::string write_frame(const TimedCamera& frame) {
@@ -84,8 +94,7 @@ std::string write_frame(const TimedCamera& frame) {
           ? fmt::format("\"fov_deg\": {:.9g}", glm::degrees(static_cast<double>(camera.yfov)))
           : fmt::format("\"ymag\": {:.9g}", camera.ymag);
   return fmt::format(R"({{"time_s": {}, "eye": {}, "look": {}, "up": {}, {}, "near": {:.9g}}})", frame.time_s,
-                     write_vector(camera.eye), write_vector(camera.look), write_vector(camera.up), projection,
-                     camera.near);
+                     write_eye(frame), write_vector(camera.look), write_vector(camera.up), projection, camera.near);
 }
 
 /// FreeCamera's Q.
@@ -109,6 +118,16 @@ Camera interpolate(const Camera& from, const Camera& to, double share) {
   camera.yfov = mix_real(from.yfov, to.yfov);
   camera.ymag = mix_real(from.ymag, to.ymag);
   return camera;
+}
+
+/// The path with cameras as scenes of this center take them.
+CameraPath move_path(CameraPath path, const dvec3& center) {
+  if (center == dvec3(0.0)) return path;
+  for (TimedCamera& frame : path.frames) {
+    frame.camera.eye = vec3(frame.eye() - center);
+    frame.rest = center;
+  }
+  return path;
 }
 
 }  // namespace
@@ -166,6 +185,12 @@ PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
                       "give a smaller --fps"});
   }
   count_ = static_cast<size_t>(count);
+}
+
+PathPictures PathPictures::moved_to(const dvec3& center) const {
+  PathPictures moved = *this;
+  moved.path_ = move_path(path_, center);
+  return moved;
 }
 
 Camera PathPictures::camera(size_t picture) const {

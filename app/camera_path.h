@@ -14,6 +14,10 @@ namespace promin {
 struct TimedCamera {
   double time_s = 0.0;
   Camera camera;
+  /// What the camera's eye, which is fp32, lacks of its place in the world.
+  dvec3 rest{0.0};
+
+  dvec3 eye() const { return rest + dvec3(camera.eye); }
 };
 
 /// A flight of the camera over time.
@@ -43,6 +47,8 @@ class PathPictures {
   /// as they are stored; with nullopt what the path says. Throws UsageError for more pictures than kMaxCount.
   explicit PathPictures(CameraPath path, std::optional<double> fps = std::nullopt);
 
+  /// The same pictures in a scene of this center (Scene::center).
+  PathPictures moved_to(const dvec3& center) const;
   /// The number of pictures, at least one.
   size_t count() const { return count_; }
   Camera camera(size_t picture) const;

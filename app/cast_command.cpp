@@ -31,12 +31,18 @@
 namespace promin::app {
 namespace {
 
-/// The file's next rays, at most kChunkRays; none at its end.
-std::vector<Ray> read_chunk(RayReader& reader, uint64_t done) {
-  std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
-  reader.read(rays);
-  return rays;
-}
+/// The rays of a file around a scene's center, chunk by chunk.
+struct RayChunks {
+  RayReader& reader;
+  dvec3 center;
+
+  /// The next, at most kChunkRays; none at the file's end.
+  std::vector<Ray> next(uint64_t done) const {
+    std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
+    reader.read(rays, center);
+    return rays;
+  }
+};
 
 /// What a query makes of rays, chunk by chunk, and the files that it writes.
 class Answers {
@@ -146,17 +152,17 @@ std::unique_ptr<Answers> make_answers(const CastOptions& options, Caster& caster
 }
 
 /// `rays` is the first chunk. Throws Cancelled if a signal asks for the end.
-void answer_all(std::vector<Ray> rays, RayReader& reader, Answers& answers, const CastOptions& options, RunStats& stats,
-                const Console& console, const DeferredSignals& signals) {
+void answer_all(std::vector<Ray> rays, const RayChunks& chunks, Answers& answers, const CastOptions& options,
+                RunStats& stats, const Console& console, const DeferredSignals& signals) {
   const uint32_t repeats = options.tracing.repeat_count;
   stats.trace_ms.assign(repeats, 0.0);
   Progress progress(console.is_quiet());
-  for (uint64_t done = 0; !rays.empty(); rays = read_chunk(reader, done)) {
+  for (uint64_t done = 0; !rays.empty(); rays = chunks.next(done)) {
     for (uint32_t i = 0; i < repeats; ++i) {
       if (signals.is_pending()) throw Cancelled();
       const auto tell = [&](double fraction) {
         const double chunk_share = static_cast<double>(rays.size()) * (i + fraction) / repeats;
-        progress.update((static_cast<double>(done) + chunk_share) / static_cast<double>(reader.count()));
+        progress.update((static_cast<double>(done) + chunk_share) / static_cast<double>(chunks.reader.count()));
         return !signals.is_pending();
       };
       stats.trace_ms[i] += answers.trace(rays, i + 1 == repeats, tell);
@@ -199,7 +205,8 @@ void cast(const CastOptions& options, const CLI::App& command) {
   CasterOptions caster_options;
   choose_tree(tracing, caster_options);
   Caster caster(*device, scene, caster_options);
-  std::vector<Ray> rays = read_chunk(reader, 0);
+  const RayChunks chunks{reader, scene.center};
+  std::vector<Ray> rays = chunks.next(0);
   caster.prepare(options.query(), rays);
   take_setup(caster.setup_stats(), stats, console);
   (options.is_any ? stats.rays.shadow : stats.rays.primary) = reader.count();
@@ -208,7 +215,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
   const DeferredSignals while_writing;
   const std::unique_ptr<Answers> answers = make_answers(options, caster, scene, reader.count());
   try {
-    answer_all(std::move(rays), reader, *answers, options, stats, console, while_writing);
+    answer_all(std::move(rays), chunks, *answers, options, stats, console, while_writing);
   } catch (const Cancelled&) {
     return;  // the signal ends the program
   }

@@ -155,7 +155,7 @@ class RayPieces : public PieceMaker {
     options.progress = progress;
     caster_.emplace(make_caster(device, world::flatten(job.scene_, world::Purpose::kHits), options));
     std::vector<Ray> rays(std::min(kChunkRays, job.ranges_.front().count()));
-    job.rays_->read(0, rays);
+    job.rays_->read(0, rays, job.scene_.center);
     caster_->prepare(job.options_.query(), rays);
     take_setup(caster_->setup_stats(), stats_, job.console_);
   }
@@ -167,7 +167,7 @@ class RayPieces : public PieceMaker {
     std::vector<Ray> rays;
     for (uint64_t done = 0; done < piece.rays.count(); done += rays.size()) {
       rays.resize(std::min(kChunkRays, piece.rays.count() - done));
-      job_.rays_->read(piece.rays.begin + done, rays);
+      job_.rays_->read(piece.rays.begin + done, rays, job_.scene_.center);
       answer(rays, content.bytes, [&](double fraction) {
         const double traced = static_cast<double>(done) + fraction * static_cast<double>(rays.size());
         return !progress || progress(traced / static_cast<double>(piece.rays.count()));
@@ -266,7 +266,7 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
   std::vector<Ray> rays;
   for (uint64_t done = 0; done < range.count(); done += rays.size()) {
     rays.resize(std::min(kChunkRays, range.count() - done));
-    rays_->read(range.begin + done, rays);
+    rays_->read(range.begin + done, rays, scene_.center);
     if (options_.query() == HitQuery::kAll) {
       const HitLists lists_there(there.bytes, range.count());
       const HitLists lists_anew(anew.bytes, range.count());

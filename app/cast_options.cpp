@@ -24,7 +24,8 @@ std::vector<std::filesystem::path> CastOptions::outputs() const {
 void add_cast_options(CLI::App& command, CastOptions& options) {
   OptionTable table(command);
   add_scene_argument(table, options.tracing);
-  table.add_required("RAYS.npy", "", "NumPy array of N x 8 float32: origin xyz, tmin, direction xyz (any length), tmax",
+  table.add_required("RAYS.npy", "",
+                     "NumPy array of N x 8 float32 or float64: origin xyz, tmin, direction xyz (any length), tmax",
                      [&](const OptionValues& w) { options.rays = w.text(); });
   table.add_repeated("-o,--output", "HITS.npy",
                      "NumPy array to write: t, object, primitive, u, v, normal of each ray's nearest hit",

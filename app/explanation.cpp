@@ -22,8 +22,15 @@ Json json_of(const vec3& v) {
   return Json::array({json_of(v.x), json_of(v.y), json_of(v.z)});
 }
 
-Json json_of(const Ray& ray) {
-  return {{"origin", json_of(ray.origin)},
+/// A place in the scene as one in the world: nine digits of fp32, or all of what lies far from the origin.
+Json json_of_place(const vec3& place, const Scene& scene) {
+  if (scene.center == dvec3(0.0)) return json_of(place);
+  const dvec3 world = scene.center + dvec3(place);
+  return Json::array({world.x, world.y, world.z});
+}
+
+Json json_of(const Ray& ray, const Scene& scene) {
+  return {{"origin", json_of_place(ray.origin, scene)},
           {"direction", json_of(ray.direction)},
           {"tmin", json_of(ray.tmin)},
           {"tmax", json_of(ray.tmax)}};
@@ -46,7 +53,7 @@ Json json_of(const ExplainedSource& source, const Scene& scene) {
                {"contribution", json_of(source.contribution)},
                {"shadow_ray", nullptr}};
   if (source.shadow_ray) {
-    json["shadow_ray"] = json_of(*source.shadow_ray);
+    json["shadow_ray"] = json_of(*source.shadow_ray, scene);
     json["shadow_ray"]["blocker"] = json_of(source.blocker, scene);
   }
   return json;
@@ -69,12 +76,12 @@ std::string_view name_of(RayKind kind) {
 Json json_of(const ExplainedRay& ray, const Scene& scene) {
   Json json = {{"kind", name_of(ray.kind)}, {"parent", nullptr}};
   if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
-  json.update(json_of(ray.ray));
+  json.update(json_of(ray.ray, scene));
   json["weight"] = json_of(ray.weight);
   json["hit"] = json_of(ray.hit, scene);
   if (ray.hit.object >= 0) {
     json["hit"].update({{"object_name", scene.objects[static_cast<size_t>(ray.hit.object)].name},
-                        {"position", json_of(ray.position)},
+                        {"position", json_of_place(ray.position, scene)},
                         {"normal", json_of(ray.hit.normal)},
                         {"shading_normal", json_of(ray.shading_normal)},
                         {"lift", json_of(ray.lift)},
@@ -98,6 +105,12 @@ std::string text_of(const vec3& v) {
   return fmt::format("({:.6g} {:.6g} {:.6g})", v.x, v.y, v.z);
 }
 
+std::string text_of_place(const vec3& place, const Scene& scene) {
+  if (scene.center == dvec3(0.0)) return text_of(place);
+  const dvec3 world = scene.center + dvec3(place);
+  return fmt::format("({:.12g} {:.12g} {:.12g})", world.x, world.y, world.z);
+}
+
 std::string text_of(const Hit& hit, const Scene& scene) {
   const auto object = static_cast<uint32_t>(hit.object);
   return fmt::format("{} primitive {} at t {:.6g}",
@@ -116,13 +129,13 @@ std::string text_of(const ExplainedSource& source, const Scene& scene) {
 std::string text_of(const ExplainedRay& ray, size_t depth, const Scene& scene) {
   const std::string indent(2 * depth + 2, ' ');
   std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, name_of(ray.kind),
-                                 text_of(ray.ray.origin), text_of(ray.ray.direction), text_of(ray.weight));
+                                 text_of_place(ray.ray.origin, scene), text_of(ray.ray.direction), text_of(ray.weight));
   const auto add = [&](const std::string& line) { text += indent + "  " + line + "\n"; };
   if (ray.hit.object < 0) {
     add("misses: background " + text_of(ray.own));
   } else {
     add(fmt::format("hits {}, u {:.6g}, v {:.6g}", text_of(ray.hit, scene), ray.hit.u, ray.hit.v));
-    add(fmt::format("at {}, normal {}, {}", text_of(ray.position), text_of(ray.shading_normal),
+    add(fmt::format("at {}, normal {}, {}", text_of_place(ray.position, scene), text_of(ray.shading_normal),
                     with_name(fmt::format("material {}", ray.material), scene.materials[ray.material].name)));
     if (ray.coverage < 1.0F) add(fmt::format("covers {:.6g} of what is behind", ray.coverage));
     add("ambient and emitted " + text_of(ray.own));

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "camera_path.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -33,13 +32,19 @@ std::filesystem::path number_file(const std::filesystem::path& file, uint32_t nu
   return file.parent_path() / name;
 }
 
+void move_frames(std::vector<PlannedFrame>& frames, const dvec3& center) {
+  if (frames.empty() || frames.front().path == nullptr || center == dvec3(0.0)) return;
+  const PathPictures moved = frames.front().path->moved_to(center);
+  for (PlannedFrame& frame : frames) frame.camera = moved.camera(*frame.number);
+}
+
 std::vector<PlannedFrame> plan_frames(const RenderOptions& options) {
   if (!options.path) return {{std::nullopt, std::nullopt, options.pictures}};
-  const PathPictures path(read_camera_path(*options.path), options.fps);
-  const FrameRange range = choose_frames(options, path.count());
+  const auto path = std::make_shared<const PathPictures>(read_camera_path(*options.path), options.fps);
+  const FrameRange range = choose_frames(options, path->count());
   std::vector<PlannedFrame> frames;
   for (uint32_t number = range.first; number <= range.last; ++number) {
-    PlannedFrame frame{number, path.camera(number), {}};
+    PlannedFrame frame{number, path->camera(number), {}, path};
     for (const std::filesystem::path& file : options.pictures) frame.pictures.push_back(number_file(file, number));
     frames.push_back(std::move(frame));
   }

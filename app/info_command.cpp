@@ -69,7 +69,15 @@ std::string describe_display(const DisplayTransform& display) {
                      tone_mapping_names()[static_cast<size_t>(display.tone_mapping)]);
 }
 
-std::string describe_camera(size_t index, const Camera& camera) {
+/// A place in the scene as one in the world.
+std::string describe_place(const vec3& place, const dvec3& center, int digits) {
+  const dvec3 world = center + dvec3(place);
+  // Far from the origin the same digits of the scene's own coordinates would not do.
+  if (center != dvec3(0.0)) digits = 12;
+  return fmt::format("{:.{}g} {:.{}g} {:.{}g}", world.x, digits, world.y, digits, world.z, digits);
+}
+
+std::string describe_camera(size_t index, const Camera& camera, const dvec3& center) {
   std::string text = fmt::format("{} {}", index, camera.name.empty() ? "(no name)" : camera.name);
   if (camera.projection == Projection::kPerspective) {
     text += fmt::format(", perspective, vertical field of view {:.4g} degrees", glm::degrees(camera.yfov));
@@ -78,14 +86,16 @@ std::string describe_camera(size_t index, const Camera& camera) {
   }
   if (camera.resolution != uvec2(0)) text += fmt::format(", {}x{}", camera.resolution.x, camera.resolution.y);
   if (camera.aspect_ratio > 0.0F) text += fmt::format(", aspect ratio {:.4g}", camera.aspect_ratio);
-  text += fmt::format(", near {:.4g}, eye {:.4g} {:.4g} {:.4g}", camera.near, camera.eye.x, camera.eye.y, camera.eye.z);
+  text += fmt::format(", near {:.4g}, eye {}", camera.near, describe_place(camera.eye, center, 4));
   return text;
 }
 
 std::vector<std::string> describe_cameras(const Scene& scene) {
   if (scene.cameras.empty()) return {"0; assumed: " + describe_framing(framing_of(scene))};
   std::vector<std::string> rows;
-  for (size_t i = 0; i < scene.cameras.size(); ++i) rows.push_back(describe_camera(i, scene.cameras[i]));
+  for (size_t i = 0; i < scene.cameras.size(); ++i) {
+    rows.push_back(describe_camera(i, scene.cameras[i], scene.center));
+  }
   return rows;
 }
 
@@ -108,10 +118,9 @@ std::string describe_sky(const Environment& environment) {
   return text;
 }
 
-std::string describe_bounds(const Bounds& bounds) {
+std::string describe_bounds(const Bounds& bounds, const dvec3& center) {
   if (bounds.is_empty()) return "nothing finite";
-  return fmt::format("{:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}", bounds.lo.x, bounds.lo.y, bounds.lo.z, bounds.hi.x,
-                     bounds.hi.y, bounds.hi.z);
+  return describe_place(bounds.lo, center, 6) + " to " + describe_place(bounds.hi, center, 6);
 }
 
 /// The file's extensions by what has become of them.
@@ -216,7 +225,8 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
   print_row("sky", describe_sky(scene.environment));
   print_row("display", describe_display(display_of(scene)));
   print_rows("cameras", describe_cameras(scene));
-  print_row("bounds", describe_bounds(bounds_of(scene)));
+  print_row("bounds", describe_bounds(bounds_of(scene), scene.center));
+  if (scene.center != dvec3(0.0)) print_row("center", describe_place(vec3(0.0F), scene.center, 6));
   print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(lit.flat)), ", ")));
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
                                packed.bvh.depth, packed.bvh.sah_cost));

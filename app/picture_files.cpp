@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -60,6 +62,10 @@ AovHeader describe_aovs(const Scene& scene, const AovSet& choice, DepthKind dept
   AovHeader header{make_channels(scene, Aovs(), choice), {}};
   if (choice.depth) {
     header.metadata.emplace_back("promin:depth", depth_kind_names()[static_cast<size_t>(depth_kind)]);
+  }
+  if (choice.position && scene.center != dvec3(0.0)) {
+    header.metadata.emplace_back("promin:center",
+                                 fmt::format("{} {} {}", scene.center.x, scene.center.y, scene.center.z));
   }
   if (choice.cryptomatte) {
     for (auto& entry : make_cryptomatte(scene, Aovs()).metadata) header.metadata.push_back(std::move(entry));

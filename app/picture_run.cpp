@@ -26,6 +26,7 @@ PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFra
   RunStats& stats = run.stats;
   run.scene = load_for(options.tracing, stats, console, run.sources);
   Scene& scene = run.scene;
+  move_frames(run.frames, scene.center);
   ViewOptions view = options.view;
   view.given_camera = run.frames.front().camera;
   stats.view = make_view(scene, view, console);

@@ -19,14 +19,14 @@ class RayFile : public RaySource {
       : file_(file), stamp_(stamp_of(file)), reader_(file), hashes_(folder) {}
 
   uint64_t count() const override { return reader_.count(); }
-  void read(uint64_t first, std::span<Ray> rays) override {
+  void read(uint64_t first, std::span<Ray> rays, const dvec3& center) override {
     if (stamp_of(file_) != stamp_) {
       throw InputError({"the file has changed since the job's rays were looked at", file_.string(),
                         "put it back as it was, or take another folder for the job"});
     }
     const std::lock_guard lock(mutex_);
     reader_.seek(first);
-    reader_.read(rays);
+    reader_.read(rays, center);
   }
   jobs::InputFile describe() override { return hashes_.describe(file_); }
   void remember() override { hashes_.save(); }

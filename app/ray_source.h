@@ -17,9 +17,9 @@ class RaySource {
  public:
   virtual ~RaySource() = default;
   virtual uint64_t count() const = 0;
-  /// Reads as many rays as fit in `rays`, from the one of this number on; they are there. Throws InputError, also where
-  /// they have changed since describe().
-  virtual void read(uint64_t first, std::span<Ray> rays) = 0;
+  /// Reads as many rays as fit in `rays`, from the one of this number on; they are there. Their origins lose the
+  /// scene's center. Throws InputError, also where they have changed since describe().
+  virtual void read(uint64_t first, std::span<Ray> rays, const dvec3& center) = 0;
   /// What the job's manifest tells of them. Throws InputError.
   virtual jobs::InputFile describe() = 0;
   /// Has the job's folder, now that it is there, keep what describe() took long for.

@@ -178,6 +178,7 @@ Json json_of(const Scene& scene) {
   return {{"file", scene.file.filename().string()},
           {"is_classic", scene.is_classic},
           {"counts", describe(count_scene(scene))},
+          {"center", {scene.center.x, scene.center.y, scene.center.z}},
           {"bounds", describe(bounds_of(scene))},
           {"objects", list_objects(scene)},
           {"materials", list_of(scene.materials)},

@@ -64,8 +64,8 @@ bool is_camera_assumed(const Scene& scene, const ViewOptions& options) {
   return scene.cameras.empty() && !is_given && !options.look.framing;
 }
 
-void apply_pose(Camera& camera, const PoseOptions& pose, const Console& console) {
-  if (pose.eye) camera.eye = vec3(*pose.eye);
+void apply_pose(Camera& camera, const PoseOptions& pose, const dvec3& center, const Console& console) {
+  if (pose.eye) camera.eye = vec3(*pose.eye - center);
   if (pose.look || pose.up) {
     const dvec3 default_up = pose.look ? dvec3(0.0, 1.0, 0.0) : dvec3(camera.up);
     const Camera posed = FreeCamera::from_pose(camera.eye, vec3(pose.look.value_or(dvec3(camera.look))),
@@ -107,7 +107,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   View view;
   view.camera = choose_camera(scene, options);
   view.size = choose_size(options, view.camera, scene);
-  apply_pose(view.camera, options.pose, console);
+  apply_pose(view.camera, options.pose, scene.center, console);
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
     throw UsageError({fmt::format("--crop reaches beyond the picture of {}x{}", view.size.x, view.size.y),

@@ -39,6 +39,14 @@ void CameraControl::place(const Camera& camera) {
   center_.reset();
 }
 
+void CameraControl::move(const dvec3& offset) {
+  start_.eye = vec3(dvec3(start_.eye) + offset);
+  Camera moved = camera_.camera();
+  moved.eye = vec3(camera_.position() + offset);
+  camera_ = FreeCamera(moved);
+  if (center_) *center_ += offset;
+}
+
 void CameraControl::reset() {
   place(start_);
 }

@@ -22,6 +22,8 @@ class CameraControl {
 
   /// Takes another pose; the start pose is kept.
   void place(const Camera& camera);
+  /// Takes all that it holds elsewhere: the pose, the start pose and what it orbits.
+  void move(const dvec3& offset);
   /// Goes back to the pose that the control was made with, and flies.
   void reset();
 

@@ -11,6 +11,13 @@ std::string words_of(const vec3& v) {
   return fmt::format("{} {} {}", v.x, v.y, v.z);
 }
 
+/// A place in the scene as one in the world.
+std::string words_of(const vec3& place, const dvec3& center) {
+  if (center == dvec3(0.0)) return words_of(place);
+  const dvec3 world = center + dvec3(place);
+  return fmt::format("{} {} {}", world.x, world.y, world.z);
+}
+
 std::string quote(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -84,8 +91,8 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   if (!scene.variant.empty()) command += " --variant " + quote(scene.variant);
   if (!scene.root.empty()) command += " --root " + quote(scene.root.string());
   if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
-  command +=
-      fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye), words_of(camera.look), words_of(camera.up));
+  command += fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye, scene.center), words_of(camera.look),
+                         words_of(camera.up));
   if (camera.projection == Projection::kPerspective) {
     // Nine digits of an angle in degrees are within half of a float's last place.
     command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));

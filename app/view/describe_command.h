@@ -23,6 +23,8 @@ struct DescribedScene {
   EnvironmentOptions environment = {};
   std::string variant = {};
   std::filesystem::path root = {};
+  /// Scene::center.
+  dvec3 center = dvec3(0.0);
   /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
   /// The tree, which decides the steps that a picture may show.

@@ -9,7 +9,7 @@
 
 namespace promin::app {
 
-void FlightRecorder::add(double time_s, const Camera& camera) {
+void FlightRecorder::add(double time_s, const Camera& camera, const dvec3& center) {
   std::vector<TimedCamera>& frames = path_.frames;
   if (frames.empty()) start_s_ = time_s;
   const double time = time_s - start_s_;
@@ -19,7 +19,7 @@ void FlightRecorder::add(double time_s, const Camera& camera) {
     frames.pop_back();
   }
   if (!frames.empty() && time <= frames.back().time_s) return;
-  frames.push_back({time, camera});
+  frames.push_back({time, camera, center});
 }
 
 Camera FlightReplay::next_camera(double time_s) {

@@ -16,7 +16,8 @@ class FlightRecorder {
  public:
   /// Adds the camera at a time in seconds; the first is at 0. Between two calls the camera is taken to move evenly, so
   /// a call belongs to each frame and to the end of each rest. Of a rest the beginning and the end are kept.
-  void add(double time_s, const Camera& camera);
+  /// `center` is of the scene (Scene::center).
+  void add(double time_s, const Camera& camera, const dvec3& center = dvec3(0.0));
   const CameraPath& path() const { return path_; }
 
   /// The rate that a recorded flight is meant to be played with, in pictures a second.

@@ -110,7 +110,7 @@ void view(const WindowOptions& options) {
   for (const std::string& warning : environment.warnings()) console.warn(warning);
   ViewOptions view_options = options.view;
   if (options.replay) {
-    start.replay.emplace(read_camera_path(*options.replay), options.fps);
+    start.replay.emplace(PathPictures(read_camera_path(*options.replay), options.fps).moved_to(scene->center));
     view_options.given_camera = start.replay->camera(0);
   }
   start.view = make_view(*scene, view_options, console);

@@ -126,7 +126,7 @@ void Viewer::move_camera(Frame& frame) {
 }
 
 void Viewer::keep_camera() {
-  if (start_.record) recorder_.add(Window::now(), control_.camera());
+  if (start_.record) recorder_.add(Window::now(), control_.camera(), scene_->scene->center);
 }
 
 bool Viewer::is_picture_due() const {
@@ -174,6 +174,7 @@ void Viewer::show_picture(ReadyPicture ready) {
   if (asked_size_ != uvec2(0)) ready.picture.resize(swapchain_.size());
   ready.take_lights();
   const bool is_new = scene_ && scene_->scene != ready.scene->scene;
+  if (is_new) move_cameras(scene_->scene->center - ready.scene->scene->center);
   if (!scene_ || scene_ != ready.scene) explanation_.text.clear();
   picture_.emplace(std::move(ready.picture));
   scene_ = std::move(ready.scene);
@@ -191,6 +192,12 @@ void Viewer::show_picture(ReadyPicture ready) {
   for (const std::string& warning : scene_->scene->warnings) warn(warning);
   for (const Problem& warning : scene_->renderer->setup_stats().warnings) warn(message_of(warning));
   message_ = text;
+}
+
+void Viewer::move_cameras(const dvec3& offset) {
+  if (offset == dvec3(0.0)) return;
+  control_.move(offset);
+  for (Camera& bookmark : bookmarks_) bookmark.eye = vec3(dvec3(bookmark.eye) + offset);
 }
 
 void Viewer::update_answers() {

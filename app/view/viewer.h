@@ -69,6 +69,8 @@ class Viewer {
   void handle_input();
   void handle_press(Press press);
   void move_camera(Frame& frame);
+  /// Keeps all cameras where they are in the world, when a scene has another center.
+  void move_cameras(const dvec3& offset);
   /// Adds the camera to the flight that is recorded, if one is.
   void keep_camera();
   bool is_replaying() const { return replay_ && has_replay_started_; }

@@ -91,6 +91,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.environment = start_.environment;
   described.variant = start_.variant;
   described.root = start_.root;
+  described.center = scene_->scene->center;
   described.camera_index = find_half_height(*scene_->scene, view.camera);
   described.builder = on.builder;
   described.bvh = on.bvh;

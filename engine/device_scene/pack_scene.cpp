@@ -207,6 +207,7 @@ template <typename MakeTree>
 PackedScene pack(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
   Collected collected = collect_primitives(scene);
   PackedScene packed;
+  packed.copies = drop_copies(scene, collected);
   packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
   count_kinds(packed, collected.bounded);
   packed.geometry_hash = hash_geometry(collected.bounded);

@@ -16,6 +16,7 @@
 #include "core/feature_mask.h"
 #include "core/unset_vector.h"
 #include "device_scene/collect_primitives.h"
+#include "device_scene/drop_copies.h"
 #include "layout.h"
 #include "promin/error.h"
 #include "scene/world_scene.h"
@@ -48,6 +49,8 @@ struct PackedScene {
   uint32_t unbounded_count = 0;
   PackedSurfaces surfaces;
   PrimitiveNumbers numbers;
+  /// Primitives that are neither in the tree nor among its primitives, as they are copies of one that is.
+  DroppedCopies copies;
   /// The features that the geometry uses.
   FeatureMask features;
   /// Whether each of Scene::materials is on something that is drawn.
@@ -58,7 +61,8 @@ struct PackedScene {
   vec4 tree_bounds{0.0F};
   /// Entries that the traversal stack needs.
   uint32_t stack_size = 1;
-  /// The number of primitives that the tree is built over: all but the unbounded ones and degenerate triangles.
+  /// The number of primitives that the tree is built over: all but the unbounded ones, copies and degenerate
+  /// triangles.
   uint32_t bounded_count = 0;
   /// How many of these are no triangles.
   uint32_t solid_count = 0;

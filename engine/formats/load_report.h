@@ -14,6 +14,7 @@
 
 #include "formats/source_file.h"
 #include "promin/error.h"
+#include "promin/math.h"
 
 namespace promin {
 
@@ -38,12 +39,19 @@ struct Fault {
 /// occurs.
 class LoadReport {
  public:
-  explicit LoadReport(std::filesystem::path file, bool is_strict = false, std::filesystem::path root = {})
-      : file_(std::move(file)), is_strict_(is_strict), root_(std::move(root)) {}
+  explicit LoadReport(std::filesystem::path file, bool is_strict = false, std::filesystem::path root = {},
+                      const dvec3& center = dvec3(0.0))
+      : file_(std::move(file)), is_strict_(is_strict), root_(std::move(root)), center_(center) {}
 
   const std::filesystem::path& file() const { return file_; }
   /// LoadOptions::root.
   const std::filesystem::path& root() const { return root_; }
+
+  /// What coordinates of the file lose in double, before they are rounded to fp32 (Scene::center).
+  const dvec3& center() const { return center_; }
+  /// A loader's note that the file has its coordinates in fp32: they were rounded before they were written.
+  void note_rounded_coordinates() { has_rounded_coordinates_ = true; }
+  bool has_rounded_coordinates() const { return has_rounded_coordinates_; }
 
   /// `place` is inside the file: a JSON path or a line; empty for the file as a whole. Control characters that come
   /// from the file are made visible as '?', so that each message stays on its line.
@@ -86,7 +94,9 @@ class LoadReport {
   bool is_strict_;
   bool has_lost_geometry_ = false;
   std::filesystem::path root_;
+  dvec3 center_;
   std::optional<Fault> refused_fault_;
+  bool has_rounded_coordinates_ = false;
   std::vector<Problem> problems_;
   size_t problem_count_ = 0;
   std::vector<Warning> warnings_;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/rounding.h"
 #include "core/utf8.h"
+#include "formats/far_scene.h"
 #include "formats/file_kind.h"
 #include "formats/gltf/load_gltf.h"
 #include "formats/load_report.h"
@@ -150,12 +151,31 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   }
   try {
     Scene scene = format.load(options, report);
+    scene.center = report.center();
     check_geometry(format, report, scene);
     return scene;
   } catch (const InputError&) {
     refuse_wrong_ending(file, format);
     throw;
   }
+}
+
+/// Each time that a file is read again, fp32 resolves what lies around its center 2^24 times as finely.
+constexpr int kMostMoves = 3;
+
+/// Reads a file, and again around a center where its coordinates are too coarse in fp32.
+Scene load_near_center(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
+  Scene scene = load_by_format(file, options, report);
+  for (int i = 0; i < kMostMoves; ++i) {
+    const Bounds bounds = bounds_of_vertices(scene);
+    if (!is_too_coarse(bounds)) break;
+    scene = {};
+    report = LoadReport(file, options.is_strict, options.root, report.center() + round_middle(bounds));
+    report.add_source(file);
+    scene = load_by_format(file, options, report);
+  }
+  warn_of_coarse_coordinates(report.has_rounded_coordinates(), scene);
+  return scene;
 }
 
 }  // namespace
@@ -169,7 +189,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
   LoadReport report(file, options.is_strict, options.root);
   report.add_source(file);
   try {
-    Scene scene = load_by_format(file, options, report);
+    Scene scene = load_near_center(file, options, report);
     sources = report.sources();
     warn_of_tiny_meshes(scene);
     warn_of_turned_normals(scene);

@@ -29,7 +29,7 @@ constexpr std::string_view kMagic = "\x93NUMPY";
 /// No array of numbers has a larger header.
 constexpr uint32_t kMaxHeaderBytes = 1U << 16;
 constexpr const char* kCure =
-    "save it by numpy.save(file, numpy.ascontiguousarray(rays, '<f4')) with rays of shape (N, 8)";
+    "save it by numpy.save(file, numpy.ascontiguousarray(rays, '<f4')), or '<f8', with rays of shape (N, 8)";
 
 /// The entries of a Python dictionary of literals with string keys, which is what a .npy header holds, each value as
 /// written. nullopt if the text is no such dictionary.
@@ -98,15 +98,21 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// Reads the number of rays from the header's dictionary.
-uint64_t parse_header(std::string_view header, const fs::path& file) {
+struct RayArray {
+  uint64_t count = 0;
+  uint64_t ray_bytes = 0;
+};
+
+/// Reads the number of rays and their size from the header's dictionary.
+RayArray parse_header(std::string_view header, const fs::path& file) {
   const auto entries = parse_dictionary(header);
   if (!entries || !entries->contains("descr") || !entries->contains("fortran_order") || !entries->contains("shape")) {
     throw InputError({"the header is damaged", file.string(), kCure});
   }
   const std::string_view type = trim(entries->at("descr"));
-  if (type != "'<f4'" && type != "\"<f4\"") {
-    throw InputError({"the array's type is " + quote(type) + ", not '<f4'", file.string(), kCure});
+  const bool is_double = type == "'<f8'" || type == "\"<f8\"";
+  if (!is_double && type != "'<f4'" && type != "\"<f4\"") {
+    throw InputError({"the array's type is " + quote(type) + ", not '<f4' or '<f8'", file.string(), kCure});
   }
   if (trim(entries->at("fortran_order")) != "False") {
     throw InputError({"the array is in Fortran order", file.string(), kCure});
@@ -116,7 +122,7 @@ uint64_t parse_header(std::string_view header, const fs::path& file) {
     throw InputError(
         {"the array's shape is " + quote(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
   }
-  return *count;
+  return {*count, 8 * (is_double ? sizeof(double) : sizeof(float))};
 }
 
 /// All that comes before the data of an array of so many rows, at least so many bytes. `type` as numpy.dtype.descr is
@@ -171,23 +177,46 @@ RayReader::RayReader(const fs::path& file) : file_(file) {
   if (!stream_.read(header.data(), header_bytes)) {
     throw InputError({"the file ends within its header", file.string(), kCure});
   }
-  count_ = parse_header(header, file);
+  const RayArray array = parse_header(header, file);
+  count_ = array.count;
+  ray_bytes_ = array.ray_bytes;
   begin_ = stream_.tellg();
   const uint64_t data_bytes = file_bytes - (8 + static_cast<uint64_t>(length_bytes) + header_bytes);
-  if (data_bytes % sizeof(Ray) != 0 || data_bytes / sizeof(Ray) != count_) {
+  if (data_bytes % ray_bytes_ != 0 || data_bytes / ray_bytes_ != count_) {
     throw InputError({"the header tells of " + std::to_string(count_) + " rays, the file holds " +
-                          std::to_string(data_bytes) + " bytes of them, 32 each",
+                          std::to_string(data_bytes) + " bytes of them, " + std::to_string(ray_bytes_) + " each",
                       file.string(), "let NumPy write the file again"});
   }
 }
 
 void RayReader::seek(uint64_t ray) {
-  stream_.seekg(begin_ + static_cast<std::streamoff>(ray * sizeof(Ray)));
+  stream_.seekg(begin_ + static_cast<std::streamoff>(ray * ray_bytes_));
 }
 
-void RayReader::read(std::span<Ray> rays) {
-  if (rays.empty()) return;
-  if (!stream_.read(reinterpret_cast<char*>(rays.data()), static_cast<std::streamsize>(rays.size_bytes()))) {
+void RayReader::read(std::span<Ray> rays, const dvec3& center) {
+  if (ray_bytes_ > sizeof(Ray)) return convert<double>(rays, center);
+  if (center != dvec3(0.0)) return convert<float>(rays, center);
+  read_bytes(std::as_writable_bytes(rays));
+}
+
+template <typename Number>
+void RayReader::convert(std::span<Ray> rays, const dvec3& center) {
+  constexpr size_t kMostAtOnce = 4096;
+  std::vector<std::array<Number, 8>> rows(std::min(rays.size(), kMostAtOnce));
+  for (; !rays.empty(); rays = rays.subspan(rows.size())) {
+    rows.resize(std::min(rays.size(), rows.size()));
+    read_bytes(std::as_writable_bytes(std::span(rows)));
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const auto& row = rows[i];
+      rays[i] = {dvec3(row[0], row[1], row[2]) - center, static_cast<float>(row[3]), vec3(row[4], row[5], row[6]),
+                 static_cast<float>(row[7])};
+    }
+  }
+}
+
+void RayReader::read_bytes(std::span<std::byte> bytes) {
+  if (bytes.empty()) return;
+  if (!stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     throw InputError({"cannot read the file to its end", file_.string(), "check the disk"});
   }
 }

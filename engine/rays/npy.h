@@ -16,8 +16,8 @@
 
 namespace promin {
 
-/// Reads rays from a NumPy file piece by piece: an array of N x 8 little-endian float32 in C order, a row being origin
-/// xyz, tmin, direction xyz, tmax. N may be 0. NumPy's format 1.0, 2.0 and 3.0 (numpy.lib.format).
+/// Reads rays from a NumPy file piece by piece: an array of N x 8 little-endian float32 or float64 in C order, a row
+/// being origin xyz, tmin, direction xyz, tmax. N may be 0. NumPy's format 1.0, 2.0 and 3.0 (numpy.lib.format).
 class RayReader {
  public:
   /// Throws InputError if the file is anything else, or shorter or longer than its header says.
@@ -27,13 +27,19 @@ class RayReader {
 
   /// Goes to the ray of this number, from which read() goes on.
   void seek(uint64_t ray);
-  /// Reads the next rays, as many as fit in `rays`, but not more than are left. Throws InputError.
-  void read(std::span<Ray> rays);
+  /// Reads the next rays, as many as fit in `rays`, but not more than are left. Their origins lose the center in double
+  /// (Scene::center); what is not float32 is rounded then. Throws InputError.
+  void read(std::span<Ray> rays, const dvec3& center = dvec3(0.0));
 
  private:
+  template <typename Number>
+  void convert(std::span<Ray> rays, const dvec3& center);
+  void read_bytes(std::span<std::byte> bytes);
+
   std::filesystem::path file_;
   std::ifstream stream_;
   uint64_t count_ = 0;
+  uint64_t ray_bytes_ = sizeof(Ray);
   std::streamoff begin_ = 0;
 };
 

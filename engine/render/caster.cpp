@@ -20,6 +20,7 @@
 #include "rays/ray_order.h"
 #include "rays/ray_tiles.h"
 #include "render/caster_access.h"
+#include "render/copied_hits.h"
 #include "scene/features.h"
 #include "trace/ray_kernel.h"
 
@@ -164,6 +165,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     features = packed.features.common_with(primitive_features());
     stats.features = feature_names(features);
     numbers = std::move(packed.numbers);
+    copies = CopiedHits(packed.copies, numbers);
     cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
     // Each is referred to at least once.
     repeats_primitives = packed.references.size() > packed.bounded_count;
@@ -241,7 +243,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
 
   /// Whether counts are told by lists alone: where the device counts crossings that sort_crossings drops.
   bool counts_by_lists(std::span<const Ray> rays) const {
-    if (repeats_primitives) return true;
+    if (repeats_primitives || !copies.empty()) return true;
     std::atomic<bool> is_any_scaled = false;
     for_each_chunk(rays.size(), kRaysOfThread, 0, [&](size_t begin, size_t end) {
       const auto part = rays.subspan(begin, end - begin);
@@ -315,6 +317,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   std::vector<uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
   PrimitiveNumbers numbers;
+  CopiedHits copies;
   FeatureMask features;
   SetupStats stats;
   SceneCube cube;
@@ -428,7 +431,12 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
       }
       time_ms += impl_->list(chunk.subspan(begin, end - begin), std::span(counts).subspan(begin, end - begin), order,
                              part_of(progress, first + begin, 0, rays.size()));
-      sink({first + begin, impl_->list_offsets, impl_->list_hits});
+      const HitList list{first + begin, impl_->list_offsets, impl_->list_hits};
+      if (impl_->copies.empty()) {
+        sink(list);
+      } else {
+        impl_->copies.list(list, sink, budget_bytes);
+      }
       tell_progress(progress, static_cast<double>(first + end) / static_cast<double>(rays.size()));
       begin = end;
     }

@@ -16,6 +16,9 @@ AddedLights add_default_lights(std::vector<Light>& lights, Environment& environm
 /// InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 
+/// Bounds of an object that has a geometry, if it is finite; else empty. Throws as bounds_of() does.
+Bounds bounds_of(const Scene& scene, const Object& object);
+
 /// A box of size 2, to look at where nothing is finite.
 Bounds bounds_around(const vec3& center);
 

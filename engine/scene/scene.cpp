@@ -123,11 +123,15 @@ Object& Scene::add(std::string name, Geometry geometry, uint32_t material, const
   return objects.back();
 }
 
+Bounds bounds_of(const Scene& scene, const Object& object) {
+  return std::visit(BoundsInWorld{object.world_from_object}, geometry_of(scene, object));
+}
+
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Object& object : scene.objects) {
     if (object.geometry == Object::kNoGeometry) continue;
-    bounds.extend(std::visit(BoundsInWorld{object.world_from_object}, geometry_of(scene, object)));
+    bounds.extend(bounds_of(scene, object));
   }
   return bounds;
 }

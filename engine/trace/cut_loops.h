@@ -11,7 +11,7 @@ namespace promin {
 inline void refuse_cut_loops(bool were_loops_cut) {
   if (!were_loops_cut) return;
   throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device",
-                  "take another device", Setting::kDevice});
+                  "take another device, or leave out surfaces that lie in one another", Setting::kDevice});
 }
 
 }  // namespace promin

@@ -60,7 +60,7 @@ struct AovSet {
 /// those of the image. Of the pixel's middle sample, that of index samples / 2, which with an odd number of samples and
 /// with an error target is the pixel's centre:
 ///   - depth: distance from the eye, or along the view (View::depth_kind); infinite on a miss
-///   - position: of the hit, in the world; 0 on a miss
+///   - position: of the hit, in the world less Scene::center; 0 on a miss
 ///   - normal: geometric normal as Hit::normal, never flipped to the ray; 0 on a miss
 ///   - shading_normal: the normal that light meets, interpolated and textured; faces the eye; 0 on a miss
 ///   - uv: texture coordinates of the first set, but for whole numbers; 0 where the surface shows no texture

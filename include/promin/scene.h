@@ -56,6 +56,10 @@ struct FileExtension {
 struct Scene {
   /// Where it was read from; empty for a scene made in memory.
   std::filesystem::path file;
+  /// Where the origin of the scene lies in the world: places in the scene are those in the world less this, which was
+  /// subtracted in double. load_scene moves what lies so far from the world's origin that fp32 is too coarse for it;
+  /// 0 otherwise. Nothing but the programs and Python's module adds it.
+  dvec3 center{0.0};
   /// What objects are made of, each once.
   std::vector<Geometry> geometries;
   /// What is in the scene, in the order that hits and AOVs number.

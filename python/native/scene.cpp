@@ -140,6 +140,7 @@ void bind_scene(nb::module_& module) {
       .def("object_numbers", [](const Scene& s) { return s.object_numbers; })
       .def("warnings", [](const Scene& s) { return s.warnings; })
       .def("variants", [](const Scene& s) { return s.variants; })
+      .def("center", [](const Scene& s) { return nb::make_tuple(s.center.x, s.center.y, s.center.z); })
       .def("bounds", &bounds)
       .def("problems", &find_problems)
       .def("copy", [](const Scene& s) { return Scene(s); })

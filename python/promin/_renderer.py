@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import threading
 from collections.abc import Iterable
@@ -22,7 +21,7 @@ from promin._device import Device, DeviceLike, find_device
 from promin._errors import UsageError
 from promin._frame import Frame, to_mattes
 from promin._records import Camera, Display, Environment, Light, Material, from_dict, to_dict
-from promin._scene import Scene, move_camera, move_light
+from promin._scene import Scene, move_camera, move_light, to_world
 from promin._view import (
     CameraLike,
     View,
@@ -332,12 +331,7 @@ class Renderer:
 
     def _back(self, record: Any) -> Any:
         """A camera or light of the native scene in the world."""
-        center = self._scene.native_center
-        if not center.any():
-            return record
-        name = "eye" if isinstance(record, Camera) else "position"
-        moved = tuple(float(x) for x in np.asarray(getattr(record, name)) + center)
-        return dataclasses.replace(record, **{name: moved})
+        return to_world(record, self._scene.native_center)
 
     def _make_private(self) -> None:
         """What is not pickled: what is open, and what guards it and the changes."""

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import os
 import threading
@@ -94,7 +95,8 @@ class Scene:
 
     Precision: devices compute in float32. A scene with vertices of float64 keeps a `center`, which vertices, shapes,
     lights and cameras lose in float64 before they are rounded, and the origins of rays too; hits and pictures are told
-    in the world as it was given. Scenes of float32 vertices or of a file are not moved."""
+    in the world as it was given. A scene of a file has the center with which it was read: 0 but where the file lies so
+    far from the origin that float32 is too coarse. Scenes of float32 vertices are not moved."""
 
     _base: _promin.Scene | None
     _native: _promin.Scene | None
@@ -131,10 +133,10 @@ class Scene:
         root: a folder besides the scene's own in which the files may lie that it names, links resolved. Raises
         InputError with every problem of the file, UsageError where it has no such variant or root is no
         folder."""
-        scene = Scene(center=(0.0, 0.0, 0.0))
         file = Path(os.fsdecode(path))
         folder = "" if root is None else os.path.abspath(os.fsdecode(root))
         base = _promin.Scene.load(str(file), bool(strict), str(variant), folder)
+        scene = Scene(center=base.center())
         scene._file = _File(os.path.abspath(file), _hash(file), bool(strict), str(variant), folder)
         scene._base = base
         return scene
@@ -297,13 +299,13 @@ class Scene:
     def lights(self) -> list[Light]:
         """Copies of its lights, without those that a Renderer adds."""
         base = [] if self._file is None else [from_dict(Light, record) for record in self._load_base().lights()]
-        return base + list(self._lights)
+        return [to_world(light, self.center) for light in base] + list(self._lights)
 
     @property
     def cameras(self) -> list[Camera]:
         """Copies of its cameras; empty where a Renderer frames the scene."""
         base = [] if self._file is None else [from_dict(Camera, record) for record in self._load_base().cameras()]
-        return base + list(self._cameras)
+        return [to_world(camera, self.center) for camera in base] + list(self._cameras)
 
     @property
     def environment(self) -> Environment:
@@ -486,6 +488,15 @@ def move_camera(camera: Camera, center: NDArray[np.float64]) -> dict[str, Any]:
     record = to_dict(camera)
     record["eye"] = _without(record["eye"], center)
     return record
+
+
+def to_world(record: Any, center: NDArray[np.float64]) -> Any:
+    """A camera or light of a native scene with this center in the world."""
+    if not center.any():
+        return record
+    name = "eye" if isinstance(record, Camera) else "position"
+    moved = tuple(float(x) for x in np.asarray(getattr(record, name)) + center)
+    return dataclasses.replace(record, **{name: moved})
 
 
 def _without(point: Any, center: NDArray[np.float64]) -> Any:

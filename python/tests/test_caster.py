@@ -130,6 +130,30 @@ def test_scenes_of_float32_and_around_the_origin_are_not_moved() -> None:
     assert not far.center.any() and not near.center.any()
 
 
+def _write_obj(file: Path, vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Path:
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()] + ["f " + " ".join(map(str, f)) for f in faces + 1]
+    file.write_text("\n".join(lines))
+    return file
+
+
+def test_a_file_far_from_the_origin_has_a_centre(tmp_path: Path) -> None:
+    center = np.array([6.4e6, -1.2e6, 3.3e6])
+    vertices, faces = make_box(center, 0.5)
+    scene = promin.Scene.load(_write_obj(tmp_path / "far.obj", vertices, faces))
+    assert np.abs(scene.center - center).max() < 0.5
+    assert scene.bounds is not None and np.abs(scene.bounds - (center + [[-0.25], [0.25]])).max() < 1e-7
+    # What is added goes to its place beside it.
+    scene.add_sphere(center + [2.0, 0.0, 0.0], 0.25)
+    scene.add_camera(promin.Camera(eye=tuple(center + [0.0, 0.0, 4.0])))
+    assert scene.cameras[0].eye == tuple(center + [0.0, 0.0, 4.0])
+    rays = (center + [[0.1, 0.05, 1.0], [2.0, 0.0, 1.0]], (0.0, 0.0, -1.0))
+    hits = promin.Caster(pickle.loads(pickle.dumps(scene))).cast(rays)
+    assert hits["object"].tolist() == [0, 1] and hits["t"] == pytest.approx(0.75, abs=1e-6)
+    assert np.abs(scene.positions(rays, hits)[0] - (center + [0.1, 0.05, 0.25])).max() < 1e-6
+    near = promin.Scene.load(_write_obj(tmp_path / "near.obj", *make_box((100.0, 0.0, 0.0), 0.5)))
+    assert not near.center.any()
+
+
 def test_a_transform_places_a_mesh_and_its_shapes() -> None:
     place = np.eye(4)
     place[:3, :3] = [[0, 0, 2], [2, 0, 0], [0, 2, 0]]

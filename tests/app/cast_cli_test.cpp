@@ -71,6 +71,38 @@ TEST_F(CastTest, AnswersRays) {
   EXPECT_THAT(files(), ElementsAre("hits.npy", "rays.npy"));
 }
 
+/// More identical faces than the turns after which a driver ends loops.
+TEST_F(CastTest, AnyNumberOfIdenticalFacesIsTraced) {
+  constexpr uint32_t kCount = 70'000;
+  std::string text = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nf 4 5 6\n";
+  for (uint32_t i = 0; i < kCount; ++i) text += "f 1 2 3\n";
+  write("copies.obj", text);
+  write_rays("rays.npy",
+             {{vec3(0, 0, 4), 0, vec3(0, 0, -1), kInfinity}, {vec3(9, 0, 4), 0, vec3(0, 0, -1), kInfinity}});
+  const auto cast = [&](const OptionValues& more) {
+    OptionValues arguments = {"cast", "copies.obj", "rays.npy", "--quiet", "-o", "answers.npy"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  cast({});
+  EXPECT_EQ(read_hits("answers.npy")[0].primitive, 1) << "the first of them";
+  EXPECT_EQ(read_hits("answers.npy")[0].t, 4.0F);
+  cast({"--any"});
+  EXPECT_EQ(read_hits("answers.npy")[0].t, 0.0F);
+  cast({"--count"});
+  EXPECT_THAT(read_array<int32_t>("answers.npy"), ElementsAre(kCount + 1, 0));
+  cast({"--all", "--offsets", "offsets.npy"});
+  EXPECT_THAT(read_array<uint64_t>("offsets.npy"), ElementsAre(0U, kCount + 1, kCount + 1));
+  const std::vector<Hit> hits = read_hits("answers.npy");
+  ASSERT_EQ(hits.size(), kCount + 1);
+  for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(hits[i].primitive, static_cast<int32_t>(i + 1));
+  EXPECT_EQ(hits.back().primitive, 0);
+  EXPECT_EQ(hits.back().t, 5.0F);
+  const Image picture = render({"copies.obj", "--size", "16", "12", "-s", "1"}, "copies.exr");
+  EXPECT_NE(picture.at(8, 6), picture.at(0, 0));
+}
+
 TEST_F(CastTest, ObjectsHaveTheFilesNumbers) {
   // Each f with shapes is an object of the file: three spheres are objects 0, 0 and 1.
   write("three.nff", "f 1 1 1 1 0 0 0 0 s 0 0 0 1 s 5 0 0 1 f 1 0 0 1 0 0 0 0 f 1 0 0 1 0 0 0 0 s 10 0 0 1");

@@ -144,8 +144,8 @@ TEST_F(FilesOfScenesTest, WhatASceneNamesMayBeAPointerToo) {
   write("b.png", kPage);
   write("a.mtl", "newmtl m\nmap_Kd a.png\nmap_Ks b.png\n");
   EXPECT_THAT(load("a.obj", "mtllib a.mtl\nusemtl m\n" + kObj).warnings,
-              AllOf(Contains(HasSubstr("\"a.png\" is ignored: the file is a Git LFS pointer")),
-                    Contains(HasSubstr("\"b.png\" is ignored: the file is an HTML page"))));
+              AllOf(Contains(HasSubstr("the file is a Git LFS pointer, image \"a.png\"")),
+                    Contains(HasSubstr("the file is an HTML page, image \"b.png\""))));
 }
 
 }  // namespace

@@ -579,8 +579,9 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   gltf.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 36}});
   gltf.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings, ElementsAre("a buffer of images cannot be read: \"none.bin\" does not exist, buffers[1]; "
-                                          "its images are left out"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("a buffer of images cannot be read: a file does not exist (\"none.bin\"), buffers[1]; "
+                          "its images are left out"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
 }
 

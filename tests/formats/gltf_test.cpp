@@ -942,9 +942,8 @@ TEST_F(GltfTest, MotionIsLeftOut) {
   gltf.json["animations"] = {json::object()};
   gltf.json["skins"] = {json::object(), json::object()};
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
-  EXPECT_THAT(
-      load(gltf).warnings,
-      ElementsAre("the scene stands still: animations are ignored, morph targets have their default weights"));
+  EXPECT_THAT(load(gltf).warnings,
+              ElementsAre("the scene stands still: animations are ignored, morph targets have their default weights"));
 }
 
 TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {

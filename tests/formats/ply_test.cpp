@@ -437,7 +437,7 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
     EXPECT_EQ(scene.materials.at(0).name == "default", !only_mesh(scene).uvs.size()) << name;
     return scene.warnings;
   };
-  EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("\"none.png\" does not exist")));
+  EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("a file does not exist (\"none.png\")")));
   EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leaves the scene's folder")));
   EXPECT_THAT(warnings("C:\\scans\\a.png", uvs, "0 0"), IsEmpty()) << "a path of another machine";
   EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("no known format")));

@@ -94,6 +94,7 @@ TEST(TurnedNormals, ShadeAsIfTheyWereWoundLikeTheirNormals) {
 
 TEST(TurnedNormals, StayAsTheyAreForHits) {
   Scene scene;
+  scene.materials.resize(1);
   scene.add("square", make_square(-1));
   const auto normals_of = [&](world::Purpose purpose) {
     return std::get<Mesh>(world::flatten(scene, purpose).objects[0].shape).normals;

@@ -43,6 +43,13 @@ std::optional<dmat3> local_rotation(const nlohmann::json& node) {
   return rotation;
 }
 
+/// The place of what a scene around a center has at the origin of the file.
+dmat4 world_around(const dvec3& center) {
+  dmat4 place(1.0);
+  place[3] = dvec4(dvec3(0.0) - center, 1.0);
+  return place;
+}
+
 /// The nodes without parents.
 std::vector<int> find_roots(const GltfDocument& document) {
   std::vector<bool> is_child(document.nodes.size(), false);
@@ -78,7 +85,9 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
   // The stack is our own, last node first, because files may nest deeper than the machine's stack.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({.node = *root});
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+    pending.push_back({.node = *root, .world_from_object = world_around(report.center())});
+  }
   while (!pending.empty()) {
     PlacedNode next = pending.back();
     pending.pop_back();
@@ -106,7 +115,8 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
   return placed;
 }
 
-std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed) {
+std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed,
+                                        const dvec3& center) {
   const size_t count = document.nodes.size();
   std::vector<dmat4> worlds(count, dmat4(1.0));
   std::vector<bool> is_placed(count, false);
@@ -117,7 +127,7 @@ std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std:
     is_placed[node] = true;
   }
   std::vector<std::pair<int, dmat4>> pending;
-  for (const int root : find_roots(document)) pending.emplace_back(root, dmat4(1.0));
+  for (const int root : find_roots(document)) pending.emplace_back(root, world_around(center));
   while (!pending.empty()) {
     const auto [next, world_from_parent] = pending.back();
     pending.pop_back();

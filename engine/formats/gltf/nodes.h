@@ -31,7 +31,9 @@ bool has_no_area(const dmat4& world_from_object);
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report);
 
 /// Where each node of the file is in the world, at its index. A node of the scene is at its first place among `placed`;
-/// another stands below its parents, which may be in no scene. The transform may overflow.
-std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed);
+/// another stands below its parents, which may be in no scene, around the `center` of the scene. The transform may
+/// overflow.
+std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed,
+                                        const dvec3& center);
 
 }  // namespace promin

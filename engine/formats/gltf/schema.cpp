@@ -429,7 +429,8 @@ void check_gltf_version(json& document, LoadReport& report) {
   } else if (version != "2" && !version.starts_with("2.")) {
     report.refuse("glTF version " + quote(version) + " is not 2.x", "asset.version", "export the file as glTF 2.0");
   } else if (!given->is_string() || version == "2") {
-    report.repair({"the version is not written as glTF has it", version, "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
+    report.repair(
+        {"the version is not written as glTF has it", version, "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
   }
   const auto least = asset.find("minVersion");
   if (least != asset.end() && *least != "2.0") {

@@ -42,7 +42,8 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
 
 GltfSkins::GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>& placed, LoadReport& report)
     : document_(document), report_(report) {
-  if (!elements_of(document.json, "skins").empty()) world_from_node_ = place_all_gltf_nodes(document, placed);
+  if (!elements_of(document.json, "skins").empty())
+    world_from_node_ = place_all_gltf_nodes(document, placed, report.center());
 }
 
 bool GltfSkins::has_joints(int skin) const {

@@ -134,6 +134,7 @@ class NffParser {
     for (int i = 0; i < 3; ++i) point[i] = take_coordinate();
     return point;
   }
+  dvec3 take_place() { return take_point() - report_.center(); }
   vec3 take_color() {
     vec3 color;
     for (int i = 0; i < 3; ++i) color[i] = take_factor();
@@ -157,7 +158,7 @@ class NffParser {
   void read_background() { out_.background = take_color(); }
 
   void read_light() {
-    NffLight light{vec3(take_point())};
+    NffLight light{vec3(take_place())};
     if (parse_any_number(words_.next())) light.color = take_color();
     if (is_good()) out_.lights.push_back(light);
   }
@@ -183,14 +184,14 @@ class NffParser {
   }
 
   void read_sphere() {
-    const dvec3 center = take_point();
+    const dvec3 center = take_place();
     add(Sphere{center, std::abs(take_radius(false))});
   }
 
   void read_cone() {
-    const dvec3 base = take_point();
+    const dvec3 base = take_place();
     const double base_radius = take_radius(true);
-    const dvec3 apex = take_point();
+    const dvec3 apex = take_place();
     const double apex_radius = take_radius(true);
     if (!is_good()) return;
     if (base_radius == 0.0 && apex_radius == 0.0) return leave_out("has two radii of 0");
@@ -221,7 +222,7 @@ class NffParser {
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {
-      out_.corners.emplace_back(take_point());
+      out_.corners.emplace_back(take_place());
       if (has_normals) out_.normals.push_back(take_normal());
     }
     if (*count >= 3) return add(polygon);
@@ -246,8 +247,8 @@ class NffParser {
     std::optional<double> angle;
     while (is_view_part(words_.next()) && !is_broken_) {
       const std::string_view part = words_.take();
-      if (part == "from") from = take_point();
-      if (part == "at") at = take_point();
+      if (part == "from") from = take_place();
+      if (part == "at") at = take_place();
       if (part == "up") up = take_point();
       if (part == "angle") angle = take_any_number();
       if (part == "hither") camera.near = static_cast<float>(take_number(0.0, kMaxCoordinate, "from 0 to 1e15"));

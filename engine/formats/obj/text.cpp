@@ -126,7 +126,7 @@ class ObjParser {
   void read_vertex(std::string_view rest) {
     const Numbers numbers = read_numbers(rest);
     const std::array<double, 6>& n = numbers.values;
-    out_.positions.emplace_back(n[0], n[1], n[2]);
+    out_.positions.emplace_back(dvec3(n[0], n[1], n[2]) - report_.center());
     if (!numbers.are_good(3)) return add_bad_vertex(numbers);
     if (numbers.word_count >= 6) return read_color(numbers);
     if (numbers.word_count == 5 || !numbers.bad_word.empty()) {

@@ -188,7 +188,7 @@ class BodyReader {
   }
 
   void add_vertex(const Layout& layout, const Row& row) {
-    out_.positions.emplace_back(row[kX], row[kY], row[kZ]);
+    out_.positions.emplace_back(dvec3(row[kX], row[kY], row[kZ]) - report_.center());
     if (has_normals_) out_.normals.emplace_back(row[kNx], row[kNy], row[kNz]);
     if (has_colors_) out_.colors.push_back(color_of(layout, row, "vertex"));
     if (has_uvs_) out_.uvs.push_back(uv_of(row[kU], row[kV], "vertex"));

@@ -55,6 +55,14 @@ void warn_about_what_is_ignored(const PlyHeader& header, LoadReport& report) {
   }
 }
 
+bool has_rounded_coordinates(const PlyHeader& header) {
+  if (header.encoding == PlyEncoding::kText) return false;
+  const auto is_rounded = [](const PlyProperty& property) {
+    return property.type == PlyType::kFloat32 && (property.name == "x" || property.name == "y" || property.name == "z");
+  };
+  return std::ranges::any_of(header.find("vertex")->properties, is_rounded);
+}
+
 /// What the header has to have.
 void check_elements(const PlyHeader& header, LoadReport& report) {
   const PlyElement* vertices = header.find("vertex");
@@ -324,6 +332,7 @@ Scene load_ply(const LoadOptions& options, LoadReport& report) {
   check_elements(header, report);
   report.throw_if_refused();
   warn_about_what_is_ignored(header, report);
+  if (has_rounded_coordinates(header)) report.note_rounded_coordinates();
   const PlyBody body = read_ply_body(file, header, report);
   report.throw_if_refused();
 

@@ -118,6 +118,7 @@ bool is_in_range(const std::array<vec3, 3>& corners) {
 }
 
 StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) {
+  report.note_rounded_coordinates();
   const FacetColors colors(file, count);
   if (colors.are_unknown()) report.warn("the bytes behind the facets are no colours, and ignored");
   StlSolid solid;
@@ -130,7 +131,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
                      "export the mesh again, in a larger unit of length", "the facet is left out"});
       continue;
     }
-    solid.corners.insert(solid.corners.end(), corners.begin(), corners.end());
+    for (const vec3& corner : corners) solid.corners.emplace_back(dvec3(corner) - report.center());
     if (colors.exist()) solid.colors.push_back(colors.of(i));
   }
   return solid;

@@ -103,7 +103,7 @@ class StlParser {
         is_placed_ = false;
         repair("a facet has a vertex coordinate that is no number up to 1e15", quote(word), "the facet is left out");
       }
-      corner[i] = static_cast<float>(*number);
+      corner[i] = static_cast<float>(*number - report_.center()[i]);
     }
     corners_.push_back(corner);
   }

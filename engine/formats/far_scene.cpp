@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/far_scene.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/framing.h"
+#include "shapes/placement.h"
+
+namespace promin {
+namespace {
+
+double greatest_of(const dvec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+/// From a finite number to the next that is greater in fp32.
+double step_at(double magnitude) {
+  const auto rounded = static_cast<float>(magnitude);
+  return static_cast<double>(std::nextafter(rounded, std::numeric_limits<float>::infinity())) - double{rounded};
+}
+
+double greatest_magnitude(const Bounds& bounds, const dvec3& moved_by = dvec3(0.0)) {
+  return greatest_of(glm::max(glm::abs(dvec3(bounds.lo) + moved_by), glm::abs(dvec3(bounds.hi) + moved_by)));
+}
+
+double size_of(const Bounds& bounds) {
+  return greatest_of(dvec3(bounds.hi) - dvec3(bounds.lo));
+}
+
+/// Of each geometry's vertices in its own space; empty where it is no mesh.
+std::vector<Bounds> bounds_of_meshes(const Scene& scene) {
+  std::vector<Bounds> all(scene.geometries.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[i]);
+    if (mesh == nullptr) continue;
+    for (const vec3& position : mesh->positions) all[i].extend(position);
+  }
+  return all;
+}
+
+/// The length that the longest of a transform's axes makes of 1.
+double scale_of(const dmat4& transform) {
+  return greatest_of(
+      {glm::length(dvec3(transform[0])), glm::length(dvec3(transform[1])), glm::length(dvec3(transform[2]))});
+}
+
+/// Two digits.
+std::string to_text(double number) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, number, std::chars_format::general, 2);
+  return {text, end.ptr};
+}
+
+}  // namespace
+
+Bounds bounds_of_vertices(const Scene& scene) {
+  const std::vector<Bounds> of_meshes = bounds_of_meshes(scene);
+  Bounds bounds;
+  for (const Object& object : scene.objects) {
+    if (object.geometry == Object::kNoGeometry) continue;
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
+    if (mesh == nullptr) {
+      bounds.extend(bounds_of(scene, object));
+    } else if (Placement(object.world_from_object).is_identity()) {
+      bounds.extend(of_meshes[object.geometry]);
+    } else {
+      for (const vec3& p : mesh->positions) bounds.extend(vec3(object.world_from_object * dvec4(p, 1.0)));
+    }
+  }
+  return bounds;
+}
+
+bool is_too_coarse(const Bounds& bounds) {
+  if (bounds.is_empty()) return false;
+  const double magnitude = greatest_magnitude(bounds);
+  return magnitude > 0.0 && step_at(magnitude) > kCoarsestStep * size_of(bounds);
+}
+
+dvec3 round_middle(const Bounds& bounds) {
+  const dvec3 middle = 0.5 * dvec3(bounds.lo) + 0.5 * dvec3(bounds.hi);
+  const double size = size_of(bounds);
+  if (size == 0.0) return middle;
+  const double step = std::exp2(std::floor(std::log2(size)) - 2.0);
+  // Sums with 0 are never -0.
+  return glm::round(middle / step) * step + 0.0;
+}
+
+void warn_of_coarse_coordinates(bool is_rounded, Scene& scene) {
+  const double size = size_of(bounds_of_vertices(scene));
+  const std::vector<Bounds> of_meshes = bounds_of_meshes(scene);
+  double step = 0.0;
+  for (const Object& object : scene.objects) {
+    if (object.geometry == Object::kNoGeometry || of_meshes[object.geometry].is_empty()) continue;
+    const double magnitude = greatest_magnitude(of_meshes[object.geometry], is_rounded ? scene.center : dvec3(0.0));
+    step = std::max(step, step_at(magnitude) * scale_of(object.world_from_object));
+  }
+  if (!(step > kCoarsestStep * size)) return;
+  scene.warnings.push_back("the file has coordinates in fp32, whose steps of " + to_text(step) +
+                           " are coarse for a scene of size " + to_text(size) +
+                           ": export it nearer to the origin, and the distance as a node's translation or as doubles");
+}
+
+}  // namespace promin
