@@ -92,7 +92,9 @@ dvec3 round_middle(const Bounds& bounds) {
 }
 
 void warn_of_coarse_coordinates(bool is_rounded, Scene& scene) {
-  const double size = size_of(bounds_of_vertices(scene));
+  const Bounds bounds = bounds_of_vertices(scene);
+  if (bounds.is_empty()) return;
+  const double size = size_of(bounds);
   const std::vector<Bounds> of_meshes = bounds_of_meshes(scene);
   double step = 0.0;
   for (const Object& object : scene.objects) {

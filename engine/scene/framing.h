@@ -12,8 +12,8 @@ namespace promin {
 Camera frame_bounds(const Bounds& bounds, float aspect_ratio, Framing framing = Framing::kFront);
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
 
-/// The box to look at: the main part of everything finite (scene/stray_geometry.h), or else a box of size 2 around the first plane's point or the origin. Throws
-/// InputError as bounds_of() does.
+/// The box to look at: the main part of everything finite (scene/stray_geometry.h), or else a box of size 2 around the
+/// first plane's point or the origin. Throws InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 
 /// Bounds of an object that has a geometry, if it is finite; else empty. Throws as bounds_of() does.

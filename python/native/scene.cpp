@@ -121,8 +121,7 @@ nb::list find_problems(const Scene& scene) {
 void bind_scene(nb::module_& module) {
   nb::class_<Scene>(module, "Scene")
       .def(nb::init<>())
-      .def_static("load", &load, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"),
-                  nb::arg("root"))
+      .def_static("load", &load, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"), nb::arg("root"))
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions").noconvert(), nb::arg("triangles").noconvert(),
            nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("material"),
            nb::arg("matrix").noconvert())
