@@ -155,7 +155,7 @@ class PythonRays : public app::RaySource {
     source_.reset();
   }
   uint64_t count() const override { return count_; }
-  void read(uint64_t first, std::span<Ray> rays) override {
+  void read(uint64_t first, std::span<Ray> rays, const dvec3& center) override {
     if (rays.empty()) return;
     const nb::gil_scoped_acquire acquire;
     const auto read = nb::cast<RayArray>(source_.attr("read")(first, rays.size()));
@@ -164,6 +164,8 @@ class PythonRays : public app::RaySource {
                         nb::cast<std::string>(source_.attr("name")), "give as many as the job was begun with"});
     }
     std::memcpy(rays.data(), read.data(), rays.size_bytes());
+    if (center == dvec3(0.0)) return;
+    for (Ray& ray : rays) ray.origin = vec3(dvec3(ray.origin) - center);
   }
   jobs::InputFile describe() override {
     const nb::gil_scoped_acquire acquire;
