@@ -31,7 +31,8 @@ std::string message_of_cut_loops() {
 }
 
 TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
-  EXPECT_THAT(message_of_cut_loops(), EndsWith(", on this device; take another --device"));
+  EXPECT_THAT(message_of_cut_loops(),
+              EndsWith(", on this device; take another --device, or leave out surfaces that lie in one another"));
   const auto message = [](const char* where, const char* cure, Setting setting) {
     return message_of(RunError({"bad", where, cure, setting}));
   };

@@ -19,8 +19,8 @@ using nlohmann::json;
 /// Writes scenes of one analytic shape into a folder of its own, and loads them.
 class ShapeFolder : public SceneFolder {
  public:
-  /// Whether load_scene refuses the shape under the node's transform. `text_of_42` stands in for 42 in the file: what
-  /// JSON's own numbers cannot say.
+  /// Whether load_scene refuses the shape under the node's transform, or leaves it undrawn. `text_of_42` stands in for
+  /// 42 in the file: what JSON's own numbers cannot say.
   bool refuses(const json& shape, const json& node = json::object(), const std::string& text_of_42 = "42") const {
     GltfBuilder gltf = triangle_gltf();
     gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"] = {shape};
@@ -28,7 +28,8 @@ class ShapeFolder : public SceneFolder {
     gltf.json["nodes"][0].update(node);
     std::string text = gltf.text();
     if (const size_t at = text.find("42.0"); at != std::string::npos) text.replace(at, 4, text_of_42);
-    return !refusal("shape.gltf", text).empty();
+    if (!refusal("shape.gltf", text).empty()) return true;
+    return load_scene(folder_ / "shape.gltf").objects.front().geometry == Object::kNoGeometry;
   }
 
  private:
@@ -77,8 +78,7 @@ void run_degenerate(Lab& lab) {
 
   taken = 0;
   for (const json& shape : {good, cone}) {
-    // A quaternion without a direction, and numbers that JSON does not have.
-    taken += !folder.refuses(shape, {{"rotation", {0.0, 0.0, 0.0, 0.0}}});
+    // Numbers that JSON does not have.
     for (const char* number : {"NaN", "1e999", "-1e999", "Infinity"}) {
       taken += !folder.refuses(shape, turned(42.0), number);
     }
