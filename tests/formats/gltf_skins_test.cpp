@@ -69,6 +69,23 @@ TEST_F(GltfSkinTest, InverseBindMatricesComeFirst) {
   EXPECT_THAT(refusal(), HasSubstr("a skin has 1 inverse bind matrices for 2 joints"));
 }
 
+TEST_F(GltfSkinTest, LastRowsOfInverseBindMatricesAreMadeAffine) {
+  std::vector<float> matrices(32, 0.0F);
+  for (size_t i = 0; i < 8; ++i) matrices[16 * (i / 4) + 5 * (i % 4)] = 1.0F;
+  matrices[3] = 5e-4F;
+  gltf_.json["skins"][0]["inverseBindMatrices"] = gltf_.add<float>(matrices, "MAT4");
+  expect_near(corners(), kPosed);
+  EXPECT_THAT(load().warnings, IsEmpty()) << "rounding";
+  matrices[31] = 0.5F;
+  gltf_.json["skins"][0]["inverseBindMatrices"] = gltf_.add<float>(matrices, "MAT4");
+  const LoadedScene scene = load();
+  expect_near(corners_of(mesh_of(scene)), kPosed);
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre("an inverse bind matrix is not affine (0.500000), skins[0].inverseBindMatrices, element 1; its "
+                  "last row is taken as 0 0 0 1"));
+}
+
 TEST_F(GltfSkinTest, JointsMayBeInNoScene) {
   gltf_.json["scenes"] = {{{"nodes", {0}}}};
   expect_near(corners(), kPosed);
@@ -156,7 +173,10 @@ TEST_F(GltfSkinTest, WithoutJointsAMeshStandsAsItIs) {
   EXPECT_THAT(bare.warnings, ElementsAre(HasSubstr("has no joints and weights")));
   gltf_.json["skins"][0]["joints"] = json::array();
   gltf_.json["nodes"][0]["translation"] = {7, 0, 0};
-  EXPECT_EQ(corners()[1], vec3(8, 0, 0));
+  const LoadedScene unskinned = load();
+  EXPECT_EQ(corners_of(mesh_of(unskinned))[1], vec3(8, 0, 0));
+  EXPECT_THAT(unskinned.warnings,
+              ElementsAre("a skin has no joints, skins[0]; its meshes stand as their nodes have them"));
 }
 
 TEST_F(GltfSkinTest, IndicesThatLeadNowhereAreRefused) {

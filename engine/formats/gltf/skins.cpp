@@ -3,16 +3,32 @@
 #include "formats/gltf/skins.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/rounding.h"
 #include "formats/gltf/accessors.h"
 #include "formats/gltf/json_lookup.h"
+#include "formats/gltf/json_rule.h"
 
 namespace promin {
 namespace {
 
 using nlohmann::json;
+
+/// Makes the last row of a joint's matrix 0 0 0 1: in a valid file nothing but rounding stands there.
+void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
+  for (int column = 0; column < 4; ++column) {
+    const double wanted = column == 3 ? 1.0 : 0.0;
+    double& number = matrix[column][3];
+    // Written so that NaN fails.
+    if (!(std::abs(number - wanted) <= kMostRounding)) {
+      report.repair({"an inverse bind matrix is not affine", std::to_string(number), place, "make its last row 0 0 0 1",
+                     "its last row is taken as 0 0 0 1"});
+    }
+    number = wanted;
+  }
+}
 
 /// Identities where a skin has none.
 std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, const json& skin, const std::string& place,
@@ -32,8 +48,7 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
     for (int i = 0; i < 16; ++i) {
       matrices[joint][i / 4][i % 4] = static_cast<double>(numbers[16 * joint + static_cast<size_t>(i)]);
     }
-    // Nothing but rounding stands there in a valid file.
-    for (int column = 0; column < 4; ++column) matrices[joint][column][3] = column == 3 ? 1.0 : 0.0;
+    make_affine(matrices[joint], place + ", element " + std::to_string(joint), report);
   }
   return matrices;
 }
@@ -42,8 +57,13 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
 
 GltfSkins::GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>& placed, LoadReport& report)
     : document_(document), report_(report) {
-  if (!elements_of(document.json, "skins").empty())
-    world_from_node_ = place_all_gltf_nodes(document, placed, report.center());
+  const size_t count = elements_of(document.json, "skins").size();
+  if (count > 0) world_from_node_ = place_all_gltf_nodes(document, placed, report.center());
+  for (size_t skin = 0; skin < count; ++skin) {
+    if (has_joints(static_cast<int>(skin))) continue;
+    report.repair({"a skin has no joints", "", "skins[" + std::to_string(skin) + "]", "export the file again",
+                   "its meshes stand as their nodes have them"});
+  }
 }
 
 bool GltfSkins::has_joints(int skin) const {
