@@ -941,7 +941,7 @@ TEST_F(GltfTest, ImagesAreNotTouched) {
 TEST_F(GltfTest, MotionIsLeftOut) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["animations"] = {json::object()};
-  gltf.json["skins"] = {json::object(), json::object()};
+  gltf.json["skins"] = {{{"joints", {0}}}, {{"joints", {0}}}};
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   EXPECT_THAT(load(gltf).warnings,
               ElementsAre("the scene stands still: animations are ignored, morph targets have their default weights"));
