@@ -120,8 +120,9 @@ enum class Framing : uint32_t {
 PROMIN_EXPORT std::span<const std::string_view> framing_names();
 
 /// A perspective camera that frames everything finite in the scene, but for stray geometry: where 99 percent of the
-/// surface lie in a box of less than 1/64 of the size of everything, it frames that part. `aspect_ratio` is width over height of the picture.
-/// Throws UsageError where that is not a positive finite number, and InputError as bounds_of() does.
+/// surface lie in a box of less than 1/64 of the size of everything, it frames that part. `aspect_ratio` is width over
+/// height of the picture. Throws UsageError where that is not a positive finite number, and InputError as bounds_of()
+/// does.
 PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio, Framing framing = Framing::kFront);
 
 /// The bounces that show a scene well (View::max_depth): more where it has glass.
