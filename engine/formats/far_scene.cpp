@@ -33,7 +33,7 @@ double size_of(const Bounds& bounds) {
   return greatest_of(dvec3(bounds.hi) - dvec3(bounds.lo));
 }
 
-/// Of each geometry's vertices in its own space; empty where it is no mesh.
+/// The bounds of each mesh's vertices in its own space; empty for other geometries.
 std::vector<Bounds> bounds_of_meshes(const Scene& scene) {
   std::vector<Bounds> all(scene.geometries.size());
   for (size_t i = 0; i < all.size(); ++i) {
@@ -91,8 +91,7 @@ dvec3 round_middle(const Bounds& bounds) {
   return glm::round(middle / step) * step + 0.0;
 }
 
-void warn_of_coarse_coordinates(bool is_rounded, Scene& scene) {
-  const Bounds bounds = bounds_of_vertices(scene);
+void warn_of_coarse_coordinates(const Bounds& bounds, bool is_rounded, Scene& scene) {
   if (bounds.is_empty()) return;
   const double size = size_of(bounds);
   const std::vector<Bounds> of_meshes = bounds_of_meshes(scene);

@@ -20,8 +20,9 @@ bool is_too_coarse(const Bounds& bounds);
 dvec3 round_middle(const Bounds& bounds);
 
 /// Warns where the file itself has coordinates in fp32 whose steps are too coarse for the scene: no center helps them.
+/// `bounds`: those of the scene's vertices.
 /// `is_rounded`: whether all of them are fp32 in the file, in the world; those of meshes always are, in their own
 /// space.
-void warn_of_coarse_coordinates(bool is_rounded, Scene& scene);
+void warn_of_coarse_coordinates(const Bounds& bounds, bool is_rounded, Scene& scene);
 
 }  // namespace promin

@@ -46,6 +46,8 @@ class LoadReport {
   const std::filesystem::path& file() const { return file_; }
   /// LoadOptions::root.
   const std::filesystem::path& root() const { return root_; }
+  /// An empty report about the same file, for what is tried: what it refuses does not refuse the file.
+  LoadReport make_attempt() const { return LoadReport(file_, false, root_); }
 
   /// What coordinates of the file lose in double, before they are rounded to fp32 (Scene::center).
   const dvec3& center() const { return center_; }

@@ -166,15 +166,15 @@ constexpr int kMostMoves = 3;
 /// Reads a file, and again around a center where its coordinates are too coarse in fp32.
 Scene load_near_center(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   Scene scene = load_by_format(file, options, report);
-  for (int i = 0; i < kMostMoves; ++i) {
-    const Bounds bounds = bounds_of_vertices(scene);
-    if (!is_too_coarse(bounds)) break;
+  Bounds bounds = bounds_of_vertices(scene);
+  for (int i = 0; i < kMostMoves && is_too_coarse(bounds); ++i) {
     scene = {};
     report = LoadReport(file, options.is_strict, options.root, report.center() + round_middle(bounds));
     report.add_source(file);
     scene = load_by_format(file, options, report);
+    bounds = bounds_of_vertices(scene);
   }
-  warn_of_coarse_coordinates(report.has_rounded_coordinates(), scene);
+  warn_of_coarse_coordinates(bounds, report.has_rounded_coordinates(), scene);
   return scene;
 }
 

@@ -31,7 +31,7 @@ void encode_light(std::span<uint32_t> texels) {
 constexpr uint64_t kHeadBytes = uint64_t{1} << 16;
 
 void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureBytes& read, uint64_t most_bytes) {
-  LoadReport attempt(report.file(), false, report.root());
+  LoadReport attempt = report.make_attempt();
   std::optional<std::vector<std::byte>> bytes;
   try {
     bytes = read(attempt, most_bytes);

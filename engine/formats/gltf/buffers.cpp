@@ -85,7 +85,7 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
 
 /// The number of bytes that a URI names; 0 where they cannot be read.
 uint64_t size_of_uri(const std::string& uri, const std::string& place, const LoadReport& report) {
-  LoadReport attempt(report.file(), false, report.root());
+  LoadReport attempt = report.make_attempt();
   if (is_data(uri)) return read_data_uri(uri, place, attempt).value_or(Bytes{}).size();
   const auto file = find_file(uri, place, false, attempt);
   if (!file) return 0;
@@ -282,7 +282,7 @@ class BufferReader {
 
   /// Reads a buffer that only images lie in: they are left out where it cannot be read.
   void try_buffer(const json& source, size_t index) {
-    LoadReport attempt(report_.file(), false, report_.root());
+    LoadReport attempt = report_.make_attempt();
     try {
       read_buffer(source, index, attempt);
       attempt.throw_if_refused();

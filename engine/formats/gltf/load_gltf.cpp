@@ -77,7 +77,7 @@ class SceneReader {
 
   bool is_skinned(const GltfNode& node) const { return node.skin >= 0 && skins_->has_joints(node.skin); }
 
-  /// Of a skinned mesh the node's own place counts for nothing (glTF 2.0, section 3.7.3.3).
+  /// The node that shows a skinned mesh does not place it (glTF 2.0, section 3.7.3.3).
   void read_skinned_mesh(const PlacedNode& placed) {
     if (count_gltf_instances(document_, placed)) {
       report_.warn({"a skinned mesh has instances", "", "nodes[" + std::to_string(placed.node) + "]", "",

@@ -30,7 +30,7 @@ void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
   }
 }
 
-/// Identities where a skin has none.
+/// Returns identities for a skin without inverse bind matrices.
 std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, const json& skin, const std::string& place,
                                               LoadReport& report) {
   const size_t joint_count = elements_of(skin, "joints").size();

@@ -30,7 +30,7 @@ double illum_of(const MtlMaterial& source) {
 
 /// What find_beside_scene says of a file that it does not find.
 std::string reason_against(const std::string& name, LoadReport& report) {
-  LoadReport attempt(report.file(), false, report.root());
+  LoadReport attempt = report.make_attempt();
   find_beside_scene(name, "", true, attempt);
   try {
     attempt.throw_if_refused();

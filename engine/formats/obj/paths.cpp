@@ -10,7 +10,7 @@ namespace {
 
 /// find_beside_scene without its refusals.
 std::optional<std::string> try_name(std::string_view name, const std::string& folder, LoadReport& report) {
-  LoadReport attempt(report.file(), false, report.root());
+  LoadReport attempt = report.make_attempt();
   // An absolute name must not become a relative one below the folder.
   const bool is_absolute = name.starts_with('/') || name.starts_with('\\');
   std::string whole = (is_absolute || name.empty() ? "" : folder) + std::string(name);
