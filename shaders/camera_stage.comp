@@ -178,7 +178,7 @@ void aim_at_source(LightRecord light) {
     LightSample sampled = sample_light(light, point.position);
     contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
     if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
-    Ray ray = shadow_ray(point, light);
+    Ray ray = shadow_ray(point, light, sampled);
     packet[i] = ray;
     ++ray_count.y;
   }

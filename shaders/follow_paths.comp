@@ -75,9 +75,15 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   end_source_log(contribution);
   uint asked = ASK_NOTHING;
   if (max_abs(contribution) > 0.0) {
-    Ray ray = shadow_ray(point, light);
-    // All begin at one place.
-    store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
+    Ray ray = shadow_ray(point, light, sampled);
+    if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
+      bool is_behind = begins_behind(point, sampled);
+      pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(is_behind ? 1.0 : 0.0);
+      store_vector(record_of_path(path) + (is_behind ? RECORD_SHADOW_BEHIND : RECORD_SHADOW_ORIGIN), ray.origin);
+    } else {
+      // All begin at one place.
+      store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
+    }
     asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
     ++shadow_ray_count;
   }

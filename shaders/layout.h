@@ -161,8 +161,13 @@ struct ExtensionRecord {
   vec4 sheen;        // xyz = colour; w = roughness
   vec4 reflectance;  // xyz = the dielectric's at normal incidence, before what follows; w = factor of all it reflects
   uvec4 slots;       // x = of the sheen's colour, y = of its roughness; of reflectance: z = of w, w = of xyz
+  vec4 scattering;   // to the other side: xyz = colour; w = share
+  vec4 thin_film;    // x = share; y = index of refraction; z = least thickness in nanometres; w = what the texture adds
+  vec4 anisotropy;   // of anisotropic highlights: x = strength; y, z = cosine and sine of their rotation
+  uvec4 rare_slots;  // x = of the share of scattering, y = of its colour, z = of the film's share, w = of its thickness
+  uvec4 anisotropy_slot;  // x
 };
-LAYOUT_CONSTANT EXTENSION_TEXELS = 5u;
+LAYOUT_CONSTANT EXTENSION_TEXELS = 10u;
 
 // What materials have through which light goes, or whose mirrors hang on the angle (glass.glsl).
 struct GlassRecord {
@@ -264,6 +269,8 @@ struct StreamState {
 // What a path takes, and it takes for each source of a turn: records of uvec4.
 LAYOUT_CONSTANT STREAM_PATH_RECORDS = 7u;
 LAYOUT_CONSTANT STREAM_SOURCE_RECORDS = 1u;
+// With FEATURE_DIFFUSE_TRANSMISSION a path takes this one too.
+LAYOUT_CONSTANT STREAM_BEHIND_RECORDS = 1u;
 // With FEATURE_GLASS a path takes these too, and for each ray that waits until the path has come to its end.
 LAYOUT_CONSTANT STREAM_GLASS_RECORDS = 2u;
 LAYOUT_CONSTANT STREAM_WAITING_RECORDS = 4u;

@@ -29,6 +29,20 @@ struct Glass {
   uint object;       // its hash, with SKIPS_EXIT where the ray leaves it
 };
 
+// A thin film (KHR_materials_iridescence).
+struct ThinFilm {
+  vec4 layer;  // x = share; y = index of refraction; z = thickness in nanometres; w = what a texture of 1 adds to it
+  vec3 metal;  // the metal's reflectance at normal incidence under the film
+};
+
+// An anisotropic highlight (KHR_materials_anisotropy).
+struct Anisotropy {
+  float strength;
+  vec2 alphas;  // along the grain and across it; 0: the point has no grain
+  vec3 along;   // unit, across the normal
+  vec3 bent_normal;
+};
+
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
@@ -44,6 +58,10 @@ struct ShadingPoint {
   Coat coat;         // with FEATURE_COATS
   Sheen sheen;       // with FEATURE_SHEENS
   Glass glass;       // with FEATURE_GLASS or FEATURE_FRESNEL
+  vec4 scattering;   // with FEATURE_DIFFUSE_TRANSMISSION: xyz = colour of the light that is scattered to the other side;
+                     // w = its share of all scattered light
+  ThinFilm thin_film;   // with FEATURE_IRIDESCENCE
+  Anisotropy anisotropy;  // with FEATURE_ANISOTROPY
 };
 
 #include "glass.glsl"
@@ -102,14 +120,18 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   }
 }
 
+// The tangent across the normal. On the back of a surface all three axes turn.
+vec3 axis_across(vec3 normal, vec4 tangent, float side) {
+  precise vec3 t = tangent.xyz * side;
+  precise vec3 along = t - dot3(t, normal) * normal;
+  return normalize3(along);
+}
+
 // The normal, turned by a texture of normals: `tangent` and its bitangent span the plane that the texture is painted on.
 vec3 turned_normal(vec3 normal, vec3 texel, float scale, vec4 tangent, float side, vec3 direction) {
   precise vec2 scaled = (2.0 * texel.xy - 1.0) * scale;
   precise float z = 2.0 * texel.z - 1.0;
-  // On the back of a surface all three axes turn.
-  precise vec3 t = tangent.xyz * side;
-  precise vec3 along = t - dot3(t, normal) * normal;
-  vec3 axis = normalize3(along);
+  vec3 axis = axis_across(normal, tangent, side);
   precise vec3 across = tangent.w * side * cross3(normal, axis);
   precise vec3 sum = scaled.x * axis + scaled.y * across + z * normal;
   vec3 turned = normalize3(sum);
@@ -141,7 +163,7 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
                        weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
     return vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
   }
-  bool is_second = has_flag(load_slot(slot), TEXTURE_UV_SET);
+  bool is_second = slot != 0u && has_flag(load_slot(slot), TEXTURE_UV_SET);
   return is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
 }
 
@@ -171,6 +193,40 @@ void put_slot_numbers_of(ExtensionRecord record) {
   slot_numbers[SPECULAR_COLOR_SLOT] = record.slots.w;
 }
 
+// The places of these slots depend on the features.
+void put_slot_numbers_of_rare(ExtensionRecord record) {
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
+    slot_numbers[SCATTERING_SLOT] = record.rare_slots.x;
+    slot_numbers[SCATTERING_COLOR_SLOT] = record.rare_slots.y;
+  }
+  if (has(FEATURE_IRIDESCENCE)) {
+    slot_numbers[IRIDESCENCE_SLOT] = record.rare_slots.z;
+    slot_numbers[IRIDESCENCE_THICKNESS_SLOT] = record.rare_slots.w;
+  }
+  if (has(FEATURE_ANISOTROPY)) slot_numbers[ANISOTROPY_SLOT] = record.anisotropy_slot.x;
+}
+
+// The strength and direction of an anisotropic highlight, where texture coordinates give a tangent.
+void put_anisotropy(inout ShadingPoint point, ExtensionRecord record, Primitive p, uvec4 corners, vec3 weights,
+               CornerUvs uvs, bool is_flipped) {
+  uint number = record.anisotropy_slot.x;
+  vec4 tangent = tangent_at(corners, weights, p, uvs, number);
+  float side = is_flipped ? -1.0 : 1.0;
+  vec3 axis = axis_across(point.normal, tangent, side);
+  precise vec3 across = tangent.w * side * cross3(point.normal, axis);
+  precise vec2 painted = 2.0 * shown[ANISOTROPY_SLOT].xy - 1.0;
+  vec2 direction = number == 0u ? vec2(1.0, 0.0) : painted;
+  precise vec2 turned = vec2(record.anisotropy.y * direction.x - record.anisotropy.z * direction.y,
+                             record.anisotropy.z * direction.x + record.anisotropy.y * direction.y);
+  precise vec3 sum = turned.x * axis + turned.y * across;
+  vec3 along = normalize3(sum);
+  precise float strength = record.anisotropy.x * shown[ANISOTROPY_SLOT].z;
+  Anisotropy grain = point.anisotropy;
+  grain.strength = max_abs(along) == 0.0 ? 0.0 : strength;
+  grain.along = along;
+  point.anisotropy = grain;
+}
+
 void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 weights, vec3 wound_normal,
                     bool is_flipped, vec3 direction, float cone_width) {
   CornerUvs uvs = load_corner_uvs(corners.xyz);
@@ -194,6 +250,7 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   if (has_extension) put_slot_numbers_of(extension_of(material));
   uint glass = glass_number(material);
   if (has(FEATURE_GLASS)) slot_numbers[TRANSMISSION_SLOT] = glass == 0u ? 0u : load_glass(glass).bits.y;
+  if (RARE_FEATURES != 0u && has_extension) put_slot_numbers_of_rare(extension_of(material));
   look_up_slots(place);
 
   vec4 base = shown[BASE_SLOT];
@@ -241,6 +298,18 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
       sheen.roughness = roughness;
       point.sheen = sheen;
     }
+    if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
+      precise vec4 scattering = point.scattering * vec4(shown[SCATTERING_COLOR_SLOT].xyz, shown[SCATTERING_SLOT].w);
+      point.scattering = scattering;
+    }
+    if (has(FEATURE_IRIDESCENCE)) {
+      ThinFilm film = point.thin_film;
+      precise float share = film.layer.x * shown[IRIDESCENCE_SLOT].x;
+      precise float thickness = film.layer.z + film.layer.w * shown[IRIDESCENCE_THICKNESS_SLOT].y;
+      film.layer = vec4(share, film.layer.y, thickness, 0.0);
+      point.thin_film = film;
+    }
+    if (has(FEATURE_ANISOTROPY)) put_anisotropy(point, record, p, corners, weights, uvs, is_flipped);
     if (has(FEATURE_SPECULAR_TEXTURES) && (record.slots.z | record.slots.w) != 0u) {
       material.b = textured_reflectance(record);
     }
@@ -267,6 +336,20 @@ void put_bare_layers(inout ShadingPoint point) {
   }
   point.coat = coat;
   point.sheen = sheen;
+}
+
+// What few materials have, without textures.
+void put_bare_rarities(inout ShadingPoint point) {
+  vec4 scattering = vec4(0.0);
+  ThinFilm film = ThinFilm(vec4(0.0), vec3(0.0));
+  if (model_of(point) == MATERIAL_METALLIC_ROUGHNESS && is_extended(point.material)) {
+    ExtensionRecord record = extension_of(point.material);
+    scattering = record.scattering;
+    film.layer = record.thin_film;
+  }
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) point.scattering = scattering;
+  if (has(FEATURE_IRIDESCENCE)) point.thin_film = film;
+  if (has(FEATURE_ANISOTROPY)) point.anisotropy = Anisotropy(0.0, vec2(0.0), vec3(0.0), point.normal);
 }
 
 // What the eye sees of the coat: Schlick's factor of an index of refraction of 1.5.
@@ -319,13 +402,16 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec
   point.lobe_shares = vec2(1.0, 0.0);
   point.occlusion = 1.0;
   if (HAS_LAYERS) put_bare_layers(point);
+  if (RARE_FEATURES != 0u) put_bare_rarities(point);
   if (HAS_FACES) put_bare_glass(point, direction, media, object_hash_of(p) | (is_flipped ? SKIPS_EXIT : 0u));
   if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }
   float cosine = -dot3(point.normal, direction);
+  if (has(FEATURE_ANISOTROPY)) stretch(point, direction);
   if (HAS_FACES) cosine = meet_face(point, direction, media, color, is_flipped);
   if (has(FEATURE_METALLIC_ROUGHNESS)) point.lobe_shares = load_lobe_shares(cosine, point.material.c.x);
+  if (has(FEATURE_IRIDESCENCE)) put_film(point, cosine);
   if (has(FEATURE_COATS)) point.coat = seen_coat(point.coat, direction);
   if (has(FEATURE_SHEENS)) point.sheen = seen_sheen(point.sheen, -dot3(point.normal, direction));
   if (has(FEATURE_GLASS) && has(FEATURE_METALLIC_ROUGHNESS)) let_through(point);
@@ -341,6 +427,7 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   precise float cosine = dot3(point.normal, to_light);
   // A coat has a normal of its own.
   bool is_lit = has(FEATURE_COATS) ? cosine > 0.0 || dot3(point.coat.normal, to_light) > 0.0 : cosine > 0.0;
+  if (has(FEATURE_DIFFUSE_TRANSMISSION) && scatters_through(point)) is_lit = true;
   if (!(is_lit && sampled.strength > 0.0)) return vec3(0.0);
 
   precise vec3 contribution = contribution_of(point, to_eye, to_light, max(cosine, 0.0), light);
@@ -348,6 +435,14 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   return contribution;
 }
 
-Ray shadow_ray(ShadingPoint point, LightRecord light) {
+// Whether the shadow ray to a source begins on the other side of the surface: there lies what is scattered through it.
+bool begins_behind(ShadingPoint point, LightSample sampled) {
+  return scatters_through(point) && dot3(point.geometric_normal, sampled.direction) < 0.0;
+}
+
+Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
+  if (has(FEATURE_DIFFUSE_TRANSMISSION) && begins_behind(point, sampled)) {
+    return shadow_ray(lift_off(point.position, -point.geometric_normal, point.lift), light);
+  }
   return shadow_ray(lift_off(point.shadow_position, point.geometric_normal, point.lift), light);
 }

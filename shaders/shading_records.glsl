@@ -33,7 +33,9 @@ ExtensionRecord load_extension(uint index) {
   uint first = EXTENSION_TEXELS * index;
   return ExtensionRecord(shading_vector(first), texelFetch(shading_texels, int(first + 1u)),
                          shading_vector(first + 2u), shading_vector(first + 3u),
-                         texelFetch(shading_texels, int(first + 4u)));
+                         texelFetch(shading_texels, int(first + 4u)), shading_vector(first + 5u),
+                         shading_vector(first + 6u), shading_vector(first + 7u),
+                         texelFetch(shading_texels, int(first + 8u)), texelFetch(shading_texels, int(first + 9u)));
 }
 
 // `number` counts from 1 on.

@@ -18,6 +18,8 @@ const uint RECORD_SHADOW_ORIGIN = 6u;  // w = bounces so far, and from LAYERS_SH
 const uint LAYERS_SHIFT = 16u;
 const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between; where rays pass
                                       // through surfaces, after the shadow ray what arrives of it
+// With FEATURE_DIFFUSE_TRANSMISSION a path has one more, and w of RECORD_CONTRIBUTION is 1 where the shadow ray begins there:
+const uint RECORD_SHADOW_BEHIND = 7u;  // xyz = origin of the shadow rays to what lies behind the surface
 // With FEATURE_GLASS there are behind these, and of each ray that waits 4 more (tree.glsl):
 const uint RECORD_MEDIA = 0u;         // x, y = the media that its ray is in; z = rays so far, and above HAS_SEEN_SHIFT
                                       // whether there is something in RECORD_SEEN; w = rays that wait, and the ray's kind
@@ -49,13 +51,14 @@ uint most_paths;
 uint sources_of_turn;
 uint turn;
 uint records_of_path;
+const uint PATH_RECORDS = STREAM_PATH_RECORDS + STREAM_BEHIND_RECORDS * FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION);
 void begin_stream() {
   first_record = stream.place.x;
   most_paths = stream.place.y;
   sources_of_turn = stream.place.z;
   turn = stream.turn.x;
   records_of_path = has(FEATURE_GLASS) ? stream.shadow_rays.y
-                                       : STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * sources_of_turn;
+                                       : PATH_RECORDS + STREAM_SOURCE_RECORDS * sources_of_turn;
 }
 
 uint paths_of_turn(uint which) { return (which & 1u) == 0u ? stream.turn.y : stream.turn.z; }
@@ -63,7 +66,7 @@ uint paths_with_ray() { return stream.turn.w; }
 
 uint record_of_path(uint path) { return first_record + records_of_path * path; }
 uint record_of_source(uint path, uint source) {
-  return record_of_path(path) + STREAM_PATH_RECORDS + STREAM_SOURCE_RECORDS * source;
+  return record_of_path(path) + PATH_RECORDS + STREAM_SOURCE_RECORDS * source;
 }
 uint record_of_glass(uint path) { return record_of_source(path, sources_of_turn); }
 uint record_of_waiting(uint path, uint place) {

@@ -4,7 +4,9 @@
 
 // Whether materials may have layers above them, and what of them else few have (ExtensionRecord).
 const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
-const bool HAS_EXTENSIONS = HAS_LAYERS || has(FEATURE_SPECULAR_TEXTURES);
+const uint RARE_FEATURES = FEATURE_BIT(FEATURE_SPECULAR_TEXTURES) | FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION) |
+                           FEATURE_BIT(FEATURE_IRIDESCENCE) | FEATURE_BIT(FEATURE_ANISOTROPY);
+const bool HAS_EXTENSIONS = HAS_LAYERS || RARE_FEATURES != 0u;
 
 // What may be looked up at a point, each in a place of its own. What only few materials have comes last.
 const uint BASE_SLOT = 0u;  // colour and alpha
@@ -19,10 +21,15 @@ const uint SHEEN_COLOR_SLOT = 8u;
 const uint SHEEN_ROUGHNESS_SLOT = 9u;
 const uint SPECULAR_SLOT = 10u;
 const uint SPECULAR_COLOR_SLOT = 11u;
-const uint MOST_SLOTS = 13u;
+const uint MOST_SLOTS = 18u;
 const uint TRANSMISSION_SLOT =
     5u + 7u * (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS) | FEATURE_BIT(FEATURE_SPECULAR_TEXTURES));
-const uint SLOT_COUNT = TRANSMISSION_SLOT + FEATURE_BIT(FEATURE_GLASS);
+const uint SCATTERING_SLOT = TRANSMISSION_SLOT + FEATURE_BIT(FEATURE_GLASS);
+const uint SCATTERING_COLOR_SLOT = SCATTERING_SLOT + 1u;
+const uint IRIDESCENCE_SLOT = SCATTERING_SLOT + 2u * FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION);
+const uint IRIDESCENCE_THICKNESS_SLOT = IRIDESCENCE_SLOT + 1u;
+const uint ANISOTROPY_SLOT = IRIDESCENCE_SLOT + 2u * FEATURE_BIT(FEATURE_IRIDESCENCE);
+const uint SLOT_COUNT = ANISOTROPY_SLOT + FEATURE_BIT(FEATURE_ANISOTROPY);
 
 uint slot_numbers[MOST_SLOTS];  // 0 where there is no texture; by who calls look_up_slots
 vec4 shown[MOST_SLOTS];         // by look_up_slots

@@ -62,7 +62,12 @@ void main() {
   uint path = entry / STREAM_SOURCES;
   uint source = entry % STREAM_SOURCES;
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn - 1u) + source);
-  Ray ray = shadow_ray(load_record(record_of_path(path) + RECORD_SHADOW_ORIGIN).xyz, light);
+  uint origin = RECORD_SHADOW_ORIGIN;
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
+    bool is_behind = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).w != 0.0;
+    origin = is_behind ? RECORD_SHADOW_BEHIND : origin;
+  }
+  Ray ray = shadow_ray(load_record(record_of_path(path) + origin).xyz, light);
   step_counts = uvec2(0u);
   packet[0] = ray;
   Hit blocker;

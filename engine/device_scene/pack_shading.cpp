@@ -106,13 +106,23 @@ class MaterialPacker {
 
   /// The bits of the extension's number, 0 where there is none.
   float add_extension(const MetallicRoughness& m) {
-    if (!has_coat(m) && !has_sheen(m) && !has_specular_textures(m)) return 0.0F;
-    packed_.extensions.push_back({vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0.0F),
-                                  uvec4(number_of(m.clearcoat_texture), number_of(m.clearcoat_roughness_texture),
-                                        number_of(m.clearcoat_normal_texture), 0),
-                                  vec4(m.sheen_color, m.sheen_roughness), vec4(vec3(reflectance_of(m)), m.specular),
-                                  uvec4(number_of(m.sheen_color_texture), number_of(m.sheen_roughness_texture),
-                                        number_of(m.specular_texture), number_of(m.specular_color_texture))});
+    if (!is_extended(m)) return 0.0F;
+    const float thickness = m.iridescence_thickness_minimum;
+    packed_.extensions.push_back(
+        {.coat = vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0.0F),
+         .coat_slots = uvec4(number_of(m.clearcoat_texture), number_of(m.clearcoat_roughness_texture),
+                             number_of(m.clearcoat_normal_texture), 0),
+         .sheen = vec4(m.sheen_color, m.sheen_roughness),
+         .reflectance = vec4(vec3(reflectance_of(m)), m.specular),
+         .slots = uvec4(number_of(m.sheen_color_texture), number_of(m.sheen_roughness_texture),
+                        number_of(m.specular_texture), number_of(m.specular_color_texture)),
+         .scattering = vec4(m.diffuse_transmission_color, m.diffuse_transmission),
+         .thin_film = vec4(m.iridescence, m.iridescence_ior, thickness, m.iridescence_thickness_maximum - thickness),
+         .anisotropy = vec4(m.anisotropy, std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation), 0.0F),
+         .rare_slots =
+             uvec4(number_of(m.diffuse_transmission_texture), number_of(m.diffuse_transmission_color_texture),
+                   number_of(m.iridescence_texture), number_of(m.iridescence_thickness_texture)),
+         .anisotropy_slot = uvec4(number_of(m.anisotropy_texture), 0, 0, 0)});
     return std::bit_cast<float>(static_cast<uint>(packed_.extensions.size()));
   }
 

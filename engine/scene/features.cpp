@@ -104,6 +104,10 @@ struct MaterialFeatures {
       features |= FEATURE_MIRRORS;
     }
     if (has_sheen(material)) features |= FEATURE_SHEENS;
+    if (scatters_through(material)) features |= FEATURE_DIFFUSE_TRANSMISSION;
+    if (is_iridescent(material)) features |= FEATURE_IRIDESCENCE;
+    // The tangents need texture coordinates.
+    if (is_anisotropic(material)) features |= FEATURE_ANISOTROPY | FEATURE_TEXTURES;
     if (has_specular_textures(material)) features |= FEATURE_SPECULAR_TEXTURES;
     if (!has_coat(material)) return features;
     features |= FEATURE_COATS;

@@ -14,9 +14,25 @@ inline bool has_coat(const MetallicRoughness& material) {
 inline bool has_sheen(const MetallicRoughness& material) {
   return max_component(material.sheen_color) > 0.0F;
 }
+/// Whether some scattered light leaves on the other side. A texture may make a metal a dielectric.
+inline bool scatters_through(const MetallicRoughness& material) {
+  const bool may_be_dielectric = material.metallic < 1.0F || material.metallic_roughness_texture.exists();
+  return material.diffuse_transmission > 0.0F && may_be_dielectric;
+}
+inline bool is_iridescent(const MetallicRoughness& material) {
+  return material.iridescence > 0.0F;
+}
+inline bool is_anisotropic(const MetallicRoughness& material) {
+  return material.anisotropy > 0.0F;
+}
 /// Textures of what the dielectric reflects.
 inline bool has_specular_textures(const MetallicRoughness& material) {
   return material.specular_texture.exists() || material.specular_color_texture.exists();
+}
+/// Whether the material has any of these, which few have.
+inline bool is_extended(const MetallicRoughness& material) {
+  return has_coat(material) || has_sheen(material) || has_specular_textures(material) || scatters_through(material) ||
+         is_iridescent(material) || is_anisotropic(material);
 }
 
 }  // namespace promin

@@ -85,11 +85,14 @@ PROMIN_MEMBERS(FileExtension, name, is_used, is_required)
 PROMIN_MEMBERS(Phong, ambient, diffuse, specular, shininess, reflection, transmission, ior, fresnel, diffuse_texture,
                specular_texture, normal_texture)
 PROMIN_MEMBERS(MetallicRoughness, base_color, metallic, roughness, ior, specular, specular_color, specular_texture,
-               specular_color_texture, transmission, transmission_texture, thickness, attenuation_color,
-               attenuation_distance, dispersion, base_color_texture, metallic_roughness_texture, normal_texture,
-               normal_scale, occlusion_texture, occlusion_strength, clearcoat, clearcoat_roughness, clearcoat_texture,
-               clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale, sheen_color,
-               sheen_roughness, sheen_color_texture, sheen_roughness_texture)
+               specular_color_texture, transmission, transmission_texture, diffuse_transmission,
+               diffuse_transmission_color, diffuse_transmission_texture, diffuse_transmission_color_texture, thickness,
+               attenuation_color, attenuation_distance, dispersion, base_color_texture, metallic_roughness_texture,
+               normal_texture, normal_scale, occlusion_texture, occlusion_strength, clearcoat, clearcoat_roughness,
+               clearcoat_texture, clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale,
+               sheen_color, sheen_roughness, sheen_color_texture, sheen_roughness_texture, iridescence, iridescence_ior,
+               iridescence_thickness_minimum, iridescence_thickness_maximum, iridescence_texture,
+               iridescence_thickness_texture, anisotropy, anisotropy_rotation, anisotropy_texture)
 PROMIN_MEMBERS(Unlit, color, color_texture)
 PROMIN_MEMBERS(Material, name, model, emissive, emissive_texture, alpha_mode, alpha, alpha_cutoff, is_double_sided)
 PROMIN_MEMBERS(Camera, name, projection, eye, look, up, yfov, ymag, aspect_ratio, resolution, near)

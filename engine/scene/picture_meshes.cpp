@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/picture_meshes.h"
 
+#include "scene/layers.h"
 #include "scene/texture_slots.h"
 #include "scene/turned_normals.h"
 #include "textures/center_uvs.h"
@@ -58,15 +59,20 @@ PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& obj
   needs.turns_normals = has_turned_normals(object.geometry, mesh);
   if (mesh.uvs.empty()) return needs;
   std::vector<TextureSlot> slots;
+  // Of several sets the first has its way.
+  const auto need_tangents = [&](const TextureSlot& slot) {
+    if (mesh.tangents.empty() && !needs.tangents) needs.tangents = slot.uv_set;
+  };
   const std::vector<bool> is_on_mesh = find_materials(mesh, object, scene_.materials.size());
   for (size_t i = 0; i < is_on_mesh.size(); ++i) {
     if (!is_on_mesh[i]) continue;
     for_each_slot(scene_.materials[i], [&](const TextureSlot& slot, const char* /*name*/, ImageUse use) {
       if (!is_shown(scene_, slot)) return;
       slots.push_back(slot);
-      // Of several sets the first has its way.
-      if (use == ImageUse::kNormal && mesh.tangents.empty() && !needs.tangents) needs.tangents = slot.uv_set;
+      if (use == ImageUse::kNormal) need_tangents(slot);
     });
+    const auto* model = std::get_if<MetallicRoughness>(&scene_.materials[i].model);
+    if (model != nullptr && is_anisotropic(*model)) need_tangents(model->anisotropy_texture);
   }
   if (slots.empty()) return needs;
   const dvec4 center = find_uv_center(mesh, slots, scene_.textures);

@@ -39,6 +39,8 @@ void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
   visit(model.normal_texture, "normal_texture", ImageUse::kNormal);
   visit(model.occlusion_texture, "occlusion_texture", ImageUse::kData);
   visit(model.transmission_texture, "transmission_texture", ImageUse::kData);
+  visit(model.diffuse_transmission_texture, "diffuse_transmission_texture", ImageUse::kData);
+  visit(model.diffuse_transmission_color_texture, "diffuse_transmission_color_texture", ImageUse::kColor);
   visit(model.specular_texture, "specular_texture", ImageUse::kData);
   visit(model.specular_color_texture, "specular_color_texture", ImageUse::kColor);
   visit(model.clearcoat_texture, "clearcoat_texture", ImageUse::kData);
@@ -46,6 +48,9 @@ void for_each_slot(const MetallicRoughness& model, const Visit& visit) {
   visit(model.clearcoat_normal_texture, "clearcoat_normal_texture", ImageUse::kNormal);
   visit(model.sheen_color_texture, "sheen_color_texture", ImageUse::kColor);
   visit(model.sheen_roughness_texture, "sheen_roughness_texture", ImageUse::kData);
+  visit(model.iridescence_texture, "iridescence_texture", ImageUse::kData);
+  visit(model.iridescence_thickness_texture, "iridescence_thickness_texture", ImageUse::kData);
+  visit(model.anisotropy_texture, "anisotropy_texture", ImageUse::kData);
 }
 
 template <typename Visit>

@@ -77,6 +77,11 @@ class Validation {
     check(share >= 0.0F && share <= 1.0F, "a share is not from 0 to 1", where, "stay within");
   }
 
+  void check_film(float thickness, const std::string& where) {
+    check(thickness >= 0.0F && std::isfinite(thickness), "the thickness is negative or not finite", where,
+          "use 0 or a positive number of nanometres");
+  }
+
   void check_model(const Phong& phong, const std::string& place) {
     check_color(phong.ambient, place + ".ambient");
     check_color(phong.diffuse, place + ".diffuse");
@@ -103,6 +108,18 @@ class Validation {
     for (int i = 0; i < 3; ++i) check_share(material.sheen_color[i], place + ".sheen_color");
     check_share(material.sheen_roughness, place + ".sheen_roughness");
     check_share(material.transmission, place + ".transmission");
+    check_share(material.diffuse_transmission, place + ".diffuse_transmission");
+    for (int i = 0; i < 3; ++i) {
+      check_share(material.diffuse_transmission_color[i], place + ".diffuse_transmission_color");
+    }
+    check_share(material.iridescence, place + ".iridescence");
+    check(material.iridescence_ior >= 1.0F && std::isfinite(material.iridescence_ior),
+          "the index of refraction is not finite or below 1", place + ".iridescence_ior", "use a number from 1 on");
+    check_film(material.iridescence_thickness_minimum, place + ".iridescence_thickness_minimum");
+    check_film(material.iridescence_thickness_maximum, place + ".iridescence_thickness_maximum");
+    check_share(material.anisotropy, place + ".anisotropy");
+    check(std::isfinite(material.anisotropy_rotation), "the angle is not finite", place + ".anisotropy_rotation",
+          "use a finite one");
     check(material.thickness >= 0.0F, "the thickness is negative or not a number", place + ".thickness",
           "use 0 or a positive number");
     for (int i = 0; i < 3; ++i) check_share(material.attenuation_color[i], place + ".attenuation_color");

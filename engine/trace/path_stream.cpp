@@ -53,6 +53,7 @@ void wait_for_last(const vk::raii::CommandBuffer& commands) {
 StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth) {
   StreamShape shape;
   shape.has_glass = features.has_any(layout::FEATURE_GLASS);
+  shape.scatters_through = features.has_any(layout::FEATURE_DIFFUSE_TRANSMISSION);
   // At each bounce the mirror ray is followed first.
   shape.waiting_rays = std::min(refracted_rays(features) * depth, layout::MOST_TREE_RAYS);
   shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
@@ -65,7 +66,8 @@ StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t
 uint32_t StreamShape::records_of_path() const {
   const uint32_t of_glass =
       has_glass ? layout::STREAM_GLASS_RECORDS + layout::STREAM_WAITING_RECORDS * waiting_rays : 0;
-  return layout::STREAM_PATH_RECORDS + layout::STREAM_SOURCE_RECORDS * sources + of_glass;
+  const uint32_t of_behind = scatters_through ? layout::STREAM_BEHIND_RECORDS : 0;
+  return layout::STREAM_PATH_RECORDS + of_behind + layout::STREAM_SOURCE_RECORDS * sources + of_glass;
 }
 
 uint64_t StreamShape::path_bytes() const {

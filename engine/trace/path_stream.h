@@ -31,6 +31,8 @@ struct StreamShape {
   /// How many rays of a path may wait; only with glass.
   uint32_t waiting_rays = 0;
   bool has_glass = false;
+  /// Whether shadow rays may begin behind a surface.
+  bool scatters_through = false;
 
   /// Of a path, its sources among them.
   uint32_t records_of_path() const;

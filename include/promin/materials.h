@@ -66,6 +66,15 @@ struct MetallicRoughness {
   float transmission = 0.0F;
   /// Factor of it (red).
   TextureSlot transmission_texture = {};
+  /// The share of scattered light that leaves on the other side, 0...1 (KHR_materials_diffuse_transmission). The
+  /// surface acts as a thin wall, whatever `thickness` says.
+  float diffuse_transmission = 0.0F;
+  /// The colour of the light that leaves on the other side, 0...1, in place of the base colour.
+  vec3 diffuse_transmission_color{1.0F};
+  /// Factor of the share (alpha).
+  TextureSlot diffuse_transmission_texture = {};
+  /// Factors of the colour.
+  TextureSlot diffuse_transmission_color_texture = {};
   /// 0: the surface is a thin wall, which bends no light; else it bounds a volume (KHR_materials_volume). How thick it
   /// is the scene says, so the number itself is not needed. Not negative.
   float thickness = 0.0F;
@@ -108,6 +117,24 @@ struct MetallicRoughness {
   TextureSlot sheen_color_texture = {};
   /// Factor of its roughness (alpha).
   TextureSlot sheen_roughness_texture = {};
+  /// How strongly a thin film colours the reflection, 0...1 (KHR_materials_iridescence).
+  float iridescence = 0.0F;
+  /// The film's index of refraction, from 1 on.
+  float iridescence_ior = 1.3F;
+  /// The film's thickness in nanometres, not negative, where its texture is 0 and where it is 1. Without a texture it
+  /// is the maximum. The minimum may be the larger of the two.
+  float iridescence_thickness_minimum = 100.0F;
+  float iridescence_thickness_maximum = 400.0F;
+  /// Factor of `iridescence` (red).
+  TextureSlot iridescence_texture = {};
+  /// From the minimum of the thickness to the maximum (green).
+  TextureSlot iridescence_thickness_texture = {};
+  /// How much highlights are stretched, 0...1 (KHR_materials_anisotropy), on meshes with texture coordinates.
+  float anisotropy = 0.0F;
+  /// Where to: radians, counterclockwise from the tangent.
+  float anisotropy_rotation = 0.0F;
+  /// The direction in tangent space (red and green, 0...1 for -1...1) and a factor of `anisotropy` (blue).
+  TextureSlot anisotropy_texture = {};
 };
 
 /// A colour that no light changes (KHR_materials_unlit).

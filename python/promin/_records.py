@@ -139,6 +139,10 @@ class MetallicRoughness(Material):
     """Factor of x and y of the texture's normals."""
     occlusion_strength: float = 1.0
     """0...1."""
+    diffuse_transmission: float = 0.0
+    """The share of scattered light that leaves on the other side, 0...1."""
+    diffuse_transmission_color: Vec3 = (1.0, 1.0, 1.0)
+    """The colour of the light that leaves on the other side, 0...1, in place of the base colour."""
     clearcoat: float = 0.0
     """How much of a clear coat there is, 0...1."""
     clearcoat_roughness: float = 0.0
@@ -149,6 +153,18 @@ class MetallicRoughness(Material):
     """Of cloth; 0: there is none."""
     sheen_roughness: float = 0.0
     """0...1."""
+    iridescence: float = 0.0
+    """How strongly a thin film colours the reflection, 0...1."""
+    iridescence_ior: float = 1.3
+    """The film's index of refraction, from 1 on."""
+    iridescence_thickness_minimum: float = 100.0
+    """The film's thickness in nanometres where its texture is 0, not negative."""
+    iridescence_thickness_maximum: float = 400.0
+    """The same where its texture is 1, and without a texture."""
+    anisotropy: float = 0.0
+    """How much highlights are stretched, 0...1, on meshes with texture coordinates."""
+    anisotropy_rotation: float = 0.0
+    """Where to: radians, counterclockwise from the tangent."""
     base_color_texture: TextureSlot | None = None
     metallic_roughness_texture: TextureSlot | None = None
     normal_texture: TextureSlot | None = None
@@ -156,11 +172,16 @@ class MetallicRoughness(Material):
     specular_texture: TextureSlot | None = None
     specular_color_texture: TextureSlot | None = None
     transmission_texture: TextureSlot | None = None
+    diffuse_transmission_texture: TextureSlot | None = None
+    diffuse_transmission_color_texture: TextureSlot | None = None
     clearcoat_texture: TextureSlot | None = None
     clearcoat_roughness_texture: TextureSlot | None = None
     clearcoat_normal_texture: TextureSlot | None = None
     sheen_color_texture: TextureSlot | None = None
     sheen_roughness_texture: TextureSlot | None = None
+    iridescence_texture: TextureSlot | None = None
+    iridescence_thickness_texture: TextureSlot | None = None
+    anisotropy_texture: TextureSlot | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,6 +10,8 @@ const float LEAST_ALPHA = 0.002;                 // of sources, whose images wou
 const float INVERSE_PI = 0.318309886;
 
 #include "sheen.glsl"
+#include "thin_film.glsl"
+#include "anisotropy.glsl"
 
 // Between these roughnesses reflected objects fade into the environment alone.
 const float SHARPEST_BLUR = 0.1;
@@ -41,7 +43,26 @@ vec3 base_color_of(ShadingPoint point) {
 Lobe dielectric_lobe(ShadingPoint point) {
   return make_lobe(point.material.b.xyz, point.material.b.w, point.lobe_shares);
 }
-Lobe metal_lobe(ShadingPoint point) { return make_lobe(base_color_of(point), 1.0, point.lobe_shares); }
+Lobe metal_lobe(ShadingPoint point) {
+  return make_lobe(has(FEATURE_IRIDESCENCE) ? point.thin_film.metal : base_color_of(point), 1.0, point.lobe_shares);
+}
+
+// Puts the film's colours into what dielectric and metal reflect, as seen at the angle of this cosine.
+void put_film(inout ShadingPoint point, float cosine) {
+  ThinFilm film = point.thin_film;
+  vec3 metal = base_color_of(point);
+  if (film.layer.x > 0.0) {
+    MaterialRecord material = point.material;
+    precise vec3 dielectric =
+        material.b.xyz + film.layer.x * (reflectance_under_film(film, material.b.xyz, material.b.w, cosine) - material.b.xyz);
+    precise vec3 colored = metal + film.layer.x * (reflectance_under_film(film, metal, 1.0, cosine) - metal);
+    material.b = vec4(dielectric, material.b.w);
+    point.material = material;
+    metal = colored;
+  }
+  film.metal = metal;
+  point.thin_film = film;
+}
 
 // What a sheen of which this share is sent leaves for what is below it.
 float left_below_sheen(Sheen sheen, float share) {
@@ -57,11 +78,23 @@ vec3 reflectance_of(ShadingPoint point) {
   return sum;
 }
 
+bool scatters_through(ShadingPoint point) { return point.scattering.w > 0.0; }
+
 // The diffuse share: what the dielectric does not reflect.
 vec3 albedo_of(ShadingPoint point) {
   Lobe lobe = dielectric_lobe(point);
   precise vec3 albedo =
       (1.0 - point.material.a.w) * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z))) * base_color_of(point);
+  if (has(FEATURE_GLASS)) albedo *= 1.0 - point.glass.share;
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) albedo *= 1.0 - point.scattering.w;
+  return albedo;
+}
+
+// The same of light from the other side (KHR_materials_diffuse_transmission).
+vec3 albedo_from_behind(ShadingPoint point) {
+  Lobe lobe = dielectric_lobe(point);
+  precise vec3 albedo = (1.0 - point.material.a.w) * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z))) *
+                        point.scattering.w * point.scattering.xyz;
   if (has(FEATURE_GLASS)) albedo *= 1.0 - point.glass.share;
   return albedo;
 }
@@ -123,10 +156,13 @@ vec3 environment_in_coat(ShadingPoint point, vec3 direction, bool follows_mirror
 vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follows_mirror) {
   float sharpness = follows_mirror ? sharpness_of(point) : 0.0;
   vec3 around = environment_radiance(
-      direction_of_lobe(point.normal, point.geometric_normal, point.material.c.x, direction), point.material.c.x);
+      direction_of_lobe(has(FEATURE_ANISOTROPY) ? point.anisotropy.bent_normal : point.normal, point.geometric_normal,
+                        point.material.c.x, direction),
+      point.material.c.x);
   vec3 reflectance = reflectance_of(point);
   vec3 ambient = ambient_at(point.normal);
   precise vec3 diffuse = albedo_of(point) * ambient;
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) diffuse += albedo_from_behind(point) * ambient_at(-point.normal);
   if (has(FEATURE_SHEENS)) {
     diffuse = left_below_sheen(point.sheen, point.sheen.share) * diffuse +
               min(point.sheen.share, 1.0) * point.sheen.color * ambient;
@@ -208,7 +244,12 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
   precise vec3 reflected =
       (1.0 - metallic) * dielectric.k * (dielectric.f0 + (dielectric.f90 - dielectric.f0) * p5) +
       metallic * metal.k * (metal.f0 + (metal.f90 - metal.f0) * p5);
-  float scale = facet_scale(point.normal, point.material.c.x, h, to_eye, cosine);
+  float scale;
+  if (has(FEATURE_ANISOTROPY) && point.anisotropy.alphas.x > 0.0) {
+    scale = anisotropic_scale(point.normal, point.anisotropy, h, to_eye, to_light, cosine);
+  } else {
+    scale = facet_scale(point.normal, point.material.c.x, h, to_eye, cosine);
+  }
   contribution += reflected * light.specular.xyz * scale;
   if (has(FEATURE_SHEENS)) contribution = contribution_with_sheen(point, h, to_eye, cosine, light, contribution);
   return contribution;
@@ -226,8 +267,17 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   return reflected;
 }
 
+// What a source on the other side adds under the coat: what comes through the surface is scattered, nothing shines.
+vec3 contribution_from_behind(ShadingPoint point, vec3 to_light, LightRecord light) {
+  precise float cosine = -dot3(point.normal, to_light);
+  precise vec3 contribution = albedo_from_behind(point) * INVERSE_PI * light.diffuse.xyz * max(cosine, 0.0);
+  if (has(FEATURE_SHEENS)) contribution *= left_below_sheen(point.sheen, point.sheen.share);
+  return contribution;
+}
+
 vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
-  vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
+  precise vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) below += contribution_from_behind(point, to_light, light);
   if (!is_coated(point)) return below;
   precise vec3 sum =
       (1.0 - point.coat.weight) * below + point.coat.weight * contribution_in_coat(point, to_eye, to_light, light);

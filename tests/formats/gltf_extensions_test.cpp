@@ -174,6 +174,11 @@ TEST_F(GltfExtensionsTest, TexturesOfLayersAreRead) {
   extensions["KHR_materials_specular"]["specularColorTexture"]["index"] = 0;
   extensions["KHR_materials_sheen"]["sheenColorTexture"]["index"] = 0;
   extensions["KHR_materials_sheen"]["sheenRoughnessTexture"]["index"] = 0;
+  extensions["KHR_materials_diffuse_transmission"]["diffuseTransmissionTexture"]["index"] = 0;
+  extensions["KHR_materials_diffuse_transmission"]["diffuseTransmissionColorTexture"]["index"] = 0;
+  extensions["KHR_materials_iridescence"]["iridescenceTexture"]["index"] = 0;
+  extensions["KHR_materials_iridescence"]["iridescenceThicknessTexture"]["index"] = 0;
+  extensions["KHR_materials_anisotropy"]["anisotropyTexture"]["index"] = 0;
   const Scene scene = load(gltf);
   EXPECT_THAT(scene.warnings, IsEmpty());
   const MetallicRoughness& model = model_of(scene);
@@ -184,6 +189,11 @@ TEST_F(GltfExtensionsTest, TexturesOfLayersAreRead) {
   EXPECT_EQ(use_of(model.specular_color_texture), ImageUse::kColor);
   EXPECT_EQ(use_of(model.sheen_color_texture), ImageUse::kColor);
   EXPECT_EQ(use_of(model.sheen_roughness_texture), ImageUse::kData);
+  EXPECT_EQ(use_of(model.diffuse_transmission_texture), ImageUse::kData);
+  EXPECT_EQ(use_of(model.diffuse_transmission_color_texture), ImageUse::kColor);
+  EXPECT_EQ(use_of(model.iridescence_texture), ImageUse::kData);
+  EXPECT_EQ(use_of(model.iridescence_thickness_texture), ImageUse::kData);
+  EXPECT_EQ(use_of(model.anisotropy_texture), ImageUse::kData);
 }
 
 // Specular-glossiness

@@ -445,6 +445,48 @@ TEST_F(GltfTest, SheensAreRead) {
   EXPECT_EQ(bare.sheen_color, vec3(0.0F));
 }
 
+TEST_F(GltfTest, DiffuseTransmissionIsRead) {
+  const LoadedScene scene = load(
+      material_gltf({{"extensions",
+                      {{"KHR_materials_diffuse_transmission",
+                        {{"diffuseTransmissionFactor", 0.75}, {"diffuseTransmissionColorFactor", {0.5, 0.25, 1}}}}}}}));
+  const auto model = model_of<MetallicRoughness>(scene);
+  EXPECT_EQ(model.diffuse_transmission, 0.75F);
+  EXPECT_EQ(model.diffuse_transmission_color, vec3(0.5F, 0.25F, 1.0F));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const auto bare = model_of<MetallicRoughness>(
+      load(material_gltf({{"extensions", {{"KHR_materials_diffuse_transmission", json::object()}}}})));
+  EXPECT_EQ(bare.diffuse_transmission, 0.0F);
+  EXPECT_EQ(bare.diffuse_transmission_color, vec3(1.0F));
+}
+
+TEST_F(GltfTest, IridescenceAndAnisotropyAreRead) {
+  const LoadedScene scene = load(
+      material_gltf({{"extensions",
+                      {{"KHR_materials_iridescence",
+                        {{"iridescenceFactor", 0.75},
+                         {"iridescenceIor", 1.5},
+                         {"iridescenceThicknessMinimum", 600},
+                         {"iridescenceThicknessMaximum", 200}}},
+                       {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}, {"anisotropyRotation", -2.5}}}}}}));
+  const auto model = model_of<MetallicRoughness>(scene);
+  EXPECT_EQ(model.iridescence, 0.75F);
+  EXPECT_EQ(model.iridescence_ior, 1.5F);
+  EXPECT_EQ(model.iridescence_thickness_minimum, 600.0F);
+  EXPECT_EQ(model.iridescence_thickness_maximum, 200.0F);
+  EXPECT_EQ(model.anisotropy, 0.5F);
+  EXPECT_EQ(model.anisotropy_rotation, -2.5F);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const auto bare = model_of<MetallicRoughness>(load(material_gltf(
+      {{"extensions",
+        {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_anisotropy", json::object()}}}})));
+  EXPECT_EQ(bare.iridescence, 0.0F);
+  EXPECT_EQ(bare.iridescence_ior, 1.3F);
+  EXPECT_EQ(bare.iridescence_thickness_minimum, 100.0F);
+  EXPECT_EQ(bare.iridescence_thickness_maximum, 400.0F);
+  EXPECT_EQ(bare.anisotropy, 0.0F);
+}
+
 TEST_F(GltfTest, MetallicRoughnessHasTheSpecificationsDefaults) {
   const auto model = model_of<MetallicRoughness>(load(material_gltf(
       {{"extensions", {{"KHR_materials_ior", json::object()}, {"KHR_materials_specular", json::object()}}}})));
@@ -488,10 +530,10 @@ TEST_F(GltfTest, WithoutAMaterialTheDefaultOneHolds) {
 }
 
 TEST_F(GltfTest, WhatMaterialsLoseIsSaid) {
-  GltfBuilder gltf = material_gltf({{"name", "film"}, {"extensions", {{"KHR_materials_iridescence", json::object()}}}});
-  gltf.json["extensionsUsed"] = {"KHR_materials_iridescence", "KHR_texture_transform"};
+  GltfBuilder gltf = material_gltf({{"name", "film"}, {"extensions", {{"VENDOR_materials_film", json::object()}}}});
+  gltf.json["extensionsUsed"] = {"VENDOR_materials_film", "KHR_texture_transform"};
   gltf.add_node({{"mesh", 0}});
-  EXPECT_THAT(load(gltf).warnings, ElementsAre("1 material uses KHR_materials_iridescence, which is not known; it is "
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("1 material uses VENDOR_materials_film, which is not known; it is "
                                                "drawn without it"));
 }
 

@@ -144,6 +144,155 @@ TEST_F(MaterialsTest, WhiteSpheresUnderWhiteSheensVanishInAWhiteFurnace) {
   }
 }
 
+// What leaves on the other side is taken from what is scattered on this one.
+TEST_F(MaterialsTest, WhiteSpheresThatScatterThroughVanishInAWhiteFurnace) {
+  world::Scene scene = make_spheres(vec3(1.0F));
+  std::optional<Renderer> renderer;
+  for (const float share : {0.3F, 1.0F}) {
+    for (Material& material : scene.materials) {
+      std::get<MetallicRoughness>(material.model).diffuse_transmission = share;
+    }
+    if (!renderer) renderer.emplace(make_renderer(device(), scene));
+    renderer->set_materials(scene.materials);
+    EXPECT_LE(largest_difference(renderer->render(look_at_spheres()).image, 1.0F), 8.0F * kU) << share;
+  }
+}
+
+// KHR_materials_diffuse_transmission: of what a matt wall gets from the front 1 - f goes back in the base colour, and
+// of what it gets from behind f comes through in the other colour, times the cosine over pi.
+TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
+  const vec3 color(0.25F, 0.5F, 1.0F);
+  MetallicRoughness model{.base_color = vec3(0.5F), .metallic = 0.0F, .roughness = 1.0F, .specular = 0.0F};
+  model.diffuse_transmission = 0.75F;
+  model.diffuse_transmission_color = color;
+  world::Scene scene;
+  Mesh wall;
+  wall.positions = {{-2, 0, -2}, {0, 0, 3}, {2, 0, -2}};
+  wall.triangles = {{0, 1, 2}};
+  scene.objects = {{"", wall, 0}};
+  // It stands in the way of light from the left, on either side.
+  scene.objects.push_back({"", world::Box{.center = vec3(-9, 0, 0), .half_size = vec3(1, 8, 8)}, 0});
+  scene.materials = {make_metallic_roughness(model)};
+  scene.lights = {make_sun(vec3(0, 1, 0))};
+  Renderer renderer = make_renderer(device(), scene);
+  const View view = look_along(-glm::normalize(vec3(0.2F, 1, 0)));
+  const auto seen_under = [&](const vec3& to_light) {
+    renderer.set_lights(std::vector{make_sun(glm::normalize(to_light), std::numbers::pi_v<float>)});
+    return renderer.render(view).image.pixels[0];
+  };
+  const float cosine = glm::normalize(vec3(3, 4, 0)).y;
+  EXPECT_LE(max_abs_component(seen_under(vec3(3, 4, 0)) - 0.25F * 0.5F * cosine * vec3(1)), 8.0F * kU);
+  EXPECT_LE(max_abs_component(seen_under(vec3(3, -4, 0)) - 0.75F * cosine * color), 8.0F * kU);
+  EXPECT_EQ(seen_under(vec3(-9, 0.5F, 0)), vec3(0));
+  EXPECT_EQ(seen_under(vec3(-9, -0.5F, 0)), vec3(0));
+  EXPECT_EQ(seen_under(vec3(1, 0, 0)), vec3(0));
+  // A metal scatters nothing, nor does what has no share, here beside the other wall.
+  for (const bool is_metal : {true, false}) {
+    MetallicRoughness other = model;
+    if (is_metal) other.metallic = 1.0F;
+    if (!is_metal) other.diffuse_transmission = 0.0F;
+    scene.objects[1].material = 1;
+    scene.materials = {make_metallic_roughness(other), make_metallic_roughness(model)};
+    scene.lights = {make_sun(vec3(0, -1, 0))};
+    EXPECT_EQ(render(scene, view).pixels[0], vec3(0));
+  }
+}
+
+// Whatever a film takes or adds to the reflection, the body gets the remainder.
+TEST_F(MaterialsTest, WhiteSpheresUnderFilmsVanishInAWhiteFurnace) {
+  world::Scene scene = make_spheres(vec3(1.0F));
+  std::optional<Renderer> renderer;
+  for (const float thickness : {0.0F, 130.0F, 420.0F, 5000.0F}) {
+    for (Material& material : scene.materials) {
+      auto& model = std::get<MetallicRoughness>(material.model);
+      model.metallic = 0.0F;
+      model.iridescence = 1.0F;
+      model.iridescence_thickness_maximum = thickness;
+    }
+    if (!renderer) renderer.emplace(make_renderer(device(), scene));
+    renderer->set_materials(scene.materials);
+    EXPECT_LE(largest_difference(renderer->render(look_at_spheres()).image, 1.0F), 8.0F * kU) << thickness;
+  }
+}
+
+// Waves interfere no longer where a film is thick: light that goes to and fro in it adds up, a geometric series.
+TEST_F(MaterialsTest, ThickFilmsReflectWithoutInterference) {
+  const dvec3 base(0.9, 0.5, 0.04);
+  const double ior = 1.8;
+  MetallicRoughness model{.base_color = vec3(base), .metallic = 1.0F, .roughness = 0.0F};
+  model.iridescence = 1.0F;
+  model.iridescence_ior = static_cast<float>(ior);
+  model.iridescence_thickness_maximum = 1e8F;
+  const vec3 seen = color_of_floor(make_metallic_roughness(model), 1.0F, make_furnace());
+  const double outer = (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
+  for (int i = 0; i < 3; ++i) {
+    const double base_ior = (1 + std::sqrt(base[i])) / (1 - std::sqrt(base[i]));
+    const double inner = (base_ior - ior) * (base_ior - ior) / ((base_ior + ior) * (base_ior + ior));
+    const double sum = outer + (1 - outer) * (1 - outer) * inner / (1 - outer * inner);
+    EXPECT_NEAR(seen[i], sum, 64.0 * static_cast<double>(kU)) << i;
+  }
+}
+
+/// A wall across y with a grain along x, and a view of it from above.
+world::Scene make_grain(float strength, float rotation, float roughness) {
+  world::Scene scene;
+  Mesh wall;
+  wall.positions = {{-2, 0, -2}, {0, 0, 3}, {2, 0, -2}};
+  wall.triangles = {{0, 1, 2}};
+  wall.uvs = {{0, 0, 0, 0}, {0.5F, 1, 0, 0}, {1, 0, 0, 0}};
+  scene.objects = {{"", wall, 0}};
+  MetallicRoughness model{.metallic = 1.0F, .roughness = roughness};
+  model.anisotropy = strength;
+  model.anisotropy_rotation = rotation;
+  scene.materials = {make_metallic_roughness(model)};
+  return scene;
+}
+
+// Where eye and source are above, l D V is 1 / (4 pi at ab); elsewhere the extension's text has D and V.
+TEST_F(MaterialsTest, AGrainStretchesHighlights) {
+  const float roughness = 0.3F;
+  const float strength = 0.6F;
+  const double across = static_cast<double>(roughness) * static_cast<double>(roughness);
+  const double along = across + (1 - across) * static_cast<double>(strength) * static_cast<double>(strength);
+  world::Scene scene = make_grain(strength, 0.0F, roughness);
+  scene.lights = {make_sun(vec3(0, -1, 0))};
+  Renderer renderer = make_renderer(device(), scene);
+  const View view = look_along(vec3(0, -1, 0));
+  const auto seen_under = [&](const vec3& to_light) {
+    renderer.set_lights(std::vector{make_sun(glm::normalize(to_light), std::numbers::pi_v<float>)});
+    return static_cast<double>(renderer.render(view).image.pixels[0].x);
+  };
+  const double above = seen_under(vec3(0, 1, 0));
+  EXPECT_GT(seen_under(vec3(0.6F, 1, 0)), 4 * seen_under(vec3(0, 1, 0.6F)));
+  EXPECT_NEAR(seen_under(vec3(0.6F, 1, 0.1F)), seen_under(vec3(-0.6F, 1, 0.1F)), 1e-5 * above);
+  // The grain turns with the rotation.
+  const double before = seen_under(vec3(0.5F, 1, 0.2F));
+  renderer.set_materials(make_grain(strength, std::numbers::pi_v<float> / 2, roughness).materials);
+  EXPECT_NEAR(seen_under(vec3(-0.2F, 1, 0.5F)), before, 1e-4 * before);
+  // Of two materials alike in all else the heights are as the products of their alphas, but for what facets reflect
+  // more than once: K of white is 1 / E1.
+  renderer.set_materials(make_grain(0.0F, 0.0F, roughness).materials);
+  const double round = seen_under(vec3(0, 1, 0));
+  const auto e1 = [](double mean_roughness) {
+    return static_cast<double>(oracle::look_up_lobe_shares(1, mean_roughness).all);
+  };
+  const double mean = std::pow((along * along + across * across) / 2, 0.25);
+  EXPECT_NEAR(above / round, across / along * e1(static_cast<double>(roughness)) / e1(mean), 1e-4);
+}
+
+// Of light from everywhere a white metal reflects all, whatever its grain.
+TEST_F(MaterialsTest, AWhiteGrainVanishesInAWhiteFurnace) {
+  std::optional<Renderer> renderer;
+  for (const float roughness : {0.0F, 0.2F, 1.0F}) {
+    world::Scene scene = make_grain(1.0F, 0.3F, roughness);
+    scene.environment.ambient = vec3(1.0F);
+    if (!renderer) renderer.emplace(make_renderer(device(), scene));
+    renderer->set_materials(scene.materials);
+    const vec3 seen = renderer->render(look_along(-glm::normalize(vec3(0.2F, 1, 0)))).image.pixels[0];
+    EXPECT_LE(max_abs_component(seen - vec3(1.0F)), 8.0F * kU) << roughness;
+  }
+}
+
 // A coat gives nothing back of what facets reflect more than once, so a rough one may only lose light.
 TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
   for (const float roughness : {0.0F, 0.05F, 0.3F, 1.0F}) {

@@ -234,6 +234,47 @@ TEST_F(OraclePictureTest, TexturesOfAlphaAgreeWithTheOracle) {
   EXPECT_TRUE(compare(test::make_gallery_of_alpha(), test::make_gallery_view(), kOfTextures).passes());
 }
 
+/// Boards that light shines through, with films and grains, and the textures of all of these. They are lit from behind
+/// too, and mirrored in the wall.
+world::Scene make_gallery_of_rare_layers() {
+  world::Scene scene = test::make_gallery_of_metallic_roughness();
+  const auto texture_of = [&](ImageUse use) {
+    const auto is_of = [&](const Texture& texture) { return scene.images[texture.image]->use == use; };
+    return static_cast<uint32_t>(std::ranges::find_if(scene.textures, is_of) - scene.textures.begin());
+  };
+  for (size_t i = 1; i < scene.materials.size(); ++i) {
+    auto* model = std::get_if<MetallicRoughness>(&scene.materials[i].model);
+    if (model == nullptr) continue;
+    model->diffuse_transmission = 0.7F;
+    model->diffuse_transmission_color = vec3(0.9F, 0.6F, 0.3F);
+    if (i % 2 == 0) model->diffuse_transmission_texture.texture = texture_of(ImageUse::kData);
+    if (i % 3 == 0) model->diffuse_transmission_color_texture.texture = texture_of(ImageUse::kColor);
+    model->iridescence = i % 4 == 1 ? 0.0F : 0.9F;
+    model->iridescence_ior = i % 4 == 2 ? 2.0F : 1.3F;
+    model->iridescence_thickness_minimum = i % 3 == 0 ? 500.0F : 150.0F;
+    if (i % 2 == 1) model->iridescence_texture.texture = texture_of(ImageUse::kData);
+    if (i % 3 != 1) model->iridescence_thickness_texture.texture = texture_of(ImageUse::kData);
+    model->anisotropy = i % 4 == 3 ? 0.0F : 0.8F;
+    model->anisotropy_rotation = 0.5F * static_cast<float>(i);
+    if (i % 3 == 2) {
+      model->anisotropy_texture = {.texture = texture_of(ImageUse::kData), .uv_set = static_cast<uint32_t>(i % 2)};
+    }
+  }
+  scene.lights.push_back(test::make_sun(vec3(0.2F, -1, 0.5F), 2.0F));
+  return scene;
+}
+
+TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
+  const world::Scene scene = make_gallery_of_rare_layers();
+  const View view = test::make_gallery_view();
+  const oracle::Picture truth = oracle::render(scene, view);
+  EXPECT_TRUE(compare_with(truth, scene, view, kOfTextures).passes());
+  for (const char* fault : {"behind_seen_from_front", "films_seen_from_above", "grain_turned"}) {
+    const test::FaultyShaders faulty(fault);
+    EXPECT_FALSE(compare_with(truth, scene, view, kOfTextures, faulty.shaders()).passes()) << fault;
+  }
+}
+
 // What the device has of a sky are maps, of texels and of a few roughnesses. White metals show P and nothing else.
 TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   constexpr float kRoughnesses[] = {0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.27F, 0.35F, 0.47F, 0.6F, 0.8F, 1.0F};

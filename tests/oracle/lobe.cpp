@@ -262,13 +262,79 @@ Vector base_of(const MetallicRoughness& material, const Vector& vertex_color) {
   return glm::min(Vector(material.base_color) * vertex_color, Vector(1));
 }
 
+/// Schlick's reflectance at normal incidence that gives the film's at this cosine, or at the least at which films are
+/// seen.
+Vector under_film(const MetallicRoughness& material, const Vector& f0, Real f90, Real cosine) {
+  if (material.iridescence == 0) return f0;
+  const Real seen = std::clamp(cosine, Real(0x1p-6L), Real(1));
+  const Real grazing = fifth_power(1 - seen);
+  const Vector reflected =
+      film_reflectance(f0, material.iridescence_ior, material.iridescence_thickness_maximum, seen);
+  const Vector at_normal = glm::clamp((reflected - f90 * grazing) / (1 - grazing), Vector(0), Vector(1));
+  return glm::mix(f0, at_normal, Real(material.iridescence));
+}
+
+/// Section "Spectral sensitivity" of Belcour and Barla's model, in the extension's text.
+Vector sensitivity(Real path_difference, const Vector& shift) {
+  const Real phase = 2 * kPi * path_difference * 1e-9L;
+  const auto lobe = [&](Real value, Real place, Real variance, Real shifted) {
+    return value * std::sqrt(2 * kPi * variance) * std::cos(place * phase + shifted) *
+           std::exp(-phase * phase * variance) / 1.0685e-7L;
+  };
+  const Real x = lobe(5.4856e-13L, 1.6810e6L, 4.3278e9L, shift.x) + lobe(9.7470e-14L, 2.2399e6L, 4.5282e9L, shift.x);
+  const Real y = lobe(4.4201e-13L, 1.7953e6L, 9.3046e9L, shift.y);
+  const Real z = lobe(5.2481e-13L, 2.2084e6L, 6.6121e9L, shift.z);
+  return {3.2404542L * x - 1.5371385L * y - 0.4985314L * z, -0.9692660L * x + 1.8760108L * y + 0.0415560L * z,
+          0.0556434L * x - 0.2040259L * y + 1.0572252L * z};
+}
+
+Real schlick(Real f0, Real cosine) {
+  return f0 + (1 - f0) * fifth_power(1 - cosine);
+}
+
 }  // namespace
 
-Lobe::Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares)
+Vector film_reflectance(const Vector& f0, Real ior, Real thickness, Real cosine) {
+  const Real step = std::clamp(thickness / 0.03L, Real(0), Real(1));
+  const Real film = std::lerp(Real(1), ior, step * step * (3 - 2 * step));
+  const Real cosine_inside = std::sqrt(1 - (1 - cosine * cosine) / (film * film));
+  const auto square = [](Real x) { return x * x; };
+  const Real r12 = schlick(square((film - 1) / (film + 1)), cosine);
+  Vector r23;
+  Vector shift;
+  for (int i = 0; i < 3; ++i) {
+    const Real root = std::sqrt(std::clamp(f0[i], Real(0), Real(0.9999L)));
+    const Real base = (1 + root) / (1 - root);
+    r23[i] = schlick(square((base - film) / (base + film)), cosine_inside);
+    shift[i] = base < film ? 2 * kPi : kPi;
+  }
+  const Vector round_trip = glm::clamp(r12 * r23, Vector(1e-5L), Vector(0.9999L));
+  const Vector body = square(1 - r12) * r23 / (Real(1) - round_trip);
+  const Real difference = 2 * film * thickness * cosine_inside;
+  Vector sum = r12 + body;
+  Vector amplitude = body - (1 - r12);
+  for (int wave = 1; wave <= 2; ++wave) {
+    amplitude *= glm::sqrt(round_trip);
+    sum += Real(2) * amplitude * sensitivity(wave * difference, Real(wave) * shift);
+  }
+  return glm::clamp(sum, Vector(0), Vector(1));
+}
+
+GrainAlphas grain_alphas(Real roughness, Real strength) {
+  const Real alpha = roughness * roughness;
+  return {std::lerp(alpha, Real(1), strength * strength), alpha};
+}
+
+Real GrainAlphas::mean_roughness() const {
+  return std::pow((along * along + across * across) / 2, Real(0.25L));
+}
+
+Lobe::Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares, Real cosine_to_eye)
     : metallic_(material.metallic),
       roughness_(material.roughness),
-      dielectric_(reflectance_at_normal(material), material.specular, shares),
-      metal_(base_of(material, vertex_color), 1, shares) {
+      dielectric_(under_film(material, reflectance_at_normal(material), material.specular, cosine_to_eye),
+                  material.specular, shares),
+      metal_(under_film(material, base_of(material, vertex_color), 1, cosine_to_eye), 1, shares) {
   const Vector of_dielectric = dielectric_.reflectance(shares);
   reflectance_ = (1 - metallic_) * of_dielectric + metallic_ * metal_.reflectance(shares);
   let_in_ = (1 - metallic_) * (1 - largest(of_dielectric));
@@ -287,11 +353,27 @@ Vector Lobe::highlights_of_all(const LobeShares& shares) const {
   return (1 - metallic_) * dielectric_.reflectance(shares) + metallic_ * metal_.reflectance(shares);
 }
 
+Vector Lobe::facets(Real v_h) const {
+  return (1 - metallic_) * dielectric_.k * dielectric_.fresnel(v_h) + metallic_ * metal_.k * metal_.fresnel(v_h);
+}
+
 Vector Lobe::highlight(const LobeAngles& angles) const {
-  const Real alpha = alpha_of_sources();
-  const Vector facets = (1 - metallic_) * dielectric_.k * dielectric_.fresnel(angles.v_h) +
-                        metallic_ * metal_.k * metal_.fresnel(angles.v_h);
-  return facets * facet_radiance(angles, alpha);
+  return facets(angles.v_h) * facet_radiance(angles, alpha_of_sources());
+}
+
+// The extension's D and V, as they stand in its text.
+Vector Lobe::highlight(const GrainWays& ways, const GrainAlphas& alphas) const {
+  const Real at = std::max(alphas.along, kLeastAlphaOfSources);
+  const Real ab = std::max(alphas.across, kLeastAlphaOfSources);
+  const Vector half = glm::normalize(ways.to_eye + ways.to_light);
+  const Vector f(ab * half.x, at * half.y, at * ab * half.z);
+  const Real w2 = at * ab / glm::dot(f, f);
+  const Real density = at * ab * w2 * w2 / kPi;
+  const Real v = std::max(ways.to_eye.z, kLeastCosine);
+  const Real l = std::max(ways.to_light.z, Real(0));
+  const Real to_eye = l * glm::length(Vector(at * ways.to_eye.x, ab * ways.to_eye.y, v));
+  const Real to_light = v * glm::length(Vector(at * ways.to_light.x, ab * ways.to_light.y, l));
+  return facets(glm::dot(ways.to_eye, half)) * (l * density / (2 * (to_eye + to_light)));
 }
 
 ClearCoat::ClearCoat(const MetallicRoughness& material, Real cosine_to_eye)

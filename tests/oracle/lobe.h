@@ -49,12 +49,32 @@ struct LobeAngles {
 
 LobeAngles angles_of(const Vector& normal, const Vector& to_eye, const Vector& to_light);
 
+/// The reflectance of a thin film on a base, in linear Rec. 709 (KHR_materials_iridescence, "Thin film reflectance"): of
+/// the base's reflectance at normal incidence beside air, the film's index of refraction, its thickness in nanometres,
+/// and the cosine to the eye.
+Vector film_reflectance(const Vector& f0, Real ior, Real thickness, Real cosine);
+
+/// The ways of light where a grain stretches highlights: unit, x along the grain, z the normal.
+struct GrainWays {
+  Vector to_eye{0};
+  Vector to_light{0};
+};
+
+/// How rough a surface with a grain is, as alphas (KHR_materials_anisotropy).
+struct GrainAlphas {
+  Real along = 1;
+  Real across = 1;
+  /// The perceptual roughness of the same mean slope, which stands for both where one number must.
+  Real mean_roughness() const;
+};
+GrainAlphas grain_alphas(Real roughness, Real strength);
+
 /// A material as one eye sees it at one point.
 class Lobe {
  public:
   /// The vertex colour is a factor of the base colour, which stays at most 1. The shares are those of the cosine to the
-  /// eye.
-  Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares);
+  /// eye, at which the eye sees the film too, whose thickness is the maximum.
+  Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares, Real cosine_to_eye = 1);
 
   /// Of light from all around: what is reflected, and the share that the body under the surface sends, both of 1.
   const Vector& reflectance() const { return reflectance_; }
@@ -65,6 +85,7 @@ class Lobe {
   Real sharpness() const;
   /// The radiance that the surface reflects of a source with an irradiance of 1 across its way.
   Vector highlight(const LobeAngles& angles) const;
+  Vector highlight(const GrainWays& ways, const GrainAlphas& alphas) const;
   /// The sum of the highlights of sources in all directions, of radiance 1, where the lobe's shares are these.
   Vector highlights_of_all(const LobeShares& shares) const;
   /// The alpha by which sources are reflected.
@@ -80,6 +101,8 @@ class Lobe {
     Vector reflectance(const LobeShares& shares) const;
     Vector fresnel(Real v_h) const;
   };
+  /// What facets reflect of a source.
+  Vector facets(Real v_h) const;
 
   Real metallic_;
   Real roughness_;

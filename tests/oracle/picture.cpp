@@ -163,6 +163,11 @@ Real largest_difference(const Vector& a, const Vector& b) {
   return largest(glm::abs(a - b));
 }
 
+bool scatters_through(const Material& material) {
+  const auto* model = std::get_if<MetallicRoughness>(&material.model);
+  return model != nullptr && model->diffuse_transmission > 0;
+}
+
 /// How much of what is behind it a surface covers, and how far a device may be off that.
 struct Coverage {
   Real value = 1;
@@ -361,7 +366,10 @@ class Tracer {
   /// The share of the source's light that reaches the point, and how far a device may be off it.
   ArrivingShare arriving_share(const SurfacePoint& point, const Light& light, const Vector& to_light,
                                const PointError& error, const Media& media) const {
-    const Vector origin = point.shadow_position + point.lift * point.geometric_normal;
+    // Light that is scattered through the surface is sought on its own side of it.
+    const bool begins_behind = scatters_through(*point.material) && glm::dot(point.geometric_normal, to_light) < 0;
+    const Vector origin = begins_behind ? point.position - point.lift * point.geometric_normal
+                                        : point.shadow_position + point.lift * point.geometric_normal;
     const Ray ray = has_place(light.kind) ? Ray{origin, Vector(light.position) - origin, 0, 1} : Ray{origin, to_light};
     const RayError of_ray{error.position, 4 * kRoundoff};
     if (has_glass_) return share_through_glass(ray, of_ray, media);
@@ -387,7 +395,8 @@ class Tracer {
     std::vector<ArrivingLight> arriving;
     for (const Light& light : scene_.lights) {
       const Illumination illumination = illuminate(light, point.position);
-      const bool is_behind = !has_normals && !(glm::dot(point.normal, illumination.to_light) > 0);
+      const bool is_behind =
+          !has_normals && !scatters_through(*point.material) && !(glm::dot(point.normal, illumination.to_light) > 0);
       if (is_behind || !(illumination.strength > 0)) continue;
       const ArrivingShare share = arriving_share(point, light, illumination.to_light, error, media);
       if (share.value == Vector(0) && share.error == 0) continue;

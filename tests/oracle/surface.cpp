@@ -100,6 +100,28 @@ Radiance bound_sheen(const Sheen& sheen, const LobeAngles& at, Real error) {
   return {color, off + 512 * kRoundoff * largest(color)};
 }
 
+/// The highlight may be off in five ways: the frame of eye and light may be tilted along the grain, across it, or spun,
+/// and the eye alone tilted either way. Small errors add up.
+Radiance bound_stretched(const Lobe& lobe, const GrainWays& ways, const GrainAlphas& alphas, Real error) {
+  const Vector color = lobe.highlight(ways, alphas);
+  const auto turn = [](const Vector& way, int axis, Real by) {
+    Vector pole(0);
+    pole[axis] = 1;
+    return glm::normalize(way + by * glm::cross(pole, way));
+  };
+  const auto off = [&](const GrainWays& other) {
+    const Vector apart = glm::abs(lobe.highlight(other, alphas) - color);
+    return largest(apart);
+  };
+  Real sum = (64 + 8 / std::max(alphas.across, Real(0.002L))) * kRoundoff * largest(color);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto all = [&](Real by) { return off({turn(ways.to_eye, axis, by), turn(ways.to_light, axis, by)}); };
+    const auto eye = [&](Real by) { return off({turn(ways.to_eye, axis, by), ways.to_light}); };
+    sum += std::max(all(error), all(-error)) + std::max(eye(error), eye(-error));
+  }
+  return {color, sum};
+}
+
 /// All that a model needs to know.
 struct Glimpse {
   const SurfacePoint& point;
@@ -198,6 +220,14 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
   material.sheen_color = vec3(Vector(material.sheen_color) * rgb(texels[kSheenColorSlot]));
   scale(material.sheen_roughness, texels[kSheenRoughnessSlot].a);
   scale(material.transmission, texels[kTransmissionSlot].r);
+  scale(material.diffuse_transmission, texels[kDiffuseTransmissionSlot].a);
+  material.diffuse_transmission_color =
+      vec3(Vector(material.diffuse_transmission_color) * rgb(texels[kDiffuseTransmissionColorSlot]));
+  scale(material.iridescence, texels[kIridescenceSlot].r);
+  material.iridescence_thickness_maximum = static_cast<float>(
+      std::lerp(Real(material.iridescence_thickness_minimum), Real(material.iridescence_thickness_maximum),
+                texels[kIridescenceThicknessSlot].g));
+  scale(material.anisotropy, texels[kAnisotropySlot].b);
   return material;
 }
 
@@ -216,6 +246,44 @@ MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_t
   return material;
 }
 
+/// A grain at a point: an orthonormal frame with the normal, and what of the environment it shows.
+struct Grain {
+  Vector along{0};
+  Vector across{0};
+  Vector normal{0};
+  GrainAlphas alphas;
+  /// About which the environment is mirrored.
+  Vector bent_normal{0};
+
+  Vector local(const Vector& way) const {
+    return {glm::dot(way, along), glm::dot(way, across), glm::dot(way, normal)};
+  }
+};
+
+/// KHR_materials_anisotropy, where texture coordinates give a tangent. The material is that at the point.
+std::optional<Grain> find_grain(const MetallicRoughness& material, const Glimpse& at, const Vector& normal) {
+  const Mesh* mesh = at.point.on_triangle.mesh;
+  if (!(material.anisotropy > 0) || mesh == nullptr || mesh->uvs.empty()) return std::nullopt;
+  const TextureSlot& slot = at.point.slots[kAnisotropySlot];
+  const Tangent tangent = tangent_at(at.point, slot);
+  const Vector front = at.point.side * normal;
+  const Vector t = tangent.direction - glm::dot(tangent.direction, front) * front;
+  if (t == Vector(0)) return std::nullopt;
+  const Vector b = tangent.side * glm::cross(front, glm::normalize(t));
+  const Texel& texel = at.texels[kAnisotropySlot];
+  const Real painted = slot.exists() ? std::atan2(2 * texel.g - 1, 2 * texel.r - 1) : Real(0);
+  const Real turn = painted + material.anisotropy_rotation;
+  Grain grain;
+  grain.along = std::cos(turn) * glm::normalize(t) + std::sin(turn) * b;
+  grain.normal = normal;
+  grain.across = glm::cross(normal, grain.along);
+  grain.alphas = grain_alphas(material.roughness, material.anisotropy);
+  const Vector facing = glm::cross(glm::cross(grain.across, at.to_eye()), grain.across);
+  const Real bend = std::pow(1 - Real(material.anisotropy) * (1 - Real(material.roughness)), Real(4));
+  grain.bent_normal = glm::normalize(glm::mix(facing, normal, bend));
+  return grain;
+}
+
 class MetallicRoughnessSurface {
  public:
   MetallicRoughnessSurface(const MetallicRoughness& material, const Glimpse& at)
@@ -224,17 +292,19 @@ class MetallicRoughnessSurface {
         normal_(bend_normal(at.point, kNormalSlot, at.texels[kNormalSlot], material.normal_scale, at.direction)),
         coat_normal_(bend_normal(at.point, kCoatNormalSlot, at.texels[kCoatNormalSlot], material.clearcoat_normal_scale,
                                  at.direction)),
+        grain_(find_grain(material_, at, normal_)),
         cosine_(meet_face()),
         lobe_(material_, at.vertex_color() * rgb(at.texels[kBaseSlot]),
-              look_up_lobe_shares(cosine_, material_.roughness)),
+              look_up_lobe_shares(cosine_, material_.roughness), cosine_),
         sheen_(material_, glm::dot(normal_, at.to_eye())),
         coat_(material_, glm::dot(coat_normal_, at.to_eye())),
         has_coat_(material.clearcoat > 0),
         is_dull_below_(has_coat_ && normal_ != coat_normal_) {
     const Real occlusion = 1 + material.occlusion_strength * (at.texels[kOcclusionSlot].r - 1);
-    below_ = reflect_environment(normal_, material_.roughness, occlusion);
+    below_ = reflect_environment(grain_ ? grain_->bent_normal : normal_, material_.roughness, occlusion);
     if (has_coat_) above_ = reflect_environment(coat_normal_, material_.clearcoat_roughness, occlusion);
-    body_ = occlusion * (sheen_.left() * albedo() + sheen_.reflectance()) * at.surroundings.irradiance(normal_);
+    body_ = occlusion * ((sheen_.left() * albedo() + sheen_.reflectance()) * at.surroundings.irradiance(normal_) +
+                         sheen_.left() * albedo_from_behind() * at.surroundings.irradiance(-normal_));
   }
 
   Radiance own() const {
@@ -256,7 +326,7 @@ class MetallicRoughnessSurface {
     if (cosine > 0) {
       Radiance sum{albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
       const LobeAngles at = angles(normal_, arriving);
-      if (has_highlight) sum.add(Vector(light.specular), bound_highlight(lobe_, at, error));
+      if (has_highlight) sum.add(Vector(light.specular), highlight(at, arriving, error));
       if (has_highlight && sheen_.exists()) {
         Radiance below;
         below.add(Vector(sheen_.left(cosine)), sum);
@@ -264,6 +334,10 @@ class MetallicRoughnessSurface {
         sum = below;
       }
       coated.add(Vector(1 - coat_.weight()), sum);
+    }
+    if (cosine < 0) {
+      coated.add(Vector(1 - coat_.weight()),
+                 {sheen_.left() * albedo_from_behind() / std::numbers::pi_v<Real> * Vector(light.diffuse) * -cosine});
     }
     if (has_coat_ && has_highlight && glm::dot(coat_normal_, arriving.to_light) > 0) {
       coated.add(coat_.weight() * Vector(light.specular),
@@ -302,8 +376,14 @@ class MetallicRoughnessSurface {
   }
 
  private:
+  Radiance highlight(const LobeAngles& at, const ArrivingLight& arriving, Real error) const {
+    if (!grain_) return bound_highlight(lobe_, at, error);
+    return bound_stretched(lobe_, {grain_->local(at_.to_eye()), grain_->local(arriving.to_light)}, grain_->alphas,
+                           error);
+  }
   /// The cosine on the face's thinner side, by which the lobe is seen.
   Real meet_face() {
+    if (grain_) material_.roughness = static_cast<float>(grain_->alphas.mean_roughness());
     const Real seen = glm::dot(normal_, at_.to_eye());
     if (!at_.point.face) return seen;
     const Face& face = *at_.point.face;
@@ -313,8 +393,13 @@ class MetallicRoughnessSurface {
     if (face.is_thin || face.from == face.to) return seen;
     return face.from <= face.to ? refraction_.cosine : refraction_.cosine_beyond;
   }
-  /// What is scattered, not let through.
-  Vector albedo() const { return (1 - share_) * lobe_.albedo(); }
+  /// What is scattered, not let through: to this side, and of light from the other side
+  /// (KHR_materials_diffuse_transmission: mix(diffuse_brdf, diffuse_btdf, factor) in place of diffuse_brdf).
+  Vector albedo() const { return (1 - share_) * (1 - Real(material_.diffuse_transmission)) * lobe_.albedo(); }
+  Vector albedo_from_behind() const {
+    return (1 - share_) * material_.diffuse_transmission * lobe_.let_in() *
+           Vector(material_.diffuse_transmission_color);
+  }
   LobeAngles angles(const Vector& normal, const ArrivingLight& arriving) const {
     return angles_of(normal, at_.to_eye(), arriving.to_light);
   }
@@ -331,6 +416,7 @@ class MetallicRoughnessSurface {
   const Glimpse& at_;
   Vector normal_;
   Vector coat_normal_;
+  std::optional<Grain> grain_;
   Refraction refraction_;
   /// Of the light that comes into the dielectric, how much goes through.
   Real share_ = 0;
@@ -379,6 +465,11 @@ struct PlaceSlots {
     slots[kSheenColorSlot] = model.sheen_color_texture;
     slots[kSheenRoughnessSlot] = model.sheen_roughness_texture;
     slots[kTransmissionSlot] = model.transmission_texture;
+    slots[kDiffuseTransmissionSlot] = model.diffuse_transmission_texture;
+    slots[kDiffuseTransmissionColorSlot] = model.diffuse_transmission_color_texture;
+    slots[kIridescenceSlot] = model.iridescence_texture;
+    slots[kIridescenceThicknessSlot] = model.iridescence_thickness_texture;
+    slots[kAnisotropySlot] = model.anisotropy_texture;
   }
 };
 

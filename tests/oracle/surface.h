@@ -50,6 +50,11 @@ enum Slot : size_t {
   kSheenColorSlot,
   kSheenRoughnessSlot,
   kTransmissionSlot,
+  kDiffuseTransmissionSlot,
+  kDiffuseTransmissionColorSlot,
+  kIridescenceSlot,
+  kIridescenceThicknessSlot,
+  kAnisotropySlot,
   kSlotCount
 };
 using Slots = std::array<TextureSlot, kSlotCount>;

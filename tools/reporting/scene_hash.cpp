@@ -98,6 +98,12 @@ class ContentHash {
       add(value);
     }
     add(material.attenuation_color);
+    add(material.diffuse_transmission);
+    add(material.diffuse_transmission_color);
+    for (const float value : {material.iridescence, material.iridescence_ior, material.iridescence_thickness_minimum,
+                              material.iridescence_thickness_maximum, material.anisotropy, material.anisotropy_rotation}) {
+      add(value);
+    }
   }
   void add(const Unlit& unlit) { add(unlit.color); }
   void add(const TextureSlot& slot) {

@@ -6,7 +6,7 @@ import math
 
 from . import meshes
 from .gltf import TRIANGLE_FAN, TRIANGLE_STRIP, Gltf
-from .vectors import axis_rotation, quaternion_about
+from .vectors import axis_rotation, normalize, quaternion_about
 
 # Linear RGB.
 CREAM = (0.75, 0.68, 0.56)
@@ -402,6 +402,79 @@ def glass():
     return g
 
 
+def _leaf(length, width, sag):
+    """A leaf along x from the origin, folded along its rib, of triangles on either side."""
+    places = [i / 8 for i in range(9)]
+    positions = []
+    for t in places:
+        half = 0.5 * width * math.sin(math.pi * t) ** 0.75
+        rib = (length * t, -sag * t * t, 0.0)
+        positions += [rib, (rib[0], rib[1] + 0.35 * half, half), (rib[0], rib[1] + 0.35 * half, -half)]
+    triangles = []
+    for i in range(8):
+        for side in (1, 2):
+            a, b, c, d = 3 * i, 3 * i + side, 3 * i + 3, 3 * i + 3 + side
+            triangles += [(a, b, d), (a, d, c)] if side == 1 else [(a, d, b), (a, c, d)]
+    return meshes.Mesh(positions, [corner for triangle in triangles for corner in triangle])
+
+
+def _lid(radius, height, rings, columns):
+    """A dome that rises from its rim to its middle, smooth, with u around it and v outwards."""
+    positions, normals, uvs, indices = [], [], [], []
+    for ring in range(rings + 1):
+        r = radius * (0.02 + 0.98 * ring / rings)
+        slope = 2.0 * height * r / radius**2
+        for column in range(columns + 1):
+            x, z = math.cos(math.tau * column / columns), math.sin(math.tau * column / columns)
+            positions.append((r * x, height * (1.0 - (r / radius) ** 2), r * z))
+            normals.append(normalize((slope * x, 1.0, slope * z)))
+            uvs.append((column / columns, r / radius))
+            if ring < rings and column < columns:
+                a = ring * (columns + 1) + column
+                b = a + columns + 1
+                indices += [a, a + 1, b + 1, a, b + 1, b]
+    return meshes.Mesh(positions, indices, normals=normals, uvs=uvs)
+
+
+def rare_materials():
+    """Paper lanterns that their lamps shine through, leaves before the sun, thin films, brushed lids."""
+    g = Gltf()
+    g.sky((0.1, 0.13, 0.2), (0.1, 0.11, 0.14))
+    g.node("floor", mesh=g.plane("floor", g.metallic_roughness("floor", STONE, 0.0, 0.9)))
+    g.directional_light("sun", (0.35, -0.8, 1.0), intensity=2.5, classic=False)
+    g.directional_light("window", (-0.3, -0.9, -0.5), intensity=1.5, classic=False)
+    lanterns = (
+        ("white", (0.8, 0.78, 0.72), (1.0, 0.85, 0.6), -1.9, 0.9, 0.7),
+        ("red", (0.7, 0.1, 0.07), (0.95, 0.16, 0.08), -0.35, 0.62, 0.45),
+    )
+    for name, base, color, x, y, radius in lanterns:
+        paper = g.paper(name, base, 0.6, color)
+        g.node(name, mesh=g.sphere(name, radius, paper), translation=(x, y, 0.0))
+        lamp = (x, y - 0.3 * radius, 0.0)
+        g.point_light(f"{name} lamp", lamp, color=(1.0, 0.9, 0.75), intensity=5.0 * radius**2, classic=False)
+    green = g.paper("leaf", (0.1, 0.28, 0.06), 0.55, (0.5, 0.85, 0.12))
+    leaf = g.mesh("leaf", _leaf(1.3, 0.6, 0.25), green)
+    for i, (x, y, turn, tilt) in enumerate(((0.7, 0.5, 20.0, 65.0), (1.3, 0.75, -15.0, 100.0), (1.75, 0.35, 5.0, 40.0))):
+        stem = g.node(f"stem {i}", translation=(x, y, 0.3), rotation=quaternion_about((0.0, 0.0, 1.0), tilt))
+        g.node(f"leaf {i}", parent=stem, mesh=leaf, rotation=quaternion_about((1.0, 0.0, 0.0), 90.0 + turn))
+    # A stick between the sun and a leaf: its shadow shows through.
+    stick = g.cylinder("stick", 1.6, 0.03, g.metallic_roughness("stick", (0.2, 0.12, 0.06), 0.0, 0.8))
+    g.node("stick", mesh=stick, translation=(1.05, 1.0, -0.15), rotation=axis_rotation((0.5, 1.0, 0.0)))
+    for i, thickness in enumerate((150.0, 300.0, 450.0, 600.0)):
+        pearl = g.filmed(f"film {thickness:.0f} nm", (0.5, 0.5, 0.52), 1.0, thickness, ior=1.8, roughness=0.25)
+        g.node(f"pearl {i}", mesh=g.sphere(f"pearl {i}", 0.2, pearl), translation=(-1.6 + 0.5 * i, 0.2, 1.1))
+    oil = g.filmed("oil", (0.02, 0.02, 0.02), 0.0, 320.0, ior=1.6)
+    g.node("bead", mesh=g.sphere("bead", 0.2, oil), translation=(0.4, 0.2, 1.1))
+    lids = (("brushed outwards", (0.75, 0.75, 0.77), 0.0), ("brushed round", (0.9, 0.6, 0.35), 0.5 * math.pi))
+    for i, (name, color, rotation) in enumerate(lids):
+        metal = g.brushed(name, color, 0.25, 0.8, rotation)
+        lid = g.mesh(name, _lid(0.42, 0.12, 6, 32), metal)
+        rotation = quaternion_about((1.0, 0.0, 0.0), 25.0)
+        g.node(name, mesh=lid, translation=(1.05 + 0.95 * i, 0.2, 1.1), rotation=rotation)
+    g.camera("camera", (0.1, 1.7, 6.0), (0.1, 0.75, 0.0), yfov_deg=30.0)
+    return g
+
+
 def all_primitives():
     """Every primitive and every term of the shading formula at once, as far as POV-Ray has the same."""
     g = Gltf()
@@ -462,5 +535,6 @@ SCENES = (
     cameras,
     metallic_roughness,
     glass,
+    rare_materials,
     all_primitives,
 )

@@ -145,6 +145,34 @@ class Gltf:
         self._root["materials"][index]["extensions"] = extensions
         return index
 
+    def _extend(self, index, extension, parameters):
+        self._extensions.add(extension)
+        self._root["materials"][index].setdefault("extensions", {})[extension] = parameters
+        return index
+
+    def paper(self, name, base_color, share, color):
+        """A matt wall that scatters a share of its light to the other side, in a colour of its own."""
+        index = self.metallic_roughness(name, base_color, 0.0, 0.8)
+        self._root["materials"][index]["doubleSided"] = True
+        parameters = {"diffuseTransmissionFactor": shortest(share), "diffuseTransmissionColorFactor": _numbers(color)}
+        return self._extend(index, "KHR_materials_diffuse_transmission", parameters)
+
+    def filmed(self, name, base_color, metallic, thickness, ior=1.3, roughness=0.05):
+        """Under a thin film, of a thickness in nanometres."""
+        index = self.metallic_roughness(name, base_color, metallic, roughness)
+        parameters = {
+            "iridescenceFactor": 1,
+            "iridescenceIor": shortest(ior),
+            "iridescenceThicknessMaximum": shortest(thickness),
+        }
+        return self._extend(index, "KHR_materials_iridescence", parameters)
+
+    def brushed(self, name, base_color, roughness, strength, rotation=0.0):
+        """A metal with a grain along the texture coordinates' u, or turned from it by an angle."""
+        index = self.metallic_roughness(name, base_color, 1.0, roughness)
+        parameters = {"anisotropyStrength": shortest(strength), "anisotropyRotation": shortest(rotation)}
+        return self._extend(index, "KHR_materials_anisotropy", parameters)
+
     def classic_glass(self, name, transmission, reflection, ior, fresnel=False):
         """Classic Phong, without diffuse light."""
         index = self.material(name, (0.0, 0.0, 0.0), specular=0.5, shininess=200.0, reflection=reflection)

@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 /// The extensions that the loader reads.
+// clang-format off
 constexpr std::string_view kKnown[] = {
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -26,10 +27,13 @@ constexpr std::string_view kKnown[] = {
     "KHR_implicit_shapes",
     "KHR_lights",
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_iridescence",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_sheen",
     "KHR_materials_specular",
@@ -47,6 +51,7 @@ constexpr std::string_view kKnown[] = {
     "PROMIN_materials_phong",
     "PROMIN_mesh_primitive_implicit_shape",
 };
+// clang-format on
 
 /// What a document has of one extension.
 struct Extension {

@@ -56,6 +56,29 @@ void read_sheen(const json& extension, GltfTextures& textures, MetallicRoughness
   material.sheen_roughness_texture = textures.read_slot(extension, "sheenRoughnessTexture", ImageUse::kData);
 }
 
+void read_diffuse_transmission(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
+  material.diffuse_transmission = extension.value("diffuseTransmissionFactor", 0.0F);
+  material.diffuse_transmission_color = vec3(vec3_of(extension, "diffuseTransmissionColorFactor", dvec3(1.0)));
+  material.diffuse_transmission_texture = textures.read_slot(extension, "diffuseTransmissionTexture", ImageUse::kData);
+  material.diffuse_transmission_color_texture =
+      textures.read_slot(extension, "diffuseTransmissionColorTexture", ImageUse::kColor);
+}
+
+void read_iridescence(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
+  material.iridescence = extension.value("iridescenceFactor", 0.0F);
+  material.iridescence_ior = extension.value("iridescenceIor", 1.3F);
+  material.iridescence_thickness_minimum = extension.value("iridescenceThicknessMinimum", 100.0F);
+  material.iridescence_thickness_maximum = extension.value("iridescenceThicknessMaximum", 400.0F);
+  material.iridescence_texture = textures.read_slot(extension, "iridescenceTexture", ImageUse::kData);
+  material.iridescence_thickness_texture = textures.read_slot(extension, "iridescenceThicknessTexture", ImageUse::kData);
+}
+
+void read_anisotropy(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
+  material.anisotropy = extension.value("anisotropyStrength", 0.0F);
+  material.anisotropy_rotation = extension.value("anisotropyRotation", 0.0F);
+  material.anisotropy_texture = textures.read_slot(extension, "anisotropyTexture", ImageUse::kData);
+}
+
 void read_transmission(const json& source, GltfTextures& textures, MetallicRoughness& material) {
   if (const json* extension = find_extension(source, "KHR_materials_transmission")) {
     material.transmission = extension->value("transmissionFactor", 0.0F);
@@ -103,11 +126,20 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
     material.specular_color_texture = textures.read_slot(*extension, "specularColorTexture", ImageUse::kColor);
   }
   read_transmission(source, textures, material);
+  if (const json* extension = find_extension(source, "KHR_materials_diffuse_transmission")) {
+    read_diffuse_transmission(*extension, textures, material);
+  }
   if (const json* extension = find_extension(source, "KHR_materials_sheen")) {
     read_sheen(*extension, textures, material);
   }
   if (const json* extension = find_extension(source, "KHR_materials_clearcoat")) {
     read_clearcoat(*extension, textures, material);
+  }
+  if (const json* extension = find_extension(source, "KHR_materials_iridescence")) {
+    read_iridescence(*extension, textures, material);
+  }
+  if (const json* extension = find_extension(source, "KHR_materials_anisotropy")) {
+    read_anisotropy(*extension, textures, material);
   }
   return material;
 }

@@ -54,6 +54,9 @@ constexpr double kTiny = 1e-9;
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
 #define PROMIN_COAT "materials[].extensions.KHR_materials_clearcoat"
 #define PROMIN_SHEEN "materials[].extensions.KHR_materials_sheen"
+#define PROMIN_FILM "materials[].extensions.KHR_materials_iridescence"
+#define PROMIN_ANISOTROPY "materials[].extensions.KHR_materials_anisotropy"
+#define PROMIN_DIFFUSE_TRANSMISSION "materials[].extensions.KHR_materials_diffuse_transmission"
 #define PROMIN_TRANSMISSION "materials[].extensions.KHR_materials_transmission"
 #define PROMIN_VOLUME "materials[].extensions.KHR_materials_volume"
 #define PROMIN_SPECULAR "materials[].extensions.KHR_materials_specular"
@@ -160,6 +163,19 @@ constexpr JsonRule kRules[] = {
     color(PROMIN_SPECULAR ".specularColorFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularTexture"),
     PROMIN_TEXTURE_INFO(PROMIN_SPECULAR ".specularColorTexture"),
+    share(PROMIN_DIFFUSE_TRANSMISSION ".diffuseTransmissionFactor"),
+    shares(PROMIN_DIFFUSE_TRANSMISSION ".diffuseTransmissionColorFactor", 3),
+    PROMIN_TEXTURE_INFO(PROMIN_DIFFUSE_TRANSMISSION ".diffuseTransmissionTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_DIFFUSE_TRANSMISSION ".diffuseTransmissionColorTexture"),
+    share(PROMIN_FILM ".iridescenceFactor"),
+    unclamped(number(PROMIN_FILM ".iridescenceIor", 1.0, kMaxScalar)),
+    number(PROMIN_FILM ".iridescenceThicknessMinimum", 0.0, kMaxScalar),
+    number(PROMIN_FILM ".iridescenceThicknessMaximum", 0.0, kMaxScalar),
+    PROMIN_TEXTURE_INFO(PROMIN_FILM ".iridescenceTexture"),
+    PROMIN_TEXTURE_INFO(PROMIN_FILM ".iridescenceThicknessTexture"),
+    share(PROMIN_ANISOTROPY ".anisotropyStrength"),
+    number(PROMIN_ANISOTROPY ".anisotropyRotation", -kMaxScalar, kMaxScalar),
+    PROMIN_TEXTURE_INFO(PROMIN_ANISOTROPY ".anisotropyTexture"),
     shares(PROMIN_SHEEN ".sheenColorFactor", 3),
     share(PROMIN_SHEEN ".sheenRoughnessFactor"),
     PROMIN_TEXTURE_INFO(PROMIN_SHEEN ".sheenColorTexture"),
