@@ -31,7 +31,8 @@ struct Glass {
 
 // A thin film (KHR_materials_iridescence).
 struct ThinFilm {
-  vec4 layer;  // x = share; y = index of refraction; z = thickness in nanometres; w = what a texture of 1 adds to it
+  vec4 layer;  // x = share; y = index of refraction; z = thickness in nanometres; w = how much less it is where its
+               // texture is 0
   vec3 metal;  // the metal's reflectance at normal incidence under the film
 };
 
@@ -305,7 +306,7 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
     if (has(FEATURE_IRIDESCENCE)) {
       ThinFilm film = point.thin_film;
       precise float share = film.layer.x * shown[IRIDESCENCE_SLOT].x;
-      precise float thickness = film.layer.z + film.layer.w * shown[IRIDESCENCE_THICKNESS_SLOT].y;
+      precise float thickness = film.layer.z + film.layer.w * (shown[IRIDESCENCE_THICKNESS_SLOT].y - 1.0);
       film.layer = vec4(share, film.layer.y, thickness, 0.0);
       point.thin_film = film;
     }

@@ -107,7 +107,7 @@ class MaterialPacker {
   /// The bits of the extension's number, 0 where there is none.
   float add_extension(const MetallicRoughness& m) {
     if (!is_extended(m)) return 0.0F;
-    const float thickness = m.iridescence_thickness_minimum;
+    const float thickness = m.iridescence_thickness_maximum;
     packed_.extensions.push_back(
         {.coat = vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0.0F),
          .coat_slots = uvec4(number_of(m.clearcoat_texture), number_of(m.clearcoat_roughness_texture),
@@ -117,7 +117,7 @@ class MaterialPacker {
          .slots = uvec4(number_of(m.sheen_color_texture), number_of(m.sheen_roughness_texture),
                         number_of(m.specular_texture), number_of(m.specular_color_texture)),
          .scattering = vec4(m.diffuse_transmission_color, m.diffuse_transmission),
-         .thin_film = vec4(m.iridescence, m.iridescence_ior, thickness, m.iridescence_thickness_maximum - thickness),
+         .thin_film = vec4(m.iridescence, m.iridescence_ior, thickness, thickness - m.iridescence_thickness_minimum),
          .anisotropy = vec4(m.anisotropy, std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation), 0.0F),
          .rare_slots =
              uvec4(number_of(m.diffuse_transmission_texture), number_of(m.diffuse_transmission_color_texture),

@@ -268,10 +268,13 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   const world::Scene scene = make_gallery_of_rare_layers();
   const View view = test::make_gallery_view();
   const oracle::Picture truth = oracle::render(scene, view);
-  EXPECT_TRUE(compare_with(truth, scene, view, kOfTextures).passes());
+  oracle::PictureBounds bounds = kOfTextures;
+  // Across a grain highlights are narrow, so little is sure at their edges.
+  bounds.unsure_share = 0.015;
+  EXPECT_TRUE(compare_with(truth, scene, view, bounds).passes());
   for (const char* fault : {"behind_seen_from_front", "films_seen_from_above", "grain_turned"}) {
     const test::FaultyShaders faulty(fault);
-    EXPECT_FALSE(compare_with(truth, scene, view, kOfTextures, faulty.shaders()).passes()) << fault;
+    EXPECT_FALSE(compare_with(truth, scene, view, bounds, faulty.shaders()).passes()) << fault;
   }
 }
 
