@@ -169,7 +169,8 @@ std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const s
   header.metadata = first.metadata;
   const std::optional<PictureError> error = sum_errors(job, pieces, first);
   if (error) put_error(header.metadata, *error, area_of(first.window));
-  for (const Channel& channel : first.channels) header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
+  for (const Channel& channel : first.channels)
+    header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
   header.display = first.display;
   header.exr = first.exr;
 

@@ -141,7 +141,8 @@ class FrameRendering {
     expose_by_first(options_, result, stats_);
     // Of a wide picture rows with all AOVs take much memory, so there are not three copies of them at a time.
     if (files_) files_->wait();
-    return {std::move(result.image), make_channels(scene_, std::move(result.aovs), options_.aovs, options_.hides_unlit)};
+    return {std::move(result.image),
+            make_channels(scene_, std::move(result.aovs), options_.aovs, options_.hides_unlit)};
   }
 
   void open_files() {

@@ -109,7 +109,8 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
     write.pBufferInfo = &info;
     device_->handle().updateDescriptorSets(write, {});
   }
-  for (size_t i = 0; i < kFilmCount; ++i) encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display, has_unlit));
+  for (size_t i = 0; i < kFilmCount; ++i)
+    encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display, has_unlit));
 }
 
 void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) {

@@ -15,7 +15,7 @@
 namespace promin::app {
 
 /// Makes what encodes the pixels of a film, as `display` shows them, to words of a buffer (shaders/encode_film.comp).
-/// `has_unlit`: the film tells of unlit surfaces (ProgressivePicture::has_unlit).
+/// `has_unlit` as ProgressivePicture::has_unlit.
 gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
                                   const DisplayTransform& display, bool has_unlit);
 

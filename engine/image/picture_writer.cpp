@@ -72,8 +72,8 @@ Light unassociated(const Light& light, float alpha) {
 }
 
 /// `lo` is the place of the upper left pixel in the whole picture.
-std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& channels,
-                                   const DisplayTransform& display, const uvec2& lo) {
+std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& channels, const DisplayTransform& display,
+                                   const uvec2& lo) {
   const bool has_alpha = channels.alpha != nullptr;
   const size_t stride = has_alpha ? 4 : 3;
   std::vector<uint8_t> bytes(image.pixels.size() * stride);
@@ -235,7 +235,8 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
                  const DisplayTransform& display, const ExrOptions& exr) {
   if (is_writable_format(file)) check_rows(image, channels);
   PictureHeader header{image.size, crop, metadata, {}, display, exr};
-  for (const Channel& channel : channels) header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
+  for (const Channel& channel : channels)
+    header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
   PictureWriter writer(file, header);
   writer.write_rows(image, channels);
   writer.commit();

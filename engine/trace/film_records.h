@@ -52,7 +52,8 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
                    Aovs& aovs);
 void read_steps(const ReadFilm& film, size_t first, Aovs& aovs);
 
-/// Of a film with FEATURE_UNLIT_SHARE what its first pixels tell of unlit surfaces; of others nothing.
+/// Reads what the camera sees of unlit surfaces in the first pixels of a film with FEATURE_UNLIT_SHARE; nothing from
+/// another film.
 void read_unlit(const ReadFilm& film, size_t pixel_count, std::vector<vec4>& unlit);
 
 /// The parts of a pixel's light, summed over samples.

@@ -71,7 +71,6 @@ vec3 shown_color(const vec3& color, const DisplayTransform& display, const vec4&
 /// its corner that is farthest from the mean. Nothing within is farther where each channel that is shown rises or falls
 /// with each of light, and so by most tone mappings, which mix channels; by `neutral` and `agx` a little may be
 /// (docs/model.md, "Error of a pixel"). What is not finite stays so. All of it is an error of what is not unlit.
-vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display,
-                 const vec4& unlit = vec4(0.0F));
+vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display, const vec4& unlit = vec4(0.0F));
 
 }  // namespace promin

@@ -52,7 +52,8 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
 /// of it alone, and no crop or cut reaches a bit. Vulkan-free.
 class Refinement {
  public:
-  /// Of a view with an error target; the window is not empty. `has_unlit`: samples tell of unlit surfaces.
+  /// Of a view with an error target; the window is not empty. `has_unlit`: take() gets what samples see of
+  /// unlit surfaces.
   Refinement(const View& view, const PixelWindow& window, bool has_unlit = false);
 
   /// The samples to trace next, at most about `most`, whose colors take() gets before the next call. Empty where the
@@ -75,7 +76,7 @@ class Refinement {
   /// Of the window's pixels, row by row.
   size_t pixel_count() const { return claims_.size(); }
   const PixelEstimate& estimate(size_t pixel) const { return estimates_[apron_index(pixel)]; }
-  /// The mean of what its samples tell of unlit surfaces; 0 without any.
+  /// The mean of what its samples see of unlit surfaces, as Aovs::unlit; 0 without any.
   vec4 unlit(size_t pixel) const { return mean_unlit(apron_index(pixel)); }
   const vec3& claim(size_t pixel) const { return claims_[pixel]; }
   /// The claim as the target measures errors (claimed_error).
@@ -104,7 +105,7 @@ class Refinement {
   FilterPlaces filter_;
   /// By apron; beyond the window with the first samples alone.
   std::vector<PixelEstimate> estimates_;
-  /// By apron, where samples tell of unlit surfaces: sums of that and, with ErrorTarget::display, of what each sample
+  /// By apron, with unlit surfaces: sums of what samples see of them and, with ErrorTarget::display, what each sample
   /// alone would show, as linear light.
   std::vector<dvec4> unlit_sums_;
   std::vector<PixelEstimate> shown_;

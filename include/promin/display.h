@@ -41,9 +41,9 @@ struct DisplayTransform {
 
 /// Stops that bring a picture's luminance to a middle grey of 0.18: of its pixels the mean of log(1e-4 + luminance)
 /// counts (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation 1). `objects` are
-/// Aovs::object: pixels that hit nothing, and those whose luminance is not finite, do not count; where `objects` is empty
-/// all hit. Where there is `unlit`, which is Aovs::unlit, each counts with its share that is not unlit. 0 where none
-/// counts.
+/// Aovs::object: pixels that hit nothing, and those whose luminance is not finite, do not count; where `objects` is
+/// empty all hit. Where there is `unlit`, which is Aovs::unlit, each counts with its share that is not unlit. 0 where
+/// none counts.
 PROMIN_EXPORT float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects,
                                         std::span<const vec4> unlit = {});
 

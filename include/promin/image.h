@@ -38,7 +38,7 @@ struct Channel {
   bool is_integer = false;
   /// The integers, or the bits of the floats; as many as the picture has pixels.
   std::vector<uint32_t> values;
-  /// Whether it only tells how the picture is shown: an EXR leaves it out.
+  /// Whether it is there only to show the picture: an EXR leaves it out.
   bool is_hidden = false;
 };
 

@@ -120,8 +120,7 @@ void bind_pictures(nb::module_& module) {
   module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
              nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr").none());
   module.def("read_image", &load, nb::arg("file"));
-  module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"),
-             nb::arg("unlit").none());
+  module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"), nb::arg("unlit").none());
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),
              nb::arg("fail"));
   module.def("has_named_channels", [](const std::filesystem::path& file) { return has_named_channels(file); });

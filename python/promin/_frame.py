@@ -46,8 +46,8 @@ class Frame:
     placement: tuple[tuple[int, int], tuple[int, int]] | None = None
     """Of a crop its upper left pixel in the whole picture, and the size of that."""
     unlit: NDArray[np.float32] | None = field(default=None, repr=False)
-    """Of a scene that has unlit materials beside others, what `display` leaves alone: (rows, columns, 4), the AOV "unlit"
-    of include/promin/aovs.h."""
+    """What `display` leaves alone, (rows, columns, 4): the AOV "unlit" of include/promin/aovs.h. None where the scene does
+    not have unlit materials beside others."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -155,7 +155,7 @@ def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: D
 
 
 def unlit_of(picture: object) -> NDArray[np.float32] | None:
-    """Of a Frame what its display leaves alone."""
+    """What the display of a Frame leaves alone; None for an array."""
     return picture.unlit if isinstance(picture, Frame) else None
 
 

@@ -52,7 +52,8 @@ inline constexpr const char* kSquareGltf =
   "scene": 0
 })";
 
-/// The square twice, side by side: lit on the left and on the right of an unlit colour, linear RGB of 0.5, 0.25 and 0.02.
+/// The square twice, side by side: lit on the left and on the right of an unlit colour, linear RGB of 0.5, 0.25 and
+/// 0.02.
 inline std::string make_mixed_gltf() {
   nlohmann::json gltf = nlohmann::json::parse(kSquareGltf);
   gltf["extensionsUsed"].push_back("KHR_materials_unlit");

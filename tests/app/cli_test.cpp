@@ -710,7 +710,8 @@ TEST_F(CliTest, UnlitColoursKeepClearOfExposureAndToneMapping) {
   const vec3 color(0.5F, 0.25F, 0.02F);
   const std::pair<OptionValues, std::optional<DisplayTransform>> cases[] = {
       {{}, DisplayTransform{2.0F, ToneMapping::kNeutral}},
-      {{"--exposure", "4", "--tone-mapping", "aces", "--spp", "4", "--alpha"}, DisplayTransform{4.0F, ToneMapping::kAces}},
+      {{"--exposure", "4", "--tone-mapping", "aces", "--spp", "4", "--alpha"},
+       DisplayTransform{4.0F, ToneMapping::kAces}},
       {{"--exposure", "average"}, std::nullopt},
       {{"--exposure", "-3", "--tone-mapping", "agx", "--target-error", "0.05", "--error-in", "display"},
        DisplayTransform{-3.0F, ToneMapping::kAgx}}};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"), beside lit ones, through what blends and in
-// a mirror.
+// What the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"), beside lit ones, through what blends
+// and in a mirror.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,8 +33,8 @@ Material make_lit(AlphaMode mode = AlphaMode::kOpaque, float alpha = 1.0F) {
   return material;
 }
 
-/// From the left: unlit, lit, unlit behind a quarter of what is lit, lit behind a quarter of what is unlit, and a mirror
-/// of what is unlit.
+/// From the left: unlit, lit, unlit behind a quarter of what is lit, lit behind a quarter of what is unlit, and a
+/// mirror of what is unlit.
 Scene make_stripes() {
   Scene scene;
   add_stripe(scene, 0, 0.0F, make_unlit(kColor));
@@ -78,8 +78,8 @@ TEST_F(UnlitTest, TheShareIsWhatTheCameraSeesDirectly) {
 
 TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
   const RenderResult result = trace(make_board_view(uvec2(kStripes, 1)));
-  for (const ToneMapping mapping : {ToneMapping::kNone, ToneMapping::kNeutral, ToneMapping::kAces,
-                                    ToneMapping::kReinhard, ToneMapping::kAgx}) {
+  for (const ToneMapping mapping :
+       {ToneMapping::kNone, ToneMapping::kNeutral, ToneMapping::kAces, ToneMapping::kReinhard, ToneMapping::kAgx}) {
     for (const float stops : {-4.0F, 0.0F, 6.0F}) {
       const DisplayTransform display{stops, mapping};
       std::array<vec3, kStripes> shown;

@@ -263,7 +263,7 @@ TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), target), shown.x);
 }
 
-// An unlit surface is as bright as a lit one beside it: light tells no edge, and what is shown has one.
+// An unlit surface is as bright as a lit one beside it: light has no edge, and what is shown has one.
 TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
   View view = make_view(1.0F / 64.0F);
   const auto count_samples = [&](const DisplayTransform& display) {
