@@ -141,10 +141,10 @@ struct MaterialRecord {
 };
 LAYOUT_CONSTANT MATERIAL_TEXELS = 6u;
 LAYOUT_CONSTANT MATERIAL_MODEL_MASK = 0xFFu;
-LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;  // where the texture's alpha says so
+LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;    // where the texture's alpha says so
 LAYOUT_CONSTANT MATERIAL_IS_ONE_SIDED = 0x200u;
-LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;    // with what is behind, by alpha
-LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;  // the number of its GlassRecord, from 1 on, 0: it has none
+LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;       // with what is behind, by alpha
+LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;     // the number of its GlassRecord, from 1 on, 0: it has none
 LAYOUT_CONSTANT MOST_GLASSES = 0x3FFFu;
 // A ray passes through so many surfaces that blend; the next counts as opaque.
 LAYOUT_CONSTANT MOST_LAYERS = 64u;
@@ -153,8 +153,8 @@ LAYOUT_FLOAT LEAST_SHARE_BEHIND = 0.0009765625f;
 // From this roughness on a metallic-roughness material shows the environment alone, no mirror ray.
 LAYOUT_FLOAT ROUGHEST_MIRROR = 0.4f;
 
-// What few metallic-roughness materials have, of extensions of glTF; the material's record has the number of this, from
-// 1 on, in x of d. Slots are numbers of texture slots.
+// What few metallic-roughness materials have, of extensions of glTF; the material's record has the number of this, from 1
+// on, in x of d. Slots are numbers of texture slots.
 struct ExtensionRecord {
   vec4 coat;         // x = how much of it there is; y = roughness; z = scale of its normals
   uvec4 coat_slots;  // x = of how much there is, y = of roughness, z = of normals
@@ -184,7 +184,7 @@ LAYOUT_CONSTANT COLORS = 3u;  // that dispersion parts
 
 // A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
 struct TextureSlotRecord {
-  vec4 to_u;  // w = bits of TEXTURE_*
+  vec4 to_u;    // w = bits of TEXTURE_*
   vec4 to_v;
   uvec4 image;  // x = its first word, y = width, z = height, w = levels
 };
@@ -221,20 +221,20 @@ LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 
 // The constants of a view of a scene (uniform buffer). None of them decides a branch or a loop; those are in Dispatch.
 struct ViewConstants {
-  vec4 eye;    // w = near: distance of the viewport plane
+  vec4 eye;  // w = near: distance of the viewport plane
   vec4 look;   // w = width of a sample's cone of sight at the eye, with TEXTURES
   vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = growth of that cone
   vec4 up;
   vec4 ambient;
-  vec4 background;      // w = 1 where rays from the camera see the sky instead, else 0
-  vec4 tree_bounds;     // center and max-norm radius of everything in the tree
-  vec4 film_center;     // x, y = half the picture's size in pixels
-  uvec4 first_index;    // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
-  uvec4 first_lookup;   // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
-                        // w = extensions, as ExtensionRecords
+  vec4 background;  // w = 1 where rays from the camera see the sky instead, else 0
+  vec4 tree_bounds;   // center and max-norm radius of everything in the tree
+  vec4 film_center;   // x, y = half the picture's size in pixels
+  uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
+  uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
+                       // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
   uvec4 first_glass;    // x = GlassRecords; y, z = the media in which the camera is (glass.glsl)
-  vec4 irradiance[9];   // of a sky: coefficients of its light over pi (environment.glsl)
+  vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
 
 // The numbers that decide branches and loops, at the head of the buffer that is written. They are not in push constants
@@ -253,11 +253,11 @@ struct Dispatch {
 
 // The stream of paths behind the pixels of a film (stream.glsl), for a piece of a picture.
 struct StreamState {
-  uvec4 place;        // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
-  uvec4 turn;         // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
-                      // of this turn's have a ray
-  uvec4 shadow_rays;  // x = how many are listed; y = records of a path, its sources among them
-  uvec4 list_groups;  // workgroups of each dispatch of the turn, as Vulkan takes them
+  uvec4 place;           // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
+  uvec4 turn;            // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
+                         // of this turn's have a ray
+  uvec4 shadow_rays;     // x = how many are listed; y = records of a path, its sources among them
+  uvec4 list_groups;     // workgroups of each dispatch of the turn, as Vulkan takes them
   uvec4 shadow_groups;
   uvec4 path_groups;
 };
@@ -307,13 +307,13 @@ LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 // bits of its place in that pixel, z = that pixel, its row above 16 bits, or this; then xyz = its radiance.
 LAYOUT_CONSTANT NO_LISTED_SAMPLE = 0xFFFFFFFFu;
 
-// What a film holds of each pixel, each kind for all pixels together: first the sum over its samples, and `order` of
-// what it shows; with FEATURE_AOVS then what its middle sample has met, of which the sum is the first record.
-LAYOUT_CONSTANT AOV_NORMAL = 1u;  // geometric; w = distance from the eye
-LAYOUT_CONSTANT AOV_ALBEDO = 2u;  // w = material
+// What a film holds of each pixel, each kind for all pixels together: first the sum over its samples, and `order` of what
+// it shows; with FEATURE_AOVS then what its middle sample has met, of which the sum is the first record.
+LAYOUT_CONSTANT AOV_NORMAL = 1u;          // geometric; w = distance from the eye
+LAYOUT_CONSTANT AOV_ALBEDO = 2u;          // w = material
 LAYOUT_CONSTANT AOV_POSITION = 3u;
 LAYOUT_CONSTANT AOV_SHADING_NORMAL = 4u;
-LAYOUT_CONSTANT AOV_MEASURES = 5u;  // x, y = texture coordinates; z = distance along the view; w = steps, an integer
+LAYOUT_CONSTANT AOV_MEASURES = 5u;        // x, y = texture coordinates; z = distance along the view; w = steps, an integer
 LAYOUT_CONSTANT AOV_RECORDS = 6u;
 // With FEATURE_LIGHT_AOVS the parts of the sum behind these.
 LAYOUT_CONSTANT PART_EMISSION = 0u;      // what the surface that the camera sees emits,
@@ -323,8 +323,7 @@ LAYOUT_CONSTANT PART_REFLECTION = 3u;    // mirror rays from it,
 LAYOUT_CONSTANT PART_TRANSMISSION = 4u;  // and rays through it
 LAYOUT_CONSTANT PART_BACKGROUND = 5u;    // what is seen beside and behind surfaces; w = how much of the pixel shows it
 LAYOUT_CONSTANT LIGHT_PARTS = 6u;
-LAYOUT_CONSTANT PART_SEEN =
-    6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
+LAYOUT_CONSTANT PART_SEEN = 6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
 LAYOUT_CONSTANT PART_RECORDS = 7u;
 // With FEATURE_SAMPLE_IDS the `order` of what each of so many samples shows behind these, four a record.
 LAYOUT_CONSTANT SAMPLE_IDS = 16u;
