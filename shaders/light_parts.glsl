@@ -10,8 +10,9 @@ uint record_of_part(uint pixel, uint part) {
 
 uint record_of_unlit(uint pixel) {
   uint before = (has(FEATURE_AOVS) ? AOV_RECORDS : 1u) + (has(FEATURE_LIGHT_AOVS) ? PART_RECORDS : 0u) +
-                (has(FEATURE_SAMPLE_IDS) && !has(FEATURE_LISTED_SAMPLES) ? SAMPLE_IDS / 4u : 0u) +
                 (has(FEATURE_SAMPLE_RANGES) ? RANGE_RECORDS : 0u);
+  // Apart from the sum: glslang 12 writes no valid module for a constant with && in it.
+  if (has(FEATURE_SAMPLE_IDS) && !has(FEATURE_LISTED_SAMPLES)) before += SAMPLE_IDS / 4u;
   return before * window_pixel_count() + pixel;
 }
 
@@ -54,7 +55,7 @@ void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
 
 // With FEATURE_UNLIT_SHARE adds what the camera sees of a point to the pixel's unlit light, where the point is unlit.
 void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
-  if (!has(FEATURE_UNLIT_SHARE) || bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
+  if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
   uint record = record_of_unlit(path.pixel);
   precise vec3 weight = coverage * path.weight;
   // As the whole sum counts it: where nothing else is seen they are the same.
