@@ -47,19 +47,20 @@ void add_channels(const std::string& name, std::string_view components, std::vec
 
 }  // namespace
 
-std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice) {
+std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit) {
   std::vector<Channel> channels;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
   if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, std::move(aovs.FIELD), channels);
 #include "promin/kinds/aovs.def"
+  for (Channel& channel : channels) channel.is_hidden = hides_unlit && channel.name.starts_with("unlit.");
   if (choice.cryptomatte) {
     for (Channel& channel : make_cryptomatte(scene, aovs).channels) channels.push_back(std::move(channel));
   }
   return channels;
 }
 
-AovHeader describe_aovs(const Scene& scene, const AovSet& choice, DepthKind depth_kind) {
-  AovHeader header{make_channels(scene, Aovs(), choice), {}};
+AovHeader describe_aovs(const Scene& scene, const AovSet& choice, bool hides_unlit, DepthKind depth_kind) {
+  AovHeader header{make_channels(scene, Aovs(), choice, hides_unlit), {}};
   if (choice.depth) {
     header.metadata.emplace_back("promin:depth", depth_kind_names()[static_cast<size_t>(depth_kind)]);
   }

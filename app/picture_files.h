@@ -15,16 +15,16 @@
 
 namespace promin::app {
 
-/// The channels of an EXR that tell a choice of AOVs, with their values. Of a wide picture either takes much memory, so
-/// what is moved here gives its own back as it goes.
-std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice);
+/// The channels of an EXR that tell a choice of AOVs, with their values; `hides_unlit`: those of Aovs::unlit are
+/// hidden. Of a wide picture either takes much memory, so what is moved here gives its own back as it goes.
+std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit);
 
 /// What the header of an EXR tells of these AOVs, without values.
 struct AovHeader {
   std::vector<Channel> channels;
   Metadata metadata;
 };
-AovHeader describe_aovs(const Scene& scene, const AovSet& choice, DepthKind depth_kind);
+AovHeader describe_aovs(const Scene& scene, const AovSet& choice, bool hides_unlit, DepthKind depth_kind);
 
 /// Cuts a window into bands of whole rows, so that what is held of a band at a time is bounded. `channel_count` is that
 /// of all four-byte numbers of a pixel.

@@ -169,7 +169,8 @@ std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const s
   header.metadata = first.metadata;
   const std::optional<PictureError> error = sum_errors(job, pieces, first);
   if (error) put_error(header.metadata, *error, area_of(first.window));
-  for (const Channel& channel : first.channels) header.channels.push_back({channel.name, channel.is_integer, {}});
+  for (const Channel& channel : first.channels)
+    header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
   header.display = first.display;
   header.exr = first.exr;
 
@@ -289,6 +290,7 @@ jobs::Content encode_part(const PicturePart& part) {
   Json channels = Json::array();
   for (const Channel& channel : part.channels) {
     channels.push_back({{"name", channel.name}, {"is_integer", channel.is_integer}});
+    if (channel.is_hidden) channels.back()["is_hidden"] = true;
   }
   Json json = {{"driver", driver_of(part.metadata)},
                {"full_size", {part.full_size.x, part.full_size.y}},
@@ -329,7 +331,7 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
                 exr.at(2).get<bool>()};
     part.metadata = json.at("metadata").get<Metadata>();
     for (const Json& channel : json.at("channels")) {
-      part.channels.push_back({channel.at("name"), channel.at("is_integer"), {}});
+      part.channels.push_back({channel.at("name"), channel.at("is_integer"), {}, channel.contains("is_hidden")});
     }
     if (json.contains("error")) part.error = error_of(json.at("error"));
   } catch (const nlohmann::json::exception&) {

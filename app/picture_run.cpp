@@ -43,6 +43,10 @@ PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFra
   const std::string assumptions =
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
   if (!assumptions.empty()) console.note(assumptions);
+  // A job's pieces may be shown later.
+  const bool keeps_unlit = (is_displayed || options.job.folder) && shows_unlit_apart(scene, view.look, stats.display);
+  run.options.hides_unlit = keeps_unlit && !options.aovs.unlit;
+  run.options.aovs.unlit |= keeps_unlit;
   check_lights(scene, options.view.lights_off);
   switch_lights(scene.lights, options.view.lights_off);
   const auto is_on = [](const Light& light) { return light.is_on; };

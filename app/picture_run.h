@@ -27,6 +27,7 @@ namespace promin::app {
 
 /// Pictures that are about to be traced: all inputs are read, no device is open.
 struct PictureRun {
+  /// With Aovs::unlit too where what shows the pictures needs it.
   RenderOptions options;
   std::vector<PlannedFrame> frames;
   /// Lit and framed.

@@ -37,7 +37,7 @@ namespace {
 PictureHeader make_header(const RenderOptions& options, const Scene& scene, const std::optional<uint32_t>& frame,
                           const RunStats& stats) {
   const View& view = *stats.view;
-  AovHeader aovs = describe_aovs(scene, options.aovs, view.depth_kind);
+  AovHeader aovs = describe_aovs(scene, options.aovs, options.hides_unlit, view.depth_kind);
   PictureHeader header;
   header.size = window_of(view).hi - window_of(view).lo;
   if (view.crop) header.crop = CropPlacement{view.crop->lo, view.size};
@@ -80,7 +80,7 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
 void expose_by_first(const RenderOptions& options, const RenderResult& result, RunStats& stats) {
   const bool is_first = stats.frames.size() <= 1;
   if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
-  stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object);
+  stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object, result.aovs.unlit);
 }
 
 /// Whether a picture is traced by one call, which needs it whole or makes it as exact as the time allows.
@@ -102,7 +102,7 @@ class FrameRendering {
         stats_(stats),
         on_progress_(std::move(on_progress)),
         window_(window_of(*stats.view)),
-        channels_(describe_aovs(scene, options.aovs, stats.view->depth_kind).channels),
+        channels_(describe_aovs(scene, options.aovs, options.hides_unlit, stats.view->depth_kind).channels),
         bands_(is_traced_whole(options) ? std::vector{window_} : cut_bands(window_, 3 + channels_.size())),
         trace_ms_(options.tracing.repeat_count, 0.0) {}
 
@@ -141,7 +141,8 @@ class FrameRendering {
     expose_by_first(options_, result, stats_);
     // Of a wide picture rows with all AOVs take much memory, so there are not three copies of them at a time.
     if (files_) files_->wait();
-    return {std::move(result.image), make_channels(scene_, std::move(result.aovs), options_.aovs)};
+    return {std::move(result.image),
+            make_channels(scene_, std::move(result.aovs), options_.aovs, options_.hides_unlit)};
   }
 
   void open_files() {
@@ -314,6 +315,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
   }
 
   PictureRun run = prepare_pictures(options, std::move(frames), console);
+  options = run.options;
   check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
   const auto tell_names = [&] {
     if (!given.pictures.empty() || options.pictures.empty()) return;

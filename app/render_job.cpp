@@ -82,17 +82,18 @@ class PicturePieces : public PieceMaker {
     number_as_in_file(job_.run_.scene, traced.result.aovs);
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);
-    const AovHeader aovs = describe_aovs(job_.run_.scene, options.aovs, view.depth_kind);
-    return encode_part({.frame = frame.number,
-                        .full_size = view.size,
-                        .window = job_.window_,
-                        .part = *view.crop,
-                        .metadata = make_metadata(stats_, frame.number, aovs),
-                        .exr = options.exr,
-                        .display = stats_.display,
-                        .error = traced.result.error,
-                        .image = std::move(traced.result.image),
-                        .channels = make_channels(job_.run_.scene, std::move(traced.result.aovs), options.aovs)});
+    const AovHeader aovs = describe_aovs(job_.run_.scene, options.aovs, options.hides_unlit, view.depth_kind);
+    return encode_part(
+        {.frame = frame.number,
+         .full_size = view.size,
+         .window = job_.window_,
+         .part = *view.crop,
+         .metadata = make_metadata(stats_, frame.number, aovs),
+         .exr = options.exr,
+         .display = stats_.display,
+         .error = traced.result.error,
+         .image = std::move(traced.result.image),
+         .channels = make_channels(job_.run_.scene, std::move(traced.result.aovs), options.aovs, options.hides_unlit)});
   }
 
  private:

@@ -443,7 +443,7 @@ void check_render_options(const RenderOptions& options) {
               "give --exposure in stops");
     check_error_target(*error.error_target());
   } else {
-    refuse_if(named.has_any(AovSource::kParts) && is_debug,
+    refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
               "--aov of light and --shading contradict each other: a debug shading has no light", "leave one out");
     refuse_if(options.aovs.error && is_debug,
               "--aov error and --shading contradict each other: a debug shading has no error", "leave one out");

@@ -142,6 +142,8 @@ struct RenderOptions {
   JobOptions job;
   /// Channels that an EXR carries beside R, G and B.
   AovSet aovs;
+  /// Whether AovSet::unlit is for what shows the pictures alone, which is known when the scene is read.
+  bool hides_unlit = false;
   ExrOptions exr;
   /// Whether the user has said how EXRs are compressed, be it as they are anyway.
   bool names_compression = false;

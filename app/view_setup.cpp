@@ -144,6 +144,11 @@ DisplayTransform choose_display(const Scene& scene, const LookOptions& look, Deb
   return display;
 }
 
+bool shows_unlit_apart(const Scene& scene, const LookOptions& look, const DisplayTransform& display) {
+  const bool shows_light_as_it_is = display.exposure_ev == 0.0F && display.tone_mapping == ToneMapping::kNone;
+  return mixes_unlit(scene) && (look.averages_exposure || !shows_light_as_it_is);
+}
+
 std::string describe_framing(Framing framing) {
   return framing == Framing::kFront ? "a camera in front that frames the scene"
                                     : "a camera that frames the scene from three quarters";

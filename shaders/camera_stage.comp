@@ -291,6 +291,7 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on
   if (has(FEATURE_LIGHT_AOVS) && DEBUG_VIEW == DEBUG_VIEW_NONE) {
     add_parts(path, point, light, own, is_on_surface, coverage);
   }
+  if (has(FEATURE_UNLIT_SHARE) && is_on_surface) add_unlit(path, 0u, point, light, coverage);
   if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
   if (has(FEATURE_BLENDING) && coverage < 1.0) {
     path.cone_width = CAMERA.look.w;

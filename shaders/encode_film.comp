@@ -12,6 +12,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 layout(constant_id = 0) const uint TONE_MAPPING = 0u;
 layout(constant_id = 1) const uint EXPOSURE = 0x3F800000u;
 layout(constant_id = 2) const uint DITHERS = 0u;
+// Whether the film has FEATURE_UNLIT_SHARE.
+layout(constant_id = 3) const uint HAS_UNLIT = 0u;
 
 // The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
@@ -29,14 +31,23 @@ vec3 encode_srgb(vec3 linear) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }
 
+// The light of a pixel as it is shown, of which unlit surfaces send so much and cover the share w.
+vec3 shown_light(vec3 radiance, vec4 unlit) {
+  float exposure = uintBitsToFloat(EXPOSURE);
+  float lit = max(1.0 - unlit.w, 0.0);
+  if (unlit.w == 0.0) return map_tones(TONE_MAPPING, exposure * radiance);
+  if (lit == 0.0) return unlit.xyz;
+  return lit * map_tones(TONE_MAPPING, exposure * (radiance - unlit.xyz) / lit) + unlit.xyz;
+}
+
 void main() {
   uint count = window_pixel_count();
   float samples = float(samples_per_pixel());
   uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
     vec3 radiance = uintBitsToFloat(pixels[i].xyz) / samples;
-    vec3 shown = map_tones(TONE_MAPPING, uintBitsToFloat(EXPOSURE) * radiance);
-    vec3 codes = 255.0 * encode_srgb(shown);
+    vec4 unlit = HAS_UNLIT != 0u ? uintBitsToFloat(pixels[count + i]) / samples : vec4(0.0);
+    vec3 codes = 255.0 * encode_srgb(shown_light(radiance, unlit));
     if (DITHERS != 0u) {
       uvec2 pixel = uvec2(i % window_size().x, i / window_size().x);
       codes = vec3(dithered(codes.x, pixel, 0u), dithered(codes.y, pixel, 1u), dithered(codes.z, pixel, 2u));

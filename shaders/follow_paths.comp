@@ -253,6 +253,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   log_own_light(own);
   if (begins_bounce(turn)) {
     seen = own;
+    if (has(FEATURE_UNLIT_SHARE)) add_unlit(path, bounces, point, own, coverage);
     if (has(FEATURE_LIGHT_AOVS)) {
       store_seen_part(path, own);
       add_own_parts(path, point, own, coverage);

@@ -340,6 +340,8 @@ LAYOUT_CONSTANT SAMPLE_IDS = 16u;
 LAYOUT_CONSTANT RANGE_LEAST = 0u;
 LAYOUT_CONSTANT RANGE_LARGEST = 1u;
 LAYOUT_CONSTANT RANGE_RECORDS = 2u;
+// With FEATURE_UNLIT_SHARE behind all of these one: what the camera sees of unlit surfaces, summed over samples; w = in
+// how many it sees them.
 
 // What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
 // its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is

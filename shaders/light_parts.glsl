@@ -8,6 +8,14 @@ uint record_of_part(uint pixel, uint part) {
   return (before + part) * window_pixel_count() + pixel;
 }
 
+uint record_of_unlit(uint pixel) {
+  uint before = (has(FEATURE_AOVS) ? AOV_RECORDS : 1u) + (has(FEATURE_LIGHT_AOVS) ? PART_RECORDS : 0u) +
+                (has(FEATURE_SAMPLE_RANGES) ? RANGE_RECORDS : 0u);
+  // Apart from the sum: glslang 12 writes no valid module for a constant with && in it.
+  if (has(FEATURE_SAMPLE_IDS) && !has(FEATURE_LISTED_SAMPLES)) before += SAMPLE_IDS / 4u;
+  return before * window_pixel_count() + pixel;
+}
+
 void add_to_part(uint pixel, uint part, vec3 light) {
   if (all(equal(light, vec3(0.0)))) return;
   uint record = record_of_part(pixel, part);
@@ -43,6 +51,16 @@ void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
   bool is_of_camera = part == PART_BACKGROUND;
   precise vec3 light = weight * (is_of_camera ? seen - own : seen);
   add_to_part(pixel, is_of_camera ? PART_DIRECT : part, light);
+}
+
+// With FEATURE_UNLIT_SHARE adds what the camera sees of a point to the pixel's unlit light, where the point is unlit.
+void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
+  if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
+  uint record = record_of_unlit(path.pixel);
+  precise vec3 weight = coverage * path.weight;
+  // As the whole sum counts it: where nothing else is seen they are the same.
+  precise vec4 sum = load_sum(record) + vec4(weight * seen, weight.x);
+  pixels[record] = floatBitsToUint(sum);
 }
 
 // Whether the stream has rays of several parts. Else all of them come from mirrors.

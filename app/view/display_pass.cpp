@@ -25,6 +25,7 @@ constexpr uint32_t kDecodes = 0;
 constexpr uint32_t kToneMapping = 0;
 constexpr uint32_t kExposure = 1;
 constexpr uint32_t kDithers = 2;
+constexpr uint32_t kHasUnlit = 3;
 constexpr uint32_t kEncodedBinding = 0;
 
 /// Most workgroups that encode a film: enough for any device, each takes its share.
@@ -64,11 +65,12 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, const Swapchain& swa
 }  // namespace
 
 gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
-                                  const DisplayTransform& display) {
+                                  const DisplayTransform& display, bool has_unlit) {
   const std::array constants{
       gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
       gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))},
-      gpu::SpecializationConstant{kDithers, display.dithers ? 1U : 0U}};
+      gpu::SpecializationConstant{kDithers, display.dithers ? 1U : 0U},
+      gpu::SpecializationConstant{kHasUnlit, has_unlit ? 1U : 0U}};
   constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
   const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, &film},
                            gpu::BoundBuffer{kEncodedBinding, kStorage, &encoded}};
@@ -91,7 +93,7 @@ DisplayPass::DisplayPass(const gpu::Device& device, const Swapchain& swapchain) 
 }
 
 void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count,
-                       const DisplayTransform& display) {
+                       const DisplayTransform& display, bool has_unlit) {
   constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
   const vk::DeviceSize size = pixel_count * sizeof(uint32_t);
   if (!encoded_ || encoded_->size_bytes() < size) {
@@ -107,7 +109,8 @@ void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_
     write.pBufferInfo = &info;
     device_->handle().updateDescriptorSets(write, {});
   }
-  for (size_t i = 0; i < kFilmCount; ++i) encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display));
+  for (size_t i = 0; i < kFilmCount; ++i)
+    encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display, has_unlit));
 }
 
 void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) {

@@ -15,8 +15,9 @@
 namespace promin::app {
 
 /// Makes what encodes the pixels of a film, as `display` shows them, to words of a buffer (shaders/encode_film.comp).
+/// `has_unlit` as ProgressivePicture::has_unlit.
 gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
-                                  const DisplayTransform& display);
+                                  const DisplayTransform& display, bool has_unlit);
 
 /// Draws pictures to the window: a film is encoded once (shaders/encode_film.comp), then drawn as often as the window
 /// wants it, scaled to all of the window (shaders/display.frag).
@@ -27,7 +28,8 @@ class DisplayPass {
 
   /// Makes room for pictures of so many pixels, and says where the films are now and how they are shown; the device
   /// must be idle. What was encoded last is kept.
-  void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count, const DisplayTransform& display);
+  void bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count, const DisplayTransform& display,
+            bool has_unlit);
 
   /// Records encoding a picture that was traced before.
   void record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture);

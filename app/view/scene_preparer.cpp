@@ -27,7 +27,7 @@ float meter_exposure(Renderer& renderer, View view, bool has_shadows) {
   const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
   view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
   const RenderResult metered = renderer.render(view);
-  return average_exposure_ev(metered.image.pixels, metered.aovs.object);
+  return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
 }
 
 /// Keeps the lights that a scene has.
@@ -152,6 +152,7 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
   options.bvh = request.choice.bvh;
   options.mode = request.mode;
   options.aovs.object = look_.averages_exposure;
+  options.aovs.unlit = look_.averages_exposure && mixes_unlit(*scene);
   options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
@@ -172,7 +173,11 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, const 
   std::optional<ProgressivePicture> picture;
   gpu::translate_vulkan_errors([&] {
     const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene->renderer));
-    picture.emplace(*device_, on_device.device_scene(), on_device.features_with(lights, request.mode), budget_ms_);
+    FeatureMask features = on_device.features_with(lights, request.mode);
+    if (shows_unlit(features, request.mode.debug_view) && shows_unlit_apart(*scene->scene, look_, scene->display)) {
+      features |= layout::FEATURE_UNLIT_SHARE;
+    }
+    picture.emplace(*device_, on_device.device_scene(), features, budget_ms_);
     picture->resize(request.size);
   });
   return {std::move(scene), request.mode, std::move(*picture)};

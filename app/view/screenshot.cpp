@@ -4,10 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <chrono>
 #include <cstring>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "picture_files.h"
 #include "promin/error.h"
 #include "render_options.h"
 #include "trace/film.h"
@@ -19,15 +23,28 @@ namespace {
 
 constexpr int kLastNumber = 9999;
 
+size_t area_of(const View& view) {
+  return static_cast<size_t>(view.size.x) * view.size.y;
+}
+
+/// Of Aovs::unlit, summed over samples; none of none.
+std::vector<Channel> list_unlit_channels(std::span<const uvec4> sums, uint32_t samples) {
+  Aovs aovs;
+  for (const uvec4& sum : sums) aovs.unlit.push_back(std::bit_cast<vec4>(sum) / static_cast<float>(samples));
+  return make_channels({}, std::move(aovs), {.unlit = !sums.empty()}, true);
+}
+
 std::string write_pictures(const std::vector<uvec4>& records, const View& view, const Metadata& metadata,
                            const DisplayTransform& display) {
   Image image;
   image.size = view.size;
-  image.pixels.resize(records.size());
+  image.pixels.resize(area_of(view));
   average_samples(records, view.samples_per_pixel, image.pixels);
+  const std::vector<Channel> unlit =
+      list_unlit_channels(std::span(records).subspan(image.pixels.size()), view.samples_per_pixel);
   const std::string name = find_free_name(fs::current_path());
   for (const char* ending : {".exr", ".png"}) {
-    write_image(name + ending, image, metadata, std::nullopt, {}, display);
+    write_image(name + ending, image, metadata, std::nullopt, unlit, display);
   }
   const std::string exactness =
       view.error_target ? describe_errors(view.error_target->error, view.error_target->error, *view.error_target)
@@ -37,11 +54,12 @@ std::string write_pictures(const std::vector<uvec4>& records, const View& view, 
 
 }  // namespace
 
-void Screenshot::record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view) {
+void Screenshot::record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view,
+                             bool has_unlit) {
   using Access = vk::AccessFlagBits;
   using Stage = vk::PipelineStageFlagBits;
   view_ = view;
-  const vk::DeviceSize size = static_cast<vk::DeviceSize>(view.size.x) * view.size.y * sizeof(uvec4);
+  const vk::DeviceSize size = (has_unlit ? 2 : 1) * static_cast<vk::DeviceSize>(area_of(view)) * sizeof(uvec4);
   copy_.emplace(gpu::Buffer::make_readback(*device_, size));
   const vk::MemoryBarrier traced(Access::eShaderWrite, Access::eTransferRead);
   commands.pipelineBarrier(Stage::eComputeShader, Stage::eTransfer, {}, traced, {}, {});
@@ -51,8 +69,8 @@ void Screenshot::record_copy(const vk::raii::CommandBuffer& commands, const gpu:
 }
 
 void Screenshot::write(const Metadata& metadata, const DisplayTransform& display) {
-  std::vector<uvec4> records(static_cast<size_t>(view_.size.x) * view_.size.y);
-  std::memcpy(records.data(), copy_->mapped().data(), records.size() * sizeof(uvec4));
+  std::vector<uvec4> records(copy_->size_bytes() / sizeof(uvec4));
+  std::memcpy(records.data(), copy_->mapped().data(), copy_->size_bytes());
   copy_.reset();
   written_ = std::async(std::launch::async, write_pictures, std::move(records), view_, metadata, display);
 }

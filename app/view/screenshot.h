@@ -20,8 +20,9 @@ class Screenshot {
   explicit Screenshot(const gpu::Device& device) : device_(&device) {}
 
   bool is_busy() const { return copy_.has_value() || written_.valid(); }
-  /// Records copying a film that holds all of the picture. Must not be called while busy.
-  void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view);
+  /// Records copying a film that holds all of the picture; `has_unlit` as ProgressivePicture::has_unlit. Must not be
+  /// called while busy.
+  void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view, bool has_unlit);
   /// Is called when the device has done that; writes on a thread of its own.
   void write(const Metadata& metadata, const DisplayTransform& display);
   /// Is called instead of writing, where the copy is not wanted after all.

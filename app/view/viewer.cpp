@@ -253,7 +253,7 @@ bool Viewer::fit_window() {
 void Viewer::fit_picture() {
   picture_->resize(swapchain_.size());
   const uvec2 full_size = picture_->full_size();
-  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y, display());
+  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y, display(), picture_->has_unlit());
   encoded_count_ = 0;
 }
 
@@ -306,7 +306,7 @@ void Viewer::record_tracing(Frame& frame) {
   if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
   if (wants_screenshot_ && picture_->is_complete() && !awaits_mode() && !screenshot_.is_busy()) {
     const View view = picture_->shown()->view_of(picture_->wanted());
-    screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view);
+    screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view, picture_->has_unlit());
     frame.on_finished = [this, view, error = picture_->shown()->error](const FinishedFrame& finished) {
       // It is not whole.
       if (finished.has_cut_loops) {

@@ -76,6 +76,20 @@ dvec3 map_tones(ToneMapping mapping, const dvec3& c) {
   return c;
 }
 
+/// How much of a pixel shows what is not unlit.
+double lit_share(const vec4& unlit) {
+  return std::max(1.0 - static_cast<double>(unlit.w), 0.0);
+}
+
+/// And how much light that sends where it fills the pixel.
+dvec3 lit_radiance(const vec3& radiance, const vec4& unlit) {
+  return (dvec3(radiance) - dvec3(unlit)) / lit_share(unlit);
+}
+
+bool is_identity(const DisplayTransform& display) {
+  return display.exposure_ev == 0.0F && display.tone_mapping == ToneMapping::kNone;
+}
+
 }  // namespace
 
 std::span<const std::string_view> tone_mapping_names() {
@@ -86,22 +100,26 @@ std::span<const std::string_view> tone_mapping_names() {
   return kNames;
 }
 
-float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects) {
+float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects,
+                          std::span<const vec4> unlit) {
   double sum = 0.0;
-  uint64_t count = 0;
+  double count = 0.0;
   for (size_t i = 0; i < pixels.size(); ++i) {
     if (!objects.empty() && objects[i] == Aovs::kNoId) continue;
-    const double luminance = glm::dot(kLuminance, dvec3(pixels[i]));
+    const vec4 of_unlit = unlit.empty() ? vec4(0.0F) : unlit[i];
+    const double lit = lit_share(of_unlit);
+    if (lit == 0.0) continue;
+    const double luminance = glm::dot(kLuminance, lit_radiance(pixels[i], of_unlit));
     if (!std::isfinite(luminance)) continue;
-    sum += std::log(1e-4 + std::max(luminance, 0.0));
-    ++count;
+    sum += lit * std::log(1e-4 + std::max(luminance, 0.0));
+    count += lit;
   }
-  if (count == 0) return 0.0F;
-  return static_cast<float>(std::log2(0.18) - sum / static_cast<double>(count) * std::numbers::log2e);
+  if (count == 0.0) return 0.0F;
+  return static_cast<float>(std::log2(0.18) - sum / count * std::numbers::log2e);
 }
 
 vec3 apply(const DisplayTransform& display, const vec3& radiance) {
-  if (display.exposure_ev == 0.0F && display.tone_mapping == ToneMapping::kNone) return radiance;
+  if (is_identity(display)) return radiance;
   const dvec3 exposed = std::exp2(static_cast<double>(display.exposure_ev)) * dvec3(radiance);
   if (display.tone_mapping == ToneMapping::kNone) return vec3(exposed);
   dvec3 shown(0.0);
@@ -110,6 +128,13 @@ vec3 apply(const DisplayTransform& display, const vec3& radiance) {
     if (exposed[i] > 0.0) shown[i] = std::min(exposed[i], kMostRadiance);
   }
   return vec3(map_tones(display.tone_mapping, shown));
+}
+
+vec3 apply(const DisplayTransform& display, const vec3& radiance, const vec4& unlit) {
+  if (unlit.w == 0.0F || is_identity(display)) return apply(display, radiance);
+  const double lit = lit_share(unlit);
+  if (lit == 0.0) return vec3(unlit);
+  return vec3(lit * dvec3(apply(display, vec3(lit_radiance(radiance, unlit)))) + dvec3(unlit));
 }
 
 }  // namespace promin

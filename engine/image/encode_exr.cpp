@@ -72,9 +72,12 @@ bool takes_half(const Channel& channel) {
 std::vector<FileChannel> list_channels(const PictureHeader& header) {
   const Imf::PixelType color = header.exr.is_half ? Imf::HALF : Imf::FLOAT;
   std::vector<FileChannel> result = {{"R", color, 0}, {"G", color, 1}, {"B", color, 2}};
+  size_t word = result.size();
   for (const Channel& channel : header.channels) {
     const bool is_half = header.exr.is_half && takes_half(channel);
-    result.push_back({channel.name, channel.is_integer ? Imf::UINT : is_half ? Imf::HALF : Imf::FLOAT, result.size()});
+    const Imf::PixelType type = channel.is_integer ? Imf::UINT : is_half ? Imf::HALF : Imf::FLOAT;
+    if (!channel.is_hidden) result.push_back({channel.name, type, word});
+    ++word;
   }
   return result;
 }

@@ -21,10 +21,30 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const Channel* find_alpha(std::span<const Channel> channels) {
-  const auto alpha = std::ranges::find(channels, "A", &Channel::name);
-  return alpha == channels.end() ? nullptr : &*alpha;
+const Channel* find_channel(std::span<const Channel> channels, std::string_view name) {
+  const auto found = std::ranges::find(channels, name, &Channel::name);
+  return found == channels.end() ? nullptr : &*found;
 }
+
+/// The channels that say how a picture of 8 bits is made of light; without those that are not there.
+struct ShowingChannels {
+  const Channel* alpha;
+  /// Aovs::unlit.
+  std::array<const Channel*, 4> unlit;
+
+  explicit ShowingChannels(std::span<const Channel> channels)
+      : alpha(find_channel(channels, "A")),
+        unlit{find_channel(channels, "unlit.R"), find_channel(channels, "unlit.G"), find_channel(channels, "unlit.B"),
+              find_channel(channels, "unlit.A")} {}
+
+  float alpha_at(size_t pixel) const { return alpha == nullptr ? 1.0F : std::bit_cast<float>(alpha->values[pixel]); }
+  vec4 unlit_at(size_t pixel) const {
+    vec4 result(0.0F);
+    if (std::ranges::find(unlit, nullptr) != unlit.end()) return result;
+    for (int i = 0; i < 4; ++i) result[i] = std::bit_cast<float>(unlit[static_cast<size_t>(i)]->values[pixel]);
+    return result;
+  }
+};
 
 /// Of an EXR, what is handed over at a time: many rows, or of wide pictures with many channels few.
 constexpr size_t kMostWords = size_t{4} << 20;
@@ -46,22 +66,29 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
 }
 
 /// Of light that covers so much of its pixel, as PNG keeps it.
-vec3 unassociated(const vec3& color, float alpha) {
-  return alpha > 0.0F ? color / alpha : vec3(0.0F);
+template <typename Light>
+Light unassociated(const Light& light, float alpha) {
+  return alpha > 0.0F ? light / alpha : Light(0.0F);
 }
 
 /// `lo` is the place of the upper left pixel in the whole picture.
-std::vector<uint8_t> encode_pixels(const Image& image, const Channel* alpha, const DisplayTransform& display,
+std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& channels, const DisplayTransform& display,
                                    const uvec2& lo) {
-  const size_t stride = alpha == nullptr ? 3 : 4;
+  const bool has_alpha = channels.alpha != nullptr;
+  const size_t stride = has_alpha ? 4 : 3;
   std::vector<uint8_t> bytes(image.pixels.size() * stride);
   for_each_index(image.size.y, 0, [&](size_t y) {
     uint8_t* next = &bytes[stride * y * image.size.x];
     for (uint32_t x = 0; x < image.size.x; ++x) {
       const size_t at = y * image.size.x + x;
-      const float covered = alpha == nullptr ? 1.0F : std::bit_cast<float>(alpha->values[at]);
-      const vec3& color = image.pixels[at];
-      const vec3 shown = apply(display, alpha == nullptr ? color : unassociated(color, covered));
+      const float covered = channels.alpha_at(at);
+      vec3 color = image.pixels[at];
+      vec4 unlit = channels.unlit_at(at);
+      if (has_alpha) {
+        color = unassociated(color, covered);
+        unlit = unassociated(unlit, covered);
+      }
+      const vec3 shown = apply(display, color, unlit);
       for (int channel = 0; channel < 3; ++channel) {
         float code = 255.0F * encode_srgb(shown[channel]);
         if (display.dithers) {
@@ -69,7 +96,7 @@ std::vector<uint8_t> encode_pixels(const Image& image, const Channel* alpha, con
         }
         *next++ = static_cast<uint8_t>(std::lround(code));
       }
-      if (alpha != nullptr) *next++ = static_cast<uint8_t>(std::lround(255.0F * std::clamp(covered, 0.0F, 1.0F)));
+      if (has_alpha) *next++ = static_cast<uint8_t>(std::lround(255.0F * std::clamp(covered, 0.0F, 1.0F)));
     }
   });
   return bytes;
@@ -127,7 +154,7 @@ class PictureWriter::Impl {
       if (has_named_channels(file)) {
         exr_.emplace(bytes_, header, file);
       } else {
-        png_.emplace(bytes_, header.size, find_alpha(header.channels) != nullptr);
+        png_.emplace(bytes_, header.size, find_channel(header.channels, "A") != nullptr);
       }
     });
   }
@@ -148,7 +175,7 @@ class PictureWriter::Impl {
       }
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
-      const std::vector<uint8_t> pixels = encode_pixels(rows, find_alpha(channels), header_.display, lo);
+      const std::vector<uint8_t> pixels = encode_pixels(rows, ShowingChannels(channels), header_.display, lo);
       encode([&] { png_->write_rows(pixels); });
     }
     rows_written_ += rows.size.y;
@@ -208,7 +235,8 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
                  const DisplayTransform& display, const ExrOptions& exr) {
   if (is_writable_format(file)) check_rows(image, channels);
   PictureHeader header{image.size, crop, metadata, {}, display, exr};
-  for (const Channel& channel : channels) header.channels.push_back({channel.name, channel.is_integer, {}});
+  for (const Channel& channel : channels)
+    header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
   PictureWriter writer(file, header);
   writer.write_rows(image, channels);
   writer.commit();

@@ -72,10 +72,15 @@ void PictureTracer::prepare_film(const RenderMode& mode) {
   prepare_film(features);
 }
 
+bool PictureTracer::tells_unlit(const RenderMode& mode) const {
+  return wanted_.unlit && shows_unlit(scene_.features(mode), mode.debug_view);
+}
+
 FeatureMask PictureTracer::features_of_samples(const RenderMode& mode) const {
   FeatureMask features;
   if (has_parts(mode)) features |= layout::FEATURE_LIGHT_AOVS;
   if (wanted_.cryptomatte) features |= layout::FEATURE_SAMPLE_IDS;
+  if (tells_unlit(mode)) features |= layout::FEATURE_UNLIT_SHARE;
   return features;
 }
 
@@ -170,6 +175,7 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
     if (!result.aovs.samples.empty()) result.aovs.samples[first + i] = samples;
     if (estimates_errors(view.mode)) ranges_[first + i] = read.range(i);
     if (wanted_.cryptomatte) tally.put(i, samples, first + i, result.aovs);
+    if (tells_unlit(view.mode)) result.aovs.unlit[first + i] = read.unlit(i) / static_cast<float>(samples);
     if (!has_parts(view.mode)) return;
     LightParts parts;
     parts.add(read, i);

@@ -67,6 +67,8 @@ class PictureTracer {
   bool has_parts(const RenderMode& mode) const {
     return wanted_.has_any(AovSource::kParts) && mode.debug_view == DebugView::kNone;
   }
+  /// Whether Aovs::unlit is wanted and there are unlit surfaces.
+  bool tells_unlit(const RenderMode& mode) const;
   /// The film on which samples of a list are traced.
   void prepare_refining_film(const RenderMode& mode);
   void prepare_film(FeatureMask features);

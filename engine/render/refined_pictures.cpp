@@ -41,6 +41,7 @@ void PictureTracer::refine(Refinement& refinement, const View& view, RefinedAovs
                            const ProgressCallback& on_samples) {
   const size_t most_listed = std::min<size_t>(kMostListedSamples, kMaxFilmRecords / film_->records().count);
   std::vector<vec3> radiance;
+  std::vector<vec4> unlit;
   for (auto list = refinement.next(most_listed); !list.empty(); list = refinement.next(most_listed)) {
     film_->put_list(list);
     const auto taken = static_cast<double>(refinement.sample_count());
@@ -51,7 +52,8 @@ void PictureTracer::refine(Refinement& refinement, const View& view, RefinedAovs
     radiance.resize(list.size());
     average_samples(read.records, 1, radiance);
     take_aovs(list, read, aovs);
-    refinement.take(radiance);
+    read_unlit(read, list.size(), unlit);
+    refinement.take(radiance, unlit);
   }
 }
 
@@ -69,6 +71,7 @@ void PictureTracer::take_refined(const Refinement& refinement, const RefinedAovs
     if (!result.aovs.samples.empty()) result.aovs.samples[at] = estimate.count();
     if (!result.aovs.error.empty()) result.aovs.error[at] = refinement.claim(i);
     if (!aovs.parts.empty()) aovs.parts[i].put(estimate.count(), at, result.aovs, result.image.pixels[at]);
+    if (tells_unlit(view.mode)) result.aovs.unlit[at] = refinement.unlit(i);
     if (wanted_.cryptomatte) aovs.tally.put(i, estimate.count(), at, result.aovs);
   }
 }
@@ -101,7 +104,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
   double told = 0.0;
   const auto pixels = static_cast<double>(result.image.pixels.size());
   for (const PixelWindow& part : parts_to_refine(picture_window(view))) {
-    Refinement refinement(view, part);
+    Refinement refinement(view, part, tells_unlit(view.mode));
     RefinedAovs aovs = begin_refined_aovs(part, view);
     const auto part_pixels = static_cast<double>(refinement.pixel_count());
     refine(refinement, view, aovs, result, [&](double of_part) {
@@ -128,7 +131,7 @@ RenderResult PictureTracer::render_within(const View& view, double seconds, cons
   step.error_target->error = first_error(*view.error_target);
   RenderResult result = begin_refined(step, progress);
   const PixelWindow window = picture_window(view);
-  Refinement refinement(step, window);
+  Refinement refinement(step, window, tells_unlit(view.mode));
   RefinedAovs aovs = begin_refined_aovs(window, step);
   const auto on_progress = [&](double) { return !progress || progress(std::min(1.0, 1e-3 * elapsed.ms() / seconds)); };
   const Stopwatch tracing;

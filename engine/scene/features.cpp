@@ -234,6 +234,10 @@ FeatureMask features_of(DebugView view) {
   return features;
 }
 
+bool shows_unlit(FeatureMask features, DebugView view) {
+  return view == DebugView::kNone && features.has_any(FEATURE_UNLIT);
+}
+
 FeatureMask all_features() {
   FeatureMask features = primitive_features();
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;

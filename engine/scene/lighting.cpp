@@ -47,7 +47,10 @@ bool is_all_unlit(const Scene& scene) {
   bool is_any_unlit = false;
   for (const Object& object : scene.objects) {
     if (object.geometry == Object::kNoGeometry) continue;
-    if (!std::holds_alternative<Unlit>(scene.materials[object.material].model)) return false;
+    const auto is_unlit = [&](uint32_t i) { return std::holds_alternative<Unlit>(scene.materials[i].model); };
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
+    const bool has_one = mesh == nullptr || mesh->triangle_materials.empty();
+    if (has_one ? !is_unlit(object.material) : !std::ranges::all_of(mesh->triangle_materials, is_unlit)) return false;
     is_any_unlit = true;
   }
   return is_any_unlit;
@@ -165,6 +168,10 @@ float exposure_of(const Scene& scene) {
 DisplayTransform display_of(const Scene& scene, LightChoice choice) {
   if (scene.is_classic || (choice == LightChoice::kHeadlight && is_of_phong(scene)) || is_all_unlit(scene)) return {};
   return {exposure_of(scene), ToneMapping::kNeutral};
+}
+
+bool mixes_unlit(const Scene& scene) {
+  return has_any<Unlit>(scene.materials) && !is_all_unlit(scene);
 }
 
 Framing framing_of(const Scene& scene) {

@@ -149,8 +149,12 @@ ReadFilm Film::read_list() {
   return {list_records_, pixel_count, records_};
 }
 
-void Film::put_pixels(std::span<const uvec4> records) {
-  assert(records.size() <= capacity_);
+void Film::put_pixels(std::span<const uvec4> records, const uvec2& size) {
+  assert(records.size() <= size_t{capacity_} * records_.count);
+  layout::Dispatch traced{};
+  traced.window = uvec4(0, 0, size);
+  traced.sampling.x = 1;
+  buffer_->write(std::as_bytes(std::span(&traced, 1)), offsetof(layout::FilmHead, dispatch));
   buffer_->write(std::as_bytes(records), kPixelsOffset);
 }
 
@@ -180,11 +184,14 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
   commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eTransfer, {}, before, {}, {});
   commands.updateBuffer<layout::ViewConstants>(*view_constants_.handle(), 0, picture.view_constants());
   commands.fillBuffer(*buffer_->handle(), offsetof(layout::FilmHead, ray_counts), kCountersBytes, 0);
-  if (!features_.has_any(layout::FEATURE_LIGHT_AOVS) || !picture.begins_sums()) return;
-  // Most samples add to few of the parts, so the first cannot begin them all, as it does the other sums.
+  if (!picture.begins_sums()) return;
+  // Most samples add to few of these, so the first cannot begin them all, as it does the other sums.
   const vk::DeviceSize record_bytes = picture.pixel_count() * sizeof(uvec4);
-  commands.fillBuffer(*buffer_->handle(), kPixelsOffset + records_.first_part * record_bytes,
-                      layout::PART_RECORDS * record_bytes, 0);
+  const auto clear = [&](uint32_t first, uint32_t count) {
+    commands.fillBuffer(*buffer_->handle(), kPixelsOffset + first * record_bytes, count * record_bytes, 0);
+  };
+  if (features_.has_any(layout::FEATURE_LIGHT_AOVS)) clear(records_.first_part, layout::PART_RECORDS);
+  if (features_.has_any(layout::FEATURE_UNLIT_SHARE)) clear(records_.unlit, 1);
 }
 
 void Film::record(const vk::raii::CommandBuffer& commands, const TileSample& piece) const {

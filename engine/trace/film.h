@@ -59,9 +59,9 @@ class Film {
   /// What they have seen, as long as nothing else is put there or read; of the pixels of list_window().
   ReadFilm read_list();
 
-  /// Puts the first records of pixels on the film, as many as have room, as if they had been traced; the device is idle
-  /// with respect to the film.
-  void put_pixels(std::span<const uvec4> records);
+  /// Puts the first records of a picture of this size on the film, as many as have room, as if they had been traced
+  /// with one sample a pixel; the device is idle with respect to the film.
+  void put_pixels(std::span<const uvec4> records, const uvec2& size);
 
   /// Takes note that the scene has changed parts; the device is idle with respect to the film.
   void bind_scene();

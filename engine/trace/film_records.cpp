@@ -25,7 +25,8 @@ FilmRecords::FilmRecords(FeatureMask features)
                   (features.has_any(layout::FEATURE_SAMPLE_IDS) && !features.has_any(layout::FEATURE_LISTED_SAMPLES)
                        ? layout::SAMPLE_IDS / 4
                        : 0)),
-      count(first_range + (features.has_any(layout::FEATURE_SAMPLE_RANGES) ? layout::RANGE_RECORDS : 0)) {}
+      unlit(first_range + (features.has_any(layout::FEATURE_SAMPLE_RANGES) ? layout::RANGE_RECORDS : 0)),
+      count(unlit + (features.has_any(layout::FEATURE_UNLIT_SHARE) ? 1 : 0)) {}
 
 dvec3 ReadFilm::part(uint32_t which, size_t pixel) const {
   return {vec3_of(record(layout.first_part + which, pixel))};
@@ -34,6 +35,17 @@ dvec3 ReadFilm::part(uint32_t which, size_t pixel) const {
 ColorRange ReadFilm::range(size_t pixel) const {
   return {vec3_of(record(layout.first_range + layout::RANGE_LEAST, pixel)),
           vec3_of(record(layout.first_range + layout::RANGE_LARGEST, pixel))};
+}
+
+vec4 ReadFilm::unlit(size_t pixel) const {
+  const uvec4& bits = record(layout.unlit, pixel);
+  return {vec3_of(bits), std::bit_cast<float>(bits.w)};
+}
+
+void read_unlit(const ReadFilm& film, size_t pixel_count, std::vector<vec4>& unlit) {
+  if (!film.layout.has_unlit()) return;
+  unlit.resize(pixel_count);
+  for_each_pixel(pixel_count, [&](size_t i) { unlit[i] = film.unlit(i); });
 }
 
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
@@ -72,11 +84,13 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
 #define PROMIN_READ_kParts(FIELD)
 #define PROMIN_READ_kSteps(FIELD)
 #define PROMIN_READ_kSampling(FIELD)
+#define PROMIN_READ_kUnlit(FIELD)
 #include "promin/kinds/aovs.def"
 #undef PROMIN_READ_kSurface
 #undef PROMIN_READ_kParts
 #undef PROMIN_READ_kSteps
 #undef PROMIN_READ_kSampling
+#undef PROMIN_READ_kUnlit
   });
 }
 

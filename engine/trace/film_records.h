@@ -24,7 +24,11 @@ struct FilmRecords {
   uint32_t first_part;
   uint32_t first_ids;
   uint32_t first_range;
+  /// With FEATURE_UNLIT_SHARE.
+  uint32_t unlit;
   uint32_t count;
+
+  bool has_unlit() const { return unlit < count; }
 };
 
 /// A film that has been read, of a window of a picture.
@@ -38,6 +42,8 @@ struct ReadFilm {
   dvec3 part(uint32_t which, size_t pixel) const;
   /// Of its samples, with FEATURE_SAMPLE_RANGES.
   ColorRange range(size_t pixel) const;
+  /// What the camera sees of unlit surfaces, as Aovs::unlit but summed over samples, with FEATURE_UNLIT_SHARE.
+  vec4 unlit(size_t pixel) const;
 };
 
 /// Reads the AOVs that surfaces tell, and those that only steps do, into those that are there. The film's first pixel
@@ -45,6 +51,10 @@ struct ReadFilm {
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
                    Aovs& aovs);
 void read_steps(const ReadFilm& film, size_t first, Aovs& aovs);
+
+/// Reads what the camera sees of unlit surfaces in the first pixels of a film with FEATURE_UNLIT_SHARE; nothing from
+/// another film.
+void read_unlit(const ReadFilm& film, size_t pixel_count, std::vector<vec4>& unlit);
 
 /// The parts of a pixel's light, summed over samples.
 struct LightParts {

@@ -100,24 +100,24 @@ vec3 estimate_error(const ColorRange& around, uint32_t samples) {
   return estimate;
 }
 
-float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target) {
+float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target, const vec4& unlit) {
   if (!target.display) return largest_claim(claim) / std::max({target.white, mean.x, mean.y, mean.z});
-  return largest_claim(shown_claim(claim, mean, *target.display));
+  return largest_claim(shown_claim(claim, mean, *target.display, unlit));
 }
 
-vec3 shown_color(const vec3& color, const DisplayTransform& display) {
-  const vec3 mapped = apply(display, color);
+vec3 shown_color(const vec3& color, const DisplayTransform& display, const vec4& unlit) {
+  const vec3 mapped = apply(display, color, unlit);
   return {encode_srgb(mapped.x), encode_srgb(mapped.y), encode_srgb(mapped.z)};
 }
 
-vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display) {
+vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display, const vec4& unlit) {
   if (claim == vec3(0.0F)) return claim;
-  const vec3 middle = shown_color(mean, display);
+  const vec3 middle = shown_color(mean, display, unlit);
   vec3 farthest(0.0F);
   for (int corner = 0; corner < 8; ++corner) {
     const vec3 side((corner & 1) == 0 ? -1.0F : 1.0F, (corner & 2) == 0 ? -1.0F : 1.0F,
                     (corner & 4) == 0 ? -1.0F : 1.0F);
-    farthest = glm::max(farthest, glm::abs(shown_color(mean + side * claim, display) - middle));
+    farthest = glm::max(farthest, glm::abs(shown_color(mean + side * claim, display, unlit) - middle));
   }
   for (int channel = 0; channel < 3; ++channel) {
     if (!std::isfinite(claim[channel])) farthest[channel] = claim[channel];

@@ -61,16 +61,16 @@ class PixelEstimate {
 vec3 estimate_error(const ColorRange& around, uint32_t samples);
 
 /// A pixel's largest claim as an error target measures it: of white or of the pixel's largest channel where that is
-/// more, or as it is shown. NaN where it has a claim that is.
-float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target);
+/// more, or as it is shown. NaN where it has a claim that is. `unlit` is its Aovs::unlit.
+float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target, const vec4& unlit = vec4(0.0F));
 
 /// A color as it is shown: exposed, tone mapped and encoded as sRGB, 0...1.
-vec3 shown_color(const vec3& color, const DisplayTransform& display);
+vec3 shown_color(const vec3& color, const DisplayTransform& display, const vec4& unlit = vec4(0.0F));
 
 /// By how much each channel may be off as it is shown, 0...1, where the light of all is within the claim: by as much as
 /// its corner that is farthest from the mean. Nothing within is farther where each channel that is shown rises or falls
 /// with each of light, and so by most tone mappings, which mix channels; by `neutral` and `agx` a little may be
-/// (docs/model.md, "Error of a pixel"). What is not finite stays so.
-vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display);
+/// (docs/model.md, "Error of a pixel"). What is not finite stays so. All of it is an error of what is not unlit.
+vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display, const vec4& unlit = vec4(0.0F));
 
 }  // namespace promin

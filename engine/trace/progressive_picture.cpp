@@ -188,7 +188,7 @@ double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& comm
 void ProgressivePicture::show_refined() {
   // Frames that used the film which is not shown ended before the samples of this picture were traced.
   const size_t film = 1 - shown_->film;
-  films_[film].put_pixels(refined_->pixels());
+  films_[film].put_pixels(refined_->pixels(), full_size_);
   picture_when_done_ = {film, full_size_, 1, refined_->error()};
   picture_version_ = refined_version_;
   finish();

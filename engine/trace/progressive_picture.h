@@ -44,6 +44,8 @@ class ProgressivePicture {
   /// The largest size that a picture can have: that of the window, if the device's buffers can be large enough.
   const uvec2& full_size() const { return full_size_; }
   const gpu::Buffer& film(size_t index) const { return films_[index].buffer(); }
+  /// Whether films have a second record of each pixel, Aovs::unlit summed over samples: with FEATURE_UNLIT_SHARE.
+  bool has_unlit() const { return films_[0].records().has_unlit(); }
 
   /// The view to show from now on, in full size.
   void want(View view);

@@ -57,12 +57,14 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window) {
   return parts;
 }
 
-Refinement::Refinement(const View& view, const PixelWindow& window)
+Refinement::Refinement(const View& view, const PixelWindow& window, bool has_unlit)
     : target_(*view.error_target),
       window_(window),
       apron_(with_neighbors(window, view.size)),
       filter_(view),
       estimates_(area_of(apron_)),
+      unlit_sums_(has_unlit ? area_of(apron_) : 0),
+      shown_(has_unlit && target_.display ? area_of(apron_) : 0),
       first_ranges_(area_of(apron_)),
       claims_(area_of(window)),
       errors_(area_of(window)),
@@ -110,18 +112,42 @@ std::span<const ListedSample> Refinement::next(size_t most) {
   return list_;
 }
 
-void Refinement::take(std::span<const vec3> radiance) {
-  assert(radiance.size() == list_.size());
+void Refinement::take(std::span<const vec3> radiance, std::span<const vec4> unlit) {
+  assert(radiance.size() == list_.size() && unlit.size() == (unlit_sums_.empty() ? 0 : list_.size()));
   const uint32_t samples = end_sample_ - first_sample_;
   for_each_chunk(listed_pixels_, kChunk, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t pixel = pixels_[handed_out_ + i];
-      for (const vec3& color : radiance.subspan(i * samples, samples)) estimates_[pixel].add(color);
+      for (size_t j = i * samples; j < (i + 1) * samples; ++j) {
+        estimates_[pixel].add(radiance[j]);
+        if (!unlit.empty()) add_unlit(pixel, radiance[j], unlit[j]);
+      }
       if (first_sample_ == 0) first_ranges_[pixel] = estimates_[pixel].range();
     }
   });
   handed_out_ += listed_pixels_;
   sample_count_ += radiance.size();
+}
+
+vec4 Refinement::mean_unlit(size_t apron_index) const {
+  if (unlit_sums_.empty()) return vec4(0.0F);
+  return vec4(unlit_sums_[apron_index] / static_cast<double>(estimates_[apron_index].count()));
+}
+
+void Refinement::add_unlit(size_t apron_index, const vec3& radiance, const vec4& unlit) {
+  unlit_sums_[apron_index] += dvec4(unlit);
+  if (!shown_.empty()) shown_[apron_index].add(apply(*target_.display, radiance, unlit));
+}
+
+float Refinement::judge_error(size_t apron_index, const vec3& claim) const {
+  const vec4 unlit = mean_unlit(apron_index);
+  const float error = promin::claimed_error(claim, estimates_[apron_index].mean(), target_, unlit);
+  if (shown_.empty() || unlit.w == 0.0F) return error;
+  // Where an unlit surface ends light may stay the same while what is shown does not.
+  const PixelEstimate& shown = shown_[apron_index];
+  ErrorTarget as_it_is = target_;
+  as_it_is.display = DisplayTransform();
+  return std::max(error, promin::claimed_error(shown.claim(shown.range()), shown.mean(), as_it_is));
 }
 
 void Refinement::judge_stage() {
@@ -132,7 +158,7 @@ void Refinement::judge_stage() {
       if (!pixel) continue;
       const PixelEstimate& estimate = estimates_[pixels_[i]];
       claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]));
-      errors_[*pixel] = promin::claimed_error(claims_[*pixel], estimate.mean(), target_);
+      errors_[*pixel] = judge_error(pixels_[i], claims_[*pixel]);
     }
   });
 }

@@ -52,13 +52,15 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
 /// of it alone, and no crop or cut reaches a bit. Vulkan-free.
 class Refinement {
  public:
-  /// Of a view with an error target; the window is not empty.
-  Refinement(const View& view, const PixelWindow& window);
+  /// Of a view with an error target; the window is not empty. `has_unlit`: take() gets what samples see of
+  /// unlit surfaces.
+  Refinement(const View& view, const PixelWindow& window, bool has_unlit = false);
 
   /// The samples to trace next, at most about `most`, whose colors take() gets before the next call. Empty where the
   /// window is as exact as it is asked for.
   std::span<const ListedSample> next(size_t most);
-  void take(std::span<const vec3> radiance);
+  /// `unlit` has as many values, as Aovs::unlit of a picture of one sample, or none without unlit surfaces.
+  void take(std::span<const vec3> radiance, std::span<const vec4> unlit = {});
 
   /// Goes on with a smaller error, where all is as exact as was asked for. What this brings is what the smaller error
   /// would have brought at once.
@@ -74,6 +76,8 @@ class Refinement {
   /// Of the window's pixels, row by row.
   size_t pixel_count() const { return claims_.size(); }
   const PixelEstimate& estimate(size_t pixel) const { return estimates_[apron_index(pixel)]; }
+  /// The mean of what its samples see of unlit surfaces, as Aovs::unlit; 0 without any.
+  vec4 unlit(size_t pixel) const { return mean_unlit(apron_index(pixel)); }
   const vec3& claim(size_t pixel) const { return claims_[pixel]; }
   /// The claim as the target measures errors (claimed_error).
   float claimed_error(size_t pixel) const { return errors_[pixel]; }
@@ -86,6 +90,9 @@ class Refinement {
   size_t apron_index(size_t pixel) const;
   std::optional<size_t> window_index(size_t apron_index) const;
   uvec2 place_of(size_t apron_index) const;
+  vec4 mean_unlit(size_t apron_index) const;
+  void add_unlit(size_t apron_index, const vec3& radiance, const vec4& unlit);
+  float judge_error(size_t apron_index, const vec3& claim) const;
   void judge_stage();
   /// Begins to double the samples of pixels that have `sample` of them or more, the fewest first; without any all is
   /// done.
@@ -98,6 +105,10 @@ class Refinement {
   FilterPlaces filter_;
   /// By apron; beyond the window with the first samples alone.
   std::vector<PixelEstimate> estimates_;
+  /// By apron, with unlit surfaces: sums of what samples see of them and, with ErrorTarget::display, what each sample
+  /// alone would show, as linear light.
+  std::vector<dvec4> unlit_sums_;
+  std::vector<PixelEstimate> shown_;
   /// Of the first samples.
   std::vector<ColorRange> first_ranges_;
   /// By window.

@@ -22,7 +22,7 @@ RefiningPicture::RefiningPicture(Film& film, const View& view)
     : view_(view),
       film_(&film),
       error_(first_error(*view.error_target)),
-      refinement_(aimed_at(view, error_), {uvec2(0), view.size}) {}
+      refinement_(aimed_at(view, error_), {uvec2(0), view.size}, film.records().has_unlit()) {}
 
 double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double units, double most_units) {
   assert(!is_under_way());
@@ -59,17 +59,23 @@ void RefiningPicture::take() {
   const ReadFilm read = film_->read_list();
   std::vector<vec3> radiance(list_.size());
   average_samples(read.records, 1, radiance);
+  std::vector<vec4> unlit;
+  read_unlit(read, list_.size(), unlit);
   list_ = {};
-  refinement_.take(radiance);
+  refinement_.take(radiance, unlit);
 }
 
 std::vector<uvec4> RefiningPicture::pixels() const {
   std::vector<uvec4> records;
-  records.reserve(refinement_.pixel_count());
+  const bool has_unlit = film_->records().has_unlit();
+  records.reserve(refinement_.pixel_count() * (has_unlit ? 2 : 1));
   for (size_t i = 0; i < refinement_.pixel_count(); ++i) {
     const vec3 mean = refinement_.estimate(i).mean();
     records.emplace_back(std::bit_cast<uint32_t>(mean.x), std::bit_cast<uint32_t>(mean.y),
                          std::bit_cast<uint32_t>(mean.z), layout::NO_ORDER);
+  }
+  for (size_t i = 0; has_unlit && i < refinement_.pixel_count(); ++i) {
+    records.push_back(std::bit_cast<uvec4>(refinement_.unlit(i)));
   }
   return records;
 }

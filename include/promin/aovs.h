@@ -34,8 +34,9 @@ inline constexpr size_t kCoverageRanks = 6;
 using CoverageRanks = std::array<Coverage, kCoverageRanks>;
 
 /// Where AOVs come from, which is what they cost: a surface is of the middle sample and costs little; parts of light
-/// are summed over samples; steps take a pass of their own; what tells of sampling costs nothing.
-enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling };
+/// are summed over samples; steps take a pass of their own; what tells of sampling costs nothing; the share of unlit
+/// surfaces is summed over samples too, and costs less than parts.
+enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling, kUnlit };
 
 /// A choice of AOVs; each member is named as that of Aovs.
 struct AovSet {
@@ -80,6 +81,9 @@ struct AovSet {
 /// What blends with what is behind it counts with its share, and what is behind it with the rest.
 ///   - alpha: how much of the pixel shows the scene and not the background, 0...1. An image with it has no background:
 ///     its pixels are what is left of them without, premultiplied
+///   - unlit: of the image's pixel what the camera sees of unlit surfaces, without mirrors or glass between, and how
+///   much
+///     of the pixel shows them, 0...1: what apply() (promin/display.h) shows as it is
 ///   - samples: how many the pixel has taken
 ///   - error: by how much each channel may be off: with an error target the claim (promin/view.h, ErrorTarget), else an
 ///     estimate by the samples of the pixel and of those around it, which knows of edges alone; a debug view has none

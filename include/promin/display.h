@@ -41,12 +41,18 @@ struct DisplayTransform {
 
 /// Stops that bring a picture's luminance to a middle grey of 0.18: of its pixels the mean of log(1e-4 + luminance)
 /// counts (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation 1). `objects` are
-/// Aovs::object: pixels that hit nothing, and those whose luminance is not finite, do not count; where `objects` is empty
-/// all hit. 0 where none counts.
-PROMIN_EXPORT float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects);
+/// Aovs::object: pixels that hit nothing, and those whose luminance is not finite, do not count; where `objects` is
+/// empty all hit. Where there is `unlit`, which is Aovs::unlit, each counts with its share that is not unlit. 0 where
+/// none counts.
+PROMIN_EXPORT float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects,
+                                        std::span<const vec4> unlit = {});
 
 /// What is shown of a radiance, linear RGB: encode_srgb() (promin/image.h) cuts it to 0...1 and encodes it. Computed in
 /// double; the default transform gives the same bits back. Under a tone mapping negative components and NaN count as 0.
 PROMIN_EXPORT vec3 apply(const DisplayTransform& display, const vec3& radiance);
+
+/// The same of a pixel in part of which the camera sees unlit surfaces, which are shown as they are. `unlit` is its
+/// Aovs::unlit: linear RGB, which `radiance` includes, and the share of the pixel.
+PROMIN_EXPORT vec3 apply(const DisplayTransform& display, const vec3& radiance, const vec4& unlit);
 
 }  // namespace promin

@@ -38,6 +38,8 @@ struct Channel {
   bool is_integer = false;
   /// The integers, or the bits of the floats; as many as the picture has pixels.
   std::vector<uint32_t> values;
+  /// Whether it is there only to show the picture: an EXR leaves it out.
+  bool is_hidden = false;
 };
 
 /// Name and value pairs that an EXR carries in its header, e.g. {"promin:scene", "showcase.gltf"}.
@@ -78,7 +80,8 @@ struct ExrOptions {
 
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
 /// picture's display window) or .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for one named
-/// "A", by which the pixels are taken as multiplied; a crop is a picture of its own). Equal arguments give equal bytes.
+/// "A", by which the pixels are taken as multiplied, and those of Aovs::unlit, which are shown as they are; a crop is a
+/// picture of its own). Equal arguments give equal bytes.
 /// Atomic: the picture is written to a temporary file beside the target and renamed; on failure the target is as it
 /// was. Any thread may call it. Throws UsageError for another ending, for a picture without pixels and where the
 /// pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be written.

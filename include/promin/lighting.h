@@ -78,6 +78,10 @@ PROMIN_EXPORT float exposure_of(const Scene& scene);
 /// as exposure_of() does.
 PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
 
+/// Whether a scene has unlit materials beside others. Exposure and tone mapping leave their colours alone in pictures
+/// with Aovs::unlit (promin/aovs.h).
+PROMIN_EXPORT bool mixes_unlit(const Scene& scene);
+
 /// From where to frame a scene: classic ones from the front, others from three quarters.
 PROMIN_EXPORT Framing framing_of(const Scene& scene);
 

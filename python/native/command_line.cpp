@@ -134,7 +134,7 @@ Metadata describe_picture(const View& view, const DisplayTransform& display, con
   stats.view = view;
   stats.display = display;
   if (error) stats.errors.push_back(*error);
-  return app::make_metadata(stats, {}, app::describe_aovs(named, aovs, view.depth_kind));
+  return app::make_metadata(stats, {}, app::describe_aovs(named, aovs, false, view.depth_kind));
 }
 
 void bind_command_line(nb::module_& module) {

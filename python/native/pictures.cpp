@@ -29,6 +29,8 @@ namespace {
 
 /// Values of a channel: floats or integers of 32 bits.
 using ChannelArray = nb::ndarray<const uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+/// Values of Aovs::unlit.
+using UnlitArray = nb::ndarray<const float, nb::shape<-1, -1, 4>, nb::c_contig, nb::device::cpu>;
 /// x, y, width and height of the whole picture.
 using Placement = std::pair<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>>;
 
@@ -58,13 +60,22 @@ nb::object load(const std::filesystem::path& file) {
   return write_image_array(std::move(image));
 }
 
-nb::object show(const PictureArray& pixels, const nb::dict& record) {
+/// `unlit` is Aovs::unlit of the picture.
+nb::object show(const PictureArray& pixels, const nb::dict& record, const std::optional<UnlitArray>& unlit) {
   Image image = read_image_array(pixels);
+  std::vector<vec4> of_unlit(image.pixels.size(), vec4(0.0F));
+  if (unlit) {
+    if (unlit->shape(0) != image.size.y || unlit->shape(1) != image.size.x) {
+      throw UsageError({"the unlit share has another size than the picture", "in the picture to show",
+                        "give a value for each pixel"});
+    }
+    if (!of_unlit.empty()) std::memcpy(of_unlit.data(), unlit->data(), of_unlit.size() * sizeof(vec4));
+  }
   const DisplayTransform display = read_display(record);
   run_watched(nb::none(), [&](const ProgressCallback&) {
-    for (vec3& pixel : image.pixels) {
-      const vec3 shown = apply(display, pixel);
-      pixel = vec3(encode_srgb(shown.x), encode_srgb(shown.y), encode_srgb(shown.z));
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+      const vec3 shown = apply(display, image.pixels[i], of_unlit[i]);
+      image.pixels[i] = vec3(encode_srgb(shown.x), encode_srgb(shown.y), encode_srgb(shown.z));
     }
   });
   return write_image_array(std::move(image));
@@ -109,7 +120,7 @@ void bind_pictures(nb::module_& module) {
   module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
              nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr").none());
   module.def("read_image", &load, nb::arg("file"));
-  module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"));
+  module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"), nb::arg("unlit").none());
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),
              nb::arg("fail"));
   module.def("has_named_channels", [](const std::filesystem::path& file) { return has_named_channels(file); });

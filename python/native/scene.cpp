@@ -146,6 +146,7 @@ void bind_scene(nb::module_& module) {
       .def("lit", &light, nb::arg("choice"))
       .def("frame", &frame, nb::arg("aspect_ratio"), nb::arg("framing"))
       .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })
+      .def("mixes_unlit", [](const Scene& s) { return mixes_unlit(s); })
       .def(
           "display",
           [](const Scene& s, const std::string& choice) { return write(display_of(s, read_choice(choice))); },

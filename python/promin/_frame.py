@@ -45,6 +45,9 @@ class Frame:
     """Device time."""
     placement: tuple[tuple[int, int], tuple[int, int]] | None = None
     """Of a crop its upper left pixel in the whole picture, and the size of that."""
+    unlit: NDArray[np.float32] | None = field(default=None, repr=False)
+    """What `display` leaves alone, (rows, columns, 4): the AOV "unlit" of include/promin/aovs.h. None where the scene does
+    not have unlit materials beside others."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -65,9 +68,11 @@ class Frame:
         "zip" or "piz", always without loss; multipart: give each AOV a part. Raises UsageError for another ending,
         RunError where it cannot be written."""
         file = os.fsdecode(path)
-        channels = list_channels(self.aovs) if _promin.has_named_channels(file) else []
-        if "alpha" in self.aovs and not channels:
-            channels = list_channels({"alpha": self.aovs["alpha"]})
+        if _promin.has_named_channels(file):
+            channels = list_channels(self.aovs)
+        else:
+            showing = {"alpha": self.aovs.get("alpha"), "unlit": self.unlit}
+            channels = list_channels({name: values for name, values in showing.items() if values is not None})
         exr = {"is_half": bool(half), "compression": compression, "is_multipart": bool(multipart)}
         shown = to_dict(display or self.display)
         _promin.write_image(file, self.rgb, list(self.metadata.items()), self.placement, channels, shown, exr)
@@ -87,7 +92,7 @@ class Frame:
 
     def srgb(self, display: Display | None = None) -> NDArray[np.uint8]:
         """What a screen shows, (rows, columns, 3) of 8 bits in sRGB, without noise."""
-        shown = _promin.show(self.rgb, to_dict(display or self.display))
+        shown = _promin.show(self.rgb, to_dict(display or self.display), self.unlit)
         return np.asarray(np.floor(shown * 255.0 + 0.5), np.uint8)
 
     def _repr_png_(self) -> bytes:
@@ -141,9 +146,17 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     return _promin.read_image(os.fsdecode(path))
 
 
-def write_image(path: str | os.PathLike[str], rgb: ArrayLike, display: Display = Display()) -> None:
+def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: Display = Display()) -> None:
     """Writes linear light (rows, columns, 3) as .exr, or as .png as `display` shows it. Raises UsageError, RunError."""
-    _promin.write_image(os.fsdecode(path), to_picture(rgb), [], None, [], to_dict(display), None)
+    file = os.fsdecode(path)
+    unlit = None if _promin.has_named_channels(file) else unlit_of(rgb)
+    channels = [] if unlit is None else list_channels({"unlit": unlit})
+    _promin.write_image(file, to_picture(rgb), [], None, channels, to_dict(display), None)
+
+
+def unlit_of(picture: object) -> NDArray[np.float32] | None:
+    """What the display of a Frame leaves alone; None for an array."""
+    return picture.unlit if isinstance(picture, Frame) else None
 
 
 def to_picture(rgb: object) -> NDArray[np.float32]:

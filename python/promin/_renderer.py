@@ -195,6 +195,7 @@ class Renderer:
         result = opened.native.render(
             record, limit_of(whole), to_dict(shown), "" if path is None else Path(path).name, progress
         )
+        unlit = result["aovs"].get("unlit")
         placement = None
         if record["crop"] is not None:
             placement = (record["crop"]["lo"], record["size"])
@@ -206,6 +207,7 @@ class Renderer:
             error=result["error"],
             rays=result["rays"],
             trace_ms=result["trace_ms"],
+            unlit=unlit,
             placement=placement,
         )
 
@@ -278,11 +280,13 @@ class Renderer:
     def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
         device = find_device(self._chosen)
         lit = self._scene.native().lit(self._light)
-        asked = sorted({*aovs, "object"}) if self._moves(aovs) else list(aovs)
+        unasked = {"object"} if self._moves(aovs) else set()
+        if lit.mixes_unlit():
+            unasked.add("unlit")
         native = _promin.Renderer(
             device._native,
             lit,
-            asked,
+            sorted({*aovs, *unasked}),
             self._builder,
             self._bvh,
             has_target(view),

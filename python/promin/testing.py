@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from promin import _promin
 from promin._device import Device
 from promin._errors import DifferenceError, InputError, UsageError
-from promin._frame import Frame, read_image, to_picture, write_image
+from promin._frame import Frame, read_image, to_picture, unlit_of, write_image
 from promin._records import Display, to_dict
 
 PictureLike = Union[Frame, ArrayLike, "os.PathLike[str]", str]
@@ -103,7 +103,7 @@ def assert_same_picture(
     linear = pixels = to_picture(picture)
     if update if update is not None else os.environ.get(UPDATE_VARIABLE, "0") not in ("", "0"):
         own.parent.mkdir(parents=True, exist_ok=True)
-        write_image(own, linear, shown)
+        write_image(own, picture, shown)
         return
     file = own if own.exists() else shared
     if not file.exists():
@@ -112,7 +112,7 @@ def assert_same_picture(
     is_linear = _promin.encoding_is_linear(str(file))
     if not is_linear:
         reference = _to_codes(reference)
-        pixels = _to_codes(_promin.show(linear, to_dict(shown)))
+        pixels = _to_codes(_promin.show(linear, to_dict(shown), unlit_of(picture)))
     found = compare(reference, pixels, fail=fail, linear=is_linear)
     if found.percent <= fail_percent:
         return

@@ -217,6 +217,28 @@ def test_a_hit_may_be_at_the_centre() -> None:
     assert np.isinf(frame.aovs["depth"][0, 0]) and frame.aovs["position"][0, 0].tolist() == [0, 0, 0]
 
 
+def test_no_display_changes_unlit_colours(tmp_path: Path) -> None:
+    scene = promin.Scene()
+    scene.add_box((-1, 0, 0))
+    scene.add_box((1, 0, 0), material=scene.add_material(promin.Unlit(color=(0.5, 0.25, 0.02))))
+    camera = promin.Camera.look_at((0, 0, 6), (0, 0, 0), yfov=0.6)
+    frame = promin.Renderer(scene).render(camera=camera, size=(60, 30))
+    assert not frame.aovs and frame.unlit is not None
+    row, column = 15, int(np.argmax(frame.unlit[15, :, 3]))
+    assert (frame.unlit[row, column] == np.float32((0.5, 0.25, 0.02, 1))).all()
+    codes = (188, 137, 39)
+    for display in (None, promin.Display(exposure_ev=3, tone_mapping="aces"), promin.Display(exposure_ev=-2)):
+        assert tuple(frame.srgb(display)[row, column]) == codes
+        frame.save(tmp_path / "frame.png", display)
+        saved = promin.read_image(tmp_path / "frame.png")
+        assert (saved[row, column] * 255 == np.float32(codes)).all()
+    brighter = frame.srgb(promin.Display(exposure_ev=3)).astype(int) - frame.srgb(promin.Display())
+    assert (brighter[frame.unlit[..., 3] == 0] >= 0).all() and (brighter[frame.unlit[..., 3] == 0] > 20).any()
+    plain = promin.Scene()
+    plain.add_box()
+    assert promin.Renderer(plain).render(size=(8, 8)).unlit is None
+
+
 def test_updates_are_whole_or_none() -> None:
     scene = promin.Scene()
     scene.add_triangles(*make_box((1e6, 0, 0)))

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -50,6 +51,21 @@ inline constexpr const char* kSquareGltf =
   "scenes": [{"nodes": [0, 1, 2, 3]}],
   "scene": 0
 })";
+
+/// The square twice, side by side: lit on the left and on the right of an unlit colour, linear RGB of 0.5, 0.25 and
+/// 0.02.
+inline std::string make_mixed_gltf() {
+  nlohmann::json gltf = nlohmann::json::parse(kSquareGltf);
+  gltf["extensionsUsed"].push_back("KHR_materials_unlit");
+  gltf["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.02, 1}}}},
+                        {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}};
+  gltf["meshes"].push_back(gltf["meshes"][0]);
+  gltf["meshes"][1]["primitives"][0]["material"] = 0;
+  gltf["nodes"][0]["translation"] = {-1.2, 0, 0};
+  gltf["nodes"].push_back({{"mesh", 1}, {"translation", {1.2, 0, 0}}});
+  gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);
+  return gltf.dump();
+}
 
 /// Runs the program in a folder of its own that holds two scenes.
 class CliTest : public testing::Test {

@@ -705,6 +705,38 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
   for (uint32_t x = 0; x < 16; ++x) EXPECT_EQ(part.at(x, 3), whole.at(x + 8, 7));
 }
 
+TEST_F(CliTest, UnlitColoursKeepClearOfExposureAndToneMapping) {
+  write("mixed.gltf", make_mixed_gltf());
+  const vec3 color(0.5F, 0.25F, 0.02F);
+  const std::pair<OptionValues, std::optional<DisplayTransform>> cases[] = {
+      {{}, DisplayTransform{2.0F, ToneMapping::kNeutral}},
+      {{"--exposure", "4", "--tone-mapping", "aces", "--spp", "4", "--alpha"},
+       DisplayTransform{4.0F, ToneMapping::kAces}},
+      {{"--exposure", "average"}, std::nullopt},
+      {{"--exposure", "-3", "--tone-mapping", "agx", "--target-error", "0.05", "--error-in", "display"},
+       DisplayTransform{-3.0F, ToneMapping::kAgx}}};
+  for (const auto& [options, display] : cases) {
+    SCOPED_TRACE(testing::PrintToString(options));
+    OptionValues arguments = {"mixed.gltf", "--size", "64", "36", "-o", "a.png"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Image exr = render(arguments, "a.exr");
+    const Image png = read_image(folder() / "a.png");
+    const uvec2 lit(19, 18);
+    const uvec2 unlit(45, 18);
+    EXPECT_EQ(exr.at(unlit.x, unlit.y), color);
+    EXPECT_EQ(read("a.exr").find("unlit."), std::string::npos) << "nobody has asked for it";
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(std::lround(255.0F * png.at(unlit.x, unlit.y)[c]), std::lround(255.0F * encode_srgb(color[c])));
+      if (!display) continue;
+      const vec3 shown = apply(*display, exr.at(lit.x, lit.y));
+      EXPECT_EQ(std::lround(255.0F * png.at(lit.x, lit.y)[c]), std::lround(255.0F * encode_srgb(shown[c])));
+    }
+  }
+  render({"mixed.gltf", "--size", "64", "36", "--aov", "unlit", "-o", "b.png"}, "b.exr");
+  EXPECT_NE(read("b.exr").find("unlit.A"), std::string::npos);
+  expect_failure(run({"render", "mixed.gltf", "--aov", "unlit", "--shading", "normals"}), 2, "--aov of light");
+}
+
 TEST_F(CliTest, ThePictureMayTellItsExposure) {
   const OptionValues options = {"square.gltf", "--size", "32", "18", "--background", "9", "9", "9"};
   OptionValues with_ids = options;

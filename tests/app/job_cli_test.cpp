@@ -54,6 +54,17 @@ TEST_F(JobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   }
 }
 
+// What shows an unlit surface as it is comes by the pieces, whatever files a job is begun with.
+TEST_F(JobCliTest, PiecesTellOfUnlitSurfaces) {
+  write("square.gltf", make_mixed_gltf());
+  expect_done(render({"--spp", "4", "-o", "whole.exr", "-o", "whole.png"}));
+  expect_done(render({"--spp", "4", "--job", "job", "--pieces", "3", "-o", "cut.exr"}));
+  expect_done(run({"merge", "job", "-o", "again.exr", "-o", "again.png"}));
+  EXPECT_EQ(read("cut.exr") == read("whole.exr"), true);
+  EXPECT_EQ(read("again.exr") == read("whole.exr"), true);
+  EXPECT_EQ(read("again.png") == read("whole.png"), true);
+}
+
 TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {
   expect_done(render({"-o", "whole.exr"}));
   expect_done(render({"--job", "job", "--pieces", "5", "--piece", "1/2"}));

@@ -104,6 +104,31 @@ TEST(DisplayTest, ExposureCountsInStops) {
             apply(ToneMapping::kNeutral, vec3(2.0F)));
 }
 
+TEST(DisplayTest, UnlitLightIsShownAsItIs) {
+  const DisplayTransform display{.exposure_ev = 3.0F, .tone_mapping = ToneMapping::kAces};
+  const vec3 lit(0.5F, 0.1F, 2.0F);
+  const vec3 unlit(0.25F, 0.75F, 0.5F);
+  EXPECT_EQ(promin::apply(display, lit, vec4(0.0F)), promin::apply(display, lit));
+  EXPECT_EQ(promin::apply(display, unlit, vec4(unlit, 1.0F)), unlit);
+  // Where both share a pixel it shows both by their shares, no brighter than the brighter one.
+  for (const float share : {0.25F, 0.5F, 0.75F}) {
+    const vec3 shown = promin::apply(display, share * unlit + (1.0F - share) * lit, vec4(share * unlit, share));
+    const vec3 expected = share * unlit + (1.0F - share) * promin::apply(display, lit);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(shown[i], expected[i], 1e-6F) << share;
+  }
+  EXPECT_EQ(promin::apply({}, lit, vec4(0.1F, 0.1F, 0.1F, 0.5F)), lit);
+  // Rounding may leave less than nothing of the lit light.
+  const vec3 rounded = promin::apply(display, unlit * (1.0F - 1e-6F), vec4(unlit, 1.0F - 1e-7F));
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(rounded[i], unlit[i], 1e-6F);
+}
+
+TEST(DisplayTest, UnlitSurfacesDoNotTellTheExposure) {
+  const std::vector<vec3> pixels = {vec3(0.5F), vec3(0.01F), vec3(0.3F)};
+  const std::vector<vec4> unlit = {vec4(0.0F), vec4(0.01F, 0.01F, 0.01F, 1.0F), vec4(0.05F, 0.05F, 0.05F, 0.5F)};
+  EXPECT_FLOAT_EQ(average_exposure_ev(pixels, {}, unlit), average_exposure_ev(std::vector{vec3(0.5F)}, {}));
+  EXPECT_EQ(average_exposure_ev({&pixels[1], 1}, {}, {&unlit[1], 1}), 0.0F);
+}
+
 TEST(DisplayTest, TheCurvesAreThoseOfTheirAuthors) {
   const std::pair<ToneMapping, Color (*)(Color)> curves[] = {{ToneMapping::kNeutral, neutral_of},
                                                              {ToneMapping::kAces, aces_of},

@@ -123,8 +123,26 @@ TEST(LightSceneTest, UnlitColoursAreShownAsTheyAre) {
   EXPECT_EQ(display_of(scene), DisplayTransform());
   scene.materials.push_back({.name = "lit", .model = MetallicRoughness{}});
   EXPECT_EQ(display_of(scene), DisplayTransform()) << "nothing shows it";
+  EXPECT_FALSE(mixes_unlit(scene));
   scene.objects.back().material = static_cast<uint32_t>(scene.materials.size() - 1);
   EXPECT_EQ(display_of(scene).tone_mapping, ToneMapping::kNeutral);
+  EXPECT_FALSE(mixes_unlit(physical_scene()));
+}
+
+TEST(LightSceneTest, AMeshOfSeveralMaterialsIsUnlitWhereAllAre) {
+  Scene scene = physical_scene();
+  scene.materials.push_back({.name = "unlit", .model = Unlit{}});
+  Mesh mesh;
+  mesh.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+  mesh.triangles = {uvec3(0, 1, 2), uvec3(0, 2, 1)};
+  mesh.triangle_materials = {1, 0};
+  scene.objects.clear();
+  scene.add("mesh", mesh, 1);
+  EXPECT_EQ(display_of(scene).tone_mapping, ToneMapping::kNeutral);
+  EXPECT_TRUE(mixes_unlit(scene));
+  std::get<Mesh>(scene.geometries.back()).triangle_materials = {1, 1};
+  EXPECT_EQ(display_of(scene), DisplayTransform());
+  EXPECT_FALSE(mixes_unlit(scene));
 }
 
 TEST(LightSceneTest, TheChoiceIsTheUsers) {

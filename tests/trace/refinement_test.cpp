@@ -263,6 +263,31 @@ TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), target), shown.x);
 }
 
+// An unlit surface is as bright as a lit one beside it: light has no edge, and what is shown has one.
+TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
+  View view = make_view(1.0F / 64.0F);
+  const auto count_samples = [&](const DisplayTransform& display) {
+    view.error_target->display = display;
+    Refinement refinement(view, {uvec2(0), view.size}, true);
+    for (auto list = refinement.next(1000); !list.empty(); list = refinement.next(1000)) {
+      const std::vector<vec3> radiance(list.size(), vec3(0.25F));
+      std::vector<vec4> unlit;
+      for (const ListedSample& sample : list) {
+        const bool is_unlit = static_cast<float>(sample.pixel.x) + sample.place.x < 2.3F;
+        unlit.push_back(is_unlit ? vec4(0.25F, 0.25F, 0.25F, 1.0F) : vec4(0.0F));
+      }
+      refinement.take(radiance, unlit);
+    }
+    EXPECT_EQ(refinement.unlit(0), vec4(0.25F, 0.25F, 0.25F, 1.0F));
+    EXPECT_NEAR(refinement.unlit(2).w, 0.3F, 0.1F);
+    EXPECT_EQ(refinement.unlit(3), vec4(0.0F));
+    EXPECT_EQ(refinement.estimate(0).count(), view.error_target->min_samples) << "nothing ends here";
+    return refinement.estimate(2).count();
+  };
+  EXPECT_EQ(count_samples({}), view.error_target->min_samples);
+  EXPECT_GT(count_samples({.exposure_ev = 2.0F}), view.error_target->min_samples);
+}
+
 // In whichever channel, and however the others are: of such a pixel nothing is known.
 TEST(RefinementTest, AClaimThatIsNoNumberIsNeverSmallEnough) {
   const float none = std::numeric_limits<float>::quiet_NaN();

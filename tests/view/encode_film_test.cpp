@@ -39,21 +39,23 @@ std::vector<vec3> make_sums() {
 class EncodeFilmTest : public test::DeviceTest {
  protected:
   /// The bytes that the window shows, R, G and B of each pixel.
-  static std::vector<std::array<int, 3>> encode(const std::vector<vec3>& sums, const DisplayTransform& display) {
+  static std::vector<std::array<int, 3>> encode(const std::vector<vec3>& sums, const DisplayTransform& display,
+                                                const std::vector<vec4>& unlit = {}) {
     constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
     layout::FilmHead head{};
     head.dispatch.window = uvec4(0, 0, kSize);
     head.dispatch.sampling.x = kSamples;
     // What lies between must not be taken for pixels.
     std::ranges::fill(head.ray_counts, uvec4(std::bit_cast<uint32_t>(1e9F)));
-    gpu::Buffer film(device(), sizeof head + sums.size() * sizeof(uvec4), kStorage);
+    gpu::Buffer film(device(), sizeof head + (sums.size() + unlit.size()) * sizeof(uvec4), kStorage);
     film.write(std::as_bytes(std::span(&head, 1)));
     std::vector<uvec4> pixels;
     for (const vec3& sum : sums) pixels.emplace_back(glm::floatBitsToUint(sum), 0U);
+    for (const vec4& sum : unlit) pixels.push_back(glm::floatBitsToUint(sum));
     film.write(std::as_bytes(std::span(pixels)), sizeof head);
 
     const gpu::Buffer encoded(device(), sums.size() * sizeof(uint32_t), kStorage);
-    const gpu::ComputePipeline encoder = make_encoder(device(), film, encoded, display);
+    const gpu::ComputePipeline encoder = make_encoder(device(), film, encoded, display, !unlit.empty());
     device().run([&](const vk::raii::CommandBuffer& commands) { encoder.dispatch(commands, uvec2(3, 1)); });
     std::vector<uint32_t> words(sums.size());
     encoded.read(std::as_writable_bytes(std::span(words)));
@@ -66,6 +68,27 @@ class EncodeFilmTest : public test::DeviceTest {
     return bytes;
   }
 };
+
+TEST_F(EncodeFilmTest, UnlitSurfacesAreShownAsInPngFiles) {
+  std::vector<vec3> sums;
+  std::vector<vec4> unlit;
+  for (uint32_t i = 0; i < kSize.x * kSize.y; ++i) {
+    const float share = static_cast<float>(i % 5) / 4.0F;
+    const float x = static_cast<float>(i) / static_cast<float>(kSize.x * kSize.y);
+    unlit.push_back(static_cast<float>(kSamples) * share * vec4(x, 1.0F - x, 0.5F, 1.0F));
+    sums.push_back(vec3(unlit.back()) + (1.0F - share) * vec3(4.0F * x, 1.0F, 0.1F));
+  }
+  const DisplayTransform display{1.0F, ToneMapping::kReinhard};
+  const std::vector<std::array<int, 3>> shown = encode(sums, display, unlit);
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const auto samples = static_cast<float>(kSamples);
+    const vec3 expected = apply(display, sums[i] / samples, unlit[i] / samples);
+    for (int c = 0; c < 3; ++c) {
+      const auto in_file = static_cast<int>(std::lround(255.0F * encode_srgb(expected[c])));
+      ASSERT_LE(std::abs(shown[i][static_cast<size_t>(c)] - in_file), 1) << "pixel " << i;
+    }
+  }
+}
 
 TEST_F(EncodeFilmTest, AWindowShowsWhatPngFilesHave) {
   const std::vector<vec3> sums = make_sums();

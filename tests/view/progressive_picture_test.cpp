@@ -18,12 +18,12 @@ const uvec2 kSize(150, 100);  // neither is a multiple of the block
 
 class ProgressivePictureTest : public test::DeviceTest {
  protected:
-  ProgressivePicture make_picture() const {
+  ProgressivePicture make_picture(FeatureMask requests = {}) const {
     const PackedScene packed = pack_scene(scene_, "sah");
     ProgressivePicture picture(
         device(),
         upload_scene(device(), packed, {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
-        features_of(scene_), 1.0);
+        features_of(scene_) | requests, 1.0);
     picture.resize(kSize);
     return picture;
   }
@@ -119,6 +119,31 @@ TEST_F(ProgressivePictureTest, EveryErrorIsWhatTheRendererGives) {
   EXPECT_EQ(errors.front(), 0.125F);
   EXPECT_EQ(errors.back(), 1.0F / 16.0F);
   EXPECT_EQ(trace(picture), 0.0);
+}
+
+// A refined picture is put on a film that has held a smaller one, with a second record where there are unlit surfaces.
+TEST_F(ProgressivePictureTest, RefinedFilmsAreAsIfTracedAndTellOfUnlitSurfaces) {
+  ProgressivePicture picture = make_picture(layout::FEATURE_UNLIT_SHARE);
+  ASSERT_TRUE(picture.has_unlit());
+  picture.fix_scale(0.25);
+  const View view = with_target(test::make_view(kSize), 1.0F / 8.0F);
+  picture.want(view);
+  while (!picture.is_settled()) picture.trace();
+  const gpu::Buffer& film = picture.film(picture.shown()->film);
+  layout::FilmHead head;
+  film.read(std::as_writable_bytes(std::span(&head, 1)), 0);
+  EXPECT_EQ(head.dispatch.window, uvec4(0, 0, kSize));
+  EXPECT_EQ(head.dispatch.sampling.x, 1U);
+  std::vector<vec4> records(size_t{2} * kSize.x * kSize.y);
+  film.read(std::as_writable_bytes(std::span(records)), Film::kPixelsOffset);
+  TunedRendererOptions options;
+  options.aovs.unlit = true;
+  options.has_error_target = true;
+  const RenderResult expected = make_renderer(device(), scene_, options).render(picture.shown()->view_of(view));
+  EXPECT_TRUE(test::has_same_bits(read(picture), expected.image));
+  const std::vector<vec4> unlit(records.begin() + kSize.x * kSize.y, records.end());
+  EXPECT_EQ(unlit, expected.aovs.unlit);
+  EXPECT_TRUE(std::ranges::any_of(unlit, [](const vec4& one) { return one.w == 1.0F; }));
 }
 
 // Samples that are under way when the view changes bring nothing, and a pause holds back what has not begun.

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// What the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"), beside lit ones, through what blends
+// and in a mirror.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "promin/display.h"
+#include "render/renderer_impl.h"
+
+namespace promin::test {
+namespace {
+
+const vec3 kColor(0.25F, 0.5F, 0.75F);
+constexpr uint32_t kStripes = 5;
+
+/// A stripe of the board that fills the picture, `index` from the left.
+void add_stripe(Scene& scene, uint32_t index, float z, const Material& material) {
+  Mesh board = make_board(z);
+  for (vec3& position : board.positions) {
+    position.x = (2.0F * static_cast<float>(index) + position.x + 1.0F) / static_cast<float>(kStripes) - 1.0F;
+  }
+  scene.materials.push_back(material);
+  scene.add("stripe", board, static_cast<uint32_t>(scene.materials.size() - 1));
+}
+
+Material make_lit(AlphaMode mode = AlphaMode::kOpaque, float alpha = 1.0F) {
+  Material material = make_unlit(vec3(0.0F), mode, alpha);
+  material.model = Phong{.ambient = vec3(0.0F), .diffuse = vec3(0.5F)};
+  return material;
+}
+
+/// From the left: unlit, lit, unlit behind a quarter of what is lit, lit behind a quarter of what is unlit, and a
+/// mirror of what is unlit.
+Scene make_stripes() {
+  Scene scene;
+  add_stripe(scene, 0, 0.0F, make_unlit(kColor));
+  add_stripe(scene, 1, 0.0F, make_lit());
+  add_stripe(scene, 2, 0.5F, make_lit(AlphaMode::kBlend, 0.25F));
+  add_stripe(scene, 2, 0.0F, make_unlit(kColor));
+  add_stripe(scene, 3, 0.5F, make_unlit(kColor, AlphaMode::kBlend, 0.25F));
+  add_stripe(scene, 3, 0.0F, make_lit());
+  Material mirror;
+  mirror.model = Phong{.ambient = vec3(0.0F), .diffuse = vec3(0.0F), .reflection = vec3(0.5F)};
+  add_stripe(scene, 4, 0.0F, mirror);
+  add_stripe(scene, 4, 3.0F, make_unlit(kColor));
+  scene.lights = {make_sun(vec3(0.0F, 0.0F, -1.0F), 8.0F)};
+  return scene;
+}
+
+class UnlitTest : public DeviceTest {
+ protected:
+  Renderer renderer(const TunedRendererOptions& options) const { return make_renderer(device(), scene_, options); }
+  RenderResult trace(View view, TunedRendererOptions options = {}) const {
+    view.max_depth = 2;
+    options.aovs.unlit = true;
+    options.has_error_target = view.error_target.has_value();
+    return renderer(options).render(view);
+  }
+
+  const Scene scene_ = make_stripes();
+};
+
+TEST_F(UnlitTest, TheShareIsWhatTheCameraSeesDirectly) {
+  const RenderResult result = trace(make_board_view(uvec2(kStripes, 1)));
+  const std::vector<vec4>& unlit = result.aovs.unlit;
+  EXPECT_EQ(unlit[0], vec4(kColor, 1.0F));
+  EXPECT_EQ(result.image.pixels[0], kColor);
+  EXPECT_EQ(unlit[1], vec4(0.0F));
+  EXPECT_EQ(unlit[2], 0.75F * vec4(kColor, 1.0F));
+  EXPECT_EQ(unlit[3], 0.25F * vec4(kColor, 1.0F));
+  EXPECT_EQ(unlit[4], vec4(0.0F)) << "a mirror shows light";
+  EXPECT_EQ(result.image.pixels[4], 0.5F * kColor);
+}
+
+TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
+  const RenderResult result = trace(make_board_view(uvec2(kStripes, 1)));
+  for (const ToneMapping mapping :
+       {ToneMapping::kNone, ToneMapping::kNeutral, ToneMapping::kAces, ToneMapping::kReinhard, ToneMapping::kAgx}) {
+    for (const float stops : {-4.0F, 0.0F, 6.0F}) {
+      const DisplayTransform display{stops, mapping};
+      std::array<vec3, kStripes> shown;
+      for (size_t i = 0; i < kStripes; ++i) {
+        shown[i] = apply(display, result.image.pixels[i], result.aovs.unlit[i]);
+      }
+      EXPECT_EQ(shown[0], kColor);
+      EXPECT_EQ(shown[1], apply(display, result.image.pixels[1]));
+      EXPECT_EQ(shown[4], apply(display, result.image.pixels[4]));
+      // The light on what blends is that of the stripe beside; shadows fall through it.
+      const vec3 lit = apply(display, result.image.pixels[1]);
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(shown[2][c], 0.75F * kColor[c] + 0.25F * lit[c], 1e-5F * (1.0F + lit[c]));
+      }
+    }
+  }
+}
+
+// Edges through all pixels: 3 for 5 stripes.
+TEST_F(UnlitTest, EdgesCountByTheirShare) {
+  View view = make_board_view(uvec2(3, 2), 16);
+  const RenderResult result = trace(view);
+  EXPECT_NEAR(result.aovs.unlit[0].w, 0.6F, 0.1F);
+  const vec4 expected = result.aovs.unlit[0].w * vec4(kColor, 1.0F);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(result.aovs.unlit[0][c], expected[c], 1e-6F);
+  // Pieces and packets change no bit, and without the share the light is the same.
+  TunedRendererOptions single;
+  single.packet_size = 1;
+  const RenderResult same = trace(view, single);
+  EXPECT_EQ(same.aovs.unlit, result.aovs.unlit);
+  view.max_depth = 2;
+  EXPECT_TRUE(has_same_bits(renderer({}).render(view).image, result.image));
+  view.error_target = ErrorTarget{.error = 1.0F / 64.0F, .min_samples = 16, .max_samples = 64};
+  view.error_target->display = DisplayTransform{3.0F, ToneMapping::kNeutral};
+  const RenderResult refined = trace(view);
+  EXPECT_NEAR(refined.aovs.unlit[0].w, 0.6F, 0.03F);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(refined.aovs.unlit[0][c], refined.aovs.unlit[0].w * kColor[c], 1e-6F);
+  }
+}
+
+}  // namespace
+}  // namespace promin::test
