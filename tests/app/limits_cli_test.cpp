@@ -29,9 +29,10 @@ int count_runs() {
 class LimitsCliTest : public CliTest {
  protected:
   /// The exit code; the test fails where neither a picture nor a sentence with one of the parts comes.
-  int render_or_say(const std::string& part, const std::string& other_part) const {
+  int render_or_say(const std::string& part, const std::string& other_part, const std::string& features = "scene") {
     fs::remove(folder() / "a.png");
-    const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8", "-o", "a.png", "--quiet"});
+    const ProcessResult result =
+        run({"render", "square.gltf", "--size", "8", "8", "-o", "a.png", "--quiet", "--features", features});
     EXPECT_EQ(result.signal, 0) << result.err;
     if (result.exit_code == 0) {
       EXPECT_TRUE(fs::exists(folder() / "a.png"));
@@ -64,6 +65,17 @@ TEST_F(LimitsCliTest, LittleAddressSpaceGivesAPictureOrASentence) {
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(mib) + " MiB");
       render_or_say("ulimit -v", "ulimit -v");
+    }
+  }
+}
+
+TEST_F(LimitsCliTest, LittleAddressSpaceForLargeKernelsGivesAPictureOrASentence) {
+  options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
+  for (const size_t mib : {448U, 576U, 704U}) {
+    options_.max_address_bytes = mib << 20;
+    for (int i = 0; i < count_runs(); ++i) {
+      SCOPED_TRACE(std::to_string(mib) + " MiB");
+      render_or_say("to compile the scene's kernels", "to compile the scene's kernels", "all");
     }
   }
 }
