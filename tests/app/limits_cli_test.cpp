@@ -28,6 +28,32 @@ int count_runs() {
 
 class LimitsCliTest : public CliTest {
  protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    // The layers report each object that a device without threads leaves in use.
+    options_.environment["PROMIN_VALIDATION"] = "";
+  }
+
+  void limit_threads(int count) {
+    options_.environment["LD_PRELOAD"] = PROMIN_FEW_THREADS_LIBRARY;
+    options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
+    options_.environment["PROMIN_TEST_THREADS"] = std::to_string(count);
+  }
+
+  /// What is compared is the same, so there are figures or one sentence with the part.
+  void compare_or_say(const std::string& file, const std::string& part) const {
+    SCOPED_TRACE(file);
+    const ProcessResult result = run({"compare", "--pixels-per-degree", "5", file, file});
+    EXPECT_EQ(result.signal, 0) << result.err;
+    if (result.exit_code == 0) {
+      EXPECT_THAT(result.out, HasSubstr("largest     0"));
+    } else {
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_THAT(result.err, HasSubstr(part));
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    }
+  }
+
   /// The exit code; the test fails where neither a picture nor a sentence with one of the parts comes.
   int render_or_say(const std::string& part, const std::string& other_part, const std::string& features = "scene") {
     fs::remove(folder() / "a.png");
@@ -46,12 +72,8 @@ class LimitsCliTest : public CliTest {
 };
 
 TEST_F(LimitsCliTest, FewThreadsGiveAPictureOrASentence) {
-  options_.environment["LD_PRELOAD"] = PROMIN_FEW_THREADS_LIBRARY;
-  options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
-  // The layers report each object that a device without threads leaves in use.
-  options_.environment["PROMIN_VALIDATION"] = "";
   for (int threads = 0; threads <= 16; ++threads) {
-    options_.environment["PROMIN_TEST_THREADS"] = std::to_string(threads);
+    limit_threads(threads);
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(threads) + " threads");
       render_or_say("the system gives no more threads", "raise pids.max or ulimit -u");
@@ -76,6 +98,27 @@ TEST_F(LimitsCliTest, LittleAddressSpaceForLargeKernelsGivesAPictureOrASentence)
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(mib) + " MiB");
       render_or_say("to compile the scene's kernels", "to compile the scene's kernels", "all");
+    }
+  }
+}
+
+TEST_F(LimitsCliTest, LibrariesOfPicturesGiveFiguresOrASentence) {
+  const Image image{uvec2(4, 3), std::vector<vec3>(4 * 3, vec3(0.5F))};
+  for (const char* file : {"a.exr", "a.png"}) {
+    write_image(folder() / file, image);
+    for (int i = 0; i < count_runs(); ++i) {
+      for (int threads = 0; threads <= 16; ++threads) {
+        SCOPED_TRACE(std::to_string(threads) + " threads");
+        limit_threads(threads);
+        compare_or_say(file, "the system gives no more threads");
+      }
+      options_.environment.erase("LD_PRELOAD");
+      for (const size_t mib : {64U, 128U, 192U, 256U, 384U, 512U, 640U, 768U, 1024U, 1536U, 2048U}) {
+        SCOPED_TRACE(std::to_string(mib) + " MiB");
+        options_.max_address_bytes = mib << 20;
+        compare_or_say(file, "ulimit -v");
+      }
+      options_.max_address_bytes.reset();
     }
   }
 }
