@@ -28,7 +28,7 @@ constexpr const char* kFileName = "libpromin_pictures.so";
 constexpr const char* kListEnding = ".libraries";
 constexpr const char* kCure = "install promin whole, or name the plugin's folder in PROMIN_PLUGINS";
 
-/// The file of the program: as the system tells, else as it was called.
+/// The file of the program: the one that the system reports, else the name that the program was called by.
 fs::path find_program() {
   const fs::path link = "/proc/self/exe";
   std::error_code error;

@@ -40,6 +40,15 @@ class LimitsCliTest : public CliTest {
     options_.environment["PROMIN_TEST_THREADS"] = std::to_string(count);
   }
 
+  /// Runs the program where the shell has removed the current folder.
+  ProcessResult run_in_removed_folder(const std::string& arguments) const {
+    ProcessOptions options = options_;
+    options.folder = folder() / "gone";
+    fs::create_directory(options.folder);
+    const std::string command = std::string("rmdir ../gone; exec ") + PROMIN_EXECUTABLE + " " + arguments;
+    return Process("/bin/sh", {"-c", command}, options).wait();
+  }
+
   /// What is compared is the same, so there are figures or one sentence with the part.
   void compare_or_say(const std::string& file, const std::string& part) const {
     SCOPED_TRACE(file);
@@ -76,7 +85,7 @@ TEST_F(LimitsCliTest, FewThreadsGiveAPictureOrASentence) {
     limit_threads(threads);
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(threads) + " threads");
-      render_or_say("the system gives no more threads", "raise pids.max or ulimit -u");
+      render_or_say("the system refuses to start another thread", "raise pids.max or ulimit -u");
     }
   }
 }
@@ -110,7 +119,7 @@ TEST_F(LimitsCliTest, LibrariesOfPicturesGiveFiguresOrASentence) {
       for (int threads = 0; threads <= 16; ++threads) {
         SCOPED_TRACE(std::to_string(threads) + " threads");
         limit_threads(threads);
-        compare_or_say(file, "the system gives no more threads");
+        compare_or_say(file, "the system refuses to start another thread");
       }
       options_.environment.erase("LD_PRELOAD");
       for (const size_t mib : {64U, 128U, 192U, 256U, 384U, 512U, 640U, 768U, 1024U, 1536U, 2048U}) {
@@ -124,16 +133,16 @@ TEST_F(LimitsCliTest, LibrariesOfPicturesGiveFiguresOrASentence) {
 }
 
 TEST_F(LimitsCliTest, ARemovedFolderIsNamedAsTheCause) {
-  fs::create_directory(folder() / "gone");
-  const fs::path scene = folder() / "square.gltf";
-  ProcessOptions options = options_;
-  options.folder = folder() / "gone";
-  const ProcessResult result = Process("/bin/sh",
-                                       {"-c", std::string("rmdir ../gone; exec ") + PROMIN_EXECUTABLE + " render " +
-                                                  scene.string() + " -o a.png"},
-                                       options)
-                                   .wait();
-  expect_failure(result, 1, "the current folder is gone, a.png; change to a folder that exists");
+  const std::string scene = (folder() / "square.gltf").string();
+  const std::string picture = (folder() / "a.png").string();
+  for (const auto& [arguments, named] : {std::pair("render " + scene + " -o a.png", "a.png"),
+                                         {"render " + scene + " --job job -o " + picture, "job"},
+                                         {"render " + scene + " --job ./a/job -o " + picture, "./a/job"},
+                                         {"merge job -o " + picture, "job"},
+                                         {"compare a.exr " + picture, "a.exr"}}) {
+    const ProcessResult result = run_in_removed_folder(arguments);
+    expect_failure(result, 1, std::string("the current folder is gone, ") + named + "; change to a folder that exists");
+  }
 }
 
 TEST_F(LimitsCliTest, AManifestThatIsNoneIsNamed) {
