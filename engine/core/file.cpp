@@ -30,9 +30,6 @@ std::string lower_case_ending(const fs::path& file) {
   return ending;
 }
 
-namespace {
-
-/// Throws RunError where a path begins at the current folder, and that was removed.
 void refuse_lost_folder(const fs::path& file) {
   std::error_code error;
   if (file.is_absolute()) return;
@@ -40,8 +37,6 @@ void refuse_lost_folder(const fs::path& file) {
   if (error != std::errc::no_such_file_or_directory) return;
   throw RunError({"the current folder is gone", file.string(), "change to a folder that exists"});
 }
-
-}  // namespace
 
 fs::file_status find_input(const fs::path& file) {
   std::error_code error;

@@ -20,6 +20,9 @@ namespace promin {
 /// The file's ending in lower case, with its dot; empty if it has none.
 std::string lower_case_ending(const std::filesystem::path& file);
 
+/// Throws RunError where a path begins at the current folder, and that was removed.
+void refuse_lost_folder(const std::filesystem::path& file);
+
 /// The status of a file that is to be read. Throws InputError if it is missing or cannot be reached, and RunError where
 /// the current folder, at which the path begins, was removed.
 std::filesystem::file_status find_input(const std::filesystem::path& file);

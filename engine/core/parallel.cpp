@@ -37,7 +37,7 @@ bool can_start_threads(size_t count) {
 Problem explain_no_threads() {
   // The stack of a thread takes address space.
   const char* cure = address_space_limit() ? "raise pids.max, ulimit -u or ulimit -v" : "raise pids.max or ulimit -u";
-  return {"the system gives no more threads", "", cure};
+  return {"the system refuses to start another thread", "", cure};
 }
 
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task) {
@@ -61,7 +61,7 @@ void for_each_index(size_t count, unsigned thread_count, const std::function<voi
     try {
       while (helpers.size() < helper_count) helpers.emplace_back(work);
     } catch (const std::system_error&) {
-      // The system gives no more threads, so those that there are do the work.
+      // The system refuses another thread, so the threads that run do the work.
     }
     work();
   }

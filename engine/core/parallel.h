@@ -13,16 +13,16 @@ namespace promin {
 /// The machine's number of cores, or 1 where it is not known.
 unsigned core_count();
 
-/// Whether the system gives so many more threads now.
+/// Whether the system starts so many further threads now.
 bool can_start_threads(size_t count);
 
-/// What is wrong where it does not.
+/// The problem where it does not.
 Problem explain_no_threads();
 
 /// Calls task(i) once for every i in [0, count) and returns when all calls have. The calls share up to `thread_count`
 /// threads (0: as many as the machine has cores) and start in the order of i; where the
-/// system gives fewer, those do it all. After an exception no further call
-/// starts, and the first one is rethrown here.
+/// system starts fewer threads, those do the whole work. After an exception no further call starts, and the first one
+/// is rethrown here.
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task);
 
 /// Does the same for ranges: calls task(begin, end) for [0, count) in pieces of `size`; the last one has what is left.

@@ -200,8 +200,8 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   throw DeviceError(problem);
 }
 
-/// Drivers of CPUs start their threads here. Where they get too few, they fail for a reason that they do not tell, or
-/// they say nothing and wait for them in the first dispatch without an end: who lacks one lacks another right after.
+/// Drivers of CPUs start their threads here. Where the system refuses some, a driver fails without a reason, or it
+/// reports nothing and the first dispatch waits forever. In both cases the system refuses one more thread right after.
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, const vk::DeviceCreateInfo& info,
                              const std::string& name) {
   try {

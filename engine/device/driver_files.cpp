@@ -49,7 +49,7 @@ constexpr const char* kVariables[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK
 std::optional<Problem> find_lack_of_address_space() {
   // What lavapipe of Mesa 22.3 takes: LLVM, the kernels of a usual scene, and for each core the stacks of two threads,
   // or what stands for them in newer ones.
-  constexpr uint64_t kDriverBytes = uint64_t{512} << 20;
+  constexpr uint64_t kDriverBytes = uint64_t{256} << 20;
   constexpr uint64_t kCoreBytes = uint64_t{2 * 8} << 20;
   constexpr unsigned kMostCores = 32;
   return find_lack_of_space("a Vulkan driver", kDriverBytes + kCoreBytes * std::min(core_count(), kMostCores));

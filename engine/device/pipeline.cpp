@@ -3,13 +3,62 @@
 #include "device/pipeline.h"
 
 #include <algorithm>
+#include <condition_variable>
 #include <stdexcept>
 #include <string>
 
+#include "core/address_space.h"
 #include "device/buffer.h"
 #include "device/device.h"
 
 namespace promin::gpu {
+namespace {
+
+/// Address space for a driver's compiler, for as long as this lives. LLVM crashes where it meets the limit of address
+/// space, so the compiler starts only where enough is free. Costs nothing where address space is not limited.
+class CompilerSpace {
+ public:
+  /// Waits for other compilers where there is too little for all. Throws RunError where there is too little for one.
+  explicit CompilerSpace(uint64_t code_bytes) {
+    if (!address_space_limit()) return;
+    bytes_ = estimate(code_bytes);
+    std::unique_lock lock(mutex_);
+    has_ended_.wait(lock, [&] { return taken_ == 0 || !find_lack(taken_ + bytes_); });
+    const auto lack = taken_ == 0 ? find_lack(bytes_ - std::min(bytes_, most_)) : std::nullopt;
+    if (lack) throw RunError(*lack);
+    taken_ += bytes_;
+    most_ = std::max(most_, bytes_);
+  }
+  CompilerSpace(const CompilerSpace&) = delete;
+  CompilerSpace& operator=(const CompilerSpace&) = delete;
+  ~CompilerSpace() {
+    if (bytes_ == 0) return;
+    const std::lock_guard lock(mutex_);
+    taken_ -= bytes_;
+    has_ended_.notify_all();
+  }
+
+ private:
+  /// What lavapipe of Mesa 22.3.6 takes for a kernel of so many bytes of SPIR-V, and more: 44 MiB for 144 KiB, 38 for
+  /// 176, 76 for 235, 183 for 348, 385 for 474 and 391 for 484, so at most 1.8 MiB for the square of 1 MiB / 1024. The
+  /// one of 25.0.7 takes 30 for 176, 128 for 348 and 294 for 474.
+  static uint64_t estimate(uint64_t code_bytes) { return code_bytes * code_bytes / 512; }
+
+  /// Drivers need some more to start a kernel: up to 24 MiB.
+  static std::optional<Problem> find_lack(uint64_t bytes) {
+    constexpr uint64_t kStartBytes = uint64_t{32} << 20;
+    return find_lack_of_space("the driver to compile the scene's kernels", bytes + kStartBytes);
+  }
+
+  static inline std::mutex mutex_;
+  static inline std::condition_variable has_ended_;
+  static inline uint64_t taken_ = 0;
+  /// The most that one took: the process keeps that memory, and the next one uses it.
+  static inline uint64_t most_ = 0;
+  uint64_t bytes_ = 0;
+};
+
+}  // namespace
 
 const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                                                std::span<const SpecializationConstant> constants,
@@ -38,6 +87,7 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
   const vk::SpecializationInfo specialization(static_cast<uint32_t>(entries.size()), entries.data(),
                                               values.size() * sizeof(uint32_t), values.data());
   const std::vector<uint32_t> live = remove_dead_code(spirv, constants);
+  const CompilerSpace space(live.size() * sizeof(uint32_t));
   const vk::raii::ShaderModule module(device,
                                       vk::ShaderModuleCreateInfo({}, live.size() * sizeof(uint32_t), live.data()));
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",

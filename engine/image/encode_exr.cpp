@@ -125,10 +125,10 @@ size_t count_block_bytes(const PictureHeader& header, const std::vector<Part>& p
   return rows_of_block(compression) * row_bytes;
 }
 
-/// Of wide pictures with many channels "zip" becomes "zips", the same for single rows: blocks would take more memory
-/// than all else, or be compressed by one thread. Such files are hardly larger, as a row of a channel alone is about as
-/// long as the 32 KiB that the compressor looks back. It must not depend on the machine, as the file's bytes depend on
-/// it.
+/// Replaces "zip" by "zips", the same for single rows, where a picture is wide and has many channels: blocks would take
+/// more memory than all else, or one thread would compress them. Such files are hardly larger, because a row of one
+/// channel is about as long as the 32 KiB that the compressor looks back. The choice must not depend on the machine,
+/// because the file's bytes depend on the choice.
 Imf::Compression fit_compression(const PictureHeader& header, const std::vector<Part>& parts) {
   constexpr size_t kMostBytes = size_t{8} << 20;
   const Imf::Compression compression = compression_of(header.exr.compression);
@@ -136,16 +136,17 @@ Imf::Compression fit_compression(const PictureHeader& header, const std::vector<
   return compression == Imf::ZIP_COMPRESSION && is_large ? Imf::ZIPS_COMPRESSION : compression;
 }
 
-/// How many threads compress an EXR; 0 is none but the caller's. OpenEXR holds two blocks of rows for each thread, and
-/// of each three copies.
+/// How many threads compress an EXR; 0 means the caller's thread alone. OpenEXR holds two blocks of rows for each
+/// thread, and three copies of each block.
 unsigned count_threads(size_t block_bytes) {
   constexpr size_t kMostBytes = size_t{128} << 20;
   constexpr size_t kCopies = 2 * 3;
   return static_cast<unsigned>(std::min<size_t>(kMostBytes / (kCopies * block_bytes), core_count()));
 }
 
-/// Has OpenEXR's pool grow to so many threads, or to those that the system gives, and returns how many. One after the
-/// other: OpenEXR's pool survives where it cannot start one more, and not where it cannot start the second of two.
+/// Has OpenEXR's pool grow to so many threads, or to those that the system starts, and returns how many. It adds one
+/// thread at a time: OpenEXR's pool survives where it cannot start one, and does not where it cannot start the second
+/// of two.
 int grow_pool(unsigned count) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);

@@ -28,7 +28,7 @@ constexpr const char* kFileName = "libpromin_pictures.so";
 constexpr const char* kListEnding = ".libraries";
 constexpr const char* kCure = "install promin whole, or name the plugin's folder in PROMIN_PLUGINS";
 
-/// The file of the program: as the system tells, else as it was called.
+/// The file of the program: the one that the system reports, else the name that the program was called by.
 fs::path find_program() {
   const fs::path link = "/proc/self/exe";
   std::error_code error;
@@ -119,9 +119,6 @@ void open_libraries_of(const fs::path& plugin) {
   for (std::string name; std::getline(list, name);) dlopen(name.c_str(), kHow);
 }
 
-/// One of OpenImageIO's libraries starts four threads before anyone calls it, and ends the process where it cannot.
-constexpr size_t kThreads = 6;
-
 fs::path find_plugin() {
   const std::vector<fs::path> folders = list_folders();
   for (const fs::path& folder : folders) {
@@ -132,9 +129,23 @@ fs::path find_plugin() {
                   "sought in " + list_names(folders), kCure});
 }
 
+/// OpenImageIO's libraries start threads before anyone calls them, and wait without an end or end the process where
+/// these or their memory are missing: one library starts four, OpenBLAS starts one for each core but the first. For an
+/// EXR, OpenEXR starts one for each core. Figures are of Debian 12, where 536 MiB suffice with one core and 672 with
+/// two.
+void check_limits() {
+  constexpr uint64_t kBytes = uint64_t{416} << 20;
+  constexpr uint64_t kCoreBytes = uint64_t{144} << 20;
+  const unsigned cores = core_count();
+  if (auto lack = find_lack_of_space("the libraries that read pictures", kBytes + kCoreBytes * cores)) {
+    throw RunError(*lack);
+  }
+  if (!can_start_threads(size_t{4} + (cores - 1) + cores)) throw RunError(explain_no_threads());
+}
+
 PicturesPlugin load_plugin() {
   const fs::path file = find_plugin();
-  if (!can_start_threads(kThreads)) throw RunError(explain_no_threads());
+  check_limits();
   open_libraries_of(file);
   void* library = dlopen(file.c_str(), kHow);
   if (library == nullptr) {

@@ -4,13 +4,17 @@
 
 #include <fstream>
 
+#include "core/file.h"
+
 namespace promin {
 namespace {
 
 std::string name_existing(const std::filesystem::path& file) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
+  if (!std::filesystem::is_regular_file(file, error)) {
+    refuse_lost_folder(file);
     throw InputError({"no such picture", file.string(), "check the path"});
+  }
   if (!std::ifstream(file)) throw InputError({"cannot open the file", file.string(), "check its permissions"});
   return file.string();
 }

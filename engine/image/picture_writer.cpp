@@ -46,7 +46,8 @@ struct ShowingChannels {
   }
 };
 
-/// Of an EXR, what is handed over at a time: many rows, or of wide pictures with many channels few.
+/// The words of an EXR that the encoder gets at a time: many rows, or few where a picture is wide and has many
+/// channels.
 constexpr size_t kMostWords = size_t{4} << 20;
 
 /// Pixels [begin, end) one after the other, with the channels in the order of the EXR's spec; each channel is four
@@ -65,7 +66,7 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
   return words;
 }
 
-/// Of light that covers so much of its pixel, as PNG keeps it.
+/// The colour of light that covers so much of its pixel, as PNG stores it.
 template <typename Light>
 Light unassociated(const Light& light, float alpha) {
   return alpha > 0.0F ? light / alpha : Light(0.0F);
@@ -106,7 +107,7 @@ void check(bool is_so, const std::string& what, const char* cure) {
   if (!is_so) throw UsageError({what, "in the picture to write", cure});
 }
 
-/// Throws UsageError where parts of a picture do not suit each other: encoders read by the sizes that they are told.
+/// Throws UsageError where parts of a picture do not suit each other: encoders read as much as the sizes state.
 void check_rows(const Image& image, std::span<const Channel> channels) {
   const size_t pixel_count = static_cast<size_t>(image.size.x) * image.size.y;
   check(pixel_count > 0, "there are no pixels", "give it a width and a height");
@@ -205,7 +206,7 @@ class PictureWriter::Impl {
   PictureHeader header_;
   AtomicFile output_;
   PictureBytes bytes_;
-  // One of them, gone before what it writes to.
+  // One of them has a value. It is destroyed before what it writes to.
   std::optional<ExrEncoder> exr_;
   std::optional<PngEncoder> png_;
   uint32_t rows_written_ = 0;

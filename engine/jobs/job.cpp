@@ -137,6 +137,7 @@ void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error) return;
+  refuse_lost_folder(folder);
   throw RunError(
       {"cannot make the folder (" + error.message() + ")", folder.string(), "check the disk and permissions"});
 }
@@ -287,6 +288,7 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
 Job Job::open(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
+    refuse_lost_folder(folder);
     throw InputError({"there is no such folder", folder.string(), "name that of --job"});
   }
   if (!fs::exists(manifest_file(folder), error)) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/parallel.h"
 #include "promin/error.h"
 
 namespace nb = nanobind;
@@ -40,7 +41,7 @@ void run_watched(const nb::object& progress, const Work& work) {
     try {
       result = std::async(std::launch::async, [&] { work(tell); });
     } catch (const std::system_error&) {
-      throw RunError(Problem{"the system gives no more threads", "", "raise pids.max or ulimit -u"});
+      throw RunError(explain_no_threads());
     }
     while (!stops && result.wait_for(kLook) != std::future_status::ready) {
       const nb::gil_scoped_acquire acquire;

@@ -28,10 +28,46 @@ int count_runs() {
 
 class LimitsCliTest : public CliTest {
  protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    // The layers report each object that a device without threads leaves in use.
+    options_.environment["PROMIN_VALIDATION"] = "";
+  }
+
+  void limit_threads(int count) {
+    options_.environment["LD_PRELOAD"] = PROMIN_FEW_THREADS_LIBRARY;
+    options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
+    options_.environment["PROMIN_TEST_THREADS"] = std::to_string(count);
+  }
+
+  /// Runs the program where the shell has removed the current folder.
+  ProcessResult run_in_removed_folder(const std::string& arguments) const {
+    ProcessOptions options = options_;
+    options.folder = folder() / "gone";
+    fs::create_directory(options.folder);
+    const std::string command = std::string("rmdir ../gone; exec ") + PROMIN_EXECUTABLE + " " + arguments;
+    return Process("/bin/sh", {"-c", command}, options).wait();
+  }
+
+  /// What is compared is the same, so there are figures or one sentence with the part.
+  void compare_or_say(const std::string& file, const std::string& part) const {
+    SCOPED_TRACE(file);
+    const ProcessResult result = run({"compare", "--pixels-per-degree", "5", file, file});
+    EXPECT_EQ(result.signal, 0) << result.err;
+    if (result.exit_code == 0) {
+      EXPECT_THAT(result.out, HasSubstr("largest     0"));
+    } else {
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_THAT(result.err, HasSubstr(part));
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    }
+  }
+
   /// The exit code; the test fails where neither a picture nor a sentence with one of the parts comes.
-  int render_or_say(const std::string& part, const std::string& other_part) const {
+  int render_or_say(const std::string& part, const std::string& other_part, const std::string& features = "scene") {
     fs::remove(folder() / "a.png");
-    const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8", "-o", "a.png", "--quiet"});
+    const ProcessResult result =
+        run({"render", "square.gltf", "--size", "8", "8", "-o", "a.png", "--quiet", "--features", features});
     EXPECT_EQ(result.signal, 0) << result.err;
     if (result.exit_code == 0) {
       EXPECT_TRUE(fs::exists(folder() / "a.png"));
@@ -45,15 +81,11 @@ class LimitsCliTest : public CliTest {
 };
 
 TEST_F(LimitsCliTest, FewThreadsGiveAPictureOrASentence) {
-  options_.environment["LD_PRELOAD"] = PROMIN_FEW_THREADS_LIBRARY;
-  options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
-  // The layers report each object that a device without threads leaves in use.
-  options_.environment["PROMIN_VALIDATION"] = "";
   for (int threads = 0; threads <= 16; ++threads) {
-    options_.environment["PROMIN_TEST_THREADS"] = std::to_string(threads);
+    limit_threads(threads);
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(threads) + " threads");
-      render_or_say("the system gives no more threads", "raise pids.max or ulimit -u");
+      render_or_say("the system refuses to start another thread", "raise pids.max or ulimit -u");
     }
   }
 }
@@ -68,17 +100,49 @@ TEST_F(LimitsCliTest, LittleAddressSpaceGivesAPictureOrASentence) {
   }
 }
 
+TEST_F(LimitsCliTest, LittleAddressSpaceForLargeKernelsGivesAPictureOrASentence) {
+  options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
+  for (const size_t mib : {448U, 576U, 704U}) {
+    options_.max_address_bytes = mib << 20;
+    for (int i = 0; i < count_runs(); ++i) {
+      SCOPED_TRACE(std::to_string(mib) + " MiB");
+      render_or_say("to compile the scene's kernels", "to compile the scene's kernels", "all");
+    }
+  }
+}
+
+TEST_F(LimitsCliTest, LibrariesOfPicturesGiveFiguresOrASentence) {
+  const Image image{uvec2(4, 3), std::vector<vec3>(4 * 3, vec3(0.5F))};
+  for (const char* file : {"a.exr", "a.png"}) {
+    write_image(folder() / file, image);
+    for (int i = 0; i < count_runs(); ++i) {
+      for (int threads = 0; threads <= 16; ++threads) {
+        SCOPED_TRACE(std::to_string(threads) + " threads");
+        limit_threads(threads);
+        compare_or_say(file, "the system refuses to start another thread");
+      }
+      options_.environment.erase("LD_PRELOAD");
+      for (const size_t mib : {64U, 128U, 192U, 256U, 384U, 512U, 640U, 768U, 1024U, 1536U, 2048U}) {
+        SCOPED_TRACE(std::to_string(mib) + " MiB");
+        options_.max_address_bytes = mib << 20;
+        compare_or_say(file, "ulimit -v");
+      }
+      options_.max_address_bytes.reset();
+    }
+  }
+}
+
 TEST_F(LimitsCliTest, ARemovedFolderIsNamedAsTheCause) {
-  fs::create_directory(folder() / "gone");
-  const fs::path scene = folder() / "square.gltf";
-  ProcessOptions options = options_;
-  options.folder = folder() / "gone";
-  const ProcessResult result = Process("/bin/sh",
-                                       {"-c", std::string("rmdir ../gone; exec ") + PROMIN_EXECUTABLE + " render " +
-                                                  scene.string() + " -o a.png"},
-                                       options)
-                                   .wait();
-  expect_failure(result, 1, "the current folder is gone, a.png; change to a folder that exists");
+  const std::string scene = (folder() / "square.gltf").string();
+  const std::string picture = (folder() / "a.png").string();
+  for (const auto& [arguments, named] : {std::pair("render " + scene + " -o a.png", "a.png"),
+                                         {"render " + scene + " --job job -o " + picture, "job"},
+                                         {"render " + scene + " --job ./a/job -o " + picture, "./a/job"},
+                                         {"merge job -o " + picture, "job"},
+                                         {"compare a.exr " + picture, "a.exr"}}) {
+    const ProcessResult result = run_in_removed_folder(arguments);
+    expect_failure(result, 1, std::string("the current folder is gone, ") + named + "; change to a folder that exists");
+  }
 }
 
 TEST_F(LimitsCliTest, AManifestThatIsNoneIsNamed) {

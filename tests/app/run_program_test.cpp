@@ -71,7 +71,8 @@ TEST(RunProgramTest, WhatTheSystemRefusesIsNoBug) {
   const auto system_error = [](std::errc code) { return std::system_error(std::make_error_code(code)); };
   EXPECT_EQ(
       run_work([&] { throw system_error(std::errc::resource_unavailable_try_again); }),
-      std::pair(1, std::string("promin: error: the system gives no more threads; raise pids.max or ulimit -u\n")));
+      std::pair(
+          1, std::string("promin: error: the system refuses to start another thread; raise pids.max or ulimit -u\n")));
   EXPECT_EQ(run_work([] {
               throw std::filesystem::filesystem_error("cannot", "there", std::make_error_code(std::errc::io_error));
             }).second,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A library to preload (LD_PRELOAD) into a program that is to get PROMIN_TEST_THREADS threads and no more, as where
-// pids.max or ulimit -u bounds them.
+// A library to preload (LD_PRELOAD) into a program that is to have at most PROMIN_TEST_THREADS threads at a time beside
+// its first, as where pids.max or ulimit -u bounds them.
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -9,12 +9,47 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
+#include <memory>
+
+namespace {
+
+std::atomic<int> count = 0;
+
+/// Counts a thread until it ends, whether it returns or leaves by pthread_exit.
+struct Counted {
+  Counted() = default;
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  ~Counted() { --count; }
+};
+
+struct Start {
+  void* (*work)(void*);
+  void* argument;
+};
+
+void* run_counted(void* start_address) {
+  const Counted counted;
+  const Start start = *std::unique_ptr<Start>(static_cast<Start*>(start_address));
+  return start.work(start.argument);
+}
+
+}  // namespace
 
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*work)(void*),
                               void* argument) noexcept {
-  static std::atomic<int> count = 0;
-  static const auto start = reinterpret_cast<decltype(&pthread_create)>(dlsym(RTLD_NEXT, "pthread_create"));
+  static const auto create = reinterpret_cast<decltype(&pthread_create)>(dlsym(RTLD_NEXT, "pthread_create"));
   const char* most = std::getenv("PROMIN_TEST_THREADS");
-  if (most != nullptr && count++ >= std::atoi(most)) return EAGAIN;
-  return start(thread, attributes, work, argument);
+  if (++count > std::atoi(most == nullptr ? "1000" : most)) {
+    --count;
+    return EAGAIN;
+  }
+  auto start = std::make_unique<Start>(Start{work, argument});
+  const int error = create(thread, attributes, run_counted, start.get());
+  if (error != 0) {
+    --count;
+  } else {
+    static_cast<void>(start.release());
+  }
+  return error;
 }
