@@ -605,7 +605,7 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     return load(gltf).warnings;
   };
   const std::string one = " is rough glass: only a sky is blurred through it, and objects are seen sharp";
-  EXPECT_THAT(warnings_of({}), ElementsAre("material \"frosted\"" + one));
+  EXPECT_THAT(warnings_of(json::object()), ElementsAre("material \"frosted\"" + one));
   EXPECT_THAT(warnings_of({{"name", nullptr}}), ElementsAre("material 0" + one));
   const json textured = {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}};
   EXPECT_THAT(warnings_of(textured), ElementsAre(HasSubstr("rough glass")));
