@@ -30,7 +30,8 @@ def _arrow_row(y, size=16):
 
 
 def _checker_row(y, size=8):
-    return bytes(itertools.chain.from_iterable(((40, 40, 60), (235, 235, 235))[(x // 4 + y // 4) % 2] for x in range(size)))
+    colors = ((40, 40, 60), (235, 235, 235))
+    return bytes(itertools.chain.from_iterable(colors[(x // 4 + y // 4) % 2] for x in range(size)))
 
 
 def _write_ply(folder):
