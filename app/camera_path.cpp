@@ -79,7 +79,7 @@ std::string write_vector(const vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x, v.y, v.z);
 }
 
-/// Of a place far from the origin more digits are needed; these bring back what is near it.
+/// A place far from the origin needs more digits: as many as give back the same place.
 std::string write_eye(const TimedCamera& frame) {
   if (frame.rest == dvec3(0.0)) return write_vector(frame.camera.eye);
   const dvec3 eye = frame.eye();

@@ -8,6 +8,7 @@ import argparse
 import pathlib
 
 from scenegen import features, fine
+from scenegen.colored_meshes import write_colored_meshes
 from scenegen.showcase import showcase
 from scenegen.sphereflake import sphereflake
 from scenegen.wavefront import write_obj_scenes
@@ -24,6 +25,7 @@ def write_all(folder):
     sphereflake(2).write(folder / "sphereflake.gltf")
     showcase().write(folder / "showcase.gltf", separate_buffer=True)
     write_obj_scenes(folder)
+    write_colored_meshes(folder)
 
 
 def main():

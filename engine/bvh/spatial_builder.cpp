@@ -272,16 +272,12 @@ class SpatialBuild {
   double root_area_ = 0.0;
 };
 
-/// Calls work(chunk of the records, result) for all chunks on these threads, and returns the results in order.
-template <typename Result, typename Work>
-std::vector<Result> for_each_chunk(std::span<const Record> records, unsigned thread_count, const Result& initial,
-                                   const Work& work) {
-  std::vector<Result> results((records.size() + kChunkSize - 1) / kChunkSize, initial);
-  for_each_index(results.size(), thread_count, [&](size_t i) {
-    const size_t first = i * kChunkSize;
-    work(records.subspan(first, std::min(kChunkSize, records.size() - first)), results[i]);
-  });
-  return results;
+/// Calls work(chunk of the records, part) for all chunks on these threads, and returns the parts in order.
+template <typename Part, typename Work>
+std::vector<Part> make_parts_of(std::span<const Record> records, unsigned thread_count, const Part& initial,
+                                const Work& work) {
+  return make_parts(records.size(), kChunkSize, thread_count, initial,
+                    [&](size_t begin, size_t end, Part& part) { work(records.subspan(begin, end - begin), part); });
 }
 
 Sides SpatialBuild::halve(const Side& side) const {
@@ -302,8 +298,8 @@ std::optional<Sides> SpatialBuild::split(const Task& task, unsigned thread_count
   const BinGrid bin_grid(side.extent.centers, count);
   if (task.depth < kMaxSahDepth) {
     Bins bins(bin_grid);
-    for (const Bins& part : for_each_chunk(side.records, thread_count, Bins(bin_grid),
-                                           [&](auto records, auto&result) { result.add(bin_grid, records); })) {
+    for (const Bins& part : make_parts_of(side.records, thread_count, Bins(bin_grid),
+                                          [&](auto records, auto&result) { result.add(bin_grid, records); })) {
       bins.add(part, bin_grid);
     }
     split = find_best_split(bin_grid, bins);
@@ -311,8 +307,8 @@ std::optional<Sides> SpatialBuild::split(const Task& task, unsigned thread_count
     if (input_.clip && (!split.exists() || overlap_of(below, above) >= kLeastOverlap * root_area_)) {
       const PlaneGrid grid(box, count);
       Slabs slabs;
-      for (const Slabs& part : for_each_chunk(side.records, thread_count, Slabs(),
-                                              [&](auto records, auto&result) { result.add(grid, records, input_); })) {
+      for (const Slabs& part : make_parts_of(side.records, thread_count, Slabs(),
+                                             [&](auto records, auto&result) { result.add(grid, records, input_); })) {
         slabs.add(part, grid);
       }
       cut = find_best_cut(grid, slabs, count + task.spare);
@@ -324,7 +320,7 @@ std::optional<Sides> SpatialBuild::split(const Task& task, unsigned thread_count
 
   const auto distribute = [&](const auto& put) {
     Sides sides;
-    for (const Sides& part : for_each_chunk(side.records, thread_count, Sides(), [&](auto records, auto&result) {
+    for (const Sides& part : make_parts_of(side.records, thread_count, Sides(), [&](auto records, auto&result) {
            for (const Record& record : records) put(record, result);
          })) {
       sides.below.add(part.below);

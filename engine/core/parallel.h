@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "promin/error.h"
 
@@ -30,6 +32,31 @@ template <typename Task>
 void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task& task) {
   for_each_index((count + size - 1) / size, thread_count,
                  [&](size_t i) { task(i * size, std::min(count, (i + 1) * size)); });
+}
+
+/// Returns a part for each such piece, in order: `initial`, after work(begin, end, part). What is made of the parts in
+/// their order does not depend on the number of threads.
+template <typename Part, typename Work>
+std::vector<Part> make_parts(size_t count, size_t size, unsigned thread_count, const Part& initial, const Work& work) {
+  std::vector<Part> parts((count + size - 1) / size, initial);
+  for_each_chunk(count, size, thread_count, [&](size_t begin, size_t end) { work(begin, end, parts[begin / size]); });
+  return parts;
+}
+
+/// Those of [0, count) for which a test that takes little holds, in order.
+template <typename Test>
+std::vector<uint32_t> find_indices(size_t count, const Test& test) {
+  using Indices = std::vector<uint32_t>;
+  constexpr size_t kIndices = 16384;
+  Indices all;
+  for (const Indices& part : make_parts(count, kIndices, 0, Indices(), [&](size_t begin, size_t end, Indices&found) {
+         for (size_t i = begin; i < end; ++i) {
+           if (test(static_cast<uint32_t>(i))) found.push_back(static_cast<uint32_t>(i));
+         }
+       })) {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
 }
 
 /// Calls task(i) for each pixel, or whatever else takes little: many to a piece.

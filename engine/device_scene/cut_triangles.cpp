@@ -10,8 +10,6 @@
 namespace promin {
 namespace {
 
-constexpr size_t kChunkSize = 16384;
-
 using Point = std::array<float, 3>;
 
 Point point_of(const vec3& v) {
@@ -86,16 +84,7 @@ class Groups {
 };
 
 std::vector<uint32_t> find_degenerate(const Mesh& mesh) {
-  std::vector<std::vector<uint32_t>> found((mesh.triangles.size() + kChunkSize - 1) / kChunkSize);
-  for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const auto triangle = static_cast<uint32_t>(i);
-      if (world::is_degenerate(mesh, triangle)) found[begin / kChunkSize].push_back(triangle);
-    }
-  });
-  std::vector<uint32_t> all;
-  for (const std::vector<uint32_t>& part : found) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return find_indices(mesh.triangles.size(), [&](uint32_t triangle) { return world::is_degenerate(mesh, triangle); });
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 using layout::Primitive;
 
-/// Primitives by their first corner, which is cheap to tell apart.
+/// Counts primitives by the bits of their first corner.
 class CornerCounts {
  public:
   void add(const Primitive& p) { ++counts_[bucket_of(p)]; }
@@ -41,7 +41,7 @@ class CornerCounts {
   std::vector<uint32_t> counts_ = std::vector<uint32_t>(size_t{1} << kBits);
 };
 
-/// All of a primitive but which it is, and its material.
+/// What a primitive and its copies have in common.
 struct Shown {
   std::array<uint32_t, 10> words;
   uint32_t material;
@@ -76,14 +76,6 @@ float transmission_of(const Unlit& /*model*/) {
   return 0.0F;
 }
 
-/// Whether nothing behind a surface of the material shows through it, whatever its textures say: scenes for casts have
-/// none, and the same trees.
-bool hides_copies(const world::Scene& scene, uint32_t index) {
-  const Material& material = scene.materials.at(index);
-  return !has_holes(material) &&
-         std::visit([](const auto& model) { return transmission_of(model); }, material.model) == 0.0F;
-}
-
 /// Keeps those elements whose index is not in `dropped`, which is in order.
 template <typename Elements>
 void keep_others(Elements& elements, const std::vector<size_t>& dropped) {
@@ -101,10 +93,16 @@ void keep_others(Elements& elements, const std::vector<size_t>& dropped) {
 
 }  // namespace
 
+// Textures do not count, so that scenes for casts, which lack them, have the same trees.
+bool hides_copies(const Material& material) {
+  return !has_holes(material) &&
+         std::visit([](const auto& model) { return transmission_of(model); }, material.model) == 0.0F;
+}
+
 DroppedCopies drop_copies(const world::Scene& scene, Collected& collected) {
   DroppedCopies copies;
   const std::span<const Primitive> all = collected.bounded;
-  // Parts of triangles have weights of their own.
+  // Parts of triangles have weights of their own, so they are no copies.
   if (all.size() <= kMostCopies || !collected.numbers.parts.empty()) return copies;
   CornerCounts counts;
   for (const Primitive& p : all) counts.add(p);
@@ -118,8 +116,9 @@ DroppedCopies drop_copies(const world::Scene& scene, Collected& collected) {
   }
   std::vector<size_t> dropped;
   for (const auto& [shown, members] : groups) {
-    if (members.size() <= kMostCopies || !hides_copies(scene, shown.material)) continue;
-    std::vector<uint32_t>& left_out = copies[all[members.front()].c.y];
+    if (members.size() <= kMostCopies || !hides_copies(scene.materials.at(shown.material))) continue;
+    copies.materials.insert(shown.material);
+    std::vector<uint32_t>& left_out = copies.by_first[all[members.front()].c.y];
     for (const size_t member : std::span(members).subspan(1)) left_out.push_back(all[member].c.y);
     dropped.insert(dropped.end(), members.begin() + 1, members.end());
   }

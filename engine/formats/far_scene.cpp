@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "scene/framing.h"
 #include "shapes/placement.h"
@@ -33,7 +32,6 @@ double size_of(const Bounds& bounds) {
   return greatest_of(dvec3(bounds.hi) - dvec3(bounds.lo));
 }
 
-/// The bounds of each mesh's vertices in its own space; empty for other geometries.
 std::vector<Bounds> bounds_of_meshes(const Scene& scene) {
   std::vector<Bounds> all(scene.geometries.size());
   for (size_t i = 0; i < all.size(); ++i) {
@@ -50,6 +48,16 @@ double scale_of(const dmat4& transform) {
       {glm::length(dvec3(transform[0])), glm::length(dvec3(transform[1])), glm::length(dvec3(transform[2]))});
 }
 
+Bounds bounds_of_object(const Scene& scene, const Object& object, const std::vector<Bounds>& of_meshes) {
+  if (object.geometry == Object::kNoGeometry) return {};
+  const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
+  if (mesh == nullptr) return bounds_of(scene, object);
+  if (Placement(object.world_from_object).is_identity()) return of_meshes[object.geometry];
+  Bounds bounds;
+  for (const vec3& p : mesh->positions) bounds.extend(vec3(object.world_from_object * dvec4(p, 1.0)));
+  return bounds;
+}
+
 /// Two digits.
 std::string to_text(double number) {
   char text[32];
@@ -59,19 +67,11 @@ std::string to_text(double number) {
 
 }  // namespace
 
-Bounds bounds_of_vertices(const Scene& scene) {
-  const std::vector<Bounds> of_meshes = bounds_of_meshes(scene);
-  Bounds bounds;
+VertexBounds bounds_of_vertices(const Scene& scene) {
+  VertexBounds bounds{.of_meshes = bounds_of_meshes(scene), .of_objects = {}, .all = {}};
   for (const Object& object : scene.objects) {
-    if (object.geometry == Object::kNoGeometry) continue;
-    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
-    if (mesh == nullptr) {
-      bounds.extend(bounds_of(scene, object));
-    } else if (Placement(object.world_from_object).is_identity()) {
-      bounds.extend(of_meshes[object.geometry]);
-    } else {
-      for (const vec3& p : mesh->positions) bounds.extend(vec3(object.world_from_object * dvec4(p, 1.0)));
-    }
+    bounds.of_objects.push_back(bounds_of_object(scene, object, bounds.of_meshes));
+    bounds.all.extend(bounds.of_objects.back());
   }
   return bounds;
 }
@@ -91,14 +91,14 @@ dvec3 round_middle(const Bounds& bounds) {
   return glm::round(middle / step) * step + 0.0;
 }
 
-void warn_of_coarse_coordinates(const Bounds& bounds, bool is_rounded, Scene& scene) {
-  if (bounds.is_empty()) return;
-  const double size = size_of(bounds);
-  const std::vector<Bounds> of_meshes = bounds_of_meshes(scene);
+void warn_of_coarse_coordinates(const VertexBounds& bounds, bool is_rounded, Scene& scene) {
+  if (bounds.all.is_empty()) return;
+  const double size = size_of(bounds.all);
   double step = 0.0;
   for (const Object& object : scene.objects) {
-    if (object.geometry == Object::kNoGeometry || of_meshes[object.geometry].is_empty()) continue;
-    const double magnitude = greatest_magnitude(of_meshes[object.geometry], is_rounded ? scene.center : dvec3(0.0));
+    if (object.geometry == Object::kNoGeometry || bounds.of_meshes[object.geometry].is_empty()) continue;
+    const double magnitude =
+        greatest_magnitude(bounds.of_meshes[object.geometry], is_rounded ? scene.center : dvec3(0.0));
     step = std::max(step, step_at(magnitude) * scale_of(object.world_from_object));
   }
   if (!(step > kCoarsestStep * size)) return;

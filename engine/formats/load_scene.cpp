@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/count_of.h"
 #include "core/file.h"
 #include "core/rounding.h"
 #include "core/utf8.h"
@@ -18,6 +19,7 @@
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
 #include "promin/error.h"
+#include "scene/glass.h"
 #include "scene/stray_geometry.h"
 #include "scene/turned_normals.h"
 
@@ -41,15 +43,12 @@ bool has_anything_to_draw(const Scene& scene) {
 constexpr float kSmallestMesh = 1e-18F;
 
 /// Warns of meshes that are not refused for their size, but are too small to be hit.
-void warn_of_tiny_meshes(Scene& scene) {
+void warn_of_tiny_meshes(const VertexBounds& bounds, Scene& scene) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     if (primitive_count(scene, object) == 0) continue;
-    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
-    if (mesh == nullptr) continue;
-    Bounds bounds;
-    for (const vec3& position : mesh->positions) bounds.extend(vec3(object.world_from_object * dvec4(position, 1.0)));
-    if (max_component(bounds.extent()) >= kSmallestMesh) continue;
+    const bool is_mesh = std::holds_alternative<Mesh>(scene.geometries[object.geometry]);
+    if (!is_mesh || max_component(bounds.of_objects[i].extent()) >= kSmallestMesh) continue;
     scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
   }
 }
@@ -63,13 +62,58 @@ void warn_of_turned_normals(Scene& scene) {
   uint64_t count = 0;
   for (size_t i = 0; i < scene.geometries.size(); ++i) {
     const auto* mesh = std::get_if<Mesh>(&scene.geometries[i]);
-    if (is_shown[i] && mesh != nullptr) count += count_turned_triangles(*mesh);
+    if (is_shown[i] && mesh != nullptr) count += find_turned_triangles(*mesh).size();
   }
   if (count == 0) return;
   scene.warnings.push_back(std::to_string(count) +
                            (count == 1
                                 ? " triangle has vertex normals that lie against its winding: they are turned"
                                 : " triangles have vertex normals that lie against their winding: they are turned"));
+}
+
+std::vector<bool> find_shown_materials(const Scene& scene) {
+  std::vector<bool> is_shown(scene.materials.size(), false);
+  for (const Object& object : scene.objects) {
+    if (primitive_count(scene, object) == 0) continue;
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
+    if (mesh == nullptr || mesh->triangle_materials.empty()) {
+      is_shown[object.material] = true;
+    } else {
+      for (const uint32_t material : mesh->triangle_materials) is_shown[material] = true;
+    }
+  }
+  return is_shown;
+}
+
+/// Whether a channel of a texture, which starts at this bit of a texel, is above 0 somewhere; true without a texture.
+bool has_any(const Scene& scene, const TextureSlot& slot, int bit) {
+  if (!slot.exists()) return true;
+  const std::vector<uint32_t>& texels = scene.images[scene.textures[slot.texture].image]->texels;
+  return texels.empty() || std::ranges::any_of(texels, [&](uint32_t texel) { return (texel >> bit & 0xFF) != 0; });
+}
+
+bool is_rough_glass(const Scene& scene, const Material& material) {
+  const auto* model = std::get_if<MetallicRoughness>(&material.model);
+  return model != nullptr && is_clear(material) && model->roughness > 0.0F &&
+         has_any(scene, model->metallic_roughness_texture, 8) && has_any(scene, model->transmission_texture, 0);
+}
+
+/// Warns of glass that blurs the sky alone (docs/model.md, "Glass").
+void warn_of_rough_glass(Scene& scene) {
+  const std::vector<bool> is_shown = find_shown_materials(scene);
+  size_t first = 0;
+  uint64_t count = 0;
+  for (size_t i = 0; i < is_shown.size(); ++i) {
+    if (!is_shown[i] || !is_rough_glass(scene, scene.materials[i])) continue;
+    if (count == 0) first = i;
+    ++count;
+  }
+  if (count == 0) return;
+  const std::string& name = scene.materials[first].name;
+  const std::string other = count == 1 ? "" : " and " + count_of(count - 1, "other") + " like it";
+  scene.warnings.push_back("material " + (name.empty() ? std::to_string(first) : quote(name)) + other +
+                           (count == 1 ? " is" : " are") +
+                           " rough glass: only a sky is blurred through it, and objects are seen sharp");
 }
 
 /// Warns of geometry that a camera which frames the scene leaves out.
@@ -163,18 +207,19 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
 /// Each time that a file is read again, fp32 resolves what lies around its center 2^24 times as finely.
 constexpr int kMostMoves = 3;
 
-/// Reads a file, and again around a center where its coordinates are too coarse in fp32.
+/// Reads a file, and again around a center where its coordinates are too coarse in fp32. Warns of what bounds say.
 Scene load_near_center(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   Scene scene = load_by_format(file, options, report);
-  Bounds bounds = bounds_of_vertices(scene);
-  for (int i = 0; i < kMostMoves && is_too_coarse(bounds); ++i) {
+  VertexBounds bounds = bounds_of_vertices(scene);
+  for (int i = 0; i < kMostMoves && is_too_coarse(bounds.all); ++i) {
     scene = {};
-    report = LoadReport(file, options.is_strict, options.root, report.center() + round_middle(bounds));
+    report = LoadReport(file, options.is_strict, options.root, report.center() + round_middle(bounds.all));
     report.add_source(file);
     scene = load_by_format(file, options, report);
     bounds = bounds_of_vertices(scene);
   }
   warn_of_coarse_coordinates(bounds, report.has_rounded_coordinates(), scene);
+  warn_of_tiny_meshes(bounds, scene);
   return scene;
 }
 
@@ -191,8 +236,8 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, 
   try {
     Scene scene = load_near_center(file, options, report);
     sources = report.sources();
-    warn_of_tiny_meshes(scene);
     warn_of_turned_normals(scene);
+    warn_of_rough_glass(scene);
     warn_of_stray_geometry(scene);
     show_names_in_utf8(scene);
     return scene;

@@ -12,7 +12,7 @@ CopiedHits::CopiedHits(const DroppedCopies& dropped, const PrimitiveNumbers& num
     const PrimitiveId id = primitive_of_order(numbers, order);
     return Id(static_cast<int32_t>(id.object), static_cast<int32_t>(id.primitive));
   };
-  for (const auto& [first, others] : dropped) {
+  for (const auto& [first, others] : dropped.by_first) {
     std::vector<Id>& ids = copies_[id_of(first)];
     for (const uint32_t other : others) ids.push_back(id_of(other));
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "device/device.h"
+#include "device_scene/drop_copies.h"
 #include "promin/validate.h"
 #include "render/picture_tracer.h"
 #include "render/renderer_impl.h"
@@ -69,6 +70,20 @@ void Renderer::set_lights(std::span<const Light> lights) {
   });
 }
 
+namespace {
+
+/// Copies that are not in the tree do not show through their first.
+void check_copies(const std::set<uint32_t>& copied, std::span<const Material> materials) {
+  for (const uint32_t i : copied) {
+    if (hides_copies(materials[i])) continue;
+    throw InputError({"the material was opaque, so the tree has one of more than " + std::to_string(kMostCopies) +
+                          " identical primitives, and shows no others through it",
+                      "material " + std::to_string(i) + " in set_materials", "make a renderer of the changed scene"});
+  }
+}
+
+}  // namespace
+
 void Renderer::set_materials(std::span<const Material> materials) {
   throw_if_invalid(materials);
   if (materials.size() != impl_->tracer.scene().material_count()) {
@@ -76,6 +91,7 @@ void Renderer::set_materials(std::span<const Material> materials) {
                           std::to_string(impl_->tracer.scene().material_count()),
                       "in set_materials", "change the scene's own, in their order"});
   }
+  check_copies(impl_->tracer.scene().copied_materials(), materials);
   gpu::translate_vulkan_errors([&] {
     impl_->tracer.scene().set_materials(materials);
     impl_->tracer.take_change();

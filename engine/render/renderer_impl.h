@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "device_scene/device_scene.h"
 #include "promin/renderer.h"
@@ -48,6 +49,8 @@ class SceneOnDevice {
   /// Whether the tree was built here, not taken from a file.
   bool is_tree_built() const { return is_tree_built_; }
   size_t material_count() const { return shown_materials_.size(); }
+  /// Those of copies that are not in the tree (device_scene/drop_copies.h).
+  const std::set<uint32_t>& copied_materials() const { return copied_materials_; }
   /// Of each object.
   std::span<const uint32_t> object_materials() const { return object_materials_; }
 
@@ -72,6 +75,7 @@ class SceneOnDevice {
   FeatureMask environment_features_;
   uint64_t primitive_count_ = 0;
   std::vector<bool> shown_materials_;
+  std::set<uint32_t> copied_materials_;
   std::vector<uint32_t> object_materials_;
   PrimitiveNumbers numbers_;
   std::shared_ptr<DeviceScene> device_scene_;

@@ -38,6 +38,7 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   stats.upload_ms = uploading.ms();
   stats.device_bytes = device_scene_->size_bytes();
   numbers_ = std::move(packed.numbers);
+  copied_materials_ = std::move(packed.copies.materials);
 }
 
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, const RenderMode& mode) const {

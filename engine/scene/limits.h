@@ -2,10 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+
+#include "promin/math.h"
 #include "promin/validate.h"
 #include "shapes/shapes.h"
 
 namespace promin {
+
+/// Whether all coordinates are numbers up to 1e15.
+inline bool is_in_range(const dvec3& p) {
+  // Written so that NaN fails.
+  return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
+}
 
 /// Whether fp32 can hold a size of a shape in the world; false for NaN.
 inline bool is_valid(const NamedSize& size) {

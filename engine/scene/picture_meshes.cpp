@@ -27,36 +27,37 @@ std::vector<bool> find_materials(const Mesh& mesh, const Object& object, size_t 
 }  // namespace
 
 PictureMeshes::PictureMeshes(const Scene& scene)
-    : scene_(scene), object_counts_(scene.geometries.size(), 0), has_turned_normals_(scene.geometries.size()) {
+    : scene_(scene), object_counts_(scene.geometries.size(), 0), turned_triangles_(scene.geometries.size()) {
   for (const Object& object : scene.objects) {
     if (object.geometry != Object::kNoGeometry) ++object_counts_[object.geometry];
   }
 }
 
-std::shared_ptr<const Mesh> PictureMeshes::find(const Object& object) {
+std::optional<Mesh> PictureMeshes::find(const Object& object) {
   const auto* mesh = std::get_if<Mesh>(&scene_.geometries[object.geometry]);
-  if (mesh == nullptr) return nullptr;
+  if (mesh == nullptr) return std::nullopt;
   const Needs needs = needs_of(*mesh, object);
-  if (needs == Needs{}) return nullptr;
+  if (needs == Needs{}) return std::nullopt;
   const std::pair key(object.geometry, needs);
   if (const auto known = made_.find(key); known != made_.end()) return known->second;
-  auto made = std::make_shared<Mesh>(*mesh);
-  if (needs.tangents) add_tangents(*made, *needs.tangents);
-  center_uvs(*made, {needs.center[0], needs.center[1], needs.center[2], needs.center[3]});
-  if (needs.turns_normals) turn_normals(*made, needs.tangents.has_value());
+  Mesh made = *mesh;
+  if (needs.tangents) add_tangents(made, *needs.tangents);
+  center_uvs(made, {needs.center[0], needs.center[1], needs.center[2], needs.center[3]});
+  // Tangents and centers split vertices, and leave triangles where they are.
+  turn_normals(made, find_turned(object.geometry, *mesh), needs.tangents.has_value());
   if (object_counts_[object.geometry] > 1) made_.emplace(key, made);
   return made;
 }
 
-bool PictureMeshes::has_turned_normals(uint32_t geometry, const Mesh& mesh) {
-  std::optional<bool>& known = has_turned_normals_[geometry];
-  if (!known) known = count_turned_triangles(mesh) > 0;
+const std::vector<uint32_t>& PictureMeshes::find_turned(uint32_t geometry, const Mesh& mesh) {
+  std::optional<std::vector<uint32_t>>& known = turned_triangles_[geometry];
+  if (!known) known = find_turned_triangles(mesh);
   return *known;
 }
 
 PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& object) {
   Needs needs;
-  needs.turns_normals = has_turned_normals(object.geometry, mesh);
+  needs.turns_normals = !find_turned(object.geometry, mesh).empty();
   if (mesh.uvs.empty()) return needs;
   std::vector<TextureSlot> slots;
   // Of several sets the first has its way.

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -22,8 +21,8 @@ class PictureMeshes {
   /// The scene is valid and outlives this.
   explicit PictureMeshes(const Scene& scene);
 
-  /// The mesh that an object shows, or null where the scene's own serves.
-  std::shared_ptr<const Mesh> find(const Object& object);
+  /// The mesh that an object shows, or nullopt where the scene's own serves.
+  std::optional<Mesh> find(const Object& object);
 
  private:
   /// The set of coordinates that tangents are needed for, and what is taken off all coordinates.
@@ -35,14 +34,14 @@ class PictureMeshes {
     auto operator<=>(const Needs&) const = default;
   };
   Needs needs_of(const Mesh& mesh, const Object& object);
-  bool has_turned_normals(uint32_t geometry, const Mesh& mesh);
+  const std::vector<uint32_t>& find_turned(uint32_t geometry, const Mesh& mesh);
 
   const Scene& scene_;
   /// Of each geometry, how many objects show it.
   std::vector<uint32_t> object_counts_;
   /// For each geometry that an object has asked for.
-  std::vector<std::optional<bool>> has_turned_normals_;
-  std::map<std::pair<uint32_t, Needs>, std::shared_ptr<const Mesh>> made_;
+  std::vector<std::optional<std::vector<uint32_t>>> turned_triangles_;
+  std::map<std::pair<uint32_t, Needs>, Mesh> made_;
 };
 
 }  // namespace promin

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.h"
 #include "promin/error.h"
 #include "promin/view.h"
 #include "scene/framing.h"
@@ -55,17 +56,25 @@ struct BoundsInWorld {
 
   Bounds operator()(const Mesh& mesh) const {
     const bool is_moved = !Placement(world_from_object).is_identity();
+    constexpr size_t kTriangles = 16384;
     Bounds bounds;
-    for (const uvec3& triangle : mesh.triangles) {
-      for (int i = 0; i < 3; ++i) {
-        if (triangle[i] >= mesh.positions.size()) {
-          throw InputError({"a triangle names a position that is not there", "in a mesh", "see what validate() tells"});
-        }
-        const vec3& p = mesh.positions[triangle[i]];
-        bounds.extend(is_moved ? vec3(world_from_object * dvec4(p, 1.0)) : p);
-      }
+    for (const Bounds& part :
+         make_parts(mesh.triangles.size(), kTriangles, 0, Bounds(), [&](size_t begin, size_t end, Bounds&some) {
+           for (size_t i = begin; i < end; ++i) extend(some, mesh, i, is_moved);
+         })) {
+      bounds.extend(part);
     }
     return bounds;
+  }
+  void extend(Bounds& bounds, const Mesh& mesh, size_t triangle, bool is_moved) const {
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t vertex = mesh.triangles[triangle][i];
+      if (vertex >= mesh.positions.size()) {
+        throw InputError({"a triangle names a position that is not there", "in a mesh", "see what validate() tells"});
+      }
+      const vec3& p = mesh.positions[vertex];
+      bounds.extend(is_moved ? vec3(world_from_object * dvec4(p, 1.0)) : p);
+    }
   }
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)         \
   Bounds operator()(const TYPE& shape) const {                               \

@@ -6,6 +6,7 @@
 #include <array>
 #include <variant>
 
+#include "core/parallel.h"
 #include "core/rounding.h"
 #include "shapes/shapes.h"
 
@@ -14,49 +15,60 @@ namespace {
 
 constexpr double kLeastShare = 0.99;
 constexpr float kFar = 64.0F;
-constexpr int kBinCount = 128;
+constexpr size_t kBinCount = 128;
 /// Each halves the box at least, and fp32 has 24 bits.
 constexpr int kMostPasses = 24;
 
-/// Calls `use` with the bounds and the surface of each finite primitive of an object, in the world.
-template <class Use>
+/// Adds the bounds and the surface of each finite primitive of an object, in the world, to a sum. It adds those of many
+/// triangles to parts of their own, and these to the sum.
+template <class Sum>
 struct FinitePrimitives {
   const dmat4& world_from_object;
-  const Use& use;
+  Sum& sum;
 
   void operator()(const Mesh& mesh) const {
-    for (const uvec3& triangle : mesh.triangles) {
-      std::array<dvec3, 3> corners;
-      Bounds bounds;
-      for (int i = 0; i < 3; ++i) {
-        const auto corner = static_cast<size_t>(i);
-        corners[corner] = dvec3(world_from_object * dvec4(mesh.positions[triangle[i]], 1.0));
-        bounds.extend(vec3(corners[corner]));
-      }
-      use(bounds, 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
+    const bool is_moved = !Placement(world_from_object).is_identity();
+    constexpr size_t kTriangles = 16384;
+    for (const Sum& part :
+         make_parts(mesh.triangles.size(), kTriangles, 0, sum.start_part(), [&](size_t begin, size_t end, Sum&some) {
+           for (size_t i = begin; i < end; ++i) add_triangle(some, mesh, mesh.triangles[i], is_moved);
+         })) {
+      sum.add_part(part);
     }
+  }
+  void add_triangle(Sum& some, const Mesh& mesh, const uvec3& triangle, bool is_moved) const {
+    std::array<dvec3, 3> corners;
+    Bounds bounds;
+    for (int i = 0; i < 3; ++i) {
+      const dvec3 p(mesh.positions[triangle[i]]);
+      dvec3& corner = corners[static_cast<size_t>(i)];
+      corner = is_moved ? dvec3(world_from_object * dvec4(p, 1.0)) : p;
+      bounds.extend(vec3(corner));
+    }
+    some.add(bounds, 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
   }
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)         \
   void operator()(const TYPE& shape) const {                                 \
     const std::optional placed = place(shape, Placement(world_from_object)); \
-    if (placed) use_box(promin::bounds_of(*placed));                         \
+    if (placed) add_box(promin::bounds_of(*placed));                         \
   }
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   void operator()(const TYPE& /*shape*/) const {}
 #include "promin/kinds/primitives.def"
 
-  void use_box(const Bounds& bounds) const {
+  void add_box(const Bounds& bounds) const {
     const dvec3 size(bounds.extent());
-    use(bounds, 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x));
+    sum.add(bounds, 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x));
   }
 };
 
-template <class Use>
-void for_each_finite_primitive(const Scene& scene, const Use& use) {
+template <class Sum>
+Sum add_up(const Scene& scene, Sum sum) {
   for (const Object& object : scene.objects) {
     if (object.geometry == Object::kNoGeometry) continue;
-    std::visit(FinitePrimitives<Use>{object.world_from_object, use}, scene.geometries[object.geometry]);
+    std::visit(FinitePrimitives<Sum>{object.world_from_object, sum}, scene.geometries[object.geometry]);
   }
+  return sum;
 }
 
 bool holds(const Bounds& bounds, const vec3& point) {
@@ -67,14 +79,13 @@ bool holds(const Bounds& bounds, const vec3& point) {
 using Slices = std::array<double, kBinCount>;
 
 /// The shortest run of slices, as [first, last), that holds so much surface.
-std::pair<int, int> find_shortest_run(const Slices& slices, double least) {
-  std::pair<int, int> best(0, kBinCount);
+std::pair<size_t, size_t> find_shortest_run(const Slices& slices, double least) {
+  std::pair<size_t, size_t> best(0, kBinCount);
   double sum = 0.0;
-  int first = 0;
-  for (int last = 1; last <= kBinCount; ++last) {
-    sum += slices[static_cast<size_t>(last - 1)];
-    while (first < last && sum - slices[static_cast<size_t>(first)] >= least)
-      sum -= slices[static_cast<size_t>(first++)];
+  size_t first = 0;
+  for (size_t last = 1; last <= kBinCount; ++last) {
+    sum += slices[last - 1];
+    while (first < last && sum - slices[first] >= least) sum -= slices[first++];
     if (sum >= least && last - first < best.second - best.first) best = {first, last};
   }
   return best;
@@ -82,27 +93,57 @@ std::pair<int, int> find_shortest_run(const Slices& slices, double least) {
 
 /// The surface of primitives by the places of their centers in a box.
 struct Histogram {
+  Bounds box;
+  dvec3 slice_size;
+  dvec3 slices_per_length;
   std::array<Slices, 3> slices{};
-  dvec3 slice_size{0.0};
   double total = 0.0;
-};
 
-Histogram make_histogram(const Scene& scene, const Bounds& box) {
-  Histogram result;
-  result.slice_size = (dvec3(box.hi) - dvec3(box.lo)) / static_cast<double>(kBinCount);
-  const dvec3 scale = glm::mix(dvec3(0.0), 1.0 / result.slice_size, glm::greaterThan(result.slice_size, dvec3(0.0)));
-  for_each_finite_primitive(scene, [&](const Bounds& bounds, double surface) {
+  explicit Histogram(const Bounds& bounds)
+      : box(bounds),
+        slice_size((dvec3(box.hi) - dvec3(box.lo)) / static_cast<double>(kBinCount)),
+        slices_per_length(glm::mix(dvec3(0.0), 1.0 / slice_size, glm::greaterThan(slice_size, dvec3(0.0)))) {}
+
+  Histogram start_part() const { return Histogram(box); }
+  void add(const Bounds& bounds, double surface) {
     const vec3 center = bounds.center();
     if (!holds(box, center)) return;
-    result.total += surface;
-    const dvec3 at = (dvec3(center) - dvec3(box.lo)) * scale;
+    total += surface;
+    const dvec3 at = (dvec3(center) - dvec3(box.lo)) * slices_per_length;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto slice = std::min(static_cast<size_t>(at[axis]), size_t{kBinCount - 1});
-      result.slices[static_cast<size_t>(axis)][slice] += surface;
+      const auto slice = std::min(static_cast<size_t>(at[axis]), kBinCount - 1);
+      slices[static_cast<size_t>(axis)][slice] += surface;
     }
-  });
-  return result;
-}
+  }
+  void add_part(const Histogram& part) {
+    total += part.total;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (size_t i = 0; i < kBinCount; ++i) slices[axis][i] += part.slices[axis][i];
+    }
+  }
+};
+
+/// What has its center in a box, and the number of primitives outside of it.
+struct Content {
+  Bounds box;
+  MainPart part = {};
+  double surface = 0.0;
+
+  Content start_part() const { return {box}; }
+  void add(const Bounds& bounds, double of_primitive) {
+    if (!holds(box, bounds.center())) {
+      ++part.stray_count;
+      return;
+    }
+    surface += of_primitive;
+    part.bounds.extend(bounds);
+  }
+  void add_part(const Content& content) {
+    surface += content.surface;
+    part.bounds.extend(content.part.bounds);
+    part.stray_count += content.part.stray_count;
+  }
+};
 
 /// The box without what lies beside its shortest runs of slices.
 Bounds shrink(const Bounds& box, const Histogram& histogram, double least) {
@@ -110,8 +151,9 @@ Bounds shrink(const Bounds& box, const Histogram& histogram, double least) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [first, last] = find_shortest_run(histogram.slices[static_cast<size_t>(axis)], least);
     const double slice = histogram.slice_size[axis];
-    shrunk.lo[axis] = static_cast<float>(double{box.lo[axis]} + slice * first);
-    if (last < kBinCount) shrunk.hi[axis] = static_cast<float>(double{box.lo[axis]} + slice * last);
+    shrunk.lo[axis] = static_cast<float>(double{box.lo[axis]} + slice * static_cast<double>(first));
+    if (last < kBinCount)
+      shrunk.hi[axis] = static_cast<float>(double{box.lo[axis]} + slice * static_cast<double>(last));
   }
   return shrunk;
 }
@@ -120,7 +162,7 @@ Bounds shrink(const Bounds& box, const Histogram& histogram, double least) {
 Bounds find_dense_box(const Scene& scene, const Bounds& bounds, double& total) {
   Bounds box = bounds;
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const Histogram histogram = make_histogram(scene, box);
+    const Histogram histogram = add_up(scene, Histogram(box));
     if (pass == 0) total = histogram.total;
     // Each of three axes may lose a third of what may be left out; the caller checks what all passes lose.
     const Bounds shrunk = shrink(box, histogram, total * (1.0 - (1.0 - kLeastShare) / 3.0));
@@ -143,17 +185,11 @@ MainPart find_main_part(const Scene& scene) {
   const Bounds box = find_dense_box(scene, all.bounds, total);
   if (!is_far_smaller(box, all.bounds)) return all;
 
-  MainPart part;
-  double kept = 0.0;
-  for_each_finite_primitive(scene, [&](const Bounds& bounds, double surface) {
-    if (!holds(box, bounds.center())) {
-      ++part.stray_count;
-      return;
-    }
-    kept += surface;
-    part.bounds.extend(bounds);
-  });
-  return kept > 0.0 && kept >= kLeastShare * total && is_far_smaller(part.bounds, all.bounds) ? part : all;
+  const Content content = add_up(scene, Content{box});
+  return content.surface > 0.0 && content.surface >= kLeastShare * total &&
+                 is_far_smaller(content.part.bounds, all.bounds)
+             ? content.part
+             : all;
 }
 
 }  // namespace promin

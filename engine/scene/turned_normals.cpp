@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/turned_normals.h"
 
+#include <algorithm>
 #include <limits>
-#include <vector>
+
+#include "core/parallel.h"
 
 namespace promin {
 namespace {
@@ -17,6 +19,25 @@ bool is_turned(const Mesh& mesh, const uvec3& triangle) {
     if (!(glm::dot(front, dvec3(mesh.normals[triangle[i]])) < 0.0)) return false;
   }
   return true;
+}
+
+/// Whether each vertex is one of these triangles.
+std::vector<bool> find_vertices(const Mesh& mesh, std::span<const uint32_t> triangles) {
+  std::vector<bool> is_vertex(mesh.positions.size(), false);
+  for (const uint32_t i : triangles) {
+    for (int corner = 0; corner < 3; ++corner) is_vertex[mesh.triangles[i][corner]] = true;
+  }
+  return is_vertex;
+}
+
+/// The other triangles that share a vertex with these, which are in order.
+std::vector<uint32_t> find_neighbors(const Mesh& mesh, std::span<const uint32_t> triangles) {
+  const std::vector<bool> is_vertex = find_vertices(mesh, triangles);
+  return find_indices(mesh.triangles.size(), [&](uint32_t i) {
+    const uvec3& corners = mesh.triangles[i];
+    return (is_vertex[corners.x] || is_vertex[corners.y] || is_vertex[corners.z]) &&
+           !std::ranges::binary_search(triangles, i);
+  });
 }
 
 /// Appends a copy of a vertex, and returns its index.
@@ -41,25 +62,15 @@ void turn_vertex(Mesh& mesh, uint32_t vertex, bool tangents_follow_winding) {
 
 }  // namespace
 
-uint64_t count_turned_triangles(const Mesh& mesh) {
-  if (mesh.normals.empty()) return 0;
-  uint64_t count = 0;
-  for (const uvec3& triangle : mesh.triangles) count += is_turned(mesh, triangle) ? 1 : 0;
-  return count;
+std::vector<uint32_t> find_turned_triangles(const Mesh& mesh) {
+  if (mesh.normals.empty()) return {};
+  return find_indices(mesh.triangles.size(), [&](uint32_t i) { return is_turned(mesh, mesh.triangles[i]); });
 }
 
-void turn_normals(Mesh& mesh, bool tangents_follow_winding) {
+void turn_normals(Mesh& mesh, std::span<const uint32_t> turned, bool tangents_follow_winding) {
+  if (turned.empty()) return;
   constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-  std::vector<bool> is_kept(mesh.positions.size(), false);
-  std::vector<uint32_t> turned;
-  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const uvec3& triangle = mesh.triangles[i];
-    if (is_turned(mesh, triangle)) {
-      turned.push_back(i);
-    } else {
-      for (int corner = 0; corner < 3; ++corner) is_kept[triangle[corner]] = true;
-    }
-  }
+  const std::vector<bool> is_kept = find_vertices(mesh, find_neighbors(mesh, turned));
   std::vector<uint32_t> turned_vertex(mesh.positions.size(), kNone);
   for (const uint32_t i : turned) {
     for (int corner = 0; corner < 3; ++corner) {

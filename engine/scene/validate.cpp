@@ -52,11 +52,6 @@ std::string describe_wrong_pixel(const vec3& pixel, const uvec2& place) {
   return sentence.str();
 }
 
-bool is_in_range(const dvec3& p) {
-  // Written so that NaN fails.
-  return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
-}
-
 /// Gathers what is wrong.
 class Validation {
  public:

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.h"
 #include "scene/framing.h"
 #include "scene/picture_meshes.h"
 #include "shapes/shapes.h"
@@ -30,26 +31,22 @@ struct BoundsOfShape {
 #include "promin/kinds/primitives.def"
 };
 
-std::vector<vec3> place_normals(const std::vector<vec3>& normals, const Placement& placement) {
-  std::vector<vec3> placed;
-  placed.reserve(normals.size());
-  for (const vec3& n : normals) {
-    const dvec3 normal = placement.normal(dvec3(n));
-    placed.emplace_back(normal / glm::length(normal));
-  }
-  return placed;
+vec3 place_normal(const vec3& n, const Placement& placement) {
+  const dvec3 normal = placement.normal(dvec3(n));
+  return vec3(normal / glm::length(normal));
 }
 
 /// Tangents go along with positions; a mirroring transform exchanges the sides of bitangents.
-std::vector<vec4> place_tangents(const std::vector<vec4>& tangents, const Placement& placement) {
-  std::vector<vec4> placed;
-  placed.reserve(tangents.size());
-  for (const vec4& t : tangents) {
-    const dvec3 tangent = placement.direction(dvec3(vec3(t)));
-    const double length = glm::length(tangent);
-    placed.emplace_back(length > 0.0 ? vec3(tangent / length) : vec3(0.0F), placement.is_mirroring() ? -t.w : t.w);
-  }
-  return placed;
+vec4 place_tangent(const vec4& t, const Placement& placement) {
+  const dvec3 tangent = placement.direction(dvec3(vec3(t)));
+  const double length = glm::length(tangent);
+  return {length > 0.0 ? vec3(tangent / length) : vec3(0.0F), placement.is_mirroring() ? -t.w : t.w};
+}
+
+/// Gives each of the values what `change` makes of it.
+template <typename Value, typename Change>
+void change_all(std::vector<Value>& values, const Change& change) {
+  for_each_pixel(values.size(), [&](size_t i) { values[i] = change(values[i]); });
 }
 
 struct ShapeInWorld {
@@ -66,25 +63,17 @@ struct ShapeInWorld {
 
 }  // namespace
 
-Mesh place(const Mesh& mesh, const dmat4& world_from_object) {
+Mesh place(Mesh mesh, const dmat4& world_from_object) {
   const Placement placement(world_from_object);
-  Mesh placed;
-  if (placement.is_identity()) {
-    placed.positions = mesh.positions;
-  } else {
-    placed.positions.reserve(mesh.positions.size());
-    for (const vec3& p : mesh.positions) placed.positions.emplace_back(world_from_object * dvec4(p, 1.0));
+  if (!placement.is_identity()) {
+    change_all(mesh.positions, [&](const vec3& p) { return vec3(world_from_object * dvec4(p, 1.0)); });
   }
-  placed.normals = place_normals(mesh.normals, placement);
-  placed.colors = mesh.colors;
-  placed.uvs = mesh.uvs;
-  placed.tangents = place_tangents(mesh.tangents, placement);
-  placed.triangles = mesh.triangles;
-  placed.triangle_materials = mesh.triangle_materials;
+  change_all(mesh.normals, [&](const vec3& n) { return place_normal(n, placement); });
+  change_all(mesh.tangents, [&](const vec4& t) { return place_tangent(t, placement); });
   if (placement.is_mirroring()) {
-    for (uvec3& triangle : placed.triangles) std::swap(triangle.y, triangle.z);
+    for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
   }
-  return placed;
+  return mesh;
 }
 
 namespace {
@@ -93,9 +82,9 @@ Object flatten(const promin::Scene& scene, const promin::Object& object, Picture
   Object result{object.name, NotDrawn{}, object.material};
   if (object.geometry == promin::Object::kNoGeometry) return result;
   const Geometry& geometry = scene.geometries[object.geometry];
-  const std::shared_ptr<const Mesh> mesh = meshes == nullptr ? nullptr : meshes->find(object);
-  const ShapeInWorld in_world{object.world_from_object};
-  result.shape = mesh == nullptr ? std::visit(in_world, geometry) : in_world(*mesh);
+  std::optional<Mesh> mesh = meshes == nullptr ? std::nullopt : meshes->find(object);
+  result.shape = mesh ? Shape(place(std::move(*mesh), object.world_from_object))
+                      : std::visit(ShapeInWorld{object.world_from_object}, geometry);
   result.is_rewound = std::holds_alternative<Mesh>(geometry) && Placement(object.world_from_object).is_mirroring();
   return result;
 }

@@ -46,7 +46,7 @@ struct Scene {
 
 /// A mesh in the world. Positions and normals are transformed in double and rounded once. A mirroring transform
 /// reverses the winding, so that counter-clockwise stays outside. Under the identity positions keep their bits.
-Mesh place(const Mesh& mesh, const dmat4& world_from_object);
+Mesh place(Mesh mesh, const dmat4& world_from_object);
 
 /// What a scene is put into the world for.
 enum class Purpose {

@@ -144,7 +144,8 @@ class PROMIN_EXPORT Renderer {
   void set_lights(std::span<const Light> lights);
   /// Replaces all materials, by as many as the scene had. What meshes and images were made ready for holds on: which
   /// materials have textures of normals, how textures are placed and wrapped, cutoffs of masks, in which solids of
-  /// glass a camera may be. Throws InputError for another number of them and as validate() finds fault, RunError.
+  /// glass a camera may be. Throws InputError for another number of them, as validate() finds fault, and where a
+  /// material of more than 1024 identical primitives is opaque no longer: the tree has one of them. Throws RunError.
   void set_materials(std::span<const Material> materials);
   /// Replaces ambient light and background. Throws InputError as validate() finds fault.
   void set_environment(const Environment& environment);

@@ -171,7 +171,7 @@ TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
   EXPECT_THAT(refusal("{"), HasSubstr("the JSON cannot be read"));
   EXPECT_THAT(refusal("[]"), HasSubstr("a JSON array stands where an object belongs"));
   EXPECT_THAT(refusal(std::string(1000, '[')), HasSubstr("nests 1000 deep"));
-  EXPECT_THAT(refusal(R"({"format": "other", "version": 2, "frames": []})"), HasSubstr("is none of promin camera"));
+  EXPECT_THAT(refusal(R"({"format": "other", "version": 2, "frames": []})"), HasSubstr("is not one of promin camera"));
   EXPECT_THROW(read_camera_path(folder_ / "none.json"), InputError);
 }
 

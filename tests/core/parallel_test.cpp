@@ -28,6 +28,24 @@ TEST(Parallel, OneThreadKeepsTheOrder) {
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3));
 }
 
+TEST(Parallel, PartsComeInOrder) {
+  for (const unsigned thread_count : {1U, 4U}) {
+    const auto parts = make_parts(10, 4, thread_count, std::vector<size_t>{7},
+                                  [](size_t begin, size_t end, std::vector<size_t>& part) {
+                                    part.push_back(begin);
+                                    part.push_back(end);
+                                  });
+    EXPECT_THAT(parts, testing::ElementsAre(testing::ElementsAre(7, 0, 4), testing::ElementsAre(7, 4, 8),
+                                            testing::ElementsAre(7, 8, 10)));
+  }
+}
+
+TEST(Parallel, FoundIndicesAreInOrder) {
+  EXPECT_THAT(find_indices(0, [](uint32_t) { return true; }), testing::IsEmpty());
+  const auto found = find_indices(100'000, [](uint32_t i) { return i % 30'000 == 1; });
+  EXPECT_THAT(found, testing::ElementsAre(1, 30'001, 60'001, 90'001));
+}
+
 TEST(Parallel, AnExceptionStopsTheRestAndArrives) {
   for (const unsigned thread_count : {1U, 4U}) {
     std::atomic<int> calls = 0;

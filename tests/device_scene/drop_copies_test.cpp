@@ -36,12 +36,14 @@ TEST(DropCopiesTest, ManyLeaveTheTreeAndFewStay) {
   for (const char* builder : {"sah", "median", "spatial"}) {
     const PackedScene few = pack(make_scene(kMostCopies, {}), builder);
     EXPECT_EQ(few.bounded_count, kMostCopies + 2);
-    EXPECT_THAT(few.copies, IsEmpty());
+    EXPECT_THAT(few.copies.by_first, IsEmpty());
+    EXPECT_THAT(few.copies.materials, IsEmpty());
     const PackedScene many = pack(make_scene(kMostCopies + 1, {}), builder);
     EXPECT_EQ(many.bounded_count, 3U);
-    ASSERT_THAT(many.copies, SizeIs(1));
-    EXPECT_EQ(many.copies.begin()->first, 1U) << "the first stays";
-    EXPECT_THAT(many.copies.begin()->second, SizeIs(kMostCopies));
+    ASSERT_THAT(many.copies.by_first, SizeIs(1));
+    EXPECT_THAT(many.copies.materials, ElementsAre(0));
+    EXPECT_EQ(many.copies.by_first.begin()->first, 1U) << "the first stays";
+    EXPECT_THAT(many.copies.by_first.begin()->second, SizeIs(kMostCopies));
     EXPECT_EQ(many.primitive_count(), kMostCopies + 3);
   }
 }
@@ -53,14 +55,14 @@ TEST(DropCopiesTest, WhatIsNotOpaqueStays) {
   Material glass;
   glass.model = Phong{.transmission = vec3(0.5F)};
   for (const Material& material : {blend, glass}) {
-    EXPECT_THAT(pack(make_scene(kMostCopies + 1, material)).copies, IsEmpty());
+    EXPECT_THAT(pack(make_scene(kMostCopies + 1, material)).copies.by_first, IsEmpty());
   }
 }
 
 TEST(CopiedHitsTest, CopiesAreListedInTheOrderOfHits) {
   PrimitiveNumbers numbers;
   numbers.first_order = {0, 3, 10};
-  const CopiedHits copies({{1, {2, 4}}}, numbers);
+  const CopiedHits copies({.by_first = {{1, {2, 4}}}, .materials = {0}}, numbers);
   const auto hit = [](float t, int32_t object, int32_t primitive) {
     Hit made;
     made.t = t;

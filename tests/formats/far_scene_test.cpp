@@ -10,12 +10,14 @@
 
 #include <bit>
 
+#include "support/expect_near.h"
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
 
 namespace promin {
 namespace {
 
+using test::expect_near;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -63,10 +65,6 @@ class FarSceneTest : public SceneFolder {
     return scene.center + dvec3(scene.objects.at(0).world_from_object * dvec4(mesh.positions.at(index), 1.0));
   }
 };
-
-void expect_near(const dvec3& a, const dvec3& b, double tolerance) {
-  EXPECT_LE(glm::distance(a, b), tolerance) << fmt::format("{:.9f} {:.9f} {:.9f}", a.x, a.y, a.z);
-}
 
 TEST_F(FarSceneTest, TextIsReadInDouble) {
   const Scene obj = load("far.obj", obj_at(kUtm, 1.1));

@@ -97,9 +97,9 @@ const BadGltf kBadGltf[] = {
      "index 65535", "meshes[0].primitives[0].indices"},
     // Enumerations and ranges
     {"Mode", [](auto& g) { primitive(g)["mode"] = 7; }, "7 is out of range", "meshes[0].primitives[0].mode"},
-    {"ComponentType", [](auto& g) { g.json["accessors"][0]["componentType"] = 5124; }, "is none of 5120|",
+    {"ComponentType", [](auto& g) { g.json["accessors"][0]["componentType"] = 5124; }, "is not one of 5120|",
      "accessors[0].componentType"},
-    {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "\"VEC5\" is none of",
+    {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "\"VEC5\" is not one of",
      "accessors[0].type"},
     {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 stands where an integer",
      "accessors[0].count"},
@@ -141,7 +141,7 @@ const BadGltf kBadGltf[] = {
        shape(g, 0) = {{"type", "capsule"}, {"capsule", {{"radiusTop", 0}, {"radiusBottom", 0}}}};
      },
      "both radii of shape shapes[0] are 0", "extensions.KHR_implicit_shapes.shapes[0].capsule"},
-    {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "\"torus\" is none of",
+    {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "\"torus\" is not one of",
      "extensions.KHR_implicit_shapes.shapes[0].type"},
     // Vertices
     {"NanVertex",

@@ -97,7 +97,7 @@ const Repair kRepairs[] = {
      },
      PROMIN_CLAMPED("-1", "materials[0].emissiveFactor[1]", "0 to 1e+15")},
     {"AlphaMode", [](auto& g) { g.json["materials"][0]["alphaMode"] = "CUTOUT"; },
-     "a value is none of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; it is ignored"},
+     "a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; it is ignored"},
     {"Ior",
      [](auto& g) {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
@@ -152,7 +152,7 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["samplers"] = {{{"magFilter", 9987}}};
      },
-     "a value is none of 9728|9729 (\"9987\"), samplers[0].magFilter; it is ignored"},
+     "a value is not one of 9728|9729 (\"9987\"), samplers[0].magFilter; it is ignored"},
     {"SamplerIndex",
      [](auto& g) {
        g.json["textures"] = {{{"sampler", 4}}};
@@ -175,7 +175,7 @@ const Repair kRepairs[] = {
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; },
      PROMIN_CLAMPED("-1", PROMIN_LIGHT ".intensity", "0 to 1e+15")},
     {"LightType", [](auto& g) { light(g)["type"] = "area"; },
-     "a value is none of point|directional|spot (\"area\"), " PROMIN_LIGHT ".type; the light is left out"},
+     "a value is not one of point|directional|spot (\"area\"), " PROMIN_LIGHT ".type; the light is left out"},
     {"LightRange", [](auto& g) { light(g)["range"] = 0; },
      "a number is out of range (0), " PROMIN_LIGHT ".range; it is ignored"},
     {"ConeAngles",
@@ -192,7 +192,7 @@ const Repair kRepairs[] = {
     {"AspectRatio", [](auto& g) { g.json["cameras"][0]["perspective"]["aspectRatio"] = 0; },
      "a number is out of range (0), cameras[0].perspective.aspectRatio; it is ignored"},
     {"CameraType", [](auto& g) { g.json["cameras"][0]["type"] = "fisheye"; },
-     "a value is none of perspective|orthographic (\"fisheye\"), cameras[0].type; the camera is left out"},
+     "a value is not one of perspective|orthographic (\"fisheye\"), cameras[0].type; the camera is left out"},
     {"CameraWithoutParameters", [](auto& g) { g.json["cameras"][0].erase("perspective"); },
      "the camera's parameters are missing, cameras[0]; the camera is left out"},
     {"Sky",

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "core/rounding.h"
+#include "support/expect_near.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 
@@ -10,17 +10,15 @@ namespace promin {
 namespace {
 
 using nlohmann::json;
+using test::expect_near;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-void expect_near(const std::vector<vec3>& got, const std::vector<vec3>& wanted, float tolerance = 1e-6F) {
+void expect_all_near(const std::vector<vec3>& got, const std::vector<vec3>& wanted) {
   ASSERT_EQ(got.size(), wanted.size());
-  for (size_t i = 0; i < got.size(); ++i) {
-    EXPECT_LE(max_abs_component(got[i] - wanted[i]), tolerance)
-        << i << ": " << got[i].x << " " << got[i].y << " " << got[i].z;
-  }
+  for (size_t i = 0; i < got.size(); ++i) expect_near(got[i], wanted[i]);
 }
 
 /// A triangle, which node 0 shows by a skin of the joints 1 and 2.
@@ -47,13 +45,13 @@ class GltfSkinTest : public SceneFolder {
 const std::vector<vec3> kPosed = {{0, 0, 2}, {3, 4, 0}, {0, 4, 1}};
 
 TEST_F(GltfSkinTest, JointsPoseTheMeshAndItsOwnNodeDoesNot) {
-  expect_near(corners(), kPosed);
+  expect_all_near(corners(), kPosed);
   EXPECT_THAT(load().warnings, IsEmpty());
   gltf_.json["nodes"][0]["translation"] = {7, 8, 9};
   gltf_.add_node({{"children", {0}}, {"scale", {5, 5, 5}}});
-  expect_near(corners(), kPosed);
+  expect_all_near(corners(), kPosed);
   gltf_.json["nodes"][0]["scale"] = {0, 0, 0};
-  expect_near(corners(), kPosed);
+  expect_all_near(corners(), kPosed);
 }
 
 TEST_F(GltfSkinTest, InverseBindMatricesComeFirst) {
@@ -63,7 +61,7 @@ TEST_F(GltfSkinTest, InverseBindMatricesComeFirst) {
     matrices[16 * i + 12] = -1.0F;
   }
   gltf_.json["skins"][0]["inverseBindMatrices"] = gltf_.add<float>(matrices, "MAT4");
-  expect_near(corners(), {{-1, 0, 2}, {0, 4, 0}, {-2, 4, 1}});
+  expect_all_near(corners(), {{-1, 0, 2}, {0, 4, 0}, {-2, 4, 1}});
   gltf_.json["skins"][0]["inverseBindMatrices"] =
       gltf_.add<float>(std::vector<float>(matrices.begin(), matrices.begin() + 16), "MAT4");
   EXPECT_THAT(refusal(), HasSubstr("a skin has 1 inverse bind matrices for 2 joints"));
@@ -74,12 +72,12 @@ TEST_F(GltfSkinTest, LastRowsOfInverseBindMatricesAreMadeAffine) {
   for (size_t i = 0; i < 8; ++i) matrices[16 * (i / 4) + 5 * (i % 4)] = 1.0F;
   matrices[3] = 5e-4F;
   gltf_.json["skins"][0]["inverseBindMatrices"] = gltf_.add<float>(matrices, "MAT4");
-  expect_near(corners(), kPosed);
+  expect_all_near(corners(), kPosed);
   EXPECT_THAT(load().warnings, IsEmpty()) << "rounding";
   matrices[31] = 0.5F;
   gltf_.json["skins"][0]["inverseBindMatrices"] = gltf_.add<float>(matrices, "MAT4");
   const LoadedScene scene = load();
-  expect_near(corners_of(mesh_of(scene)), kPosed);
+  expect_all_near(corners_of(mesh_of(scene)), kPosed);
   EXPECT_THAT(
       scene.warnings,
       ElementsAre("an inverse bind matrix is not affine (0.500000), skins[0].inverseBindMatrices, element 1; its "
@@ -88,16 +86,16 @@ TEST_F(GltfSkinTest, LastRowsOfInverseBindMatricesAreMadeAffine) {
 
 TEST_F(GltfSkinTest, JointsMayBeInNoScene) {
   gltf_.json["scenes"] = {{{"nodes", {0}}}};
-  expect_near(corners(), kPosed);
+  expect_all_near(corners(), kPosed);
   gltf_.add_node({{"children", {1, 2}}, {"translation", {10, 0, 0}}});
-  expect_near(corners(), {{10, 0, 2}, {13, 4, 0}, {10, 4, 1}});
+  expect_all_near(corners(), {{10, 0, 2}, {13, 4, 0}, {10, 4, 1}});
 }
 
 TEST_F(GltfSkinTest, EverySetOfJointsCounts) {
   primitive()["attributes"]["JOINTS_1"] = gltf_.add<uint16_t>(std::vector<uint16_t>(12, 1), "VEC4");
   primitive()["attributes"]["WEIGHTS_1"] = gltf_.add<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0}, "VEC4", true);
   // The third vertex: 1/2 of joint 1 and 3/2 of joint 2, over 2.
-  expect_near(corners(), {kPosed[0], kPosed[1], {0, 0.25F + 0.75F * 7, 0.5F}});
+  expect_all_near(corners(), {kPosed[0], kPosed[1], {0, 0.25F + 0.75F * 7, 0.5F}});
 }
 
 TEST_F(GltfSkinTest, MorphTargetsMoveFirst) {
@@ -116,10 +114,10 @@ TEST_F(GltfSkinTest, NormalsAndTangentsFollow) {
   const LoadedScene scene = load();
   const Mesh& mesh = mesh_of(scene);
   // Under a scale of (3, 1, 1) normals go by (1/3, 1, 1), under that of (2, 1, 1), the mean, by (1/2, 1, 1).
-  expect_near(mesh.normals, {{half, half, 0}, glm::normalize(vec3(1, 3, 0)), glm::normalize(vec3(1, 2, 0))});
+  expect_all_near(mesh.normals, {{half, half, 0}, glm::normalize(vec3(1, 3, 0)), glm::normalize(vec3(1, 2, 0))});
   std::vector<vec3> tangents;
   for (const vec4& tangent : mesh.tangents) tangents.emplace_back(tangent);
-  expect_near(tangents, {{half, -half, 0}, glm::normalize(vec3(3, -1, 0)), glm::normalize(vec3(2, -1, 0))});
+  expect_all_near(tangents, {{half, -half, 0}, glm::normalize(vec3(3, -1, 0)), glm::normalize(vec3(2, -1, 0))});
   EXPECT_EQ(mesh.tangents[2].w, -1.0F);
 }
 
@@ -130,7 +128,7 @@ TEST_F(GltfSkinTest, JointsThatMirrorTurnTheWinding) {
   const Mesh& mesh = mesh_of(scene);
   EXPECT_TRUE(scene.objects.at(0).is_rewound) << "as hits number its corners";
   // As a mesh whose node mirrors: the corners go round the other way, and the normals turn with the surface.
-  expect_near(corners_of(mesh), {{0, 0, -2}, {0, 4, -1}, {3, 4, 0}});
+  expect_all_near(corners_of(mesh), {{0, 0, -2}, {0, 4, -1}, {3, 4, 0}});
   for (const vec3& normal : mesh.normals) EXPECT_EQ(normal, vec3(0, 0, -1));
 }
 
@@ -159,7 +157,7 @@ TEST_F(GltfSkinTest, BadWeightsAreRepaired) {
   for (const float bad : {0.0F, std::numeric_limits<float>::quiet_NaN()}) {
     primitive()["attributes"]["WEIGHTS_0"] = gltf_.add<float>({bad, 0, 0, 0, bad, 0, 0, 0, 0.25F, 0.25F, 0, 0}, "VEC4");
     const LoadedScene scene = load();
-    expect_near(corners_of(mesh_of(scene)), kPosed);
+    expect_all_near(corners_of(mesh_of(scene)), kPosed);
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a vertex of a skinned mesh has no weights, or ones that are no "
                                                       "numbers, meshes[0].primitives[0].attributes.WEIGHTS_0, element "
                                                       "0 and 1 more; it goes with the first of its joints")));

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "core/file.h"
-#include "core/rounding.h"
 #include "environment/sky_radiance.h"
 #include "formats/gltf/buffers.h"
 #include "promin/image.h"
 #include "scene/glass.h"
+#include "support/expect_near.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
 
@@ -17,6 +17,7 @@ namespace promin {
 namespace {
 
 using nlohmann::json;
+using test::expect_near;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -29,11 +30,6 @@ class GltfTest : public SceneFolder {
   LoadedScene load(GltfBuilder& gltf) const { return SceneFolder::load("scene.gltf", gltf.text()); }
   LoadedScene load(GltfBuilder&& gltf) const { return load(gltf); }
 };
-
-void expect_near(const vec3& got, const vec3& wanted, float tolerance = 1e-6F) {
-  EXPECT_LE(max_abs_component(got - wanted), tolerance)
-      << got.x << " " << got.y << " " << got.z << " is not " << wanted.x << " " << wanted.y << " " << wanted.z;
-}
 
 const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 
@@ -629,6 +625,49 @@ TEST_F(GltfTest, PhongMaterialsHaveNoTextures) {
 const std::string kPixel =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNocFAAAAIkAOGVpLGLAAAAAElFTkSuQmCC";
+
+/// One whose green is 0.
+const std::string kSmooth =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z/"
+    "AfAAQAAf8iCjrwAAAAAElFTkSuQmCC";
+
+/// What is drawn of it and what is not: one warning for all of a file.
+TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
+  const json pbr = {{"metallicFactor", 0}, {"roughnessFactor", 0.25}};
+  const json extensions = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                           {"KHR_materials_volume", {{"thicknessFactor", 2}}},
+                           {"KHR_materials_dispersion", {{"dispersion", 0.5}}}};
+  const json frosted = {{"name", "frosted"}, {"pbrMetallicRoughness", pbr}, {"extensions", extensions}};
+  const auto warnings_of = [&](const json& changes, const std::string& image = kPixel) {
+    json material = frosted;
+    material.merge_patch(changes);
+    GltfBuilder gltf = material_gltf(material);
+    gltf.json["images"] = {{{"uri", image}}};
+    gltf.json["textures"] = {{{"source", 0}}};
+    return load(gltf).warnings;
+  };
+  const std::string one = " is rough glass: only a sky is blurred through it, and objects are seen sharp";
+  EXPECT_THAT(warnings_of(json::object()), ElementsAre("material \"frosted\"" + one));
+  EXPECT_THAT(warnings_of({{"name", nullptr}}), ElementsAre("material 0" + one));
+  const json textured = {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}};
+  EXPECT_THAT(warnings_of(textured), ElementsAre(HasSubstr("rough glass")));
+  EXPECT_THAT(warnings_of(textured, kSmooth), IsEmpty()) << "no texel is rough";
+  EXPECT_THAT(warnings_of({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}}), IsEmpty());
+  EXPECT_THAT(warnings_of({{"pbrMetallicRoughness", {{"metallicFactor", 1}}}}), IsEmpty()) << "nothing goes through";
+  EXPECT_THAT(warnings_of({{"extensions", {{"KHR_materials_transmission", nullptr}}}}), IsEmpty());
+
+  GltfBuilder several = material_gltf({{"name", "unseen"}, {"pbrMetallicRoughness", pbr}, {"extensions", extensions}});
+  for (int i = 1; i < 4; ++i) {
+    several.json["materials"].push_back(frosted);
+    several.json["meshes"][0]["primitives"].push_back(several.json["meshes"][0]["primitives"][0]);
+  }
+  for (int i = 0; i < 4; ++i) several.json["meshes"][0]["primitives"][i]["material"] = std::max(i, 1);
+  EXPECT_THAT(
+      load(several).warnings,
+      ElementsAre("material \"frosted\" and 2 others like it are rough glass: only a sky is blurred through it, "
+                  "and objects are seen sharp"))
+      << "nothing has the first material";
+}
 
 TEST_F(GltfTest, TexturesAreTakenAsTheyAre) {
   GltfBuilder gltf =

@@ -39,7 +39,8 @@ std::vector<std::string> scene_names() {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(kScenes)) {
     const std::string ending = entry.path().extension().string();
-    if (ending == ".gltf" || ending == ".obj") names.push_back(entry.path().filename().string());
+    const bool is_scene = ending == ".gltf" || ending == ".obj" || ending == ".ply" || ending == ".stl";
+    if (is_scene) names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;

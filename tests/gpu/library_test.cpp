@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "device_scene/drop_copies.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/caster.h"
@@ -113,6 +114,23 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   environment.ambient = vec3(-1);
   EXPECT_THROW(renderer.set_environment(environment), InputError);
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
+}
+
+// The tree has one of these copies: as glass each would show.
+TEST_F(LibraryTest, MaterialsOfManyCopiesStayOpaque) {
+  Scene scene = scene_;
+  auto& floor = std::get<Mesh>(scene.geometries[0]);
+  floor.triangles.insert(floor.triangles.end(), kMostCopies, floor.triangles[0]);
+  Renderer renderer(device(), scene);
+  std::vector<Material> materials = scene.materials;
+  materials[0].phong().diffuse = vec3(0.25F);
+  materials[1].phong().transmission = vec3(0.5F);
+  EXPECT_NO_THROW(renderer.set_materials(materials)) << "the ball has no copies";
+  materials[0].alpha_mode = AlphaMode::kBlend;
+  EXPECT_THROW(renderer.set_materials(materials), InputError);
+  materials[0].alpha_mode = AlphaMode::kOpaque;
+  materials[0].phong().transmission = vec3(0.5F);
+  EXPECT_THROW(renderer.set_materials(materials), InputError);
 }
 
 // In a process of its own (tests/CMakeLists.txt: each suite on a device is), because Mesa 25.0.7 counts memory that it

@@ -51,26 +51,26 @@ oracle::Vector color_of(const Mesh& mesh, float eye_z) {
 }
 
 TEST(TurnedNormals, CountOnlyWhatLiesAgainstTheWindingWithAllCorners) {
-  EXPECT_EQ(count_turned_triangles(make_square(1)), 0U);
-  EXPECT_EQ(count_turned_triangles(make_square(-1)), 2U);
-  EXPECT_EQ(count_turned_triangles(make_square(0)), 0U) << "in the plane";
+  EXPECT_EQ(find_turned_triangles(make_square(1)).size(), 0U);
+  EXPECT_EQ(find_turned_triangles(make_square(-1)).size(), 2U);
+  EXPECT_EQ(find_turned_triangles(make_square(0)).size(), 0U) << "in the plane";
   Mesh mesh = make_square(-1);
   mesh.normals[1] = vec3(0, 0, 1);
-  EXPECT_EQ(count_turned_triangles(mesh), 1U) << "to both sides";
+  EXPECT_EQ(find_turned_triangles(mesh).size(), 1U) << "to both sides";
   mesh.normals[0] = vec3(0.0F);
-  EXPECT_EQ(count_turned_triangles(mesh), 0U) << "a normal without length";
+  EXPECT_EQ(find_turned_triangles(mesh).size(), 0U) << "a normal without length";
   mesh = make_square(-1);
   mesh.triangles.push_back({0, 1, 1});
-  EXPECT_EQ(count_turned_triangles(mesh), 2U) << "without area";
+  EXPECT_EQ(find_turned_triangles(mesh).size(), 2U) << "without area";
   mesh.normals.clear();
-  EXPECT_EQ(count_turned_triangles(mesh), 0U);
+  EXPECT_EQ(find_turned_triangles(mesh).size(), 0U);
 }
 
 TEST(TurnedNormals, SplitWhatOtherTrianglesKeep) {
   Mesh mesh = make_square(-1);
   mesh.normals[1] = vec3(0, 0, 1);
   const Mesh before = mesh;
-  turn_normals(mesh, true);
+  turn_normals(mesh, find_turned_triangles(mesh), true);
   ASSERT_EQ(mesh.positions.size(), 6U) << "corners 0 and 2 of both triangles";
   EXPECT_EQ(mesh.uvs.size(), 6U);
   EXPECT_EQ(mesh.triangles[0], before.triangles[0]);

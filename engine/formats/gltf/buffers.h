@@ -29,7 +29,7 @@ bool has_bytes(const GltfDocument& document, size_t view);
 
 /// The bytes of every buffer of a document: from data: URIs, files beside the scene (see find_beside_scene) or the
 /// GLB's binary chunk. One that needed views lie in, or what they are compressed to, has all of their bytes, any other
-/// has none. Missing bytes of a buffer that meshes need are a refusal. Those of other buffers are a warning. Problems
+/// is empty. Missing bytes of a buffer that meshes need are a refusal. Those of other buffers are a warning. Problems
 /// go to the report.
 GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
                               LoadReport& report);

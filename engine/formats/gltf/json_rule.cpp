@@ -263,7 +263,7 @@ class RuleCheck {
       if (got == rest.substr(0, end)) return check_choice_type(value, place);
       rest = rest.substr(std::min(end + 1, rest.size()));
     }
-    return fail("a value", quote(got), "is none of " + std::string(rule_.target), place, "use one of them");
+    return fail("a value", quote(got), "is not one of " + std::string(rule_.target), place, "use one of them");
   }
 
   /// "5126", a string, is not the number 5126.

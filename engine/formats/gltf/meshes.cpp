@@ -14,6 +14,7 @@
 #include "formats/gltf/json_rule.h"
 #include "motion/skin.h"
 #include "promin/validate.h"
+#include "scene/limits.h"
 #include "scene/world_scene.h"
 #include "shapes/placement.h"
 
@@ -24,14 +25,9 @@ constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
 /// Transforms of a smaller determinant are as good as singular, or overflow, and normals may vanish under them.
 constexpr double kLeastDeterminant = 1e-100;
 
-bool is_in_range(const dvec3& p) {
-  // Written so that NaN fails.
-  return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
-}
-
 /// Whether all vertices are in range in the world. The corners of their box, which bounds them, mostly tell; otherwise
 /// each vertex is looked at.
-bool is_in_range(const Mesh& mesh, const dmat4& world_from_object) {
+bool is_mesh_in_range(const Mesh& mesh, const dmat4& world_from_object) {
   Bounds box;
   for (const vec3& position : mesh.positions) box.extend(position);
   bool are_corners_in_range = true;
@@ -396,7 +392,7 @@ void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::str
   object.geometry = geometry;
   object.world_from_object = placed.world_from_object;
   const Mesh& mesh = std::get<Mesh>(scene.geometries[geometry]);
-  if (!is_in_range(mesh, placed.world_from_object)) {
+  if (!is_mesh_in_range(mesh, placed.world_from_object)) {
     report.refuse("a vertex lies beyond 1e15 in the world", "nodes[" + std::to_string(placed.node) + "]",
                   "use a smaller translation or scale in it and its parents");
     return;

@@ -17,6 +17,7 @@
 #include "formats/scene_path.h"
 #include "formats/triangulate.h"
 #include "promin/validate.h"
+#include "scene/limits.h"
 
 namespace promin {
 namespace {
@@ -80,11 +81,6 @@ void check_elements(const PlyHeader& header, LoadReport& report) {
                 "export it with faces; point clouds are not drawn");
 }
 
-bool is_in_range(const vec3& p) {
-  // Written so that NaN fails.
-  return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
-}
-
 /// Makes a mesh of what a file has.
 class MeshMaker {
  public:
@@ -132,7 +128,8 @@ class MeshMaker {
     mesh_.colors.reserve(body_.colors.size());
     if (has_uvs_) mesh_.uvs.reserve(body_.uvs.size());
     for (uint32_t vertex = 0; vertex < new_index_.size(); ++vertex) {
-      if (new_index_[vertex] == kUnused || !is_in_range(body_.positions[vertex]) || !has_normal(vertex)) continue;
+      if (new_index_[vertex] == kUnused || !is_in_range(dvec3(body_.positions[vertex])) || !has_normal(vertex))
+        continue;
       new_index_[vertex] = add_vertex(look_of(vertex, 0));
       if (has_normals_) mesh_.normals.push_back(body_.normals[vertex]);
     }
@@ -189,7 +186,7 @@ class MeshMaker {
 
   bool is_drawable(std::span<const uint32_t> corners) {
     for (const uint32_t corner : corners) {
-      if (is_in_range(body_.positions[corner])) continue;
+      if (is_in_range(dvec3(body_.positions[corner]))) continue;
       report_.repair({"a face has a vertex coordinate that is no number up to 1e15", "",
                       "vertex " + std::to_string(corner), "export the mesh again, in a larger unit of length",
                       "the face is left out"});

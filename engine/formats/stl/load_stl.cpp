@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/stl/load_stl.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include "formats/stl/text.h"
 #include "formats/text_lines.h"
 #include "promin/validate.h"
+#include "scene/limits.h"
 
 namespace promin {
 namespace {
@@ -107,16 +109,6 @@ class FacetColors {
   vec3 default_{1.0F};
 };
 
-bool is_in_range(const std::array<vec3, 3>& corners) {
-  for (const vec3& p : corners) {
-    for (int i = 0; i < 3; ++i) {
-      // Written so that NaN fails.
-      if (!(std::abs(p[i]) <= kMaxCoordinate)) return false;
-    }
-  }
-  return true;
-}
-
 StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) {
   report.note_rounded_coordinates();
   const FacetColors colors(file, count);
@@ -126,7 +118,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
   if (colors.exist()) solid.colors.reserve(count);
   for (uint64_t i = 0; i < count; ++i) {
     const auto corners = read_number<std::array<vec3, 3>>(file, kFirstFacet + kFacetBytes * i + kNormalBytes);
-    if (!is_in_range(corners)) {
+    if (!std::ranges::all_of(corners, [](const vec3& p) { return is_in_range(dvec3(p)); })) {
       report.repair({"a facet has a vertex coordinate that is no number up to 1e15", "", "facet " + std::to_string(i),
                      "export the mesh again, in a larger unit of length", "the facet is left out"});
       continue;

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "promin/math.h"
+
+namespace promin::test {
+
+/// Expects two points or directions of a distance up to `tolerance`.
+inline void expect_near(const dvec3& got, const dvec3& wanted, double tolerance = 1e-6) {
+  EXPECT_LE(glm::distance(got, wanted), tolerance)
+      << got.x << " " << got.y << " " << got.z << " is not " << wanted.x << " " << wanted.y << " " << wanted.z;
+}
+
+}  // namespace promin::test
