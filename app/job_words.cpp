@@ -73,8 +73,9 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "--pieces", .is_in_manifest = false},
     {.name = "--root", .is_in_manifest = false, .names_file = true},
     {.name = "--repeat", .is_in_manifest = false},
+    {.name = "--quality", .default_word = "normal"},
     {.name = "--shading", .default_word = "full"},
-    {.name = "--spp", .default_word = "1"},
+    {.name = "--spp", .default_word = "8"},
     {.name = "--tiles", .is_in_manifest = false}};
 
 const OptionOfJobs& option_of_jobs(std::string_view name) {

@@ -76,12 +76,11 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
 }
 
 TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
-                  const std::function<bool(double)>& on_progress) {
+                  const std::optional<double>& limit_s, const std::function<bool(double)>& on_progress) {
   TracedFrame frame;
   const uint32_t repeats = options.tracing.repeat_count;
   for (uint32_t i = 0; i < repeats; ++i) {
     const auto tell = [&](double fraction) { return on_progress((i + fraction) / repeats); };
-    const std::optional<double> limit_s = options.error.time_limit_s;
     frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
     frame.trace_ms.push_back(frame.result.trace_ms);
   }

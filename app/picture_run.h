@@ -53,7 +53,7 @@ struct TracedFrame {
 };
 
 TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
-                  const std::function<bool(double)>& on_progress);
+                  const std::optional<double>& limit_s, const std::function<bool(double)>& on_progress);
 
 /// No times: equal pictures are equal files.
 Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <system_error>
 
 namespace promin::app {
 namespace {
@@ -57,6 +58,29 @@ void Progress::update(double fraction, const std::string& at) {
   if (tenth == last_tenth_) return;
   last_tenth_ = tenth;
   std::fputs(fmt::format("{}: {:.0f} %, {}\n", program_, std::floor(100.0 * fraction), left).c_str(), stderr);
+}
+
+StageNote::StageNote(std::string name, const Console& console) : name_(std::move(name)), console_(console) {
+  if (console.is_quiet()) return;
+  try {
+    waiting_ = std::thread([this] { wait_and_tell(); });
+  } catch (const std::system_error&) {
+    // There are too few threads for a note.
+  }
+}
+
+StageNote::~StageNote() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  over_.notify_all();
+  if (waiting_.joinable()) waiting_.join();
+}
+
+void StageNote::wait_and_tell() {
+  std::unique_lock lock(mutex_);
+  if (!over_.wait_for(lock, kLongWork, [this] { return is_over_; })) console_.note(name_ + " ...");
 }
 
 }  // namespace promin::app

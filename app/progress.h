@@ -3,8 +3,12 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
+#include "console.h"
 #include "promin/progress.h"
 
 namespace promin::app {
@@ -42,6 +46,26 @@ class Progress {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_draw_ = start_;
   int last_tenth_ = -1;
+};
+
+/// Names a stage of the work on stderr where it takes more than a second. It needs a thread; without one it is silent.
+class StageNote {
+ public:
+  StageNote(std::string name, const Console& console);
+  /// The stage is over.
+  ~StageNote();
+  StageNote(const StageNote&) = delete;
+  StageNote& operator=(const StageNote&) = delete;
+
+ private:
+  void wait_and_tell();
+
+  std::string name_;
+  const Console& console_;
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread waiting_;
 };
 
 }  // namespace promin::app

@@ -34,6 +34,9 @@
 namespace promin::app {
 namespace {
 
+/// A picture that takes more than this share of its time limit is late.
+constexpr double kLateShare = 1.2;
+
 PictureHeader make_header(const RenderOptions& options, const Scene& scene, const std::optional<uint32_t>& frame,
                           const RunStats& stats) {
   const View& view = *stats.view;
@@ -50,7 +53,7 @@ PictureHeader make_header(const RenderOptions& options, const Scene& scene, cons
 
 /// The samples of a pixel and, with an error target, how exact that is, of several frames together.
 std::string describe_samples(const RunStats& stats) {
-  if (stats.errors.empty()) return fmt::format("{} spp", stats.view->samples_per_pixel);
+  if (stats.errors.empty() || !stats.view->error_target) return fmt::format("{} spp", stats.view->samples_per_pixel);
   PictureError all = stats.errors.front();
   for (const PictureError& error : std::span(stats.errors).subspan(1)) all += error;
   const auto [least, most] = std::ranges::minmax(stats.errors, {}, &PictureError::target);
@@ -60,18 +63,28 @@ std::string describe_samples(const RunStats& stats) {
 }
 
 /// The options that give the last picture of a time limit again.
-std::string describe_target(const RunStats& stats) {
+std::string describe_reached(const RunStats& stats) {
+  const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
+  if (!stats.view->error_target) return fmt::format("the picture{} of --spp {}", name, stats.view->samples_per_pixel);
   ErrorTarget target = *stats.view->error_target;
   target.error = stats.errors.back().target;
-  const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
   return fmt::format("the picture{} of {}", name, describe_options(target));
+}
+
+/// Says what a time limit has come to.
+void tell_reached(const RunStats& stats, double limit_s, double taken_s, const Console& console) {
+  if (taken_s > kLateShare * limit_s) {
+    console.note(fmt::format("{:.1f} s instead of {:g} s: loading, compiling and one sample a pixel took the time",
+                             taken_s, limit_s));
+  }
+  console.note(describe_reached(stats));
 }
 
 std::string summarize(const RunStats& stats, const RenderOptions& options) {
   const std::string frames = stats.frames.empty() ? "" : count_of(stats.frames.size(), "frame") + ", ";
   const std::string time_of = stats.frames.empty() ? "" : " a frame";
-  return fmt::format("{}x{}, {}, {}{:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}", stats.view->size.x,
-                     stats.view->size.y, describe_samples(stats), frames,
+  return fmt::format("{}x{}, {}, {}{:.1f} s, {:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}",
+                     stats.view->size.x, stats.view->size.y, describe_samples(stats), frames, 1e-3 * stats.total_ms,
                      1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
                      stats.mrays_per_s(), stats.device.name, fmt::join(names_of(options.pictures), ", "));
 }
@@ -92,10 +105,13 @@ bool is_traced_whole(const RenderOptions& options) {
 /// the error that the whole comes to, once all is traced.
 class FrameRendering {
  public:
-  FrameRendering(const PlannedFrame& planned, const RenderOptions& options, const gpu::Device& device,
-                 const Scene& scene, Renderer& renderer, RunStats& stats, std::function<void(double)> on_progress)
+  /// `limit_s` is the time that is left of a time limit.
+  FrameRendering(const PlannedFrame& planned, const RenderOptions& options, const std::optional<double>& limit_s,
+                 const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                 std::function<void(double)> on_progress)
       : planned_(planned),
         options_(options),
+        limit_s_(limit_s),
         device_(device),
         scene_(scene),
         renderer_(renderer),
@@ -128,8 +144,12 @@ class FrameRendering {
   PictureRows trace_part(const std::optional<PixelWindow>& part, const ProgressCallback& on_progress) {
     View view = *stats_.view;
     if (part) view.crop = part;
-    TracedFrame traced = trace(renderer_, view, options_, on_progress);
+    TracedFrame traced = trace(renderer_, view, options_, limit_s_, on_progress);
     RenderResult& result = traced.result;
+    if (!result.error) {
+      stats_.view->error_target.reset();
+      stats_.view->samples_per_pixel = result.samples_per_pixel;
+    }
     check_validation(device_, stats_);
     number_as_in_file(scene_, result.aovs);
     stats_.rays += result.rays;
@@ -204,6 +224,7 @@ class FrameRendering {
 
   const PlannedFrame& planned_;
   const RenderOptions& options_;
+  std::optional<double> limit_s_;
   const gpu::Device& device_;
   const Scene& scene_;
   Renderer& renderer_;
@@ -221,23 +242,38 @@ class FrameRendering {
   std::optional<PictureFiles> files_;
 };
 
+/// About how long it takes to write pictures of a view.
+double writing_s(const View& view, size_t pictures) {
+  constexpr double kSecondsPerPixel = 3e-7;
+  return kSecondsPerPixel * static_cast<double>(area_of(window_of(view))) * static_cast<double>(pictures);
+}
+
 /// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
 /// are whole.
-void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const gpu::Device& device,
-                   const Scene& scene, Renderer& renderer, RunStats& stats, const Console& console) {
+void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const Stopwatch& total,
+                   const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                   const Console& console) {
   Progress progress(console.is_quiet());
+  const View asked = *stats.view;
+  const std::optional<double> limit_s = options.error.time_limit_s;
   for (size_t i = 0; i < frames.size(); ++i) {
     const PlannedFrame& frame = frames[i];
     const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
+    stats.view = asked;
     if (frame.camera) stats.view->camera = *frame.camera;
+    // The first frame's time includes loading and compiling, and that of each writing its pictures.
+    const Stopwatch of_frame;
+    const auto taken_s = [&] { return 1e-3 * (i == 0 ? total : of_frame).ms(); };
+    std::optional<double> left_s;
+    if (limit_s) left_s = *limit_s - taken_s() - writing_s(*stats.view, frame.pictures.size());
     try {
       const auto on_progress = [&](double fraction) {
         progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
       };
-      FrameRendering(frame, options, device, scene, renderer, stats, on_progress).run();
-      if (options.error.time_limit_s) {
+      FrameRendering(frame, options, left_s, device, scene, renderer, stats, on_progress).run();
+      if (limit_s) {
         progress.clear();
-        console.note(describe_target(stats));
+        tell_reached(stats, *limit_s, taken_s(), console);
       }
     } catch (const RunError& error) {
       if (name.empty()) throw;
@@ -297,6 +333,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
   RenderOptions options = given;
+  apply_quality(options);
   options.pictures = name_pictures(given);
   check_pictures(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);
@@ -314,7 +351,10 @@ void render(const RenderOptions& given, const CLI::App& command) {
     return;
   }
 
+  std::optional<StageNote> stage;
+  stage.emplace("loading", console);
   PictureRun run = prepare_pictures(options, std::move(frames), console);
+  stage.reset();
   options = run.options;
   check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
   const auto tell_names = [&] {
@@ -329,8 +369,10 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const Scene& scene = run.scene;
   RunStats& stats = run.stats;
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
+  stage.emplace("compiling", console);
   Renderer renderer = make_renderer(
       *device, scene, make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
+  stage.reset();
   take_setup(renderer.setup_stats(), stats, console);
   if (options.explained_pixel) {
     const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
@@ -338,7 +380,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }
-  render_frames(run.frames, options, *device, scene, renderer, stats, console);
+  render_frames(run.frames, options, total, *device, scene, renderer, stats, console);
 
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();

@@ -77,7 +77,7 @@ class PicturePieces : public PieceMaker {
     View view = *job_.run_.stats.view;
     if (frame.camera) view.camera = *frame.camera;
     view.crop = job_.parts_[piece % job_.parts_.size()];
-    TracedFrame traced = trace(*renderer_, view, options, progress);
+    TracedFrame traced = trace(*renderer_, view, options, std::nullopt, progress);
     check_validation(device_, stats_);
     number_as_in_file(job_.run_.scene, traced.result.aovs);
     stats_.errors.clear();

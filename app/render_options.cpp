@@ -229,11 +229,27 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
 
 namespace {
 
+/// A time with or without a unit.
+double read_seconds(const OptionValues& words) {
+  struct Unit {
+    std::string_view name;
+    double seconds;
+  };
+  constexpr Unit kUnits[] = {{"ms", 1e-3}, {"min", 60.0}, {"m", 60.0}, {"sec", 1.0}, {"s", 1.0}, {"h", 3600.0}};
+  const std::string& text = words.text();
+  for (const auto& [name, seconds] : kUnits) {
+    if (!text.ends_with(name)) continue;
+    const OptionValues number = words.with({text.substr(0, text.size() - name.size())});
+    return seconds * number.real(0, kMinTimeLimit / seconds, kMaxTimeLimit / seconds);
+  }
+  return words.real(0, kMinTimeLimit, kMaxTimeLimit);
+}
+
 void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
   table.add("--time-limit", "SECONDS",
-            "Instead of --spp: the most exact picture that can be had in this time, and the --target-error that gives "
-            "it again",
-            [&](const OptionValues& w) { error.time_limit_s = w.real(0, kMinTimeLimit, kMaxTimeLimit); });
+            "Instead of --spp: the best picture that is finished in this time, as 20, 20s or 2min, and the options that "
+            "give it again",
+            [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
 }
 
 }  // namespace
@@ -305,6 +321,47 @@ std::string describe_unmet(const PictureError& error) {
   return fmt::format(" but for {} of at most {:.3g}", count_of(error.unmet_pixels, "pixel"), error.largest_claim);
 }
 
+namespace {
+
+constexpr uint32_t kHighSamples = 32;
+/// Of what has no error: a debug shading, or a picture that finds its own exposure.
+constexpr uint32_t kBestSamples = 128;
+/// Of shown colours, a code of 8 bits.
+constexpr float kBestError = 1.0F / 256.0F;
+
+std::span<const std::string_view> quality_names() {
+  using std::string_view_literals::operator""sv;
+  static constexpr std::array kNames = {"draft"sv, "normal"sv, "high"sv, "best"sv};
+  return kNames;
+}
+
+}  // namespace
+
+void apply_quality(RenderOptions& options) {
+  std::optional<uint32_t>& samples = options.view.samples_per_pixel;
+  if (options.error.is_given() || samples) return;
+  const bool has_error = options.view.debug_view == DebugView::kNone && !options.view.look.averages_exposure;
+  switch (options.quality.value_or(options.explained_pixel ? Quality::kDraft : Quality::kNormal)) {
+    case Quality::kDraft:
+      samples = 1;
+      break;
+    case Quality::kNormal:
+      samples = kDefaultSamples;
+      break;
+    case Quality::kHigh:
+      samples = kHighSamples;
+      break;
+    case Quality::kBest:
+      if (!has_error) {
+        samples = kBestSamples;
+        break;
+      }
+      options.error.target = kBestError;
+      options.error.space = ErrorSpace::kDisplay;
+      break;
+  }
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
@@ -318,8 +375,13 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
-  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [1]", kMaxSamplesPerPixel),
+  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [{}, with --explain 1]", kMaxSamplesPerPixel, kDefaultSamples),
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
+            fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "
+                        "[normal]",
+                        1, kDefaultSamples, kHighSamples),
+            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
   add_error_options(
       table, options.error,
       fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {} to 1, where 1 is white",
@@ -428,6 +490,12 @@ void check_render_options(const RenderOptions& options) {
                                 {error.time_limit_s.has_value(), "--time-limit"},
                                 {options.tracing.stats.has_value(), "--stats"},
                                 {options.tracing.repeat_count > 1, "--repeat"}});
+  }
+
+  if (options.quality) {
+    refuse_beside("--quality", {{view.samples_per_pixel.has_value(), "--spp"},
+                                {error.target.has_value(), "--target-error"},
+                                {error.time_limit_s.has_value(), "--time-limit"}});
   }
 
   // An error to aim at.

@@ -76,7 +76,7 @@ void name_option(Problem& problem) {
 /// What the system has refused, where no function has made a sentence of its own of that.
 Problem explain(const std::system_error& error) {
   std::error_code no_folder;
-  std::filesystem::current_path(no_folder);
+  static_cast<void>(std::filesystem::current_path(no_folder));
   if (no_folder == std::errc::no_such_file_or_directory) {
     return {"the current folder is gone", "", "change to a folder that exists"};
   }

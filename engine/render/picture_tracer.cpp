@@ -275,6 +275,7 @@ RenderResult PictureTracer::render(const View& view, const ProgressCallback& pro
 
 RenderResult PictureTracer::render_samples(const View& view, const ProgressCallback& progress) {
   RenderResult result = make_result(view);
+  result.samples_per_pixel = view.samples_per_pixel;
   prepare_film(view.mode);
   const double steps_share = wanted_.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
   const auto pixel_count = static_cast<double>(result.image.pixels.size());

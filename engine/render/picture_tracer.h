@@ -127,6 +127,8 @@ class PictureTracer {
   /// Compiles what is not yet.
   void prepare_to_refine(const RenderMode& mode);
   RenderResult render_to_error(const View& view, const ProgressCallback& progress);
+  /// The least error that is foretold to fit into the time, the first in any case.
+  RenderResult refine_within(const View& view, double seconds, const ProgressCallback& progress);
 
   const gpu::Device& device_;
   TunedRendererOptions options_;

@@ -1,16 +1,26 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "core/stopwatch.h"
+#include "promin/error.h"
 #include "render/picture_tracer.h"
 
 // Pictures with an error target.
 namespace promin {
 namespace {
 
-/// It takes so much more time for an error than is foretold.
+/// Refining to an error takes up to this factor of the foretold time.
 constexpr double kCaution = 1.2;
+/// Samples of a list take up to this factor of the time of a whole picture's samples.
+constexpr double kListedCost = 1.5;
+/// A picture is refined where its first error leaves at least half of the time.
+constexpr double kTimesFirstError = 2.0;
+/// The share of the remaining time that a picture of fixed samples is planned to take.
+constexpr double kPlannedShare = 0.85;
+/// A picture that takes longer than this factor of the limit is abandoned.
+constexpr double kLongest = 1.1;
 
 }  // namespace
 
@@ -123,9 +133,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
   return result;
 }
 
-RenderResult PictureTracer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
-  // What is compiled once is none of the picture's time.
-  prepare_to_refine(view.mode);
+RenderResult PictureTracer::refine_within(const View& view, double seconds, const ProgressCallback& progress) {
   const Stopwatch elapsed;
   View step = view;
   step.error_target->error = first_error(*view.error_target);
@@ -133,21 +141,48 @@ RenderResult PictureTracer::render_within(const View& view, double seconds, cons
   const PixelWindow window = picture_window(view);
   Refinement refinement(step, window, tells_unlit(view.mode));
   RefinedAovs aovs = begin_refined_aovs(window, step);
-  const auto on_progress = [&](double) { return !progress || progress(std::min(1.0, 1e-3 * elapsed.ms() / seconds)); };
   const Stopwatch tracing;
   float& error = step.error_target->error;
-  for (refine(refinement, step, aovs, result, on_progress); error > view.error_target->error;) {
+  for (refine(refinement, step, aovs, result, progress); error > view.error_target->error;) {
     const float less = next_error(*view.error_target, error);
     const double ms_a_sample = tracing.ms() / static_cast<double>(refinement.sample_count());
     const double ms_ahead = kCaution * ms_a_sample * refinement.foretell_samples(less);
     if (elapsed.ms() + ms_ahead > 1e3 * seconds) break;
     error = less;
     refinement.aim(error);
-    refine(refinement, step, aovs, result, on_progress);
+    refine(refinement, step, aovs, result, progress);
   }
   result.error->target = error;
   take_refined(refinement, aovs, step, result);
   return result;
+}
+
+RenderResult PictureTracer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
+  const Stopwatch elapsed;
+  const double limit_ms = 1e3 * seconds;
+  const auto tell = [&](double) { return !progress || progress(std::min(1.0, elapsed.ms() / limit_ms)); };
+  View fixed = view;
+  fixed.error_target.reset();
+  fixed.samples_per_pixel = 1;
+  RenderResult first = render(fixed, tell);
+  const double compiling_ms = elapsed.ms() - first.trace_ms;
+  const double left_ms = limit_ms - elapsed.ms();
+  const double refining_ms = compiling_ms + kListedCost * first.trace_ms * view.error_target->min_samples;
+  const double samples = std::floor(kPlannedShare * left_ms / std::max(first.trace_ms, 1e-3));
+  if (samples < 2.0) return first;
+  bool is_late = false;
+  const auto tell_in_time = [&](double fraction) {
+    is_late = elapsed.ms() > kLongest * limit_ms;
+    return !is_late && tell(fraction);
+  };
+  try {
+    if (kTimesFirstError * refining_ms < left_ms) return refine_within(view, 1e-3 * left_ms, tell_in_time);
+    fixed.samples_per_pixel = static_cast<uint32_t>(std::min(samples, double{kMaxSamplesPerPixel}));
+    return render(fixed, tell_in_time);
+  } catch (const Cancelled&) {
+    if (!is_late) throw;
+    return first;
+  }
 }
 
 }  // namespace promin

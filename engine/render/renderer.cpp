@@ -118,8 +118,7 @@ Explanation Renderer::explain(const View& view, const uvec2& pixel) {
 RenderResult Renderer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
   check_view(view);
   check(view.error_target.has_value(), "there is no error to refine to", "view.error_target", "set one");
-  check(seconds > 0.0 && std::isfinite(seconds), "the time is not positive and finite", "seconds",
-        "give a picture some seconds");
+  check(std::isfinite(seconds), "the time is not finite", "seconds", "give a picture some seconds");
   RenderResult result;
   gpu::translate_vulkan_errors([&] { result = impl_->tracer.render_within(view, seconds, progress); });
   return result;

@@ -56,6 +56,8 @@ struct RenderResult {
   Aovs aovs;
   /// Of pictures with an error target.
   std::optional<PictureError> error;
+  /// Of pictures of a fixed number of samples; 0 with an error target.
+  uint32_t samples_per_pixel = 0;
   /// Rays of the whole picture, and where Aovs::error is told of the pixels around it, which are traced for it.
   RayCounts rays;
   /// Device time of the traversal and shading dispatches alone (timestamps where the device has them, else waiting
@@ -114,11 +116,13 @@ class PROMIN_EXPORT Renderer {
   /// each dispatch. Throws UsageError for a view that breaks the rules of promin/view.h, RunError, Cancelled.
   RenderResult render(const View& view, const ProgressCallback& progress = {});
 
-  /// The most exact picture that is complete within about `seconds`: with an error of 1/8, then each less than the one
-  /// before by the root of 2, until the next is foretold to take too long or the view's own error is reached.
-  /// PictureError::target names the last, with which `render` gives the same bits. The first is completed however long
-  /// it takes, and none is broken off. Takes 200 bytes of memory a pixel. `seconds` is positive. Throws as `render`,
-  /// and UsageError for a view without an error target.
+  /// The best whole picture that fits into about `seconds`, compilation included. It begins with one sample a pixel.
+  /// Where there is time it refines to an error of 1/8 and below, down to the view's own, in steps of the root of 2:
+  /// PictureError::target has the last. With less time it takes a fixed number of samples, RenderResult::
+  /// samples_per_pixel. `render` gives the same bits by either number. What takes longer than 1.1 of the time is
+  /// abandoned, and the picture of one sample is the result, which is never abandoned. Takes 200 bytes of memory a
+  /// pixel. `seconds` is finite; at most 0: one sample. Throws as `render`, and UsageError for a view without an error
+  /// target.
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress = {});
 
   /// Traces the view as a window does: in few pixels at first, as many as `budget_ms` allows, then in all of them, then

@@ -78,6 +78,7 @@ nb::dict list_defaults() {
   defaults["ErrorTarget"] = write(ErrorTarget());
   defaults["ExrOptions"] = write(ExrOptions());
   defaults["View"] = write(View());
+  defaults["samples"] = app::kDefaultSamples;
   defaults["builder"] = RendererOptions().builder;
   defaults["texture_memory"] = RendererOptions().texture_bytes;
   defaults["aspect_ratio"] = app::kDefaultAspectRatio;

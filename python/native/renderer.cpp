@@ -144,11 +144,16 @@ class SharedRenderer {
     RenderResult result;
     Metadata metadata;
     Cryptomatte cryptomatte;
+    View reached = view;
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
       result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
       if (aovs_.cryptomatte) cryptomatte = make_cryptomatte(named_, result.aovs);
-      metadata = describe_picture(view, shown, result.error, info, scene_file.string(), named_, aovs_);
+      if (!result.error) {
+        reached.error_target.reset();
+        reached.samples_per_pixel = result.samples_per_pixel;
+      }
+      metadata = describe_picture(reached, shown, result.error, info, scene_file.string(), named_, aovs_);
     });
     nb::dict frame;
     const uvec2 size = result.image.size;

@@ -36,7 +36,7 @@ class View:
     holds."""
     crop: tuple[int, int, int, int] | None = None
     """x0, y0, x1, y1: the pixels to trace, half-open."""
-    spp: int = 1
+    spp: int = 8
     """Samples a pixel; 1 samples the centre."""
     max_depth: int | None = None
     """Bounces; None: 5, or 8 with glass."""
@@ -44,7 +44,7 @@ class View:
     """Each pixel takes samples until it claims to be this near (docs/model.md, "Error of a pixel"), in place of
     `spp`."""
     time_limit: float | None = None
-    """Seconds: the most exact picture that is complete by about then."""
+    """Seconds: the best picture that is complete by then, compilation included."""
     min_spp: int | None = None
     """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
     max_spp: int | None = None
@@ -126,7 +126,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
         "camera": camera,
         "size": size,
         "crop": None if crop is None else {"lo": crop[:2], "hi": crop[2:]},
-        "samples_per_pixel": view.spp,
+        "samples_per_pixel": 1 if has_target(view) else view.spp,
         "error_target": _promin.error_target(asked, to_dict(shown)),
         "depth_kind": view.depth,
         "filter": view.filter,
@@ -155,7 +155,7 @@ def _check_samples(view: View) -> None:
         raise UsageError(f"error_in is {view.error_in!r:.80}; give {names}")
     if has_target(view):
         name = "time_limit" if view.target_error is None else "target_error"
-        if isinstance(view.spp, (int, np.integer)) and view.spp > 1:
+        if isinstance(view.spp, (int, np.integer)) and view.spp not in (1, View.spp):
             raise UsageError(
                 f"{name} and spp={view.spp} contradict each other; leave one out; min_spp and max_spp limit the samples"
             )

@@ -374,8 +374,8 @@ def test_records_have_the_fields_of_the_library(scenes: Path) -> None:
 def test_no_time_gives_the_first_picture_alone(box: promin.Scene) -> None:
     renderer = promin.Renderer(box)
     frame = renderer.render(size=(8, 8), time_limit=1e-9)
-    assert frame.error is not None and frame.metadata["promin:error_target"] == "0.125"
-    assert (renderer.render(size=(8, 8), target_error=frame.error["target"], min_spp=8).rgb == frame.rgb).all()
+    assert frame.error is None and frame.metadata["promin:spp"] == "1"
+    assert (renderer.render(size=(8, 8), spp=1).rgb == frame.rgb).all()
     with pytest.raises(promin.UsageError, match="time_limit is 'soon'; give a positive number of seconds"):
         renderer.render(size=(8, 8), time_limit="soon")  # type: ignore[arg-type]
 

@@ -75,7 +75,7 @@ def test_records_have_the_defaults_of_the_library(kind: type) -> None:
 
 def test_a_view_has_the_defaults_of_the_library() -> None:
     view, theirs = promin.View(), DEFAULTS["View"]
-    assert view.spp == theirs["samples_per_pixel"]
+    assert view.spp == DEFAULTS["samples"]
     assert (view.filter, view.depth) == (theirs["filter"], theirs["depth_kind"])
     assert _view.mode_of(view) == theirs["mode"]
     assert view.error_in == CHOICES["error_in"][0]

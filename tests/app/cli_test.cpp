@@ -653,10 +653,44 @@ TEST_F(CliTest, ADeviceIsFoundByItsUuid) {
                  "no Vulkan device matches \"uuid:0000");
 }
 
+TEST_F(CliTest, AQualityNamesSamplesOrAnError) {
+  const auto summary = [&](const OptionValues& options) {
+    OptionValues command = {"render", "square.gltf", "--size", "16", "9", "-o", "a.png"};
+    command.insert(command.end(), options.begin(), options.end());
+    return run(command).out;
+  };
+  EXPECT_THAT(summary({"--quality", "draft"}), HasSubstr(", 1 spp, "));
+  EXPECT_THAT(summary({"--quality", "normal"}), HasSubstr(", 8 spp, "));
+  EXPECT_THAT(summary({"--quality", "high"}), HasSubstr(", 32 spp, "));
+  EXPECT_THAT(summary({"--quality", "best"}), HasSubstr(" spp, error 0.00390625 as shown"));
+  EXPECT_THAT(summary({"--quality", "best", "--shading", "uv"}), HasSubstr(", 128 spp, "));
+  expect_failure(run({"render", "square.gltf", "-o", "b.png", "--quality", "high", "--spp", "2"}), 2,
+                 "--quality and --spp contradict each other");
+}
+
+TEST_F(CliTest, ATimeLimitHasUnitsAndNamesWhatGivesThePictureAgain) {
+  const OptionValues picture = {"render", "square.gltf", "--size", "16", "9", "--max-spp", "8"};
+  for (const std::string time : {"1ms", "0.001s", "0.001"}) {
+    OptionValues command = picture;
+    command.insert(command.end(), {"-o", "a.exr", "--time-limit", time});
+    const ProcessResult result = run(command);
+    EXPECT_THAT(result.err, HasSubstr(" s instead of 0.001 s: loading, compiling and one sample a pixel took the time"));
+    EXPECT_THAT(result.err, HasSubstr("the picture of --spp 1\n"));
+    EXPECT_THAT(result.out, StartsWith("16x9, 1 spp, "));
+  }
+  EXPECT_EQ(run({"render", "square.gltf", "--size", "16", "9", "--spp", "1", "-o", "b.exr"}).exit_code, 0);
+  EXPECT_EQ(read("a.exr"), read("b.exr"));
+  OptionValues command = picture;
+  command.insert(command.end(), {"-o", "a.exr", "--time-limit", "2min"});
+  EXPECT_THAT(run(command).err, HasSubstr("the picture of --target-error 1.5258789e-05 "));
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--time-limit", "2weeks"}), 2,
+                 "--time-limit takes a number from 0.001 to ");
+}
+
 TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
   const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-o", "a.png"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, StartsWith("64x36, 1 spp, "));
+  EXPECT_THAT(result.out, StartsWith("64x36, 8 spp, "));
   EXPECT_THAT(result.out, HasSubstr(": a.exr, a.png\n"));
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.exr", "a.png"));
@@ -738,7 +772,7 @@ TEST_F(CliTest, UnlitColoursKeepClearOfExposureAndToneMapping) {
 }
 
 TEST_F(CliTest, ThePictureMayTellItsExposure) {
-  const OptionValues options = {"square.gltf", "--size", "32", "18", "--background", "9", "9", "9"};
+  const OptionValues options = {"square.gltf", "--size", "32", "18", "--spp", "1", "--background", "9", "9", "9"};
   OptionValues with_ids = options;
   with_ids.insert(with_ids.end(),
                   {"--exposure", "average", "--tone-mapping", "none", "-o", "a.png", "--aov", "object"});
@@ -789,7 +823,7 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
 }
 
 TEST_F(CliTest, TheBackgroundIsTheUsers) {
-  const OptionValues size = {"triangle.obj", "--size", "32", "18"};
+  const OptionValues size = {"triangle.obj", "--size", "32", "18", "--spp", "1"};
   const auto corner = [&](const OptionValues& options) {
     OptionValues arguments = size;
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -821,7 +855,7 @@ TEST_F(CliTest, ClassicLightGivesClassicPictures) {
     view.size = uvec2(64, 36);
     view.camera = frame_scene(scene, 16.0F / 9.0F);
     const Image expected = Renderer(*device, scene).render(view).image;
-    OptionValues arguments = {file, "--size", "64", "36", "-o", "a.png"};
+    OptionValues arguments = {file, "--size", "64", "36", "--spp", "1", "-o", "a.png"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Image exr = render(arguments, "a.exr");
     EXPECT_EQ(exr.pixels, expected.pixels) << file;

@@ -70,14 +70,14 @@ std::pair<jobs::Manifest, std::vector<std::string>> plan(const std::vector<std::
 // What the manual has in brackets; the job is that of whoever does not say it.
 TEST(JobWordsTest, DefaultsCountAsNotGiven) {
   const auto nothing = plan({});
-  const std::vector<std::pair<std::string, std::string>> defaults = {{"--spp", "1"},
+  const std::vector<std::pair<std::string, std::string>> defaults = {{"--spp", "8"},
                                                                      {"--filter", "box"},
                                                                      {"--shading", "full"},
                                                                      {"--exposure", "auto"},
                                                                      {"--depth", "ray"},
                                                                      {"--compression", "zip"},
                                                                      {"--error-in", "linear"},
-                                                                     {"-s", "1"},
+                                                                     {"-s", "8"},
                                                                      {"--environment-rotation", "0"},
                                                                      {"--environment-intensity", "1"}};
   CLI::App program("", "promin");

@@ -114,12 +114,11 @@ TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
   write("path.json", R"({"format": "promin camera path", "version": 1, "frames": [
     {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
     {"time_s": 0.1, "eye": [0, 0, 4], "look": [0, 0, 1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01}]})");
-  const ProcessResult limited = render_path({"--frames", "0-1", "-o", "limited#.exr", "--time-limit", "0.3", "--size",
+  const ProcessResult limited = render_path({"--frames", "0-1", "-o", "limited#.exr", "--time-limit", "2s", "--size",
                                              "320", "180", "--max-spp", "4096", "--background", "0", "0", "0"});
   ASSERT_EQ(limited.exit_code, 0) << limited.err;
   EXPECT_THAT(limited.err, HasSubstr("of frame 1 of --target-error 1.5258789e-05 "));
   EXPECT_THAT(limited.err, Not(HasSubstr("of frame 0 of --target-error 1.5258789e-05 ")));
-  EXPECT_THAT(limited.out, HasSubstr("spp, error 1.5258789e-05 to "));
   for (const std::string number : {"0", "1"}) {
     const std::string before = "the picture of frame " + number + " of ";
     const size_t place = limited.err.find(before);
@@ -156,7 +155,7 @@ TEST_F(PathCliTest, FpsTakesThePathByTime) {
 TEST_F(PathCliTest, StatsTellOfEachFrame) {
   const ProcessResult result = render_path({"--repeat", "2", "-o", "f#.exr", "--stats", "s.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("32x18, 1 spp, 3 frames, "));
+  EXPECT_THAT(result.out, HasSubstr("32x18, 8 spp, 3 frames, "));
   const json stats = json::parse(read("s.json"));
   std::vector<double> times;
   for (const json& frame : stats.at("frames")) {
@@ -164,7 +163,7 @@ TEST_F(PathCliTest, StatsTellOfEachFrame) {
     times.push_back(frame.at("trace_ms"));
   }
   ASSERT_EQ(times.size(), 3U);
-  EXPECT_EQ(stats.at("rays").at("primary"), 3 * 32 * 18);
+  EXPECT_EQ(stats.at("rays").at("primary"), 3 * 32 * 18 * 8);
   const double total_ms = times[0] + times[1] + times[2];
   std::sort(times.begin(), times.end());
   EXPECT_EQ(stats.at("times_ms").at("trace"), times[1]) << "the median";

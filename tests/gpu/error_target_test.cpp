@@ -272,18 +272,27 @@ TEST_F(ErrorTargetTest, ProgressNeverRunsBackwards) {
   }
 }
 
-TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheErrorThatItTells) {
+// Where no time is left there is one sample a pixel; where there is plenty, the view's error.
+TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheSamplesOrTheErrorThatItNames) {
   const world::Scene scene = make_scene_of_everything(20);
   Renderer renderer = make_renderer(device(), scene);
   View view = with_target(make_view(uvec2(60, 40)), 1.0F / 32.0F);
   view.error_target->display.emplace(DisplayTransform{.tone_mapping = ToneMapping::kNeutral});
-  for (const double seconds : {1e-3, 1000.0}) {
+  for (const double seconds : {-1.0, 1e-3, 0.2, 1000.0}) {
     const RenderResult result = renderer.render_within(view, seconds);
     View again = view;
-    again.error_target->error = result.error->target;
-    EXPECT_EQ(result.error->target, seconds < 1.0 ? 0.125F : 1.0F / 32.0F);
+    if (result.error) {
+      again.error_target->error = result.error->target;
+    } else {
+      again.error_target.reset();
+      again.samples_per_pixel = result.samples_per_pixel;
+    }
+    if (seconds < 0.01) EXPECT_EQ(result.samples_per_pixel, 1U);
+    if (seconds > 100.0) EXPECT_EQ(result.error->target, 1.0F / 32.0F);
     const RenderResult expected = renderer.render(again);
-    EXPECT_TRUE(has_same_bits(result.image, expected.image));
+    EXPECT_TRUE(has_same_bits(result.image, expected.image)) << seconds;
+    EXPECT_EQ(result.samples_per_pixel, expected.samples_per_pixel);
+    if (!result.error) continue;
     EXPECT_EQ(result.error->samples, expected.error->samples);
     EXPECT_EQ(result.error->largest_claim, expected.error->largest_claim);
   }
@@ -325,7 +334,7 @@ TEST_F(ErrorTargetTest, WhatIsWrongIsRefused) {
   normals.mode.debug_view = DebugView::kNormals;
   EXPECT_THROW(renderer.render(normals), UsageError);
   EXPECT_THROW(renderer.render_within(view, 1.0), UsageError);
-  EXPECT_THROW(renderer.render_within(with_target(view, 0.1F), 0.0), UsageError);
+  EXPECT_THROW(renderer.render_within(with_target(view, 0.1F), std::nan("")), UsageError);
 }
 
 }  // namespace
