@@ -287,8 +287,12 @@ TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheSamplesOrTheErrorThatItNam
       again.error_target.reset();
       again.samples_per_pixel = result.samples_per_pixel;
     }
-    if (seconds < 0.01) EXPECT_EQ(result.samples_per_pixel, 1U);
-    if (seconds > 100.0) EXPECT_EQ(result.error->target, 1.0F / 32.0F);
+    if (seconds < 0.01) {
+      EXPECT_EQ(result.samples_per_pixel, 1U);
+    }
+    if (seconds > 100.0) {
+      EXPECT_EQ(result.error->target, 1.0F / 32.0F);
+    }
     const RenderResult expected = renderer.render(again);
     EXPECT_TRUE(has_same_bits(result.image, expected.image)) << seconds;
     EXPECT_EQ(result.samples_per_pixel, expected.samples_per_pixel);
