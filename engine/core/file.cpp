@@ -157,7 +157,7 @@ fs::path name_temporary(const fs::path& folder, const fs::path& target, int writ
   constexpr size_t kLongestEnding = 16;
   // A folder may be seen by several machines.
   std::string mark = ".tmp" + std::to_string(getpid()) + "-" + host_name();
-  if (writer > 1) mark = "." + std::to_string(writer) + mark;
+  if (writer > 1) mark.insert(0, '.' + std::to_string(writer));
   mark += target.extension().string().substr(0, kLongestEnding);
   const long told = pathconf(folder.c_str(), _PC_NAME_MAX);
   const size_t most = told > 0 ? static_cast<size_t>(told) : kUsualMost;
