@@ -236,8 +236,9 @@ void write_image(const fs::path& file, const Image& image, const Metadata& metad
                  const DisplayTransform& display, const ExrOptions& exr) {
   if (is_writable_format(file)) check_rows(image, channels);
   PictureHeader header{image.size, crop, metadata, {}, display, exr};
-  for (const Channel& channel : channels)
+  for (const Channel& channel : channels) {
     header.channels.push_back({channel.name, channel.is_integer, {}, channel.is_hidden});
+  }
   PictureWriter writer(file, header);
   writer.write_rows(image, channels);
   writer.commit();

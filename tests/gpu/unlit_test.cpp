@@ -51,6 +51,13 @@ Scene make_stripes() {
   return scene;
 }
 
+/// A view that the stripes fill from left to right.
+View make_stripes_view(const uvec2& size, uint32_t samples = 1) {
+  View view = make_board_view(size, samples);
+  view.camera.ymag = static_cast<float>(size.y) / static_cast<float>(size.x);
+  return view;
+}
+
 class UnlitTest : public DeviceTest {
  protected:
   Renderer renderer(const TunedRendererOptions& options) const { return make_renderer(device(), scene_, options); }
@@ -65,7 +72,7 @@ class UnlitTest : public DeviceTest {
 };
 
 TEST_F(UnlitTest, TheShareIsWhatTheCameraSeesDirectly) {
-  const RenderResult result = trace(make_board_view(uvec2(kStripes, 1)));
+  const RenderResult result = trace(make_stripes_view(uvec2(kStripes, 1)));
   const std::vector<vec4>& unlit = result.aovs.unlit;
   EXPECT_EQ(unlit[0], vec4(kColor, 1.0F));
   EXPECT_EQ(result.image.pixels[0], kColor);
@@ -77,7 +84,7 @@ TEST_F(UnlitTest, TheShareIsWhatTheCameraSeesDirectly) {
 }
 
 TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
-  const RenderResult result = trace(make_board_view(uvec2(kStripes, 1)));
+  const RenderResult result = trace(make_stripes_view(uvec2(kStripes, 1)));
   for (const ToneMapping mapping :
        {ToneMapping::kNone, ToneMapping::kNeutral, ToneMapping::kAces, ToneMapping::kReinhard, ToneMapping::kAgx}) {
     for (const float stops : {-4.0F, 0.0F, 6.0F}) {
@@ -100,7 +107,7 @@ TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
 
 // Edges through all pixels: 3 for 5 stripes.
 TEST_F(UnlitTest, EdgesCountByTheirShare) {
-  View view = make_board_view(uvec2(3, 2), 16);
+  View view = make_stripes_view(uvec2(3, 2), 16);
   const RenderResult result = trace(view);
   EXPECT_NEAR(result.aovs.unlit[0].w, 0.6F, 0.1F);
   const vec4 expected = result.aovs.unlit[0].w * vec4(kColor, 1.0F);
