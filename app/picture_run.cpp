@@ -21,8 +21,10 @@ void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
 
 }  // namespace
 
-PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFrame> frames, const Console& console) {
-  PictureRun run{.options = options, .frames = std::move(frames), .scene = {}, .sources = {}, .stats = {}};
+PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame> frames, const Console& console) {
+  PictureRun run{.options = given, .frames = std::move(frames), .scene = {}, .sources = {}, .stats = {}};
+  apply_quality(run.options);
+  const RenderOptions options = run.options;
   RunStats& stats = run.stats;
   run.scene = load_for(options.tracing, stats, console, run.sources);
   Scene& scene = run.scene;

@@ -39,7 +39,7 @@ struct PictureRun {
 
 /// Loads the scene of checked options and decides what they leave open, which it notes. Throws InputError, and
 /// UsageError for what the scene does not have.
-PictureRun prepare_pictures(const RenderOptions& options, std::vector<PlannedFrame> frames, const Console& console);
+PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame> frames, const Console& console);
 
 /// Of all pictures together.
 uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options);

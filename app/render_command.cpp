@@ -333,7 +333,6 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
   RenderOptions options = given;
-  apply_quality(options);
   options.pictures = name_pictures(given);
   check_pictures(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);

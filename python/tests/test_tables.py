@@ -93,8 +93,9 @@ def test_what_is_left_open_of_a_view_is_as_the_library_has_it() -> None:
     record = _view.to_record(promin.View(), _records.to_dict(promin.Camera()), promin.Display(), 5)
     theirs = DEFAULTS["View"]
     assert record.keys() == theirs.keys()
-    for name in theirs.keys() - {"camera"}:
+    for name in theirs.keys() - {"camera", "samples_per_pixel"}:
         assert record[name] == theirs[name], name
+    assert record["samples_per_pixel"] == DEFAULTS["samples"]
     asked = promin.View(target_error=DEFAULTS["ErrorTarget"]["error"])
     record = _view.to_record(asked, _records.to_dict(promin.Camera()), promin.Display(), 5)
     assert record["error_target"] == DEFAULTS["ErrorTarget"]

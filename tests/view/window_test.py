@@ -317,13 +317,13 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         viewer.focus()
         viewer.press("p")
         session.take_screenshot(3)
-        command = f"promin render showcase.gltf --path half_way.json --frames 1 --size {SIZE[0]} {SIZE[1]} -o x"
+        command = f"promin render showcase.gltf --path half_way.json --frames 1 --size {SIZE[0]} {SIZE[1]} --spp 1 -o x"
         session.expect_same_picture(3, command)
         session.quit()
 
     # The flight ends where the last screenshot was taken.
     last = math.floor(seconds * flight["fps"] + 1e-6)
-    words = ["--size", *SIZE, "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
+    words = ["--size", *SIZE, "--spp", "1", "--path", folder / "flight.json", "--frames", f"{last}-{last}", "--quiet"]
     done = run(bin_folder / "promin", "render", session.scene, *words, "-o", folder / "last.png")
     expect(done.returncode == 0, done.stderr)
     expect(
