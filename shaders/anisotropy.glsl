@@ -5,6 +5,8 @@
 // Gives the point with a grain its two alphas, and the roughness and normal at which it sees the environment.
 void stretch(inout ShadingPoint point, vec3 direction) {
   Anisotropy grain = point.anisotropy;
+  grain.bent_normal = point.normal;
+  point.anisotropy = grain;
   if (!(grain.strength > 0.0)) return;
   MaterialRecord material = point.material;
   float roughness = material.c.x;
@@ -25,7 +27,7 @@ void stretch(inout ShadingPoint point, vec3 direction) {
   point.anisotropy = grain;
 }
 
-// As facet_scale. The half vector less the normal keeps the digits that its cosine loses.
+// As facet_scale, for a positive cosine to the light. The half vector less the normal keeps the digits that its cosine loses.
 float anisotropic_scale(vec3 normal, Anisotropy grain, vec3 h, vec3 to_eye, vec3 to_light, float cosine) {
   vec3 across = cross3(normal, grain.along);
   vec2 a = grain.alphas;

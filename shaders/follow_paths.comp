@@ -77,7 +77,7 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   if (max_abs(contribution) > 0.0) {
     Ray ray = shadow_ray(point, light, sampled);
     if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
-      bool is_behind = begins_behind(point, sampled);
+      bool is_behind = lies_behind(point, sampled.direction);
       pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(is_behind ? 1.0 : 0.0);
       store_vector(record_of_path(path) + (is_behind ? RECORD_SHADOW_BEHIND : RECORD_SHADOW_ORIGIN), ray.origin);
     } else {

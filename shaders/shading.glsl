@@ -350,7 +350,7 @@ void put_bare_rarities(inout ShadingPoint point) {
   }
   if (has(FEATURE_DIFFUSE_TRANSMISSION)) point.scattering = scattering;
   if (has(FEATURE_IRIDESCENCE)) point.thin_film = film;
-  if (has(FEATURE_ANISOTROPY)) point.anisotropy = Anisotropy(0.0, vec2(0.0), vec3(0.0), point.normal);
+  if (has(FEATURE_ANISOTROPY)) point.anisotropy = Anisotropy(0.0, vec2(0.0), vec3(0.0), vec3(0.0));
 }
 
 // What the eye sees of the coat: Schlick's factor of an index of refraction of 1.5.
@@ -436,13 +436,8 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   return contribution;
 }
 
-// Whether the shadow ray to a source begins on the other side of the surface: there lies what is scattered through it.
-bool begins_behind(ShadingPoint point, LightSample sampled) {
-  return scatters_through(point) && dot3(point.geometric_normal, sampled.direction) < 0.0;
-}
-
 Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
-  if (has(FEATURE_DIFFUSE_TRANSMISSION) && begins_behind(point, sampled)) {
+  if (has(FEATURE_DIFFUSE_TRANSMISSION) && lies_behind(point, sampled.direction)) {
     return shadow_ray(lift_off(point.position, -point.geometric_normal, point.lift), light);
   }
   return shadow_ray(lift_off(point.shadow_position, point.geometric_normal, point.lift), light);

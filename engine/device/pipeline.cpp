@@ -39,9 +39,9 @@ class CompilerSpace {
   }
 
  private:
-  /// What lavapipe of Mesa 22.3.6 takes for a kernel of so many bytes of SPIR-V, and more: 44 MiB for 144 KiB, 38 for
-  /// 176, 76 for 235, 183 for 348, 385 for 474 and 391 for 484, so at most 1.8 MiB for the square of 1 MiB / 1024. The
-  /// one of 25.0.7 takes 30 for 176, 128 for 348 and 294 for 474.
+  /// What lavapipe takes for a kernel of this many bytes of SPIR-V, but for the start. Mesa 22.3.6 takes 44 MiB for
+  /// 144 KiB, 38 for 176, 76 for 235, 183 for 348, 385 for 474 and 391 for 484, start included; 25.0.7 takes 30 for
+  /// 176, 128 for 348 and 294 for 474. The estimate is 40, 61, 108, 237, 439 and 457 MiB without the start.
   static uint64_t estimate(uint64_t code_bytes) { return code_bytes * code_bytes / 512; }
 
   /// Drivers need some more to start a kernel: up to 24 MiB.

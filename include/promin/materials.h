@@ -124,7 +124,7 @@ struct MetallicRoughness {
   /// The film's thickness in nanometres, not negative, where its texture is 0 and where it is 1. Without a texture it
   /// is the maximum. The minimum may be the larger of the two.
   float iridescence_thickness_minimum = 100.0F;
-  float iridescence_thickness_maximum = 400.0F;
+  float iridescence_thickness_maximum = 400.0F;  ///< See above.
   /// Factor of `iridescence` (red).
   TextureSlot iridescence_texture = {};
   /// From the minimum of the thickness to the maximum (green).

@@ -47,16 +47,19 @@ Lobe metal_lobe(ShadingPoint point) {
   return make_lobe(has(FEATURE_IRIDESCENCE) ? point.thin_film.metal : base_color_of(point), 1.0, point.lobe_shares);
 }
 
-// Puts the film's colours into what dielectric and metal reflect, as seen at the angle of this cosine.
+// Puts the film's colours into what dielectric and metal reflect, as seen at the angle of this cosine. What reflects
+// everything, as glass does beyond the critical angle, reflects everything under a film too.
 void put_film(inout ShadingPoint point, float cosine) {
   ThinFilm film = point.thin_film;
   vec3 metal = base_color_of(point);
   if (film.layer.x > 0.0) {
     MaterialRecord material = point.material;
+    vec3 bare = material.b.xyz;
+    bool is_total = min(material.b.w, min(bare.x, min(bare.y, bare.z))) >= 1.0;
     precise vec3 dielectric =
-        material.b.xyz + film.layer.x * (reflectance_under_film(film, material.b.xyz, material.b.w, cosine) - material.b.xyz);
+        bare + film.layer.x * (reflectance_under_film(film, bare, material.b.w, cosine) - bare);
     precise vec3 colored = metal + film.layer.x * (reflectance_under_film(film, metal, 1.0, cosine) - metal);
-    material.b = vec4(dielectric, material.b.w);
+    material.b = is_total ? material.b : vec4(dielectric, material.b.w);
     point.material = material;
     metal = colored;
   }
@@ -79,6 +82,11 @@ vec3 reflectance_of(ShadingPoint point) {
 }
 
 bool scatters_through(ShadingPoint point) { return point.scattering.w > 0.0; }
+
+// Whether a source in this direction lights the surface from its other side, through which it scatters light.
+bool lies_behind(ShadingPoint point, vec3 to_light) {
+  return scatters_through(point) && dot3(point.geometric_normal, to_light) < 0.0;
+}
 
 // The diffuse share: what the dielectric does not reflect.
 vec3 albedo_of(ShadingPoint point) {
@@ -267,17 +275,23 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   return reflected;
 }
 
-// What a source on the other side adds under the coat: what comes through the surface is scattered, nothing shines.
+// What a source behind the surface adds under the coat: the light that comes through is scattered, without a highlight.
 vec3 contribution_from_behind(ShadingPoint point, vec3 to_light, LightRecord light) {
   precise float cosine = -dot3(point.normal, to_light);
   precise vec3 contribution = albedo_from_behind(point) * INVERSE_PI * light.diffuse.xyz * max(cosine, 0.0);
   if (has(FEATURE_SHEENS)) contribution *= left_below_sheen(point.sheen, point.sheen.share);
+  if (is_coated(point)) contribution *= 1.0 - point.coat.weight;
   return contribution;
 }
 
 vec3 contribution_metallic_roughness(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
-  precise vec3 below = contribution_below_coat(point, to_eye, to_light, cosine, light);
-  if (has(FEATURE_DIFFUSE_TRANSMISSION)) below += contribution_from_behind(point, to_light, light);
+  if (has(FEATURE_DIFFUSE_TRANSMISSION) && lies_behind(point, to_light)) {
+    return contribution_from_behind(point, to_light, light);
+  }
+  vec3 below = vec3(0.0);
+  if (!has(FEATURE_DIFFUSE_TRANSMISSION) || cosine > 0.0) {
+    below = contribution_below_coat(point, to_eye, to_light, cosine, light);
+  }
   if (!is_coated(point)) return below;
   precise vec3 sum =
       (1.0 - point.coat.weight) * below + point.coat.weight * contribution_in_coat(point, to_eye, to_light, light);

@@ -85,7 +85,10 @@ TEST_F(LimitsCliTest, FewThreadsGiveAPictureOrASentence) {
     limit_threads(threads);
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(threads) + " threads");
-      render_or_say("the system refuses to start another thread", "raise pids.max or ulimit -u");
+      const int code = render_or_say("the system refuses to start another thread", "raise pids.max or ulimit -u");
+      if (threads == 16) {
+        EXPECT_EQ(code, 0) << "they suffice on machines of few cores";
+      }
     }
   }
 }
@@ -95,7 +98,10 @@ TEST_F(LimitsCliTest, LittleAddressSpaceGivesAPictureOrASentence) {
     options_.max_address_bytes = mib << 20;
     for (int i = 0; i < count_runs(); ++i) {
       SCOPED_TRACE(std::to_string(mib) + " MiB");
-      render_or_say("ulimit -v", "ulimit -v");
+      const int code = render_or_say("ulimit -v", "ulimit -v");
+      if (mib == 2048) {
+        EXPECT_EQ(code, 0) << "it suffices on machines of few cores";
+      }
     }
   }
 }

@@ -92,6 +92,8 @@ FAULTS = {
         "shading.glsl": [(r"lift_off\(point\.position, -point", "lift_off(point.position, point")]
     },
     "films_seen_from_above": {"shading.glsl": [(r"put_film\(point, cosine\)", "put_film(point, 1.0)")]},
+    "grain_unbent": {"anisotropy.glsl": [(r"max_abs\(bent\) == 0\.0 \? point\.normal : bent", "point.normal")]},
+    "sky_behind_in_front": {"materials/metallic_roughness.glsl": [(r"ambient_at\(-point", "ambient_at(point")]},
     "grain_turned": {"anisotropy.glsl": [(r"vec2\(along, across\)", "vec2(across, along)")]},
     # Of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},

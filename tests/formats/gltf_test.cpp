@@ -483,6 +483,17 @@ TEST_F(GltfTest, IridescenceAndAnisotropyAreRead) {
   EXPECT_EQ(bare.anisotropy, 0.0F);
 }
 
+// An index below 1 takes its default, but for one that is rounded.
+TEST_F(GltfTest, ARoundedIndexIsNotReplaced) {
+  const auto read_ior = [&](double ior) {
+    const LoadedScene scene = load(material_gltf(
+        {{"extensions", {{"KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceIor", ior}}}}}}));
+    return std::pair(model_of<MetallicRoughness>(scene).iridescence_ior, scene.warnings.size());
+  };
+  EXPECT_EQ(read_ior(0.9995), std::pair(1.0F, size_t{0}));
+  EXPECT_EQ(read_ior(0.9), std::pair(1.3F, size_t{1}));
+}
+
 TEST_F(GltfTest, MetallicRoughnessHasTheSpecificationsDefaults) {
   const auto model = model_of<MetallicRoughness>(load(material_gltf(
       {{"extensions", {{"KHR_materials_ior", json::object()}, {"KHR_materials_specular", json::object()}}}})));

@@ -198,7 +198,8 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   }
 }
 
-// Whatever a film adds to the reflection, the body gets the remainder: of the colour that is reflected most all is sent.
+// Whatever a film adds to the reflection, the body gets the remainder: of the colour that is reflected most all is
+// sent.
 TEST_F(MaterialsTest, AWhiteFloorUnderAFilmSendsAllOfOneColorInAWhiteFurnace) {
   for (const float thickness : {0.0F, 130.0F, 420.0F, 5000.0F}) {
     for (const float cosine : {1.0F, 0.4F, 0.01F}) {
@@ -274,6 +275,19 @@ TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   };
   const double mean = std::pow((along * along + across * across) / 2, 0.25);
   EXPECT_NEAR(above / round, across / along * e1(static_cast<double>(roughness)) / e1(mean), 1e-4);
+}
+
+// A source straight behind a matt wall has no half vector and no cosine: nothing of it is undefined.
+TEST_F(MaterialsTest, ASourceStraightBehindAGrainIsScatteredThrough) {
+  world::Scene scene = make_grain(0.5F, 0.0F, 0.3F);
+  auto& model = std::get<MetallicRoughness>(scene.materials[0].model);
+  model.metallic = 0.0F;
+  model.diffuse_transmission = 1.0F;
+  scene.lights = {make_sun(vec3(0, -1, 0), std::numbers::pi_v<float>)};
+  const vec3 seen = render(scene, look_along(vec3(0, -1, 0))).pixels[0];
+  EXPECT_GT(seen.x, 0.5F);
+  EXPECT_LT(seen.x, 1.0F);
+  EXPECT_EQ(seen, vec3(seen.x));
 }
 
 // Of light from everywhere a white metal reflects all, whatever its grain.

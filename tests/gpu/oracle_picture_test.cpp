@@ -235,7 +235,7 @@ TEST_F(OraclePictureTest, TexturesOfAlphaAgreeWithTheOracle) {
 }
 
 /// Boards that light shines through, with films and grains, and the textures of all of these. They are lit from behind
-/// too, and mirrored in the wall.
+/// too, mirrored in the wall, and stand under a sky that is not the same from everywhere.
 world::Scene make_gallery_of_rare_layers() {
   world::Scene scene = test::make_gallery_of_metallic_roughness();
   const auto texture_of = [&](ImageUse use) {
@@ -261,6 +261,7 @@ world::Scene make_gallery_of_rare_layers() {
     }
   }
   scene.lights.push_back(test::make_sun(vec3(0.2F, -1, 0.5F), 2.0F));
+  scene.environment.sky = GradientSky{.top = vec3(0.2F, 0.5F, 1), .horizon = vec3(1, 0.8F, 0.5F), .bottom = vec3(0.1F)};
   return scene;
 }
 
@@ -272,7 +273,8 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   // Across a grain highlights are narrow, so little is sure at their edges.
   bounds.unsure_share = 0.015;
   EXPECT_TRUE(compare_with(truth, scene, view, bounds).passes());
-  for (const char* fault : {"behind_seen_from_front", "films_seen_from_above", "grain_turned"}) {
+  for (const char* fault :
+       {"behind_seen_from_front", "films_seen_from_above", "grain_turned", "grain_unbent", "sky_behind_in_front"}) {
     const test::FaultyShaders faulty(fault);
     EXPECT_FALSE(compare_with(truth, scene, view, bounds, faulty.shaders()).passes()) << fault;
   }

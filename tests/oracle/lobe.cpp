@@ -265,11 +265,11 @@ Vector base_of(const MetallicRoughness& material, const Vector& vertex_color) {
 /// Schlick's reflectance at normal incidence that gives the film's at this cosine, or at the least at which films are
 /// seen.
 Vector under_film(const MetallicRoughness& material, const Vector& f0, Real f90, Real cosine) {
-  if (material.iridescence == 0) return f0;
+  const bool is_total = f90 >= 1 && std::min({f0.x, f0.y, f0.z}) >= 1;
+  if (material.iridescence == 0 || is_total) return f0;
   const Real seen = std::clamp(cosine, Real(0x1p-6L), Real(1));
   const Real grazing = fifth_power(1 - seen);
-  const Vector reflected =
-      film_reflectance(f0, material.iridescence_ior, material.iridescence_thickness_maximum, seen);
+  const Vector reflected = film_reflectance(f0, material.iridescence_ior, material.iridescence_thickness_maximum, seen);
   const Vector at_normal = glm::clamp((reflected - f90 * grazing) / (1 - grazing), Vector(0), Vector(1));
   return glm::mix(f0, at_normal, Real(material.iridescence));
 }

@@ -224,9 +224,9 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
   material.diffuse_transmission_color =
       vec3(Vector(material.diffuse_transmission_color) * rgb(texels[kDiffuseTransmissionColorSlot]));
   scale(material.iridescence, texels[kIridescenceSlot].r);
-  material.iridescence_thickness_maximum = static_cast<float>(
-      std::lerp(Real(material.iridescence_thickness_minimum), Real(material.iridescence_thickness_maximum),
-                texels[kIridescenceThicknessSlot].g));
+  material.iridescence_thickness_maximum =
+      static_cast<float>(std::lerp(Real(material.iridescence_thickness_minimum),
+                                   Real(material.iridescence_thickness_maximum), texels[kIridescenceThicknessSlot].g));
   scale(material.anisotropy, texels[kAnisotropySlot].b);
   return material;
 }
@@ -255,9 +255,7 @@ struct Grain {
   /// About which the environment is mirrored.
   Vector bent_normal{0};
 
-  Vector local(const Vector& way) const {
-    return {glm::dot(way, along), glm::dot(way, across), glm::dot(way, normal)};
-  }
+  Vector local(const Vector& way) const { return {glm::dot(way, along), glm::dot(way, across), glm::dot(way, normal)}; }
 };
 
 /// KHR_materials_anisotropy, where texture coordinates give a tangent. The material is that at the point.
@@ -323,6 +321,12 @@ class MetallicRoughnessSurface {
     const Real apart = glm::length(at_.to_eye() + arriving.to_light);
     const bool has_highlight = apart >= 0x1p-12L;
     const Real error = angle_error(arriving, at_.error, apart);
+    // Light from the other side is scattered through, and has no highlight.
+    if (material_.diffuse_transmission > 0 && glm::dot(at_.point.geometric_normal, arriving.to_light) < 0) {
+      coated.add(Vector(1 - coat_.weight()), {sheen_.left() * albedo_from_behind() / std::numbers::pi_v<Real> *
+                                              Vector(light.diffuse) * std::max(-cosine, Real(0))});
+      return coated;
+    }
     if (cosine > 0) {
       Radiance sum{albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
       const LobeAngles at = angles(normal_, arriving);
@@ -334,10 +338,6 @@ class MetallicRoughnessSurface {
         sum = below;
       }
       coated.add(Vector(1 - coat_.weight()), sum);
-    }
-    if (cosine < 0) {
-      coated.add(Vector(1 - coat_.weight()),
-                 {sheen_.left() * albedo_from_behind() / std::numbers::pi_v<Real> * Vector(light.diffuse) * -cosine});
     }
     if (has_coat_ && has_highlight && glm::dot(coat_normal_, arriving.to_light) > 0) {
       coated.add(coat_.weight() * Vector(light.specular),

@@ -87,8 +87,8 @@ class PeerPictureTest : public testing::Test {
     if (peer.program.empty()) GTEST_SKIP() << peer.name << " was not installed when this was configured";
     ASSERT_NO_FATAL_FAILURE(run_tool(peer.converter, {scene, "-o", peer.scene, "--max-depth", kMaxDepth}));
     ASSERT_NO_FATAL_FAILURE(run(peer.program, peer.arguments));
-    ASSERT_NO_FATAL_FAILURE(run(PROMIN_EXECUTABLE, {"render", scene, "-o", "promin.exr", "--size", kSize, kSize,
-                                                    "--max-depth", kMaxDepth, "--quiet"}));
+    ASSERT_NO_FATAL_FAILURE(run(PROMIN_EXECUTABLE, {"render", scene, "-o", "promin.exr", "--spp", "1", "--size", kSize,
+                                                    kSize, "--max-depth", kMaxDepth, "--quiet"}));
     const ImageDifference difference = compare_images(clamp(read_image(folder_ / "promin.exr")),
                                                       clamp(read_image(folder_ / peer.picture)), kTolerance);
     std::cout << difference.summary() << '\n';

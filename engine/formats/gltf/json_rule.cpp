@@ -217,10 +217,13 @@ class RuleCheck {
     if (number >= rule_.lo && number <= rule_.hi) return true;
     const std::string range = written(rule_.lo) + " to " + written(rule_.hi);
     const std::string cure = "use a number from " + range;
-    if (!rule_.is_repaired || !rule_.is_clamped || rule_.kind == JsonKind::kInteger) {
+    // Where a number is not clamped, one that is rounded beyond a small limit is not near it.
+    const double lo_rounding = rule_.is_clamped ? kMostRounding : kMostRounding * rule_.lo;
+    const bool is_rounded = number >= rule_.lo - lo_rounding && number <= rule_.hi + kMostRounding;
+    const bool is_kept = rule_.is_clamped || (is_rounded && !is_strict_);
+    if (!rule_.is_repaired || !is_kept || rule_.kind == JsonKind::kInteger) {
       return fail("a number", value.dump(), "is out of range", place, cure);
     }
-    const bool is_rounded = number >= rule_.lo - kMostRounding && number <= rule_.hi + kMostRounding;
     if (!is_rounded || is_strict_) {
       report_.repair({"a number is out of range", value.dump(), place.text(), cure, "it is clamped to " + range});
     }
