@@ -53,14 +53,16 @@ Tangent tangent_at(const SurfacePoint& point, const TextureSlot& slot) {
 }
 
 /// From which roughness and direction the environment is reflected: the mirrored one, turned to the normal.
-Vector off_mirror(const Vector& direction, const Vector& normal, Real roughness) {
-  const Vector mirrored = glm::reflect(direction, normal);
+Vector off_mirror(const Vector& direction, const Vector& normal, const Vector& geometric_normal, Real roughness) {
+  Vector mirrored = glm::reflect(direction, normal);
+  // A normal that leans far would look into the surface.
+  if (glm::dot(mirrored, geometric_normal) < 0) mirrored = glm::reflect(mirrored, geometric_normal);
   return glm::normalize(mirrored + (normal - mirrored) * std::pow(roughness, Real(4)));
 }
 
 Radiance environment_of(const Surroundings& surroundings, const Vector& direction, const Vector& normal,
-                        Real roughness) {
-  return {surroundings.lobe_mean(off_mirror(direction, normal, roughness), roughness), 0,
+                        const Vector& geometric_normal, Real roughness) {
+  return {surroundings.lobe_mean(off_mirror(direction, normal, geometric_normal, roughness), roughness), 0,
           surroundings.map_error(roughness)};
 }
 
@@ -408,7 +410,7 @@ class MetallicRoughnessSurface {
   Real sharpness_below() const { return is_dull_below_ ? 0 : lobe_.sharpness(); }
   Radiance reflect_environment(const Vector& normal, Real roughness, Real occlusion) const {
     Radiance dimmed;
-    dimmed.add(Vector(occlusion), environment_of(at_.surroundings, at_.direction, normal, roughness));
+    dimmed.add(Vector(occlusion), environment_of(at_.surroundings, at_.direction, normal, at_.point.geometric_normal, roughness));
     return dimmed;
   }
 
