@@ -219,10 +219,10 @@ def test_a_hit_may_be_at_the_centre() -> None:
 
 def test_no_display_changes_unlit_colours(tmp_path: Path) -> None:
     scene = promin.Scene()
-    scene.add_box((-1, 0, 0))
+    scene.add_box((-1, 0, 0), material=scene.add_material(promin.MetallicRoughness(metallic=0)))
     scene.add_box((1, 0, 0), material=scene.add_material(promin.Unlit(color=(0.5, 0.25, 0.02))))
     camera = promin.Camera.look_at((0, 0, 6), (0, 0, 0), yfov=0.6)
-    frame = promin.Renderer(scene).render(camera=camera, size=(60, 30))
+    frame = promin.Renderer(scene).render(camera=camera, size=(60, 30), spp=1)
     assert not frame.aovs and frame.unlit is not None
     row, column = 15, int(np.argmax(frame.unlit[15, :, 3]))
     assert (frame.unlit[row, column] == np.float32((0.5, 0.25, 0.02, 1))).all()
