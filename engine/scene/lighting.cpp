@@ -167,8 +167,4 @@ DisplayTransform display_of(const Scene& scene, LightChoice choice) {
   return {exposure_of(scene), ToneMapping::kNeutral};
 }
 
-Framing framing_of(const Scene& scene) {
-  return scene.is_classic ? Framing::kFront : Framing::kThreeQuarter;
-}
-
 }  // namespace promin

@@ -59,10 +59,6 @@ void for_each_finite_primitive(const Scene& scene, const Use& use) {
   }
 }
 
-bool holds(const Bounds& bounds, const vec3& point) {
-  return glm::all(glm::lessThanEqual(bounds.lo, point)) && glm::all(glm::lessThanEqual(point, bounds.hi));
-}
-
 /// The surface in slices of a box along an axis.
 using Slices = std::array<double, kBinCount>;
 
@@ -136,14 +132,18 @@ bool is_far_smaller(const Bounds& part, const Bounds& all) {
 
 }  // namespace
 
+bool holds(const Bounds& bounds, const vec3& point) {
+  return glm::all(glm::lessThanEqual(bounds.lo, point)) && glm::all(glm::lessThanEqual(point, bounds.hi));
+}
+
 MainPart find_main_part(const Scene& scene) {
-  const MainPart all{bounds_of(scene), 0};
+  const MainPart all{.bounds = bounds_of(scene)};
   if (all.bounds.is_empty()) return all;
   double total = 0.0;
   const Bounds box = find_dense_box(scene, all.bounds, total);
   if (!is_far_smaller(box, all.bounds)) return all;
 
-  MainPart part;
+  MainPart part{.bounds = {}, .centers = box};
   double kept = 0.0;
   for_each_finite_primitive(scene, [&](const Bounds& bounds, double surface) {
     if (!holds(box, bounds.center())) {

@@ -78,7 +78,4 @@ PROMIN_EXPORT float exposure_of(const Scene& scene);
 /// as exposure_of() does.
 PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
 
-/// From where to frame a scene: classic ones from the front, others from three quarters.
-PROMIN_EXPORT Framing framing_of(const Scene& scene);
-
 }  // namespace promin
