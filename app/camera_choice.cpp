@@ -122,10 +122,12 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
 
 /// A camera that frames the scene.
 Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio) {
-  FrameOptions options{.from = choose_framing(scene, pose), .fit = pose.fit.value_or(kDefaultFit)};
+  const bool is_turned = pose.looks() || pose.orbit != Orbit() || pose.fov_deg;
+  FrameOptions options{.from = pose.from, .fit = pose.fit.value_or(kDefaultFit)};
+  if (is_turned || pose.fit) options.from = choose_framing(scene, pose);
   if (pose.up) options.up = vec3(*pose.up);
   Camera camera = frame_scene(scene, aspect_ratio, options);
-  if (!pose.looks() && pose.orbit == Orbit() && !pose.fov_deg) return camera;
+  if (!is_turned) return camera;
   if (pose.direction) face(camera, pose.direction, pose.up);
   if (!pose.look_at) camera = turn(scene, camera, pose);
   if (pose.fov_deg) camera.yfov = to_yfov(*pose.fov_deg);

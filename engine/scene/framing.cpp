@@ -118,20 +118,20 @@ Axes axes_of(const Camera& camera) {
   return {right, glm::cross(right, look), look};
 }
 
-/// How far two planes through a camera's eye may be open on both sides of its axis, and where they then touch the
-/// scene.
+/// Two planes through a camera's eye to both sides of its look, which touch the scene.
 struct Opening {
-  /// Of the eye's place along the axis across the planes.
-  double place;
-  /// Of the eye's place along the look: no nearer do both touch.
+  /// The eye's place along the look, from the center.
   double depth;
+  /// How far from the eye the planes are as far apart as the scene is wide.
+  double distance;
 };
 
 /// Two planes that open with a slope to both sides of the look, and touch the hull from both.
 Opening touch(const SceneHull& hull, const dvec3& side, const dvec3& look, double slope) {
-  const double right = glm::dot(hull.farthest(side - slope * look), side - slope * look);
-  const double left = glm::dot(hull.farthest(-side - slope * look), -side - slope * look);
-  return {0.5 * (right - left), -0.5 * (right + left) / slope};
+  const auto reach = [&](const dvec3& direction) { return glm::dot(hull.farthest(direction), direction); };
+  const double right = reach(side - slope * look);
+  const double left = reach(-side - slope * look);
+  return {-0.5 * (right + left) / slope, 0.5 * (reach(side) + reach(-side)) / slope};
 }
 
 /// The place across the look from which an eye at this depth sees the hull in the middle. The slope to which the hull
@@ -183,10 +183,12 @@ Fitted fit_perspective(const SceneHull& hull, const Axes& axes, double aspect_ra
   const double slope_y = fit * tan_y;
   const Opening x = touch(hull, axes.right, axes.look, slope_x);
   const Opening y = touch(hull, axes.up, axes.look, slope_y);
-  const dvec2 depths = depths_of(hull, axes.look);
-  // What has hardly any width or height lies along the look: the eye must not be in it.
-  constexpr double kClearance = 0x1p-20;
-  double depth = std::min({x.depth, y.depth, depths.x - kClearance * (depths.y - depths.x)});
+  // What points at the eye could lie between the planes though the eye were in it.
+  constexpr double kClearance = 0x1p-5;
+  const double nearest = depths_of(hull, axes.look).x;
+  double depth = std::min({x.depth, y.depth, nearest - kClearance * std::min(x.distance, y.distance)});
+  // What has neither width nor height lies along the look.
+  if (x.distance == 0.0 && y.distance == 0.0) depth = 2.0 * nearest;
   // A lone point has no size to go by.
   if (depth == 0.0) depth = -1.0;
   // Far from the origin the eye must still be another fp32 number than what it looks at.
@@ -253,7 +255,9 @@ Camera frame_scene(const Scene& scene, float aspect_ratio, const FrameOptions& o
   // Of the box along the turned axes.
   const dvec3 size(glm::dot(glm::abs(turn[0]), extent), glm::dot(glm::abs(turn[1]), extent),
                    glm::dot(glm::abs(turn[2]), extent));
-  const Framing from = options.from ? *options.from : framing_of(scene);
+  const Framing from = options.from                           ? *options.from
+                       : is_interior(scene, hull.main_part()) ? Framing::kInside
+                                                              : Framing::kThreeQuarter;
   if (from == Framing::kInside) return stand_within(hull.center(), size, turn, aspect_ratio);
   return fit_to(hull, look_from(viewpoint_of(from, size), turn), static_cast<double>(aspect_ratio),
                 static_cast<double>(options.fit));
@@ -298,7 +302,9 @@ Camera widen_camera(const Camera& camera, const uvec2& size) {
   const auto own = static_cast<double>(camera.aspect_ratio);
   const dvec2 sides(size);
   // A size of this ratio has a width or a height that is rounded.
-  const bool is_narrower = own > 0.0 && std::round(sides.y * own) > sides.x && std::round(sides.x / own) < sides.y;
+  constexpr double kRounding = 1e-6;
+  const double least = (1.0 + kRounding) * sides.x;
+  const bool is_narrower = own > 0.0 && std::round(sides.y * own) > least && (sides.y - 0.5) * own > least;
   if (!is_narrower) return camera;
   const double growth = own * sides.y / sides.x;
   Camera wider = camera;

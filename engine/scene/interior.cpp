@@ -151,8 +151,9 @@ double signed_volume(const Scene& scene, const MainPart& part) {
   return sum;
 }
 
-bool is_interior(const Scene& scene) {
-  const MainPart part = find_main_part(scene);
+}  // namespace
+
+bool is_interior(const Scene& scene, const MainPart& part) {
   // What most scenes are needs no picture.
   if (part.bounds.is_empty() || signed_volume(scene, part) >= 0.0) return false;
   SixPictures outside(part.bounds);
@@ -173,10 +174,8 @@ bool is_interior(const Scene& scene) {
   return inside.share_of_backs() <= kMostBacksWithin;
 }
 
-}  // namespace
-
 Framing framing_of(const Scene& scene) {
-  return is_interior(scene) ? Framing::kInside : Framing::kThreeQuarter;
+  return is_interior(scene, find_main_part(scene)) ? Framing::kInside : Framing::kThreeQuarter;
 }
 
 }  // namespace promin

@@ -58,31 +58,30 @@ struct SceneHull::Adder {
   const Object& object;
 
   void operator()(const Mesh& mesh) const { hull.add(mesh, object); }
-#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                               \
-  void operator()(const TYPE& shape) const {                                                       \
-    const std::optional placed = place(shape, Placement(object.world_from_object));                \
-    if (!placed || (hull.centers_ && !holds(*hull.centers_, bounds_of(*placed).center()))) return; \
-    hull.solids_.emplace_back(*placed);                                                            \
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                                         \
+  void operator()(const TYPE& shape) const {                                                                 \
+    const std::optional placed = place(shape, Placement(object.world_from_object));                          \
+    if (!placed || (hull.part_.centers && !holds(*hull.part_.centers, bounds_of(*placed).center()))) return; \
+    hull.solids_.emplace_back(*placed);                                                                      \
   }
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   void operator()(const TYPE& /*shape*/) const {}
 #include "promin/kinds/primitives.def"
 };
 
-SceneHull::SceneHull(const Scene& scene) {
-  const MainPart part = find_main_part(scene);
-  bounds_ = part.bounds.is_empty() ? frame_of(scene) : part.bounds;
-  center_ = middle_of(bounds_);
-  centers_ = part.centers;
+SceneHull::SceneHull(const Scene& scene)
+    : part_(find_main_part(scene)),
+      bounds_(part_.bounds.is_empty() ? frame_of(scene) : part_.bounds),
+      center_(middle_of(bounds_)) {
   for (const Object& object : scene.objects) {
     if (object.geometry != Object::kNoGeometry) std::visit(Adder{*this, object}, scene.geometries[object.geometry]);
   }
-  if (part.bounds.is_empty()) solids_.emplace_back(world::Box{.center = bounds_.center(), .half_size = vec3(1.0F)});
+  if (part_.bounds.is_empty()) solids_.emplace_back(world::Box{.center = bounds_.center(), .half_size = vec3(1.0F)});
 }
 
 void SceneHull::add(const Mesh& mesh, const Object& object) {
-  if (centers_) {
-    positions_.push_back(find_corners_within(*centers_, mesh, object.world_from_object));
+  if (part_.centers) {
+    positions_.push_back(find_corners_within(*part_.centers, mesh, object.world_from_object));
     meshes_.push_back({dmat3(1.0), -center_, cut(positions_.back())});
     return;
   }

@@ -22,6 +22,7 @@ class SceneHull {
   /// Throws InputError as bounds_of() does.
   explicit SceneHull(const Scene& scene);
 
+  const MainPart& main_part() const { return part_; }
   /// The box to look at (frame_of).
   const Bounds& bounds() const { return bounds_; }
   /// The middle of the bounds.
@@ -54,9 +55,9 @@ class SceneHull {
   std::span<const Block> cut(std::span<const vec3> positions);
   void find_farthest(const PlacedMesh& mesh, const dvec3& direction, Farthest& farthest) const;
 
+  MainPart part_;
   Bounds bounds_;
   dvec3 center_;
-  std::optional<Bounds> centers_;
   std::vector<PlacedMesh> meshes_;
   std::vector<Solid> solids_;
   /// Of geometries that have been added, by their indices.

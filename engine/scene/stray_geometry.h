@@ -24,6 +24,9 @@ struct MainPart {
 /// bounds_of() does.
 MainPart find_main_part(const Scene& scene);
 
+/// Whether one stands in a scene with this main part (framing_of in promin/framing.h).
+bool is_interior(const Scene& scene, const MainPart& part);
+
 /// Whether a point lies in a box or on its surface.
 bool holds(const Bounds& bounds, const vec3& point);
 

@@ -69,8 +69,10 @@ PROMIN_EXPORT Framing framing_of(const Scene& scene);
 PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio, const FrameOptions& options = {});
 
 /// Moves a camera such that the scene, as it is projected, lies in the middle of the picture and the longer of its
-/// sides, each measured in the picture's side, covers the share `fit` of it. Directions and a perspective camera's
-/// field of view stay; an orthographic one gets another height. Throws as frame_scene does.
+/// sides, each measured in the picture's side, covers the share `fit` of it. It covers less where the scene points at
+/// the eye, as a needle: the eye keeps 1/32 of the distance at which the shorter side of its cross-section would cover
+/// as much. Directions and a perspective camera's field of view stay; an orthographic one gets another height. Throws
+/// as frame_scene does.
 PROMIN_EXPORT Camera fit_camera(const Scene& scene, const Camera& camera, float aspect_ratio, float fit = kDefaultFit);
 
 /// Turns of a camera around a point, in degrees.

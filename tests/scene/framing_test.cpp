@@ -78,6 +78,22 @@ Model make_cloud(const std::string& name, const dvec3& size, const dvec3& place,
   return model;
 }
 
+/// A box that is turned a little.
+Model make_rod(const std::string& name, const vec3& size) {
+  dmat4 matrix(1.0);
+  matrix[0][1] = 0.2;
+  matrix[2][0] = 1e-3;
+  Model model{name, {}, {}};
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.push_back(size * vec3((i & 1) != 0 ? 1 : 0, (i & 2) != 0 ? 1 : 0, (i & 4) != 0 ? 1 : 0));
+    model.points.push_back(dvec3(matrix * dvec4(dvec3(mesh.positions.back()), 1.0)));
+  }
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {5, 6, 7}};
+  model.scene.add("rod", std::move(mesh), 0, matrix);
+  return model;
+}
+
 /// Shapes of all kinds, by points close together on each.
 Model make_shapes() {
   Model model{"shapes", {}, {}};
@@ -115,7 +131,8 @@ Model make_shapes() {
 std::vector<Model> make_models() {
   std::vector<Model> models;
   models.push_back(make_cloud("round", dvec3(1), dvec3(0), 500));
-  models.push_back(make_cloud("long and thin", dvec3(0.01, 0.02, 5), dvec3(3, 4, 5), 500));
+  models.push_back(make_rod("long", vec3(0.01F, 0.02F, 5.0F)));
+  models.push_back(make_rod("high", vec3(0.1F, 20.0F, 0.2F)));
   models.push_back(make_cloud("flat", dvec3(5, 0.01, 4), dvec3(-3, 0, 0), 500));
   models.push_back(make_cloud("small and far away", dvec3(1e-3), dvec3(10, -20, 30), 500));
   models.push_back(make_shapes());
@@ -150,12 +167,19 @@ TEST(FramingTest, AnyCameraIsFitted) {
       Camera camera;
       camera.look = glm::normalize(vec3(0.3F, -2.0F, 0.9F));
       camera.up = glm::normalize(glm::cross(camera.look, vec3(1.0F, 1.0F, 0.0F)));
-      camera.yfov = 1.5F;
+      camera.yfov = 1.2F;
       expect_framed(model, fit_camera(model.scene, camera, aspect_ratio, 1.0F), aspect_ratio, 1.0, "a wide lens");
       camera.projection = Projection::kOrthographic;
       expect_framed(model, fit_camera(model.scene, camera, aspect_ratio), aspect_ratio, 0.85, "far away");
     }
   }
+}
+
+TEST(FramingTest, WhatPointsAtTheEyeKeepsADistance) {
+  Scene scene;
+  scene.add("needle", Cone{.center = dvec3(0), .axis = dvec3(0, 0, 1), .half_height = 5.0, .radius_bottom = 0.5});
+  const Camera camera = frame_scene(scene, 1.0F, {.from = Framing::kFront});
+  EXPECT_NEAR(camera.eye.z, 5.0 + 0.5 / (32.0 * 0.85 * std::tan(glm::radians(20.0))), 1e-4) << "its tip is at 5";
 }
 
 TEST(FramingTest, StrayGeometryIsLeftOut) {
