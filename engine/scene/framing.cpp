@@ -184,7 +184,7 @@ Fitted fit_perspective(const SceneHull& hull, const Axes& axes, double aspect_ra
   const Opening x = touch(hull, axes.right, axes.look, slope_x);
   const Opening y = touch(hull, axes.up, axes.look, slope_y);
   // What points at the eye could lie between the planes though the eye were in it.
-  constexpr double kClearance = 0x1p-5;
+  constexpr double kClearance = 0x1p-8;
   const double nearest = depths_of(hull, axes.look).x;
   double depth = std::min({x.depth, y.depth, nearest - kClearance * std::min(x.distance, y.distance)});
   // What has neither width nor height lies along the look.

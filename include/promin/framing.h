@@ -70,7 +70,7 @@ PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio, const F
 
 /// Moves a camera such that the scene, as it is projected, lies in the middle of the picture and the longer of its
 /// sides, each measured in the picture's side, covers the share `fit` of it. It covers less where the scene points at
-/// the eye, as a needle: the eye keeps 1/32 of the distance at which the shorter side of its cross-section would cover
+/// the eye, as a needle: the eye keeps 1/256 of the distance at which the shorter side of its cross-section would cover
 /// as much. Directions and a perspective camera's field of view stay; an orthographic one gets another height. Throws
 /// as frame_scene does.
 PROMIN_EXPORT Camera fit_camera(const Scene& scene, const Camera& camera, float aspect_ratio, float fit = kDefaultFit);

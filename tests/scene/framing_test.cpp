@@ -179,7 +179,7 @@ TEST(FramingTest, WhatPointsAtTheEyeKeepsADistance) {
   Scene scene;
   scene.add("needle", Cone{.center = dvec3(0), .axis = dvec3(0, 0, 1), .half_height = 5.0, .radius_bottom = 0.5});
   const Camera camera = frame_scene(scene, 1.0F, {.from = Framing::kFront});
-  EXPECT_NEAR(camera.eye.z, 5.0 + 0.5 / (32.0 * 0.85 * std::tan(glm::radians(20.0))), 1e-4) << "its tip is at 5";
+  EXPECT_NEAR(camera.eye.z, 5.0 + 0.5 / (256.0 * 0.85 * std::tan(glm::radians(20.0))), 1e-4) << "its tip is at 5";
 }
 
 TEST(FramingTest, StrayGeometryIsLeftOut) {
