@@ -15,7 +15,7 @@
 namespace promin::app {
 namespace {
 
-/// Of a camera at the user's eye.
+/// The field of view of a camera at the user's eye.
 constexpr double kEyeFovDeg = 40.0;
 constexpr const char* kWhere = "on the command line";
 

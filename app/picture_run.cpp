@@ -20,7 +20,7 @@ void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
                     "stay within it or give a larger --size"});
 }
 
-/// Of all frames.
+/// The cameras of all frames.
 std::vector<Camera> cameras_of(const PictureRun& run) {
   std::vector<Camera> cameras;
   for (const PlannedFrame& frame : run.frames) cameras.push_back(frame.camera.value_or(run.stats.view->camera));

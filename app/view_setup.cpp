@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kDefaultHeight = 720;
 
-/// Of the picture that is asked for, as far as it is known.
+/// The aspect ratio of the picture that is asked for, as far as it is known.
 float aspect_ratio_of(const ViewOptions& options) {
   const uvec2 size = options.size.value_or(uvec2(0));
   return size.x > 0 && size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : kDefaultAspectRatio;

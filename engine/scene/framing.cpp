@@ -15,9 +15,9 @@
 namespace promin {
 namespace {
 
-/// Of framed perspective cameras, 40 degrees.
+/// The field of view of framed cameras, 40 degrees.
 constexpr float kFramedYfov = 0.698131701F;
-/// Of a camera within a scene, 60 degrees.
+/// The field of view of a camera within a scene, 60 degrees.
 constexpr float kInsideYfov = 1.04719755F;
 
 /// From where a scene is seen, degrees: about its up axis from its front to the right, and above the horizon.
@@ -160,7 +160,7 @@ struct Fitted {
   double half_height = 1.0;
 };
 
-/// Of the depths of the hull along the look, from the center.
+/// The least and the largest depth of the hull along the look, from the center.
 dvec2 depths_of(const SceneHull& hull, const dvec3& look) {
   return {glm::dot(hull.farthest(-look), look), glm::dot(hull.farthest(look), look)};
 }
@@ -252,7 +252,7 @@ Camera frame_scene(const Scene& scene, float aspect_ratio, const FrameOptions& o
   const dmat3 turn = turn_up_to(normalize_up(options.up));
   const SceneHull hull(scene);
   const dvec3 extent = dvec3(hull.bounds().hi) - dvec3(hull.bounds().lo);
-  // Of the box along the turned axes.
+  // The box is measured along the turned axes.
   const dvec3 size(glm::dot(glm::abs(turn[0]), extent), glm::dot(glm::abs(turn[1]), extent),
                    glm::dot(glm::abs(turn[2]), extent));
   const Framing from = options.from                           ? *options.from

@@ -15,9 +15,9 @@
 namespace promin {
 namespace {
 
-/// Of what is seen from outside, the least share that are backs.
+/// The least share of backs in what is seen from outside.
 constexpr double kLeastBacks = 0.75;
-/// Of what is in the hull, the largest share.
+/// The largest share of backs in what lies within the hull.
 constexpr double kMostBacksWithin = 0.5;
 /// What is within lies deeper than this share of the size.
 constexpr double kLeastDepth = 0.02;
@@ -50,7 +50,7 @@ class SixPictures {
     for (int axis = 0; axis < 3; ++axis) draw(facet, axis);
   }
 
-  /// Of the pixels that show something.
+  /// The share among the pixels that show something.
   double share_of_backs() const {
     double backs = 0.0;
     double all = 0.0;

@@ -60,7 +60,7 @@ class SceneHull {
   dvec3 center_;
   std::vector<PlacedMesh> meshes_;
   std::vector<Solid> solids_;
-  /// Of geometries that have been added, by their indices.
+  /// The blocks of geometries that have been added, by their indices.
   std::map<uint32_t, std::span<const Block>> blocks_of_;
   std::deque<std::vector<Block>> blocks_;
   std::deque<std::vector<vec3>> positions_;
