@@ -16,20 +16,20 @@ class OptionTable;
 /// unit vectors.
 struct PoseOptions {
   /// From where the scene is framed, whatever cameras it has.
-  std::optional<Framing> from;
+  std::optional<Framing> from = std::nullopt;
   /// The share of the picture that a framed scene covers.
-  std::optional<float> fit;
-  std::optional<dvec3> eye;
+  std::optional<float> fit = std::nullopt;
+  std::optional<dvec3> eye = std::nullopt;
   /// At most one of these two.
-  std::optional<dvec3> look_at;
-  std::optional<dvec3> direction;
-  std::optional<dvec3> up;
+  std::optional<dvec3> look_at = std::nullopt;
+  std::optional<dvec3> direction = std::nullopt;
+  std::optional<dvec3> up = std::nullopt;
   Orbit orbit;
   /// Magnifies the picture around its middle.
   double zoom = 1.0;
   /// The vertical field of view, degrees in (0, 180).
-  std::optional<double> fov_deg;
-  std::optional<double> near;
+  std::optional<double> fov_deg = std::nullopt;
+  std::optional<double> near = std::nullopt;
 
   bool looks() const { return look_at || direction; }
   bool any() const { return from || fit || eye || looks() || up || orbit != Orbit() || zoom != 1.0 || fov_deg || near; }
