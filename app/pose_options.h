@@ -24,7 +24,7 @@ struct PoseOptions {
   std::optional<dvec3> look_at = std::nullopt;
   std::optional<dvec3> direction = std::nullopt;
   std::optional<dvec3> up = std::nullopt;
-  Orbit orbit;
+  Orbit orbit = {};
   /// Magnifies the picture around its middle.
   double zoom = 1.0;
   /// The vertical field of view, degrees in (0, 180).
