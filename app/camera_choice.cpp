@@ -191,10 +191,10 @@ void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras,
   const float aspect_ratio = static_cast<float>(size.x) / static_cast<float>(size.y);
   if (std::ranges::any_of(cameras, [&](const Camera& camera) { return may_see(scene, camera, aspect_ratio); })) return;
   const dvec3 middle = middle_of(scene) + scene.center;
-  console.warn(
-      fmt::format("nothing of the scene is in the picture; --look-at {:.6g} {:.6g} {:.6g} turns the camera to "
-                  "its middle, and --from three-quarter shows all of it",
-                  middle.x, middle.y, middle.z));
+  console.warn(fmt::format(
+      "nothing of the scene is in the picture; --look-at {:.6g} {:.6g} {:.6g} in place of a direction shows "
+      "its middle, and --from three-quarter in place of a camera shows all of it",
+      middle.x, middle.y, middle.z));
 }
 
 }  // namespace promin::app

@@ -391,7 +391,7 @@ TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
   };
   EXPECT_EQ(warning_of({}), "");
   EXPECT_THAT(warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
-              HasSubstr("nothing of the scene is in the picture; --look-at 1 2 3 turns the camera to its middle"));
+              HasSubstr("nothing of the scene is in the picture; --look-at 1 2 3 in place of a direction shows its"));
 }
 
 }  // namespace
