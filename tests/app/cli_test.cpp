@@ -646,7 +646,7 @@ TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   write("classic.gltf", classic_square());
   const std::string classic = run({"info", "classic.gltf"}).out;
   EXPECT_THAT(classic, ContainsRegex("lights +0; assumed: a headlight along the view and ambient light of 0.1\n"));
-  EXPECT_THAT(classic, ContainsRegex("cameras +0; assumed: a camera in front that frames the scene\n"));
+  EXPECT_THAT(classic, ContainsRegex("cameras +0; assumed: a camera that frames the scene from three quarters\n"));
   EXPECT_THAT(classic, ContainsRegex("background +0 0 0\n"));
   EXPECT_THAT(classic, ContainsRegex("display +exposure \\+0 EV, tone mapping none\n"));
 }
