@@ -181,6 +181,23 @@ TEST(ViewSetupTest, LightsToLeaveOutAreNamedOnce) {
   EXPECT_EQ(options.lights_off, (std::vector<uint32_t>{0, 2}));
 }
 
+TEST(PoseOptionsTest, UpIsAnAxisByItsNameOrADirection) {
+  const auto up_of = [](std::vector<const char*> words) {
+    CLI::App program;
+    OptionTable table(program);
+    PoseOptions pose;
+    add_pose_options(table, pose);
+    words.insert(words.begin(), "promin");
+    parse_arguments(program, static_cast<int>(words.size()), words.data());
+    EXPECT_EQ(pose.zoom, 2.0);
+    return pose.up;
+  };
+  EXPECT_EQ(up_of({"--up", "z", "--zoom", "2"}), dvec3(0, 0, 1));
+  EXPECT_EQ(up_of({"--zoom", "2", "--up", "-x"}), dvec3(-1, 0, 0));
+  EXPECT_EQ(up_of({"--up=-y", "--zoom", "2"}), dvec3(0, -1, 0));
+  EXPECT_EQ(up_of({"--up", "0", "-2", "1", "--zoom", "2"}), dvec3(0, -2, 1));
+}
+
 TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
   Scene scene = make_scene();
   scene.is_classic = true;
