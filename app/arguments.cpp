@@ -60,6 +60,7 @@ std::string nearest_of(const std::string& name, const std::vector<std::string>& 
 std::string nearest_option(const std::string& name, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;
     for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
   }
   return nearest_of(name, names);
@@ -100,21 +101,32 @@ std::string name_of(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
 }
 
-/// One word in place of the several that an option takes.
+/// Words each of which stands in place of the several that an option takes.
 struct Alternative {
-  std::string word;
+  std::vector<std::string> words;
   size_t count = 0;
+
+  bool has(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
 };
+
+/// The parts of "R G B|WORD|OTHER" after its first.
+std::vector<std::string> split_alternatives(const std::string& placeholders) {
+  std::vector<std::string> words;
+  for (size_t bar = placeholders.find('|'); bar != std::string::npos;) {
+    const size_t next = placeholders.find('|', bar + 1);
+    words.push_back(placeholders.substr(bar + 1, next - bar - 1));
+    bar = next;
+  }
+  return words;
+}
 
 /// Those of all options of a program, by the options' names.
 void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& found) {
   for (const CLI::Option* option : app.get_options()) {
-    const std::string placeholders = option->get_type_name();
-    const size_t bar = placeholders.rfind('|');
-    if (option->get_type_size() < 2 || bar == std::string::npos) continue;
+    const std::vector<std::string> words = split_alternatives(option->get_type_name());
+    if (option->get_type_size() < 2 || words.empty()) continue;
     for (const std::string& name : option->get_lnames()) {
-      found[std::string("--").append(name)] = {placeholders.substr(bar + 1),
-                                               static_cast<size_t>(option->get_type_size())};
+      found[std::string("--").append(name)] = {words, static_cast<size_t>(option->get_type_size())};
     }
   }
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -129,10 +141,13 @@ std::vector<const char*> fill_up_alternatives(std::span<const char* const> words
   std::vector<const char*> filled;
   for (size_t i = 0; i < words.size(); ++i) {
     filled.push_back(words[i]);
+    const std::string word = words[i];
     for (const auto& [name, alternative] : alternatives) {
-      const bool is_alone = i > 0 && words[i - 1] == name && words[i] == alternative.word;
-      if (!is_alone && words[i] != name + "=" + alternative.word) continue;
-      filled.insert(filled.end(), alternative.count - 1, alternative.word.c_str());
+      const bool is_joined = word.starts_with(name + "=") && alternative.has(word.substr(name.size() + 1));
+      const bool is_alone = i > 0 && words[i - 1] == name && alternative.has(word);
+      if (is_alone || is_joined) {
+        filled.insert(filled.end(), alternative.count - 1, words[i] + (is_joined ? name.size() + 1 : 0));
+      }
     }
   }
   return filled;
@@ -224,6 +239,11 @@ void OptionTable::add_required_repeated(const std::string& names, const std::str
   command_.get_option(display_name(names))->required();
 }
 
+void OptionTable::add_hidden(const std::string& name, Setter set) {
+  add(name, "", "", std::move(set));
+  command_.get_option(name)->group("");
+}
+
 void OptionTable::add_flag(const std::string& names, const std::string& help, bool& value) {
   command_.add_flag(names, value, help);
 }
@@ -238,7 +258,7 @@ std::vector<std::pair<std::string, std::vector<std::string>>> given_options(cons
     std::vector<std::string> words;
     if (option->get_items_expected_max() > 0) words = option->reduced_results();
     const auto alternative = alternatives.find(name);
-    if (alternative != alternatives.end() && words.front() == alternative->second.word) words.resize(1);
+    if (alternative != alternatives.end() && alternative->second.has(words.front())) words.resize(1);
     given.emplace_back(name, std::move(words));
   }
   return given;

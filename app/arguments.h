@@ -73,7 +73,8 @@ class OptionTable {
 
   using Setter = std::function<void(const OptionValues&)>;
   /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
-  /// takes: "N", "W H". "R G B|WORD" is three words, or WORD alone, which the setter gets three times.
+  /// takes: "N", "W H". "R G B|WORD|OTHER" is three words, or one of the others alone, which the setter gets three
+  /// times.
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// Adds an argument that the command cannot do without.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
@@ -81,6 +82,8 @@ class OptionTable {
   void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);
   void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
                              Setter set);
+  /// An option that help and suggestions do not name, as `set` refuses it. It takes one word.
+  void add_hidden(const std::string& name, Setter set);
   void add_flag(const std::string& names, const std::string& help, bool& value);
 
  private:

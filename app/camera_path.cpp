@@ -32,13 +32,14 @@ const char* const kWriteAnew = "record the path again or mend the file";
 const std::array kRules{
     rules::object(""),
     rules::needed(rules::choice("format", "promin camera path")),
-    rules::needed(rules::integer("version", 1, 1)),
+    rules::needed(rules::integer("version", 1, 2)),
     rules::number("fps", PathPictures::kMinFps, PathPictures::kMaxFps),
     rules::needed(rules::array("frames")),
     rules::object("frames[]"),
     rules::needed(rules::number("frames[].time_s", 0.0, kMaxTime)),
     rules::needed(rules::numbers("frames[].eye", 3, -kMaxCoordinate, kMaxCoordinate)),
-    rules::needed(rules::numbers("frames[].look", 3, -kMaxCoordinate, kMaxCoordinate)),
+    rules::numbers("frames[].look", 3, -kMaxCoordinate, kMaxCoordinate),
+    rules::numbers("frames[].look_at", 3, -kMaxCoordinate, kMaxCoordinate),
     rules::needed(rules::numbers("frames[].up", 3, -kMaxCoordinate, kMaxCoordinate)),
     rules::number("frames[].fov_deg", kMinFovDeg, kMaxFovDeg),
     rules::number("frames[].ymag", kMinSize, kMaxCoordinate),
@@ -49,15 +50,32 @@ vec3 read_vector(const json& v) {
   return {v[0].get<float>(), v[1].get<float>(), v[2].get<float>()};
 }
 
+dvec3 read_place(const json& v) {
+  return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
+}
+
+/// Refuses a frame that has not the one direction of view that its version may have.
+void check_look(const json& frame, int version, const std::string& place, LoadReport& report) {
+  if (version == 1) {
+    if (!frame.contains("look")) report.refuse("\"look\" is missing", place, kWriteAnew);
+  } else if (frame.contains("look") == frame.contains("look_at")) {
+    report.refuse("a frame has one of look and look_at", place, "give a direction as look, or a point as look_at");
+  }
+}
+
 /// Reads a frame that keeps the rules.
-TimedCamera read_frame(const json& frame, const std::string& place, LoadReport& report) {
+TimedCamera read_frame(const json& frame, int version, const std::string& place, LoadReport& report) {
   TimedCamera timed;
   timed.time_s = frame["time_s"].get<double>();
+  const bool looks_at = version > 1 && frame.contains("look_at");
   try {
-    timed.camera =
-        FreeCamera::from_pose(read_vector(frame["eye"]), read_vector(frame["look"]), read_vector(frame["up"])).camera();
+    const vec3 look =
+        looks_at ? vec3(read_place(frame["look_at"]) - read_place(frame["eye"])) : read_vector(frame["look"]);
+    timed.camera = FreeCamera::from_pose(read_vector(frame["eye"]), look, read_vector(frame["up"])).camera();
   } catch (const UsageError&) {
-    report.refuse("look and up are zero or parallel", place, "give two directions at an angle");
+    report.refuse(looks_at ? "look_at is the place of the eye, or straight up or down from it"
+                           : "look and up are zero or parallel",
+                  place, looks_at ? "give another point or another up" : "give two directions at an angle");
   }
   if (frame.contains("fov_deg") == frame.contains("ymag")) {
     report.refuse("a frame has one of fov_deg and ymag", place, "give fov_deg for a perspective camera");
@@ -68,9 +86,7 @@ TimedCamera read_frame(const json& frame, const std::string& place, LoadReport& 
     timed.camera.ymag = frame["ymag"].get<float>();
   }
   timed.camera.near = frame.value("near", 0.0F);
-  for (int i = 0; i < 3; ++i) {
-    timed.rest[i] = frame["eye"][static_cast<size_t>(i)].get<double>() - double{timed.camera.eye[i]};
-  }
+  timed.rest = read_place(frame["eye"]) - dvec3(timed.camera.eye);
   return timed;
 }
 
@@ -139,10 +155,16 @@ CameraPath read_camera_path(const std::filesystem::path& file) {
   for (const JsonRule& rule : kRules) check_json_rule(document, rule, report);
   report.throw_if_refused();
 
+  const int version = document["version"].get<int>();
+  const json& frames = document["frames"];
+  const auto place_of = [](size_t i) { return fmt::format("frames[{}]", i); };
+  for (size_t i = 0; i < frames.size(); ++i) check_look(frames[i], version, place_of(i), report);
+  report.throw_if_refused();
+
   CameraPath path;
-  for (const json& frame : document["frames"]) {
-    const std::string place = fmt::format("frames[{}]", path.frames.size());
-    const TimedCamera next = read_frame(frame, place, report);
+  for (const json& frame : frames) {
+    const std::string place = place_of(path.frames.size());
+    const TimedCamera next = read_frame(frame, version, place, report);
     if (!path.frames.empty() && !(next.time_s > path.frames.back().time_s)) {
       report.refuse("time_s does not grow from frame to frame", place, "order the frames by their times");
     }

@@ -34,7 +34,8 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& app) {
-  return app.get_options([](const CLI::Option* option) { return !option->get_positional(); });
+  return app.get_options(
+      [](const CLI::Option* option) { return !option->get_positional() && !option->get_group().empty(); });
 }
 
 std::vector<const CLI::Option*> positionals_of(const CLI::App& app) {

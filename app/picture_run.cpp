@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "camera_choice.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "view_setup.h"
@@ -17,6 +18,13 @@ void check_explained_pixel(const RenderOptions& options, const uvec2& size) {
   if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
   throw UsageError({fmt::format("--explain is beyond the picture of {}x{}", size.x, size.y), "on the command line",
                     "stay within it or give a larger --size"});
+}
+
+/// The cameras of all frames.
+std::vector<Camera> cameras_of(const PictureRun& run) {
+  std::vector<Camera> cameras;
+  for (const PlannedFrame& frame : run.frames) cameras.push_back(frame.camera.value_or(run.stats.view->camera));
+  return cameras;
 }
 
 }  // namespace
@@ -34,6 +42,7 @@ PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame
   stats.view = make_view(scene, view, console);
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
+  warn_of_empty_pictures(scene, cameras_of(run), stats.view->size, console);
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
   const AssumedLight assumed = light_up(scene, view.look, surroundings);

@@ -27,9 +27,6 @@
 namespace promin::app {
 namespace {
 
-/// The limits 0 and 180 themselves show nothing.
-constexpr double kMinFovDeg = 1e-3;
-constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 constexpr uint32_t kMaxFrame = 9999999;
 constexpr double kMaxBackground = 1e9;
 /// More would leave the range of floats.
@@ -145,9 +142,6 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
             "What stands in for light that the scene lacks [studio; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
-  table.add("--framing", fmt::format("{}", fmt::join(framing_names(), "|")),
-            "From where a scene without a camera is seen [three-quarter; classic scenes: front]",
-            [&](const OptionValues& w) { look.framing = read_name<Framing>(w, framing_names()); });
   table.add("--background", fmt::format("R G B|{}", kEnvironment),
             "What lies behind all: a linear colour, or what lights the scene [the scene's, or a grey of 0.25; classic "
             "scenes: the scene's]",
@@ -176,7 +170,6 @@ void add_look_options(OptionTable& table, LookOptions& look) {
 }  // namespace
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
-  PoseOptions& pose = view.pose;
   table.add("--size", "W H",
             "Picture size in pixels [what the file asks for, or height 720, width by the camera's aspect ratio]",
             [&](const OptionValues& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
@@ -202,16 +195,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   add_look_options(table, view.look);
   table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
             [&](const OptionValues& w) { view.camera = w.text(); });
-  table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",
-            [&](const OptionValues& w) { pose.eye = w.vector(kMaxCoordinate); });
-  table.add("--look", "X Y Z", "Direction of view, instead of the camera's",
-            [&](const OptionValues& w) { pose.look = w.vector(kMaxCoordinate); });
-  table.add("--up", "X Y Z", "Direction that is up in the picture [with --look 0 1 0, else the camera's]",
-            [&](const OptionValues& w) { pose.up = w.vector(kMaxCoordinate); });
-  table.add("--fov", "DEG", "Vertical field of view in degrees, instead of the camera's",
-            [&](const OptionValues& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
-  table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
-            [&](const OptionValues& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
+  add_pose_options(table, view.pose);
   add_environment_options(table, view.environment);
 }
 
@@ -444,7 +428,7 @@ void check_error_target(const ErrorTarget& target) {
 void check_no_camera(const ViewOptions& options, std::string_view name) {
   if (!options.camera && !options.pose.any()) return;
   throw UsageError(
-      {fmt::format("{} and a camera of --camera, --eye, --look, --up, --fov or --near contradict each other", name),
+      {fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name),
        "on the command line", "leave one out"});
 }
 
@@ -479,6 +463,7 @@ void check_render_options(const RenderOptions& options) {
   named.alpha = false;
 
   check_tracing_options(options.tracing);
+  check_pose_options(view.pose, view.camera.has_value());
   if (options.path) check_no_camera(view, "--path");
   if (options.explained_pixel) {
     refuse_beside("--explain", {{!options.pictures.empty(), "--output"},

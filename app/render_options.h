@@ -12,6 +12,7 @@
 
 #include "environment_options.h"
 #include "job_options.h"
+#include "pose_options.h"
 #include "promin/lighting.h"
 #include "promin/math.h"
 #include "promin/renderer.h"
@@ -22,18 +23,6 @@ class App;
 }
 
 namespace promin::app {
-
-/// The user's choices that replace parts of the chosen camera. Directions need not be unit vectors.
-struct PoseOptions {
-  std::optional<dvec3> eye;
-  std::optional<dvec3> look;
-  std::optional<dvec3> up;
-  /// The vertical field of view, degrees in (0, 180).
-  std::optional<double> fov_deg;
-  std::optional<double> near;
-
-  bool any() const { return eye || look || up || fov_deg || near; }
-};
 
 /// What rays from the camera see that leave the scene.
 struct BackgroundChoice {
@@ -49,7 +38,6 @@ struct BackgroundChoice {
 /// scene (promin/lighting.h).
 struct LookOptions {
   LightChoice light = LightChoice::kAuto;
-  std::optional<Framing> framing = std::nullopt;
   std::optional<BackgroundChoice> background = std::nullopt;
   /// Stops.
   std::optional<float> exposure_ev = std::nullopt;

@@ -5,12 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <variant>
 #include <vector>
 
-#include "camera.h"
+#include "camera_choice.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -18,71 +17,10 @@ namespace {
 
 constexpr uint32_t kDefaultHeight = 720;
 
-std::string list_cameras(const Scene& scene) {
-  std::string text;
-  for (size_t i = 0; i < scene.cameras.size(); ++i) {
-    text += fmt::format("{}{}", i == 0 ? "" : ", ", i);
-    if (!scene.cameras[i].name.empty()) text += fmt::format(" ({})", scene.cameras[i].name);
-  }
-  return text;
-}
-
-/// The name is tried first, because a camera may be called "2".
-const Camera& find_camera(const Scene& scene, const std::string& selection) {
-  if (scene.cameras.empty()) {
-    throw UsageError({"the scene has no cameras to choose from", scene.file.string(), "leave --camera out"});
-  }
-  for (const Camera& camera : scene.cameras) {
-    if (camera.name == selection) return camera;
-  }
-  size_t index = 0;
-  const char* end = selection.data() + selection.size();
-  const auto [rest, error] = std::from_chars(selection.data(), end, index);
-  if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
-    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "choose one of: " + list_cameras(scene)});
-  }
-  return scene.cameras[index];
-}
-
-Framing choose_framing(const Scene& scene, const LookOptions& look) {
-  return look.framing.value_or(framing_of(scene));
-}
-
-Camera choose_camera(const Scene& scene, const ViewOptions& options) {
-  if (options.given_camera) return *options.given_camera;
-  if (options.camera) return find_camera(scene, *options.camera);
-  if (!scene.cameras.empty()) return scene.cameras.front();
-  return frame_scene(
-      scene,
-      options.size ? static_cast<float>(options.size->x) / static_cast<float>(options.size->y) : kDefaultAspectRatio,
-      choose_framing(scene, options.look));
-}
-
-/// Whether the view's camera is one that frames the scene, and nobody has said from where.
-bool is_camera_assumed(const Scene& scene, const ViewOptions& options) {
-  const bool is_given = options.given_camera || options.camera || (options.pose.eye && options.pose.look);
-  return scene.cameras.empty() && !is_given && !options.look.framing;
-}
-
-void apply_pose(Camera& camera, const PoseOptions& pose, const dvec3& center, const Console& console) {
-  if (pose.eye) camera.eye = vec3(*pose.eye - center);
-  if (pose.look || pose.up) {
-    const dvec3 default_up = pose.look ? dvec3(0.0, 1.0, 0.0) : dvec3(camera.up);
-    const Camera posed = FreeCamera::from_pose(camera.eye, vec3(pose.look.value_or(dvec3(camera.look))),
-                                               vec3(pose.up.value_or(default_up)))
-                             .camera();
-    camera.look = posed.look;
-    camera.up = posed.up;
-  }
-  if (pose.fov_deg) {
-    // With eye and look it is a camera of the user's own.
-    if (camera.projection == Projection::kOrthographic && !(pose.eye && pose.look)) {
-      console.note("the camera is orthographic; --fov makes it a perspective one");
-    }
-    camera.projection = Projection::kPerspective;
-    camera.yfov = static_cast<float>(glm::radians(*pose.fov_deg));
-  }
-  if (pose.near) camera.near = static_cast<float>(*pose.near);
+/// The aspect ratio of the picture that is asked for, as far as it is known.
+float aspect_ratio_of(const ViewOptions& options) {
+  const uvec2 size = options.size.value_or(uvec2(0));
+  return size.x > 0 && size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : kDefaultAspectRatio;
 }
 
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
@@ -105,9 +43,10 @@ std::optional<uvec2> default_size(const Camera& camera) {
 
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console) {
   View view;
-  view.camera = choose_camera(scene, options);
+  const Camera* own = find_file_camera(scene, options);
+  view.camera = own != nullptr ? *own : make_camera(scene, options, aspect_ratio_of(options));
   view.size = choose_size(options, view.camera, scene);
-  apply_pose(view.camera, options.pose, scene.center, console);
+  if (own != nullptr) view.camera = pose_camera(scene, *own, options.pose, view.size, console);
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
     throw UsageError({fmt::format("--crop reaches beyond the picture of {}x{}", view.size.x, view.size.y),
@@ -150,8 +89,8 @@ bool shows_unlit_apart(const Scene& scene, const LookOptions& look, const Displa
 }
 
 std::string describe_framing(Framing framing) {
-  return framing == Framing::kFront ? "a camera in front that frames the scene"
-                                    : "a camera that frames the scene from three quarters";
+  return framing == Framing::kInside ? "a camera that stands inside the scene"
+                                     : "a camera that frames the scene from three quarters";
 }
 
 std::string describe_light(const AssumedLight& light) {
@@ -165,7 +104,7 @@ std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions&
                                           const std::optional<DisplayTransform>& display) {
   const LookOptions& look = options.look;
   std::vector<std::string> parts;
-  if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, look)));
+  if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, options.pose)));
   if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
   if (light.has_background) parts.emplace_back("a grey background");
   if (display && !look.exposure_ev && !look.averages_exposure && display->exposure_ev != 0.0F) {

@@ -21,9 +21,8 @@ inline constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
 /// Empty where its aspect ratio gives no width that a picture may have.
 std::optional<uvec2> default_size(const Camera& camera);
 
-/// The view that the options ask of this scene. A scene without a camera gets one that frames it. An orthographic
-/// camera with a field of view becomes a perspective one; a note says so. Throws UsageError for an unknown camera,
-/// parallel directions, a crop outside the picture.
+/// The view that the options ask of this scene (camera_choice.h). A scene without a camera gets one that frames it.
+/// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);
 
 /// Surrounds and lights the scene as the options ask, and gives it the background that they name. Throws as light_scene

@@ -91,7 +91,7 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   if (!scene.variant.empty()) command += " --variant " + quote(scene.variant);
   if (!scene.root.empty()) command += " --root " + quote(scene.root.string());
   if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);
-  command += fmt::format(" --eye {} --look {} --up {}", words_of(camera.eye, scene.center), words_of(camera.look),
+  command += fmt::format(" --eye {} --direction {} --up {}", words_of(camera.eye, scene.center), words_of(camera.look),
                          words_of(camera.up));
   if (camera.projection == Projection::kPerspective) {
     // Nine digits of an angle in degrees are within half of a float's last place.

@@ -7,6 +7,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "camera_choice.h"
 #include "camera_path.h"
 #include "load_options.h"
 #include "outputs.h"
@@ -70,6 +71,7 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
 
 void check_window_options(const WindowOptions& options) {
   check_tracing_options(options.tracing);
+  check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.replay) check_no_camera(options.view, "--replay");
   if (options.stays_open && !options.replay) {
     throw UsageError({"--keep-open has no replay to end", "on the command line", "give --replay as well"});
@@ -114,6 +116,7 @@ void view(const WindowOptions& options) {
     view_options.given_camera = start.replay->camera(0);
   }
   start.view = make_view(*scene, view_options, console);
+  if (!options.replay) warn_of_empty_pictures(*scene, {&start.view.camera, 1}, start.view.size, console);
   const LookOptions& look = options.view.look;
   const AssumedLight assumed = light_up(*scene, look, environment);
   const DisplayTransform display = choose_display(*scene, look, start.view.mode.debug_view);

@@ -8,8 +8,7 @@
 
 namespace promin {
 
-/// The implementation of frame_scene and add_default_lights, for both forms of a scene.
-Camera frame_bounds(const Bounds& bounds, float aspect_ratio, Framing framing = Framing::kFront);
+/// The implementation of add_default_lights, for both forms of a scene.
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
 
 /// The box to look at: the main part of everything finite (scene/stray_geometry.h), or else a box of size 2 around the

@@ -174,8 +174,4 @@ bool mixes_unlit(const Scene& scene) {
   return has_any<Unlit>(scene.materials) && !is_all_unlit(scene);
 }
 
-Framing framing_of(const Scene& scene) {
-  return scene.is_classic ? Framing::kFront : Framing::kThreeQuarter;
-}
-
 }  // namespace promin

@@ -3,9 +3,6 @@
 #include "promin/scene.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -19,29 +16,6 @@
 
 namespace promin {
 namespace {
-
-constexpr double kFrameMargin = 1.05;
-
-/// From where a box is framed.
-struct Viewpoint {
-  /// About +Y from +Z towards +X, and above the horizon, radians.
-  double azimuth;
-  double elevation;
-  /// The vertical field of view, radians.
-  float yfov;
-};
-constexpr Viewpoint kFromTheFront = {0.0, 0.25, 0.7F};
-constexpr float kThreeQuarterYfov = 0.698131701F;
-constexpr Viewpoint kFromThreeQuarters = {std::numbers::pi / 6.0, 17.0 * std::numbers::pi / 180.0, kThreeQuarterYfov};
-constexpr Viewpoint kAtABoard = {0.0, 0.0, kThreeQuarterYfov};
-constexpr Viewpoint kOntoTheGround = {std::numbers::pi / 6.0, std::numbers::pi / 4.0, kThreeQuarterYfov};
-
-Viewpoint choose_viewpoint(const dvec3& size, Framing framing) {
-  if (framing == Framing::kFront) return kFromTheFront;
-  if (16.0 * size.y < std::max(size.x, size.z) && size.y <= size.z) return kOntoTheGround;
-  if (4.0 * size.z < std::max(size.x, size.y)) return kAtABoard;
-  return kFromThreeQuarters;
-}
 
 /// The geometry of an object that has one. Throws InputError if it is not there.
 const Geometry& geometry_of(const Scene& scene, const Object& object) {
@@ -156,58 +130,6 @@ uint32_t primitive_count(const Scene& scene, const Object& object) {
 
 uint32_t object_number(const Scene& scene, uint32_t object) {
   return object < scene.object_numbers.size() ? scene.object_numbers[object] : object;
-}
-
-std::span<const std::string_view> framing_names() {
-  using std::string_view_literals::operator""sv;
-  static constexpr std::array kNames = {"three-quarter"sv, "front"sv};
-  return kNames;
-}
-
-Camera frame_scene(const Scene& scene, float aspect_ratio, Framing framing) {
-  if (!(aspect_ratio > 0.0F && std::isfinite(aspect_ratio))) {
-    throw UsageError({"the aspect ratio is not positive and finite", "in frame_scene", "give width over height"});
-  }
-  return frame_bounds(frame_of(scene), aspect_ratio, framing);
-}
-
-Camera frame_bounds(const Bounds& frame, float aspect_ratio, Framing framing) {
-  const dvec3 center = 0.5 * (dvec3(frame.lo) + dvec3(frame.hi));
-  const dvec3 half = 0.5 * (dvec3(frame.hi) - dvec3(frame.lo));
-
-  const Viewpoint from = choose_viewpoint(2.0 * half, framing);
-  const dvec2 turn(std::sin(from.azimuth), std::cos(from.azimuth));
-  const dvec2 tilt(std::sin(from.elevation), std::cos(from.elevation));
-  // Differences from 0 are never -0.
-  const dvec3 right(turn.y, 0.0, 0.0 - turn.x);
-  const dvec3 look(0.0 - tilt.y * turn.x, 0.0 - tilt.x, 0.0 - tilt.y * turn.y);
-  const dvec3 up(0.0 - tilt.x * turn.x, tilt.y, 0.0 - tilt.x * turn.y);
-  const double tan_y = std::tan(0.5 * static_cast<double>(from.yfov));
-  const double tan_x = tan_y * static_cast<double>(aspect_ratio);
-
-  // The least distance at which each corner of the box lies within both fields of view.
-  double distance = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
-    const dvec3 offset = sign * half;
-    const double across = std::max(std::abs(glm::dot(offset, right)) / tan_x, std::abs(glm::dot(offset, up)) / tan_y);
-    distance = std::max(distance, across - glm::dot(offset, look));
-  }
-  distance *= kFrameMargin;
-  // A lone point has no size to go by.
-  if (distance == 0.0) distance = 1.0;
-  // Far from the origin the eye must still be another fp32 number than what it looks at.
-  const dvec3 magnitude = glm::abs(center);
-  distance = std::max(distance, 0x1p-20 * std::max({magnitude.x, magnitude.y, magnitude.z}));
-
-  Camera camera;
-  camera.name = "framing";
-  camera.eye = vec3(center - distance * look);
-  camera.look = vec3(look);
-  camera.up = vec3(up);
-  camera.yfov = from.yfov;
-  camera.aspect_ratio = aspect_ratio;
-  return camera;
 }
 
 bool shows_same(const Camera& a, const Camera& b) {

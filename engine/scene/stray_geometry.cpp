@@ -30,7 +30,7 @@ struct FinitePrimitives {
     const bool is_moved = !Placement(world_from_object).is_identity();
     constexpr size_t kTriangles = 16384;
     for (const Sum& part :
-         make_parts(mesh.triangles.size(), kTriangles, 0, sum.start_part(), [&](size_t begin, size_t end, Sum&some) {
+         make_parts(mesh.triangles.size(), kTriangles, 0, sum.start_part(), [&](size_t begin, size_t end, Sum& some) {
            for (size_t i = begin; i < end; ++i) add_triangle(some, mesh, mesh.triangles[i], is_moved);
          })) {
       sum.add_part(part);
@@ -69,10 +69,6 @@ Sum add_up(const Scene& scene, Sum sum) {
     std::visit(FinitePrimitives<Sum>{object.world_from_object, sum}, scene.geometries[object.geometry]);
   }
   return sum;
-}
-
-bool holds(const Bounds& bounds, const vec3& point) {
-  return glm::all(glm::lessThanEqual(bounds.lo, point)) && glm::all(glm::lessThanEqual(point, bounds.hi));
 }
 
 /// The surface in slices of a box along an axis.
@@ -178,14 +174,19 @@ bool is_far_smaller(const Bounds& part, const Bounds& all) {
 
 }  // namespace
 
+bool holds(const Bounds& bounds, const vec3& point) {
+  return glm::all(glm::lessThanEqual(bounds.lo, point)) && glm::all(glm::lessThanEqual(point, bounds.hi));
+}
+
 MainPart find_main_part(const Scene& scene) {
-  const MainPart all{bounds_of(scene), 0};
+  const MainPart all{.bounds = bounds_of(scene)};
   if (all.bounds.is_empty()) return all;
   double total = 0.0;
   const Bounds box = find_dense_box(scene, all.bounds, total);
   if (!is_far_smaller(box, all.bounds)) return all;
 
-  const Content content = add_up(scene, Content{box});
+  Content content = add_up(scene, Content{box});
+  content.part.centers = box;
   return content.surface > 0.0 && content.surface >= kLeastShare * total &&
                  is_far_smaller(content.part.bounds, all.bounds)
              ? content.part

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "promin/scene.h"
 
@@ -14,11 +15,19 @@ struct MainPart {
   Bounds bounds;
   /// The number of finite primitives outside of it.
   uint64_t stray_count = 0;
+  /// Where there are some: what belongs to the part has the centre of its bounds in this box.
+  std::optional<Bounds> centers = std::nullopt;
 };
 
 /// Everything finite, unless 99 percent of its surface lie in a box of less than 1/64 of its size: then the bounds of
 /// what has its centre there. A picture of everything would show that box as a few pixels. Throws InputError as
 /// bounds_of() does.
 MainPart find_main_part(const Scene& scene);
+
+/// Whether one stands in a scene with this main part (framing_of in promin/framing.h).
+bool is_interior(const Scene& scene, const MainPart& part);
+
+/// Whether a point lies in a box or on its surface.
+bool holds(const Bounds& bounds, const vec3& point);
 
 }  // namespace promin

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/world_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -89,6 +91,19 @@ Object flatten(const promin::Scene& scene, const promin::Object& object, Picture
   return result;
 }
 
+constexpr double kFrontElevation = 0.25;
+constexpr float kFrontYfov = 0.7F;
+constexpr double kFrontMargin = 1.05;
+
+Bounds box_to_look_at(const Scene& scene) {
+  const Bounds bounds = bounds_of(scene);
+  if (!bounds.is_empty()) return bounds;
+  for (const Object& object : scene.objects) {
+    if (const auto* plane = std::get_if<Plane>(&object.shape)) return bounds_around(plane->point);
+  }
+  return bounds_around(vec3(0.0F));
+}
+
 }  // namespace
 
 Scene flatten(const promin::Scene& scene, Purpose purpose) {
@@ -117,15 +132,41 @@ Bounds bounds_of(const Scene& scene) {
   return bounds;
 }
 
-Camera frame_scene(const Scene& scene, float aspect_ratio) {
-  const Bounds bounds = bounds_of(scene);
-  if (!bounds.is_empty()) return frame_bounds(bounds, aspect_ratio);
-  for (const Object& object : scene.objects) {
-    if (const auto* plane = std::get_if<Plane>(&object.shape)) {
-      return frame_bounds(bounds_around(plane->point), aspect_ratio);
-    }
+Camera look_from_front(const Scene& scene, float aspect_ratio) {
+  const Bounds frame = box_to_look_at(scene);
+  const dvec3 center = 0.5 * (dvec3(frame.lo) + dvec3(frame.hi));
+  const dvec3 half = 0.5 * (dvec3(frame.hi) - dvec3(frame.lo));
+  const double sine = std::sin(kFrontElevation);
+  const double cosine = std::cos(kFrontElevation);
+  // Differences from 0 are never -0.
+  const dvec3 look(0.0, 0.0 - sine, 0.0 - cosine);
+  const dvec3 up(0.0, cosine, 0.0 - sine);
+  const double tan_y = std::tan(0.5 * static_cast<double>(kFrontYfov));
+  const double tan_x = tan_y * static_cast<double>(aspect_ratio);
+
+  // The least distance at which each corner of the box lies within both fields of view.
+  double distance = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const dvec3 sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
+    const dvec3 offset = sign * half;
+    const double across = std::max(std::abs(offset.x) / tan_x, std::abs(glm::dot(offset, up)) / tan_y);
+    distance = std::max(distance, across - glm::dot(offset, look));
   }
-  return frame_bounds(bounds_around(vec3(0.0F)), aspect_ratio);
+  distance *= kFrontMargin;
+  // A lone point has no size to go by.
+  if (distance == 0.0) distance = 1.0;
+  // Far from the origin the eye must still be another fp32 number than what it looks at.
+  const dvec3 magnitude = glm::abs(center);
+  distance = std::max(distance, 0x1p-20 * std::max({magnitude.x, magnitude.y, magnitude.z}));
+
+  Camera camera;
+  camera.name = "framing";
+  camera.eye = vec3(center - distance * look);
+  camera.look = vec3(look);
+  camera.up = vec3(up);
+  camera.yfov = kFrontYfov;
+  camera.aspect_ratio = aspect_ratio;
+  return camera;
 }
 
 AddedLights add_default_lights(Scene& scene) {

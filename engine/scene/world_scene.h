@@ -64,8 +64,11 @@ uint32_t primitive_count(const Shape& shape);
 
 /// Bounds of everything finite; empty if there is nothing finite.
 Bounds bounds_of(const Scene& scene);
-/// The same as frame_scene and add_default_lights for a Scene.
-Camera frame_scene(const Scene& scene, float aspect_ratio);
+/// A camera in front of the scene, a little above, with the corners of its bounds in the picture. Tests and what
+/// measures take it where a scene has no camera, so that their pictures and numbers do not depend on how scenes are
+/// framed for people (promin/framing.h).
+Camera look_from_front(const Scene& scene, float aspect_ratio);
+/// The same as promin::add_default_lights.
 AddedLights add_default_lights(Scene& scene);
 
 Bounds bounds_of_triangle(const Mesh& mesh, uint32_t triangle);

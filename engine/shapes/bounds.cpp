@@ -44,4 +44,15 @@ Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height,
   return round_outward(lo, hi, glm::abs(dvec3(center)) + size);
 }
 
+dvec3 farthest_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
+                        double radius_top, const dvec3& direction) {
+  const dvec3 unit = glm::normalize(dvec3(axis));
+  const dvec3 across = direction - glm::dot(direction, unit) * unit;
+  const double length = glm::length(across);
+  const dvec3 outward = length > 0.0 ? across / length : dvec3(0.0);
+  const dvec3 bottom = dvec3(center) - half_height * unit + radius_bottom * outward;
+  const dvec3 top = dvec3(center) + half_height * unit + radius_top * outward;
+  return glm::dot(top - bottom, direction) > 0.0 ? top : bottom;
+}
+
 }  // namespace promin

@@ -97,6 +97,15 @@ Bounds bounds_of(const world::Box& box) {
   return round_outward(center - reach, center + reach, glm::abs(center) + reach);
 }
 
+dvec3 farthest_of(const world::Box& box, const dvec3& direction) {
+  const dmat3 axes = axes_of(box.turn);
+  dvec3 point(box.center);
+  for (int i = 0; i < 3; ++i) {
+    point += std::copysign(double{box.half_size[i]}, glm::dot(axes[i], direction)) * axes[i];
+  }
+  return point;
+}
+
 // a = center, half size along x; b = half sizes along y and z, turn's x and y; c.x = bits of its z.
 layout::Primitive pack(const world::Box& b) {
   return {vec4(b.center, b.half_size.x), vec4(b.half_size.y, b.half_size.z, b.turn.x, b.turn.y),

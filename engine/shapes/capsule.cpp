@@ -38,6 +38,14 @@ Bounds bounds_of(const world::Capsule& c) {
   return round_outward(center + lo, center + hi, glm::abs(center) + glm::max(glm::abs(lo), glm::abs(hi)));
 }
 
+dvec3 farthest_of(const world::Capsule& c, const dvec3& direction) {
+  const dvec3 outward = glm::normalize(direction);
+  const dvec3 up = double{c.half_height} * dvec3(c.axis);
+  const dvec3 bottom = double{c.radius_bottom} * outward - up;
+  const dvec3 top = double{c.radius_top} * outward + up;
+  return dvec3(c.center) + (glm::dot(top - bottom, direction) > 0.0 ? top : bottom);
+}
+
 // a = center, bottom radius; b = axis, half height; c.x = bits of the top radius.
 layout::Primitive pack(const world::Capsule& c) {
   return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height),

@@ -32,6 +32,10 @@ Bounds bounds_of(const world::Cone& c) {
   return bounds_of_disks(c.center, c.axis, c.half_height, c.radius_bottom, c.radius_top);
 }
 
+dvec3 farthest_of(const world::Cone& c, const dvec3& direction) {
+  return farthest_of_disks(c.center, c.axis, c.half_height, c.radius_bottom, c.radius_top, direction);
+}
+
 // a = center, bottom radius; b = axis, half height; c.x = bits of the top radius, and SHAPE_IS_OPEN in place of its
 // sign.
 layout::Primitive pack(const world::Cone& c) {

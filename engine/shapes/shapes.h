@@ -45,6 +45,11 @@ Shape unpack(const layout::Primitive& primitive);
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) Bounds bounds_of(const world::TYPE& shape);
 #include "promin/kinds/primitives.def"
 
+// The point of each shape that has bounds which lies farthest along a direction (of any length but 0).
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  dvec3 farthest_of(const world::TYPE& shape, const dvec3& direction);
+#include "promin/kinds/primitives.def"
+
 /// KIND_* of a shape.
 template <class Shape>
 struct KindOf;
@@ -62,5 +67,8 @@ Bounds round_outward(const dvec3& lo, const dvec3& hi, const dvec3& magnitude);
 /// Of the convex hull of two disks around an axis (of any length but 0), half_height before and behind the center.
 Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
                        double radius_top);
+/// The point of the same hull that lies farthest along a direction.
+dvec3 farthest_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
+                        double radius_top, const dvec3& direction);
 
 }  // namespace promin

@@ -25,6 +25,10 @@ Bounds bounds_of(const world::Sphere& sphere) {
   return round_outward(center - radius, center + radius, glm::abs(center) + radius);
 }
 
+dvec3 farthest_of(const world::Sphere& sphere, const dvec3& direction) {
+  return dvec3(sphere.center) + double{sphere.radius} * glm::normalize(direction);
+}
+
 // a = center, radius.
 layout::Primitive pack(const world::Sphere& s) {
   return {vec4(s.center, s.radius), vec4(0.0F), uvec4(0)};

@@ -82,7 +82,4 @@ PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice
 /// with Aovs::unlit (promin/aovs.h).
 PROMIN_EXPORT bool mixes_unlit(const Scene& scene);
 
-/// From where to frame a scene: classic ones from the front, others from three quarters.
-PROMIN_EXPORT Framing framing_of(const Scene& scene);
-
 }  // namespace promin

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,7 +74,8 @@ struct Scene {
   std::vector<Texture> textures;
   /// Any number, none too: see light_scene (promin/lighting.h) and add_default_lights.
   std::vector<Light> lights;
-  /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene.
+  /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene
+  /// (promin/framing.h).
   std::vector<Camera> cameras;
   /// Ambient light and background.
   Environment environment;
@@ -105,25 +105,6 @@ PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object)
 
 /// The number that the scene's file has for the object at this index (Scene::object_numbers).
 PROMIN_EXPORT uint32_t object_number(const Scene& scene, uint32_t object);
-
-/// From where frame_scene looks.
-enum class Framing : uint32_t {
-  /// From 30 degrees to the right of the front (+Z) and 17 degrees above. A scene whose depth is less than a quarter of
-  /// its width or height, a board, is seen from the front, at its own height. One that lies flat, with a height of less
-  /// than 1/16 of width or depth and no more than its depth, is seen from 45 degrees above.
-  kThreeQuarter,
-  /// Along -Z, a little from above.
-  kFront,
-};
-
-/// Names for people, by the value of the Framing; the first is "three-quarter".
-PROMIN_EXPORT std::span<const std::string_view> framing_names();
-
-/// A perspective camera that frames everything finite in the scene, but for stray geometry: where 99 percent of the
-/// surface lie in a box of less than 1/64 of the size of everything, it frames that part. `aspect_ratio` is width over
-/// height of the picture. Throws UsageError where that is not a positive finite number, and InputError as bounds_of()
-/// does.
-PROMIN_EXPORT Camera frame_scene(const Scene& scene, float aspect_ratio, Framing framing = Framing::kFront);
 
 /// The bounces that show a scene well (View::max_depth): more where it has glass.
 PROMIN_EXPORT uint32_t default_max_depth(const Scene& scene);

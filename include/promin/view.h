@@ -101,7 +101,7 @@ inline constexpr uint32_t kMaxDepth = 1000;
 
 /// One picture of a scene. What breaks a range that is given here or in promin/camera.h is refused with UsageError.
 struct View {
-  /// Where the picture is taken from; see frame_scene (promin/scene.h).
+  /// Where the picture is taken from; see frame_scene (promin/framing.h).
   Camera camera;
   /// Width and height of the whole picture in pixels, 1...kMaxSide. The camera's vertical field of view holds.
   uvec2 size{1280, 720};

@@ -13,6 +13,7 @@
 
 #include "bind.h"
 #include "picture_run.h"
+#include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/setup_stats.h"
 #include "records.h"
@@ -95,6 +96,7 @@ std::vector<std::string> list_options() {
   app::add_render_options(command, options);
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;
     const std::vector<std::string>& words = option->get_lnames();
     names.push_back(words.empty() ? option->get_name(true) : "--" + words.front());
   }

@@ -12,6 +12,7 @@
 
 #include "bind.h"
 #include "promin/error.h"
+#include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/validate.h"
@@ -89,10 +90,14 @@ Scene light(const Scene& scene, const std::string& choice) {
   return lit;
 }
 
-nb::dict frame(const Scene& scene, float aspect_ratio, const std::string& name) {
-  if (name.empty()) return write(frame_scene(scene, aspect_ratio, framing_of(scene)));
-  const auto framing = static_cast<Framing>(find_name(framing_names(), name, "framing"));
-  return write(frame_scene(scene, aspect_ratio, framing));
+nb::dict frame(const Scene& scene, float aspect_ratio, const std::string& name, float fit) {
+  FrameOptions options{.fit = fit};
+  if (!name.empty()) options.from = static_cast<Framing>(find_name(framing_names(), name, "framing"));
+  return write(frame_scene(scene, aspect_ratio, options));
+}
+
+nb::dict widen(const nb::dict& camera, uint32_t width, uint32_t height) {
+  return write(widen_camera(read_camera(camera), uvec2(width, height)));
 }
 
 nb::object bounds(const Scene& scene) {
@@ -144,7 +149,8 @@ void bind_scene(nb::module_& module) {
       .def("problems", &find_problems)
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("lit", &light, nb::arg("choice"))
-      .def("frame", &frame, nb::arg("aspect_ratio"), nb::arg("framing"))
+      .def_static("widen_camera", &widen, nb::arg("camera"), nb::arg("width"), nb::arg("height"))
+      .def("frame", &frame, nb::arg("aspect_ratio"), nb::arg("framing"), nb::arg("fit"))
       .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })
       .def("mixes_unlit", [](const Scene& s) { return mixes_unlit(s); })
       .def(

@@ -71,6 +71,7 @@ class Renderer:
         view: View = View(),
         light: str = "auto",
         framing: str = "auto",
+        fit: float = 0.85,
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
         texture_memory: int = 512 << 20,
@@ -81,7 +82,9 @@ class Renderer:
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
         is built anew. view: that of pictures which are given none; what it takes is compiled at once. light: what
         stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from where a scene
-        without cameras is seen: "auto", "three-quarter" or "front". texture_memory: the most bytes that textures take.
+        is seen: "auto" (by its camera, without one from three quarters, or inside where one stands in it) or, whatever
+        cameras it has, "three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside". fit: the share
+        of the picture that a framed scene covers, 0.05 to 1. texture_memory: the most bytes that textures take.
         expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
         kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The rest as Caster.
         Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
@@ -91,6 +94,7 @@ class Renderer:
         self._chosen = device
         self._light = str(light)
         self._framing = "" if framing == "auto" else str(framing)
+        self._fit = float(fit)
         self._builder = str(builder)
         self._bvh = None if bvh is None else os.fsdecode(bvh)
         self._texture_memory = texture_memory
@@ -145,8 +149,9 @@ class Renderer:
         if isinstance(camera, Camera):
             return camera
         cameras = self._scene.cameras
-        if camera is None and not cameras:
-            framed: Camera = self._back(from_dict(Camera, self._lit().frame(float(aspect_ratio), self._framing)))
+        if camera is None and (self._framing or not cameras):
+            record = self._lit().frame(float(aspect_ratio), self._framing, self._fit)
+            framed: Camera = self._back(from_dict(Camera, record))
             return framed
         if camera is None:
             return cameras[0]
@@ -243,7 +248,12 @@ class Renderer:
         """The view for the native module, and how its picture is shown."""
         size = size_of(view)
         aspect_ratio = size[0] / size[1] if size is not None and min(size) > 0 else _ASPECT_RATIO
-        camera = move_camera(self.camera(view.camera, aspect_ratio), self._scene.native_center)
+        chosen = self.camera(view.camera, aspect_ratio)
+        camera = move_camera(chosen, self._scene.native_center)
+        if size is not None and min(size) > 0 and not isinstance(view.camera, Camera):
+            # A camera of the file shows in any picture what it showed its author.
+            wider = _promin.Scene.widen_camera(to_dict(chosen), *size)
+            camera.update(yfov=wider["yfov"], ymag=wider["ymag"])
         shown = self.display if shows_light(view) else Display()
         return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 

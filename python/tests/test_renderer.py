@@ -208,6 +208,18 @@ def test_a_centre_moves_camera_light_and_positions() -> None:
     assert np.abs(frames[0].aovs["position"] - frames[1].aovs["position"]).max() < 1e-6
 
 
+def test_a_scene_is_framed_from_any_side(box: promin.Scene) -> None:
+    left = promin.Renderer(box, framing="left").camera()
+    assert left.look == (1, 0, 0)
+    small = promin.Renderer(box, framing="left", fit=0.1).camera()
+    assert small.eye[0] < left.eye[0] - 1
+    with pytest.raises(promin.UsageError, match="0.05"):
+        promin.Renderer(box, framing="left", fit=2).camera()
+    box.add_camera(promin.Camera(eye=(0, 0, 9)))
+    assert promin.Renderer(box).camera().eye == (0, 0, 9)
+    assert promin.Renderer(box, framing="left").camera() == left, "whatever cameras there are"
+
+
 def test_a_hit_may_be_at_the_centre() -> None:
     scene = promin.Scene(center=(5, 0, 0))
     scene.add_box((5, 0, -1), (1, 1, 1))

@@ -151,6 +151,28 @@ TEST_F(CameraPathTest, PicturesAreTakenBySecondsOrAsStored) {
   EXPECT_THROW(PathPictures{path}, UsageError);
 }
 
+TEST_F(CameraPathTest, AFrameOfVersion2MayLookAtAPoint) {
+  const auto text = [](int version, const std::string& look) {
+    return R"({"format": "promin camera path", "version": )" + std::to_string(version) +
+           R"(, "frames": [{"time_s": 0, "eye": [1000000.1, 0, 5], "up": [0, 1, 0], "fov_deg": 40)" + look + "}]}";
+  };
+  const std::string look = R"(, "look": [0.6, 0, -0.8])";
+  const std::string look_at = R"(, "look_at": [1000003.1, 0, 1])";
+  const auto look_of = [&](int version, const std::string& words) {
+    std::ofstream(folder_ / "path.json") << text(version, words);
+    return read_camera_path(folder_ / "path.json").frames[0].camera.look;
+  };
+  EXPECT_EQ(look_of(1, look), vec3(0.6F, 0.0F, -0.8F));
+  EXPECT_EQ(look_of(2, look), vec3(0.6F, 0.0F, -0.8F));
+  EXPECT_EQ(look_of(1, look + look_at), vec3(0.6F, 0.0F, -0.8F)) << "version 1 knows no points";
+  EXPECT_NEAR(glm::length(look_of(2, look_at) - vec3(0.6F, 0.0F, -0.8F)), 0.0F, 1e-6F);
+  EXPECT_THAT(refusal(text(1, look_at)), HasSubstr("\"look\" is missing"));
+  EXPECT_THAT(refusal(text(2, "")), HasSubstr("a frame has one of look and look_at"));
+  EXPECT_THAT(refusal(text(2, look + look_at)), HasSubstr("a frame has one of look and look_at"));
+  EXPECT_THAT(refusal(text(2, R"(, "look_at": [1000000.1, 0, 5])")), HasSubstr("look_at is the place of the eye"));
+  EXPECT_THAT(refusal(text(3, look)), HasSubstr("version"));
+}
+
 TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
   const std::string good = R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 40})";
   EXPECT_EQ(refusal_of_frames(good), "");

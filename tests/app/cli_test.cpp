@@ -19,6 +19,7 @@
 #include "cli_fixture.h"
 #include "promin/aovs.h"
 #include "promin/device.h"
+#include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
@@ -164,7 +165,22 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-1"}, "--near takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "nan", "0"}, "--eye takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "inf", "0"}, "--eye takes a number"},
-      {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"}, "parallel"},
+      {{"render", "square.gltf", "-o", "a.exr", "--direction", "0", "2", "0", "--up", "y"}, "parallel"},
+      {{"render", "square.gltf", "-o", "a.exr", "--eye", "1", "2", "3", "--look-at", "1", "2", "3"},
+       "--look-at is the place of the eye"},
+      {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"},
+       "--look is no option: a point to look at is --look-at X Y Z, a direction of view --direction X Y Z"},
+      {{"render", "square.gltf", "-o", "a.exr", "--look-at", "0", "2", "0", "--direction", "1", "2", "3"},
+       "--look-at and --direction contradict each other"},
+      {{"render", "square.gltf", "-o", "a.exr", "--from", "left", "--eye", "0", "2", "0"},
+       "--from and --eye contradict each other"},
+      {{"render", "square.gltf", "-o", "a.exr", "--from", "left", "--camera", "0"},
+       "--from and --camera contradict each other"},
+      {{"render", "square.gltf", "-o", "a.exr", "--from", "lefty"}, "did you mean left?"},
+      {{"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}, "--fit has nothing to frame"},
+      {{"render", "square.gltf", "-o", "a.exr", "--fit", "1.5"}, "--fit takes a number from 0.05 to 1, not"},
+      {{"render", "square.gltf", "-o", "a.exr", "--zoom", "0"}, "--zoom takes a number from 0.001 to 1000, not"},
+      {{"render", "square.gltf", "-o", "a.exr", "--up", "north"}, "--up "},
       {{"render", "square.gltf", "-o", "a.exr", "--builder", "none"}, "--builder takes "},
       {{"render", "square.gltf", "-o", "a.exr", "--device", ""},
        "--device takes a part of a device's name, its index or uuid:"},
@@ -172,7 +188,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--light", "lamp"},
        "--light takes studio or headlight or none, not \"lamp\", on the command line; see promin render --help"},
       {{"render", "square.gltf", "-o", "a.exr", "--light", "auto"}, "--light takes studio or headlight or none"},
-      {{"render", "square.gltf", "-o", "a.exr", "--framing", "back"}, "--framing takes three-quarter or front, not"},
+      {{"render", "square.gltf", "-o", "a.exr", "--framing", "back"}, "did you mean --from back?"},
       {{"render", "square.gltf", "-o", "a.exr", "--tone-mapping", "filmic"},
        "--tone-mapping takes none or neutral or aces or reinhard or agx"},
       {{"render", "square.gltf", "-o", "a.exr", "--texture-memory", "0"},
@@ -388,9 +404,10 @@ TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {
   const size_t before = count_kernels_after("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
   if (before == 0) GTEST_SKIP() << "the driver is not Mesa's";
   EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n"), before);
-  EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n", {"--eye", "3", "9", "9", "--look", "-1", "-3", "-4"}),
-            before);
-  EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n", {"--eye", "1", "5", "2", "--look", "3", "1", "2"}),
+  EXPECT_EQ(
+      count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n", {"--eye", "3", "9", "9", "--direction", "-1", "-3", "-4"}),
+      before);
+  EXPECT_EQ(count_kernels_after("v 2 3 4\nv 9 3 1\nv 2 7 5\n", {"--eye", "1", "5", "2", "--direction", "3", "1", "2"}),
             before);
 }
 
@@ -629,7 +646,7 @@ TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   write("classic.gltf", classic_square());
   const std::string classic = run({"info", "classic.gltf"}).out;
   EXPECT_THAT(classic, ContainsRegex("lights +0; assumed: a headlight along the view and ambient light of 0.1\n"));
-  EXPECT_THAT(classic, ContainsRegex("cameras +0; assumed: a camera in front that frames the scene\n"));
+  EXPECT_THAT(classic, ContainsRegex("cameras +0; assumed: a camera that frames the scene from three quarters\n"));
   EXPECT_THAT(classic, ContainsRegex("background +0 0 0\n"));
   EXPECT_THAT(classic, ContainsRegex("display +exposure \\+0 EV, tone mapping none\n"));
 }
@@ -851,8 +868,7 @@ TEST_F(CliTest, ClassicLightGivesClassicPictures) {
   write("classic.gltf", classic_square());
   const gpu::DeviceHandle device = gpu::open_device();
   const std::pair<const char*, OptionValues> cases[] = {
-      {"classic.gltf", {}},
-      {"triangle.obj", {"--light", "headlight", "--framing", "front", "--background", "0", "0", "0"}}};
+      {"classic.gltf", {}}, {"triangle.obj", {"--light", "headlight", "--background", "0", "0", "0"}}};
   for (const auto& [file, options] : cases) {
     Scene scene = load_scene(folder() / file);
     add_default_lights(scene);
@@ -864,7 +880,7 @@ TEST_F(CliTest, ClassicLightGivesClassicPictures) {
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Image exr = render(arguments, "a.exr");
     EXPECT_EQ(exr.pixels, expected.pixels) << file;
-    EXPECT_GT(exr.at(32, 18).x, 0.1F);
+    EXPECT_GT(exr.at(30, 20).x, 0.1F);
     EXPECT_EQ(exr.at(0, 0), vec3(0.0F));
     expect_displayed(exr, read_image(folder() / "a.png"), {});
   }
@@ -1014,8 +1030,8 @@ TEST_F(CliTest, CamerasGoByNameAndByIndex) {
 
 TEST_F(CliTest, AFreePoseShowsWhatTheSameCameraShows) {
   const Image camera = render({"square.gltf", "--size", "64", "36", "--camera", "side"}, "camera.exr");
-  const Image pose = render({"square.gltf", "--size", "64",   "36", "--eye", "1", "0.5",   "3",  "--look", "0",
-                             "0",           "-1",     "--up", "0",  "1",     "0", "--fov", "45", "--near", "0.01"},
+  const Image pose = render({"square.gltf", "--size", "64",   "36", "--eye", "1", "0.5",   "3",  "--direction", "0",
+                             "0",           "-1",     "--up", "0",  "1",     "0", "--fov", "45", "--near",      "0.01"},
                             "pose.exr");
   EXPECT_EQ(pose.pixels, camera.pixels);
 }

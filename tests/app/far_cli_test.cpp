@@ -66,7 +66,7 @@ class FarCliTest : public CliTest {
             fmt::format("{:.4f}", eye.x),
             fmt::format("{:.4f}", eye.y),
             fmt::format("{:.4f}", eye.z),
-            "--look",
+            "--direction",
             "-0.2",
             "-0.4",
             "-1"};

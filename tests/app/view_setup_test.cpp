@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "arguments.h"
+#include "camera_choice.h"
 #include "core/rounding.h"
 #include "promin/error.h"
 
@@ -91,7 +92,7 @@ TEST(ViewSetupTest, AnAspectRatioWithoutAWidthIsRefused) {
 TEST(ViewSetupTest, AnOrthonormalPoseIsUsedAsItIs) {
   ViewOptions options;
   options.pose.eye = dvec3(1.0, 2.0, 3.0);
-  options.pose.look = dvec3(0.0, 0.600000024, -0.800000012);
+  options.pose.direction = dvec3(0.0, 0.600000024, -0.800000012);
   options.pose.up = dvec3(0.0, 0.800000012, 0.600000024);
   options.pose.fov_deg = 90.0;
   options.pose.near = 0.25;
@@ -122,13 +123,13 @@ TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
   // A camera of the user's own takes nothing of the scene's.
   options.camera = "main";
   options.pose.eye = dvec3(0.0);
-  options.pose.look = dvec3(0.0, 0.0, -1.0);
+  options.pose.direction = dvec3(0.0, 0.0, -1.0);
   EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
 }
 
 TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
   ViewOptions options;
-  options.pose.look = dvec3(3e14, 0.0, -4e14);
+  options.pose.direction = dvec3(3e14, 0.0, -4e14);
   options.pose.up = dvec3(0.2, 1e-3, 0.1);
   const Camera camera = make_view(make_scene(), options, kSilent).camera;
   EXPECT_EQ(camera.look, vec3(0.6F, 0.0F, -0.8F));
@@ -139,7 +140,7 @@ TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
 
 TEST(ViewSetupTest, ADirectionAloneStandsUpright) {
   ViewOptions options;
-  options.pose.look = dvec3(1.0, -1.0, 0.0);
+  options.pose.direction = dvec3(1.0, -1.0, 0.0);
   const Camera camera = make_view(make_scene(), options, kSilent).camera;
   EXPECT_NEAR(camera.up.x, std::sqrt(0.5F), 1e-6F);
   EXPECT_NEAR(camera.up.y, std::sqrt(0.5F), 1e-6F);
@@ -154,7 +155,7 @@ TEST(ViewSetupTest, DirectionsThatDoNotSayWhichWayIsUpAreRefused) {
                                          {dvec3(1.0, 0.0, 0.0), dvec3(1.0, 1e-9, 0.0)}};
   for (const auto& [look, up] : bad) {
     ViewOptions options;
-    options.pose.look = look;
+    options.pose.direction = look;
     options.pose.up = up;
     EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
   }
@@ -178,6 +179,23 @@ TEST(ViewSetupTest, LightsToLeaveOutAreNamedOnce) {
   add_view_options(table, options);
   program.parse("--lights-off 2,0,2,0");
   EXPECT_EQ(options.lights_off, (std::vector<uint32_t>{0, 2}));
+}
+
+TEST(PoseOptionsTest, UpIsAnAxisByItsNameOrADirection) {
+  const auto up_of = [](std::vector<const char*> words) {
+    CLI::App program;
+    OptionTable table(program);
+    PoseOptions pose;
+    add_pose_options(table, pose);
+    words.insert(words.begin(), "promin");
+    parse_arguments(program, static_cast<int>(words.size()), words.data());
+    EXPECT_EQ(pose.zoom, 2.0);
+    return pose.up;
+  };
+  EXPECT_EQ(up_of({"--up", "z", "--zoom", "2"}), dvec3(0, 0, 1));
+  EXPECT_EQ(up_of({"--zoom", "2", "--up", "-x"}), dvec3(-1, 0, 0));
+  EXPECT_EQ(up_of({"--up=-y", "--zoom", "2"}), dvec3(0, -1, 0));
+  EXPECT_EQ(up_of({"--up", "0", "-2", "1", "--zoom", "2"}), dvec3(0, -2, 1));
 }
 
 TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
@@ -261,9 +279,11 @@ TEST(DescribeAssumptionsTest, OneSentenceTellsAll) {
             "tone mapping neutral");
   scene.is_classic = true;
   EXPECT_EQ(assumptions_of(scene, {}),
-            "assumed: a camera in front that frames the scene, a headlight along the view and ambient light of 0.1");
+            "assumed: a camera that frames the scene from three quarters, a headlight along the view and ambient light "
+            "of 0.1");
   scene.environment.ambient = vec3(0.2F);
-  EXPECT_EQ(assumptions_of(scene, {}), "assumed: a camera in front that frames the scene, a headlight along the view");
+  EXPECT_EQ(assumptions_of(scene, {}),
+            "assumed: a camera that frames the scene from three quarters, a headlight along the view");
   scene.lights = {make_headlight()};
   scene.cameras = {Camera()};
   EXPECT_EQ(assumptions_of(scene, {}), "");
@@ -279,13 +299,13 @@ TEST(DescribeAssumptionsTest, OneSentenceTellsAll) {
 TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
   ViewOptions options;
   options.look = {.light = LightChoice::kHeadlight,
-                  .framing = Framing::kFront,
                   .background = BackgroundChoice{},
                   .exposure_ev = 3.0F,
                   .tone_mapping = ToneMapping::kNeutral};
+  options.pose.from = Framing::kFront;
   EXPECT_EQ(assumptions_of(Scene(), options), "");
-  options.look.framing.reset();
-  options.pose.eye = options.pose.look = dvec3(0.0, 0.0, 1.0);
+  options.pose.from.reset();
+  options.pose.eye = dvec3(0.0, 0.0, 1.0);
   EXPECT_EQ(assumptions_of(Scene(), options), "");
   // Nothing of the display where nothing is displayed.
   Scene scene;
@@ -295,18 +315,100 @@ TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
             "assumed: the light of a studio, a grey background");
 }
 
-TEST(ViewSetupTest, TheFramingIsTheUsersOrTheScenes) {
+/// A ball at (1, 2, 3), for which files have no camera.
+Scene make_ball() {
   Scene scene;
+  scene.add("ball", Sphere{.center = dvec3(1.0, 2.0, 3.0)});
+  return scene;
+}
+
+Camera camera_of(const Scene& scene, const PoseOptions& pose, const uvec2& size = uvec2(100)) {
   ViewOptions options;
-  const auto azimuth = [&] { return std::abs(make_view(scene, options, kSilent).camera.look.x); };
-  EXPECT_GT(azimuth(), 0.4F);
-  options.look.framing = Framing::kFront;
-  EXPECT_EQ(azimuth(), 0.0F);
-  scene.is_classic = true;
-  options.look.framing.reset();
-  EXPECT_EQ(azimuth(), 0.0F);
-  options.look.framing = Framing::kThreeQuarter;
-  EXPECT_GT(azimuth(), 0.4F);
+  options.size = size;
+  options.pose = pose;
+  return make_view(scene, options, kSilent).camera;
+}
+
+void expect_looks_at(const Camera& camera, const dvec3& point) {
+  const dvec3 direction = glm::normalize(point - dvec3(camera.eye));
+  EXPECT_NEAR(glm::length(direction - dvec3(camera.look)), 0.0, 1e-6);
+}
+
+TEST(ViewSetupTest, TheFramingIsTheUsersOrTheScenes) {
+  const Camera assumed = camera_of(make_ball(), {});
+  EXPECT_NEAR(assumed.look.x, -0.478F, 1e-3F);
+  EXPECT_EQ(camera_of(make_ball(), {.from = Framing::kFront}).look, vec3(0, 0, -1));
+  Scene scene = make_ball();
+  scene.cameras = make_scene().cameras;
+  EXPECT_EQ(camera_of(scene, {}).eye, scene.cameras[0].eye);
+  const Camera framed = camera_of(scene, {.from = Framing::kLeft});
+  EXPECT_EQ(framed.look, vec3(1, 0, 0)) << "whatever cameras there are";
+  const Camera turned = camera_of(scene, {.from = Framing::kFront, .orbit = {.azimuth_deg = -90.0}});
+  EXPECT_NEAR(glm::length(turned.eye - framed.eye), 0.0F, 1e-5F);
+}
+
+TEST(ViewSetupTest, AFramedSceneIsFittedAnew) {
+  const auto distance = [](const Camera& camera) { return glm::length(camera.eye - vec3(1, 2, 3)); };
+  const auto slope = [](double degrees) { return std::sin(std::atan(0.85 * std::tan(glm::radians(0.5 * degrees)))); };
+  EXPECT_NEAR(distance(camera_of(make_ball(), {})), 0.5 / slope(40.0), 1e-3);
+  EXPECT_NEAR(distance(camera_of(make_ball(), {.orbit = {.elevation_deg = 40.0}})), 0.5 / slope(40.0), 1e-3);
+  EXPECT_NEAR(distance(camera_of(make_ball(), {.fov_deg = 90.0})), 0.5 / slope(90.0), 1e-3);
+  const Camera along = camera_of(make_ball(), {.direction = dvec3(0.0, -2.0, 0.0)});
+  EXPECT_EQ(along.look, vec3(0, -1, 0));
+  EXPECT_EQ(along.up, vec3(0, 0, -1)) << "the front at the lower edge";
+  EXPECT_NEAR(distance(along), 0.5 / slope(40.0), 1e-3);
+  EXPECT_EQ(camera_of(make_ball(), {.from = Framing::kFront, .up = dvec3(0, 0, 1)}).look, vec3(0, 1, 0));
+}
+
+TEST(ViewSetupTest, AnEyeLooksAtTheSceneOrAtAPoint) {
+  Scene scene = make_ball();
+  scene.center = dvec3(1e6, 0.0, 0.0);
+  const dvec3 eye(1e6 + 5.0, 2.0, -7.0);
+  const Camera alone = camera_of(scene, {.eye = eye});
+  EXPECT_EQ(alone.eye, vec3(5, 2, -7));
+  expect_looks_at(alone, dvec3(1, 2, 3));
+  expect_looks_at(camera_of(scene, {.eye = eye, .look_at = dvec3(1e6, 0, 0)}), dvec3(0));
+  EXPECT_EQ(camera_of(scene, {.eye = eye, .look_at = dvec3(1e6 + 5.0, -1, -7)}).look, vec3(0, -1, 0))
+      << "straight down";
+  expect_looks_at(camera_of(scene, {.look_at = dvec3(1e6, 0, 0)}), dvec3(0));
+  EXPECT_THROW(camera_of(scene, {.eye = eye, .look_at = eye}), UsageError);
+  EXPECT_THROW(camera_of(scene, {.eye = dvec3(1e6 + 1.0, 2.0, 3.0)}), UsageError);
+
+  scene.cameras = make_scene().cameras;
+  EXPECT_EQ(camera_of(scene, {.eye = eye}).look, vec3(0, 0, -1)) << "the camera's";
+  expect_looks_at(camera_of(scene, {.look_at = dvec3(1e6 + 1.0, 0, 0)}), dvec3(1, 0, 0));
+}
+
+TEST(ViewSetupTest, ACameraOfTheFileIsTurnedAndZoomed) {
+  Scene scene = make_ball();
+  scene.cameras = make_scene().cameras;
+  const Camera right = camera_of(scene, {.orbit = {.azimuth_deg = 90.0}});
+  EXPECT_NEAR(glm::length(right.eye - vec3(2, 0, 3)), 0.0F, 1e-6F) << "around (0, 0, 3)";
+  const Camera near = camera_of(scene, {.zoom = 2.0});
+  EXPECT_NEAR(std::tan(0.5F * near.yfov), 0.5F * std::tan(0.35F), 1e-6F);
+  EXPECT_THROW(camera_of(scene, {.fit = 0.5F}), UsageError);
+}
+
+TEST(ViewSetupTest, ACameraOfTheFileShowsAtLeastWhatItShowedItsAuthor) {
+  Scene scene = make_scene();
+  scene.cameras[0].aspect_ratio = 2.0F;
+  EXPECT_EQ(camera_of(scene, {}, uvec2(200, 100)).yfov, 0.7F);
+  EXPECT_EQ(camera_of(scene, {}, uvec2(300, 100)).yfov, 0.7F);
+  EXPECT_NEAR(std::tan(0.5F * camera_of(scene, {}, uvec2(100, 100)).yfov), 2.0F * std::tan(0.35F), 1e-6F);
+  EXPECT_EQ(camera_of(scene, {.fov_deg = 90.0}, uvec2(100, 100)).yfov, glm::radians(90.0F)) << "the user's";
+}
+
+TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
+  const Scene scene = make_ball();
+  const auto warning_of = [&](const PoseOptions& pose) {
+    const Camera camera = camera_of(scene, pose);
+    testing::internal::CaptureStderr();
+    warn_of_empty_pictures(scene, {&camera, 1}, uvec2(100), Console(Verbosity::kNormal));
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(warning_of({}), "");
+  EXPECT_THAT(warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
+              HasSubstr("nothing of the scene is in the picture; --look-at 1 2 3 in place of a direction shows its"));
 }
 
 }  // namespace

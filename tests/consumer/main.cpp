@@ -7,6 +7,7 @@
 
 #include <promin/caster.h>
 #include <promin/device.h>
+#include <promin/framing.h>
 #include <promin/renderer.h>
 #include <promin/validate.h>
 

@@ -106,7 +106,7 @@ world::Scene make_scene(const std::string& name) {
 class StepCountsTest : public test::DeviceTest, public testing::WithParamInterface<const char*> {
  protected:
   static Counts count_all(const world::Scene& scene) {
-    const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
+    const Camera camera = scene.cameras.empty() ? look_from_front(scene, 1.0F) : scene.cameras.front();
     std::vector<RaySet> sets = {measure::make_camera_rays(camera, uvec2(kSide))};
     std::vector<Hit> hits(sets[0].rays.size());
     make_caster(device(), scene).cast(sets[0].rays, hits);

@@ -56,7 +56,7 @@ Subject load_subject(const std::string& name) {
   subject.scene = world::flatten(load_scene(kScenes / name));
   subject.view.size = uvec2(160, 90);
   subject.view.camera =
-      subject.scene.cameras.empty() ? frame_scene(subject.scene, 16.0F / 9.0F) : subject.scene.cameras[0];
+      subject.scene.cameras.empty() ? look_from_front(subject.scene, 16.0F / 9.0F) : subject.scene.cameras[0];
   if (subject.scene.lights.empty()) subject.scene.lights = {make_headlight()};
   return subject;
 }

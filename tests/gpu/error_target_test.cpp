@@ -12,6 +12,7 @@
 #include "gpu/test_scenes.h"
 #include "promin/display.h"
 #include "promin/error.h"
+#include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "render/renderer_impl.h"

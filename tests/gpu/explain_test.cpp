@@ -221,7 +221,7 @@ TEST_F(ExplainTest, MirrorsAndScenesWithoutLightsAddUp) {
     world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name));
     View view;
     view.size = uvec2(96, 72);
-    view.camera = scene.cameras.empty() ? frame_scene(scene, 4.0F / 3.0F) : scene.cameras.front();
+    view.camera = scene.cameras.empty() ? look_from_front(scene, 4.0F / 3.0F) : scene.cameras.front();
     check(scene, view);
     scene.lights = {make_headlight()};
     check(scene, view);

@@ -16,6 +16,7 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/caster.h"
+#include "promin/framing.h"
 #include "promin/renderer.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"

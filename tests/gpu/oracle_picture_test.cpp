@@ -43,7 +43,7 @@ uvec2 size_for(const world::Scene& scene) {
 View view_of(world::Scene& scene) {
   View view;
   view.size = size_for(scene);
-  view.camera = scene.cameras.empty() ? frame_scene(scene, 4.0F / 3.0F) : scene.cameras.front();
+  view.camera = scene.cameras.empty() ? look_from_front(scene, 4.0F / 3.0F) : scene.cameras.front();
   if (scene.lights.empty()) {
     scene.lights.push_back(make_headlight());
     scene.environment.ambient = vec3(0.1F);

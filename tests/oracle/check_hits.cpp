@@ -26,7 +26,7 @@ using namespace promin;
 std::vector<Ray> make_rays(const world::Scene& scene, size_t count) {
   std::mt19937 generator(1);
   const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
-  const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0F) : scene.cameras.front();
+  const Camera camera = scene.cameras.empty() ? look_from_front(scene, 1.0F) : scene.cameras.front();
   const dvec3 look(camera.look);
   const dvec3 up(camera.up);
   const dvec3 right = glm::cross(look, up);

@@ -103,8 +103,6 @@ TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
   EXPECT_EQ(scene.environment.background, vec3(0.0F));
   EXPECT_FALSE(has_studio(scene));
   EXPECT_EQ(display_of(scene), DisplayTransform());
-  EXPECT_EQ(framing_of(scene), Framing::kFront);
-  EXPECT_EQ(framing_of(physical_scene()), Framing::kThreeQuarter);
 
   // With lights of their own, however strong, nothing is assumed at all.
   Scene lit = classic_scene();

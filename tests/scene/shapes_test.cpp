@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/shapes.h"
+#include "promin/framing.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -157,7 +158,7 @@ dvec2 extent_on_picture(const Camera& camera, const Bounds& box) {
   return extent;
 }
 
-TEST(SceneTest, TheFramingCameraSeesEverything) {
+TEST(SceneTest, TheCameraInFrontSeesEverything) {
   for (const float aspect_ratio : {0.25F, 1.0F, 16.0F / 9.0F, 5.0F}) {
     for (const float scale : {1e-10F, 1.0F, 1e10F}) {
       for (const vec3& shape : {vec3(1, 1, 1), vec3(10, 1, 1), vec3(1, 10, 1), vec3(1, 1, 10)}) {
@@ -165,7 +166,7 @@ TEST(SceneTest, TheFramingCameraSeesEverything) {
         mesh.positions = {scale * vec3(1, 2, 3), scale * (vec3(1, 2, 3) + shape), scale * vec3(1, 2, 3)};
         mesh.triangles = {{0, 1, 2}};
         const world::Scene scene = scene_of({mesh, world::Plane{}});
-        const Camera camera = frame_scene(scene, aspect_ratio);
+        const Camera camera = look_from_front(scene, aspect_ratio);
         const dvec2 extent = extent_on_picture(camera, bounds_of(scene));
         EXPECT_LE(std::max(extent.x, extent.y), 1.0) << aspect_ratio << " " << scale;
         EXPECT_GE(std::max(extent.x, extent.y), 0.7) << "too far away";
@@ -179,7 +180,7 @@ TEST(SceneTest, TheFramingCameraSeesEverything) {
 dvec2 framed_from(const vec3& size, float aspect_ratio = 1.5F) {
   Scene scene;
   scene.add("box", Box{.half_size = 0.5 * dvec3(size)});
-  const Camera camera = frame_scene(scene, aspect_ratio, Framing::kThreeQuarter);
+  const Camera camera = frame_scene(scene, aspect_ratio);
   const dvec2 extent = extent_on_picture(camera, bounds_of(scene));
   EXPECT_LE(std::max(extent.x, extent.y), 1.0) << "it does not see all";
   EXPECT_GE(std::max(extent.x, extent.y), 0.6) << "too far away";
@@ -210,13 +211,11 @@ TEST(SceneTest, ScenesAreFramedFromThreeQuarters) {
   EXPECT_THAT(framed_from(vec3(1), 0.3F), near(30.0, 17.0));
 }
 
-TEST(SceneTest, FramingFromTheFrontKeepsItsBits) {
+TEST(SceneTest, TheCameraInFrontKeepsItsBits) {
   Mesh mesh;
   mesh.positions = {vec3(-1.0F, 1.5F, 2.0F), vec3(3.0F, 2.5F, 4.0F), vec3(0.0F, 2.0F, 3.0F)};
   mesh.triangles = {{0, 1, 2}};
-  Scene scene;
-  scene.add("triangle", mesh);
-  const Camera camera = frame_scene(scene, 16.0F / 9.0F);
+  const Camera camera = look_from_front(scene_of({mesh}), 16.0F / 9.0F);
   EXPECT_EQ(camera.eye, vec3(1.0F, 0x1.8acf12p+1F, 0x1.cfcf4ep+2F));
   EXPECT_EQ(camera.look, vec3(0.0F, -0x1.faaeeep-3F, -0x1.f0154ap-1F));
   EXPECT_EQ(camera.up, vec3(0.0F, 0x1.f0154ap-1F, -0x1.faaeeep-3F));
@@ -224,11 +223,11 @@ TEST(SceneTest, FramingFromTheFrontKeepsItsBits) {
   EXPECT_EQ(camera.yfov, 0.7F);
 }
 
-TEST(SceneTest, TheFramingCameraIsUpright) {
+TEST(SceneTest, TheCameraInFrontIsUpright) {
   for (const world::Scene& scene :
        {scene_of({}), scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
         scene_of({world::Sphere{vec3(1e7F), 1e-3F}}), scene_of({world::Sphere{vec3(0), 1e15F}})}) {
-    const Camera camera = frame_scene(scene, 1.5F);
+    const Camera camera = look_from_front(scene, 1.5F);
     EXPECT_TRUE(is_finite(camera.eye));
     EXPECT_NEAR(glm::length(camera.look), 1.0, 1e-6);
     EXPECT_NEAR(glm::length(camera.up), 1.0, 1e-6);
@@ -238,7 +237,7 @@ TEST(SceneTest, TheFramingCameraIsUpright) {
     EXPECT_EQ(camera.near, 0.0F);
     EXPECT_EQ(camera.aspect_ratio, 1.5F);
   }
-  EXPECT_GT(frame_scene(scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F)
+  EXPECT_GT(look_from_front(scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F)
       << "above the ground";
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "promin/framing.h"
+
 namespace promin {
 namespace {
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/validate.h"
+#include "promin/framing.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -28,7 +28,7 @@ TEST(DescribeCommand, NamesTheViewForAShell) {
   view.camera.yfov = 0.7F;
   const std::string command = describe_command({.file = "it's a scene.gltf"}, view);
   EXPECT_THAT(command, testing::StartsWith("promin render 'it'\\''s a scene.gltf' -o view.exr --size 640 360 --spp 4"));
-  EXPECT_THAT(command, testing::HasSubstr("--eye 0.1 -2 1e-07 --look 0 0 -1 --up 0 1 0 --fov "));
+  EXPECT_THAT(command, testing::HasSubstr("--eye 0.1 -2 1e-07 --direction 0 0 -1 --up 0 1 0 --fov "));
 }
 
 TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
@@ -45,7 +45,6 @@ TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
   const View view;
   EXPECT_THAT(describe_command({.file = "s"}, view), testing::HasSubstr(" --max-depth 5 --eye "));
   LookOptions look{.light = LightChoice::kHeadlight,
-                   .framing = Framing::kFront,
                    .background = BackgroundChoice{.color = vec3(0.1F, 0.0F, 1.0F)},
                    .exposure_ev = -1.1F,
                    .tone_mapping = ToneMapping::kAces};

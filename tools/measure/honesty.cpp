@@ -15,6 +15,7 @@
 #include "core/stopwatch.h"
 #include "measure/samples.h"
 #include "promin/device.h"
+#include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
@@ -70,8 +71,7 @@ class HonestyBench {
     Scene scene = load_scene(file);
     light_scene(scene, LightChoice::kAuto);
     const float aspect_ratio = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
-    view_.camera =
-        scene.cameras.empty() ? frame_scene(scene, aspect_ratio, Framing::kThreeQuarter) : scene.cameras.front();
+    view_.camera = scene.cameras.empty() ? frame_scene(scene, aspect_ratio) : scene.cameras.front();
     view_.size = options.size;
     if (options.is_shown) display_ = display_of(scene);
     view_.max_depth = default_max_depth(scene);

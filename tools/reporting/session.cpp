@@ -56,7 +56,7 @@ std::string Session::name_of(const world::Scene& scene) const {
 View view_of(const world::Scene& scene, const uvec2& size) {
   View view;
   view.size = size;
-  view.camera = scene.cameras.empty() ? frame_scene(scene, static_cast<float>(size.x) / static_cast<float>(size.y))
+  view.camera = scene.cameras.empty() ? look_from_front(scene, static_cast<float>(size.x) / static_cast<float>(size.y))
                                       : scene.cameras.front();
   return view;
 }

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "pose_options.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <utility>
+
+#include "arguments.h"
+#include "promin/error.h"
+#include "promin/validate.h"
+
+namespace promin::app {
+namespace {
+
+/// The limits 0 and 180 themselves show nothing.
+constexpr double kMinFovDeg = 1e-3;
+constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
+constexpr double kMaxTurnDeg = 3600.0;
+constexpr double kMinZoom = 1e-3;
+constexpr double kMaxZoom = 1e3;
+constexpr std::array<std::string_view, 6> kAxes = {"x", "y", "z", "-x", "-y", "-z"};
+
+dvec3 read_up(const OptionValues& words) {
+  const auto found = std::ranges::find(kAxes, words.text());
+  if (found == kAxes.end()) return words.vector(kMaxCoordinate);
+  const auto place = static_cast<int>(found - kAxes.begin());
+  dvec3 axis(0.0);
+  axis[place % 3] = place < 3 ? 1.0 : -1.0;
+  return axis;
+}
+
+/// Rows that say what has taken the place of an option.
+void add_former_options(OptionTable& table) {
+  table.add_hidden("--look", [](const OptionValues& w) {
+    w.refuse("--look is no option: a point to look at is --look-at X Y Z, a direction of view --direction X Y Z");
+  });
+  table.add_hidden("--framing", [](const OptionValues& w) {
+    const bool is_known = std::ranges::find(framing_names(), w.text()) != framing_names().end();
+    w.refuse("--framing is no option", is_known ? "--from " + w.text() : "--from");
+  });
+}
+
+}  // namespace
+
+void add_pose_options(OptionTable& table, PoseOptions& pose) {
+  table.add("--from", fmt::format("{}", fmt::join(framing_names(), "|")),
+            "Show all of the scene from there, whatever cameras it has [the scene's camera, else three-quarter, or "
+            "inside a scene that one stands in]",
+            [&](const OptionValues& w) {
+              const auto place = std::ranges::find(framing_names(), w.choice(framing_names()));
+              pose.from = static_cast<Framing>(place - framing_names().begin());
+            });
+  table.add("--fit", "X",
+            fmt::format("Share of the picture that such a view covers, {} to 1 [{}]", kMinFit, kDefaultFit),
+            [&](const OptionValues& w) { pose.fit = static_cast<float>(w.real(0, double{kMinFit}, 1.0)); });
+  const auto add_turn = [&](const char* name, const char* help, double& turn) {
+    table.add(name, "DEG", help, [&turn](const OptionValues& w) { turn = w.real(0, -kMaxTurnDeg, kMaxTurnDeg); });
+  };
+  add_turn("--azimuth", "Take the camera around the scene to the right [0]", pose.orbit.azimuth_deg);
+  add_turn("--elevation", "Then lift the camera over the scene [0]", pose.orbit.elevation_deg);
+  add_turn("--roll", "Then turn the picture clockwise [0]", pose.orbit.roll_deg);
+  table.add("--zoom", "X", "Magnify the picture around its middle [1]",
+            [&](const OptionValues& w) { pose.zoom = w.real(0, kMinZoom, kMaxZoom); });
+  table.add("--eye", "X Y Z", "Place of the eye, instead of the camera's",
+            [&](const OptionValues& w) { pose.eye = w.vector(kMaxCoordinate); });
+  table.add("--look-at", "X Y Z", "Point to look at [with --eye, where the scene has no camera: its middle]",
+            [&](const OptionValues& w) { pose.look_at = w.vector(kMaxCoordinate); });
+  table.add("--direction", "X Y Z", "Direction of view, instead of the camera's",
+            [&](const OptionValues& w) { pose.direction = w.vector(kMaxCoordinate); });
+  table.add("--up", fmt::format("X Y Z|{}", fmt::join(kAxes, "|")),
+            "Direction that is up in the scene or, where a camera is given, in its picture [y; the camera's]",
+            [&](const OptionValues& w) { pose.up = read_up(w); });
+  table.add("--fov", "DEG", "Vertical field of view in degrees, instead of the camera's",
+            [&](const OptionValues& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
+  table.add("--near", "T", "Distance before which nothing is drawn, in scene units, instead of the camera's",
+            [&](const OptionValues& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
+  add_former_options(table);
+}
+
+void check_pose_options(const PoseOptions& pose, bool names_camera) {
+  const auto refuse_beside = [](bool is_given, std::string_view name,
+                                std::initializer_list<std::pair<bool, std::string_view>> others) {
+    for (const auto& [is_other_given, other] : others) {
+      if (!is_given || !is_other_given) continue;
+      throw UsageError(
+          {fmt::format("{} and {} contradict each other", name, other), "on the command line", "leave one out"});
+    }
+  };
+  const bool has_eye = pose.eye.has_value();
+  const bool has_look_at = pose.look_at.has_value();
+  refuse_beside(has_look_at, "--look-at", {{pose.direction.has_value(), "--direction"}});
+  refuse_beside(pose.from.has_value(), "--from",
+                {{names_camera, "--camera"},
+                 {has_eye, "--eye"},
+                 {has_look_at, "--look-at"},
+                 {pose.direction.has_value(), "--direction"}});
+  refuse_beside(pose.fit.has_value(), "--fit",
+                {{names_camera, "--camera"},
+                 {has_eye, "--eye"},
+                 {has_look_at, "--look-at"},
+                 {pose.from == Framing::kInside, "--from inside"}});
+}
+
+}  // namespace promin::app

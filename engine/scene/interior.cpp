@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "promin/framing.h"
+#include "scene/facets.h"
+#include "scene/stray_geometry.h"
+
+// Whether one stands in a scene.
+namespace promin {
+namespace {
+
+/// The least share of backs in what is seen from outside.
+constexpr double kLeastBacks = 0.75;
+/// The largest share of backs in what lies within the hull.
+constexpr double kMostBacksWithin = 0.5;
+/// What is within lies deeper than this share of the size.
+constexpr double kLeastDepth = 0.02;
+/// Pixels on a side of the pictures from outside.
+constexpr int kSide = 64;
+
+/// What is seen of a scene along an axis, from both of its ends.
+struct Silhouette {
+  struct Pixel {
+    double depth;
+    bool is_back = false;
+  };
+  std::array<std::vector<Pixel>, 2> ends;
+
+  Silhouette() {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    ends[0].assign(size_t{kSide} * kSide, {kFar});
+    ends[1].assign(size_t{kSide} * kSide, {-kFar});
+  }
+};
+
+/// Parallel pictures of facets within a box from its six sides, of the depths of what is nearest and of its backs.
+class SixPictures {
+ public:
+  explicit SixPictures(const Bounds& bounds) : lo_(bounds.lo), size_(dvec3(bounds.hi) - dvec3(bounds.lo)) {
+    size_ = glm::max(size_, dvec3(std::numeric_limits<double>::min()));
+  }
+
+  void draw(const Facet& facet) {
+    for (int axis = 0; axis < 3; ++axis) draw(facet, axis);
+  }
+
+  /// The share among the pixels that show something.
+  double share_of_backs() const {
+    double backs = 0.0;
+    double all = 0.0;
+    for (const Silhouette& silhouette : silhouettes_) {
+      for (const auto& end : silhouette.ends) {
+        for (const Silhouette::Pixel& pixel : end) {
+          if (!std::isfinite(pixel.depth)) continue;
+          all += 1.0;
+          backs += pixel.is_back ? 1.0 : 0.0;
+        }
+      }
+    }
+    return all > 0.0 ? backs / all : 0.0;
+  }
+
+  /// Whether a point lies deep behind what is seen from each of the six sides.
+  bool is_enclosed(const dvec3& point) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto& ends = silhouettes_[static_cast<size_t>(axis)].ends;
+      const size_t pixel = pixel_of(point, axis);
+      const double margin = kLeastDepth * size_[axis];
+      if (!(ends[0][pixel].depth + margin < point[axis] && point[axis] < ends[1][pixel].depth - margin)) return false;
+    }
+    return true;
+  }
+
+ private:
+  /// Places in pixels of the picture along an axis.
+  dvec2 place_of(const dvec3& point, int axis) const {
+    const dvec3 share = (point - lo_) / size_;
+    return double{kSide} * dvec2(share[(axis + 1) % 3], share[(axis + 2) % 3]);
+  }
+
+  size_t pixel_of(const dvec3& point, int axis) const {
+    const dvec2 place = glm::clamp(glm::floor(place_of(point, axis)), 0.0, double{kSide - 1});
+    return static_cast<size_t>(place.y) * kSide + static_cast<size_t>(place.x);
+  }
+
+  /// Takes the pixels whose middles a facet covers.
+  void draw(const Facet& facet, int axis) {
+    std::array<dvec2, 3> at;
+    for (size_t i = 0; i < 3; ++i) at[i] = place_of(facet.corners[i], axis);
+    const dvec2 ab = at[1] - at[0];
+    const dvec2 ac = at[2] - at[0];
+    const double area = ab.x * ac.y - ab.y * ac.x;
+    if (area == 0.0) return;
+    const dvec2 lo = glm::clamp(glm::ceil(glm::min(at[0], glm::min(at[1], at[2])) - 0.5), 0.0, double{kSide});
+    const dvec2 hi = glm::clamp(glm::floor(glm::max(at[0], glm::max(at[1], at[2])) - 0.5), -1.0, double{kSide - 1});
+    for (int y = static_cast<int>(lo.y); y <= static_cast<int>(hi.y); ++y) {
+      for (int x = static_cast<int>(lo.x); x <= static_cast<int>(hi.x); ++x) {
+        const dvec2 ap = dvec2(x, y) + 0.5 - at[0];
+        const double b = (ap.x * ac.y - ap.y * ac.x) / area;
+        const double c = (ab.x * ap.y - ab.y * ap.x) / area;
+        if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
+        const double depth =
+            (1.0 - b - c) * facet.corners[0][axis] + b * facet.corners[1][axis] + c * facet.corners[2][axis];
+        take(axis, static_cast<size_t>(y) * kSide + static_cast<size_t>(x), depth, area > 0.0, facet.shows_back);
+      }
+    }
+  }
+
+  /// A facet that is counterclockwise in a picture shows its front to the axis's upper end.
+  void take(int axis, size_t pixel, double depth, bool faces_upper_end, bool shows_back) {
+    auto& ends = silhouettes_[static_cast<size_t>(axis)].ends;
+    Silhouette::Pixel& lower = ends[0][pixel];
+    Silhouette::Pixel& upper = ends[1][pixel];
+    if (depth < lower.depth && (!faces_upper_end || shows_back)) lower = {depth, faces_upper_end};
+    if (depth > upper.depth && (faces_upper_end || shows_back)) upper = {depth, !faces_upper_end};
+  }
+
+  dvec3 lo_;
+  dvec3 size_;
+  std::array<Silhouette, 3> silhouettes_;
+};
+
+/// Calls `use` with the facets of a scene's main part.
+template <class Use>
+void for_each_facet(const Scene& scene, const MainPart& part, const Use& use) {
+  any_facet(scene, [&](const Facet& facet) {
+    if (part.centers) {
+      Bounds bounds;
+      for (const dvec3& corner : facet.corners) bounds.extend(vec3(corner));
+      if (!holds(*part.centers, bounds.center())) return false;
+    }
+    use(facet);
+    return false;
+  });
+}
+
+/// Six times the volume that facets bound, negative where they turn their backs outwards.
+double signed_volume(const Scene& scene, const MainPart& part) {
+  const dvec3 center(part.bounds.center());
+  double sum = 0.0;
+  for_each_facet(scene, part, [&](const Facet& facet) {
+    const auto& [a, b, c] = facet.corners;
+    sum += glm::dot(a - center, glm::cross(b - a, c - a));
+  });
+  return sum;
+}
+
+}  // namespace
+
+bool is_interior(const Scene& scene, const MainPart& part) {
+  // What most scenes are needs no picture.
+  if (part.bounds.is_empty() || signed_volume(scene, part) >= 0.0) return false;
+  SixPictures outside(part.bounds);
+  for_each_facet(scene, part, [&](const Facet& facet) { outside.draw(facet); });
+  if (outside.share_of_backs() < kLeastBacks) return false;
+
+  std::vector<Facet> within;
+  Bounds bounds;
+  for_each_facet(scene, part, [&](const Facet& facet) {
+    const auto& corners = facet.corners;
+    if (!outside.is_enclosed((corners[0] + corners[1] + corners[2]) / 3.0)) return;
+    within.push_back(facet);
+    for (const dvec3& corner : corners) bounds.extend(vec3(corner));
+  });
+  if (within.empty()) return false;
+  SixPictures inside(bounds);
+  for (const Facet& facet : within) inside.draw(facet);
+  return inside.share_of_backs() <= kMostBacksWithin;
+}
+
+Framing framing_of(const Scene& scene) {
+  return is_interior(scene, find_main_part(scene)) ? Framing::kInside : Framing::kThreeQuarter;
+}
+
+}  // namespace promin

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "promin/framing.h"
+#include "scene/facets.h"
+
+namespace promin {
+namespace {
+
+/// What a picture shows: the half-spaces around it, and the rays in its corners.
+class Frustum {
+ public:
+  Frustum(const Camera& camera, double aspect_ratio)
+      : eye_(camera.eye),
+        look_(glm::normalize(dvec3(camera.look))),
+        right_(glm::normalize(glm::cross(look_, dvec3(camera.up)))),
+        up_(glm::cross(right_, look_)),
+        near_(camera.near),
+        is_parallel_(camera.projection == Projection::kOrthographic),
+        half_height_(is_parallel_ ? double{camera.ymag} : std::tan(0.5 * static_cast<double>(camera.yfov))),
+        half_width_(half_height_ * aspect_ratio) {}
+
+  /// A bit for each side on which a point lies outside.
+  uint32_t sides_beyond(const dvec3& point) const {
+    const dvec3 v = point - eye_;
+    const double depth = glm::dot(v, look_);
+    const double x = glm::dot(v, right_);
+    const double y = glm::dot(v, up_);
+    const double growth = is_parallel_ ? 1.0 : depth;
+    const double width = half_width_ * growth;
+    const double height = half_height_ * growth;
+    const auto bit = [](bool is_beyond, uint32_t place) { return is_beyond ? 1U << place : 0U; };
+    return bit(depth <= near_, 0) | bit(x < -width, 1) | bit(x > width, 2) | bit(y < -height, 3) | bit(y > height, 4);
+  }
+
+  /// Whether a ray of the picture meets a plane. Which side of it rays go to changes on a line of the picture, so that
+  /// one in a corner does where any does.
+  bool meets(const world::Plane& plane) const {
+    const dvec3 normal(plane.normal);
+    for (const double x : {-half_width_, half_width_}) {
+      for (const double y : {-half_height_, half_height_}) {
+        const dvec3 aside = x * right_ + y * up_;
+        const dvec3 origin = is_parallel_ ? eye_ + aside : eye_;
+        const dvec3 direction = is_parallel_ ? look_ : look_ + aside;
+        if (glm::dot(dvec3(plane.point) - origin, normal) * glm::dot(direction, normal) > 0.0) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  dvec3 eye_;
+  dvec3 look_;
+  dvec3 right_;
+  dvec3 up_;
+  double near_;
+  bool is_parallel_;
+  double half_height_;
+  double half_width_;
+};
+
+/// Whether a picture meets an object without bounds.
+struct MeetsUnbounded {
+  const Frustum& frustum;
+  const dmat4& world_from_object;
+
+  template <class Bounded>
+  bool operator()(const Bounded& /*bounded*/) const {
+    return false;
+  }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)     \
+  bool operator()(const TYPE& shape) const {                                 \
+    const std::optional placed = place(shape, Placement(world_from_object)); \
+    return placed && frustum.meets(*placed);                                 \
+  }
+#include "promin/kinds/primitives.def"
+};
+
+}  // namespace
+
+bool may_see(const Scene& scene, const Camera& camera, float aspect_ratio) {
+  const Frustum frustum(camera, static_cast<double>(aspect_ratio));
+  for (const Object& object : scene.objects) {
+    if (object.geometry == Object::kNoGeometry) continue;
+    if (std::visit(MeetsUnbounded{frustum, object.world_from_object}, scene.geometries[object.geometry])) return true;
+  }
+  return any_facet(scene, [&](const Facet& facet) {
+    uint32_t beyond = ~0U;
+    for (const dvec3& corner : facet.corners) beyond &= frustum.sides_beyond(corner);
+    return beyond == 0;
+  });
+}
+
+}  // namespace promin

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene_hull.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+
+#include "scene/framing.h"
+#include "shapes/shapes.h"
+
+namespace promin {
+namespace {
+
+constexpr size_t kBlockSize = 1024;
+
+/// The positions that triangles name: those of the mesh where all are.
+std::span<const vec3> find_used(const Mesh& mesh, std::vector<vec3>& copy) {
+  std::vector<uint8_t> is_used(mesh.positions.size(), 0);
+  for (const uvec3& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) is_used[triangle[i]] = 1;
+  }
+  const auto count = static_cast<size_t>(std::ranges::count(is_used, 1));
+  if (count == is_used.size()) return mesh.positions;
+  copy.reserve(count);
+  for (size_t i = 0; i < is_used.size(); ++i) {
+    if (is_used[i] != 0) copy.push_back(mesh.positions[i]);
+  }
+  return copy;
+}
+
+/// The corners in the world of the triangles whose bounds have their centre in the box.
+std::vector<vec3> find_corners_within(const Bounds& box, const Mesh& mesh, const dmat4& world_from_object) {
+  std::vector<vec3> found;
+  for (const uvec3& triangle : mesh.triangles) {
+    std::array<vec3, 3> corners;
+    Bounds bounds;
+    for (int i = 0; i < 3; ++i) {
+      const auto corner = static_cast<size_t>(i);
+      corners[corner] = vec3(world_from_object * dvec4(mesh.positions[triangle[i]], 1.0));
+      bounds.extend(corners[corner]);
+    }
+    if (holds(box, bounds.center())) found.insert(found.end(), corners.begin(), corners.end());
+  }
+  return found;
+}
+
+dvec3 middle_of(const Bounds& bounds) {
+  return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
+}
+
+}  // namespace
+
+/// Adds a geometry of an object.
+struct SceneHull::Adder {
+  SceneHull& hull;
+  const Object& object;
+
+  void operator()(const Mesh& mesh) const { hull.add(mesh, object); }
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                                         \
+  void operator()(const TYPE& shape) const {                                                                 \
+    const std::optional placed = place(shape, Placement(object.world_from_object));                          \
+    if (!placed || (hull.part_.centers && !holds(*hull.part_.centers, bounds_of(*placed).center()))) return; \
+    hull.solids_.emplace_back(*placed);                                                                      \
+  }
+#define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
+  void operator()(const TYPE& /*shape*/) const {}
+#include "promin/kinds/primitives.def"
+};
+
+SceneHull::SceneHull(const Scene& scene)
+    : part_(find_main_part(scene)),
+      bounds_(part_.bounds.is_empty() ? frame_of(scene) : part_.bounds),
+      center_(middle_of(bounds_)) {
+  for (const Object& object : scene.objects) {
+    if (object.geometry != Object::kNoGeometry) std::visit(Adder{*this, object}, scene.geometries[object.geometry]);
+  }
+  if (part_.bounds.is_empty()) solids_.emplace_back(world::Box{.center = bounds_.center(), .half_size = vec3(1.0F)});
+}
+
+void SceneHull::add(const Mesh& mesh, const Object& object) {
+  if (part_.centers) {
+    positions_.push_back(find_corners_within(*part_.centers, mesh, object.world_from_object));
+    meshes_.push_back({dmat3(1.0), -center_, cut(positions_.back())});
+    return;
+  }
+  const auto [place, is_new] = blocks_of_.try_emplace(object.geometry);
+  if (is_new) place->second = cut(find_used(mesh, positions_.emplace_back()));
+  const dmat4& matrix = object.world_from_object;
+  meshes_.push_back({dmat3(matrix), dvec3(matrix[3]) - center_, place->second});
+}
+
+std::span<const SceneHull::Block> SceneHull::cut(std::span<const vec3> positions) {
+  std::vector<Block>& blocks = blocks_.emplace_back();
+  for (size_t begin = 0; begin < positions.size(); begin += kBlockSize) {
+    Block block{positions.subspan(begin, std::min(kBlockSize, positions.size() - begin)), {}};
+    for (const vec3& position : block.positions) block.bounds.extend(position);
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+void SceneHull::find_farthest(const PlacedMesh& mesh, const dvec3& direction, Farthest& farthest) const {
+  const dvec3 own = direction * mesh.turn;
+  const double offset = glm::dot(direction, mesh.origin);
+  double most = farthest.value - offset;
+  const vec3* found = nullptr;
+  for (const Block& block : mesh.blocks) {
+    const dvec3 half = 0.5 * (dvec3(block.bounds.hi) - dvec3(block.bounds.lo));
+    if (!(glm::dot(own, middle_of(block.bounds)) + glm::dot(glm::abs(own), half) > most)) continue;
+    for (const vec3& position : block.positions) {
+      const double value = own.x * double{position.x} + own.y * double{position.y} + own.z * double{position.z};
+      if (!(value > most)) continue;
+      most = value;
+      found = &position;
+    }
+  }
+  if (found != nullptr) farthest = {most + offset, mesh.turn * dvec3(*found) + mesh.origin};
+}
+
+dvec3 SceneHull::farthest(const dvec3& direction) const {
+  Farthest farthest{-std::numeric_limits<double>::infinity(), dvec3(0.0)};
+  for (const Solid& solid : solids_) {
+    std::visit(
+        [&]<class Shape>(const Shape& shape) {
+          if constexpr (!std::is_same_v<Shape, std::monostate>) {
+            const dvec3 point = farthest_of(shape, direction) - center_;
+            const double value = glm::dot(point, direction);
+            if (value > farthest.value) farthest = {value, point};
+          }
+        },
+        solid);
+  }
+  for (const PlacedMesh& mesh : meshes_) find_farthest(mesh, direction, farthest);
+  return farthest.point;
+}
+
+}  // namespace promin

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "promin/scene.h"
+#include "scene/stray_geometry.h"
+
+namespace promin {
+
+/// How far the main part of a scene reaches along any direction: exact for meshes and for shapes. The scene must
+/// outlive it.
+class SceneHull {
+ public:
+  /// Throws InputError as bounds_of() does.
+  explicit SceneHull(const Scene& scene);
+
+  const MainPart& main_part() const { return part_; }
+  /// The box to look at (frame_of).
+  const Bounds& bounds() const { return bounds_; }
+  /// The middle of the bounds.
+  const dvec3& center() const { return center_; }
+  /// The point farthest along a direction of any length but 0, less the center.
+  dvec3 farthest(const dvec3& direction) const;
+
+ private:
+  /// Vertices that lie in a file one after the other, and so near to each other.
+  struct Block {
+    std::span<const vec3> positions;
+    Bounds bounds;
+  };
+  struct PlacedMesh {
+    dmat3 turn;
+    dvec3 origin;
+    std::span<const Block> blocks;
+  };
+  using Solid = std::variant<std::monostate
+#define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , world::TYPE
+#include "promin/kinds/primitives.def"
+                             >;
+  struct Farthest {
+    double value;
+    dvec3 point;
+  };
+  struct Adder;
+
+  void add(const Mesh& mesh, const Object& object);
+  std::span<const Block> cut(std::span<const vec3> positions);
+  void find_farthest(const PlacedMesh& mesh, const dvec3& direction, Farthest& farthest) const;
+
+  MainPart part_;
+  Bounds bounds_;
+  dvec3 center_;
+  std::vector<PlacedMesh> meshes_;
+  std::vector<Solid> solids_;
+  /// The blocks of geometries that have been added, by their indices.
+  std::map<uint32_t, std::span<const Block>> blocks_of_;
+  std::deque<std::vector<Block>> blocks_;
+  std::deque<std::vector<vec3>> positions_;
+};
+
+}  // namespace promin
