@@ -52,9 +52,9 @@ Camera choose_camera(const Scene& scene, const ViewOptions& options) {
   if (options.given_camera) return *options.given_camera;
   if (options.camera) return find_camera(scene, *options.camera);
   if (!scene.cameras.empty()) return scene.cameras.front();
+  const bool has_both = options.size && options.size->x > 0 && options.size->y > 0;
   return frame_scene(
-      scene,
-      options.size ? static_cast<float>(options.size->x) / static_cast<float>(options.size->y) : kDefaultAspectRatio,
+      scene, has_both ? static_cast<float>(options.size->x) / static_cast<float>(options.size->y) : kDefaultAspectRatio,
       choose_framing(scene, options.look));
 }
 
@@ -85,9 +85,20 @@ void apply_pose(Camera& camera, const PoseOptions& pose, const dvec3& center, co
   if (pose.near) camera.near = static_cast<float>(*pose.near);
 }
 
+/// The size with the side that the user has left open, by the aspect ratio of the size that the camera would have.
+std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2>& usual) {
+  if (sides.x > 0 && sides.y > 0) return sides;
+  if (!usual) return {};
+  const dvec2 ratio = dvec2(*usual) / dvec2(usual->y, usual->x);
+  const dvec2 size(sides.x > 0 ? sides.x : std::round(sides.y * ratio.x),
+                   sides.y > 0 ? sides.y : std::round(sides.x * ratio.y));
+  if (!(std::min(size.x, size.y) >= 1.0 && std::max(size.x, size.y) <= kMaxSide)) return {};
+  return uvec2(size);
+}
+
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
-  if (options.size) return *options.size;
-  const std::optional<uvec2> size = default_size(camera);
+  const std::optional<uvec2> usual = default_size(camera);
+  const std::optional<uvec2> size = options.size ? complete_size(*options.size, usual) : usual;
   if (size) return *size;
   throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
                     scene.file.string(), "give --size"});
