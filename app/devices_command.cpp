@@ -35,7 +35,7 @@ void print_json(const std::vector<gpu::DeviceInfo>& devices) {
 
 /// What the environment can ask of the driver that runs on the host's processor.
 constexpr const char* kOfLavapipe = R"(
-llvmpipe runs on the host's processor. Variables of the environment that change its speed, and no bit of what it makes:
+llvmpipe runs on the host's processor. Variables of the environment that change how fast it is:
   LP_NUM_THREADS=N           its threads, at most 16 [as many as there are cores]; --threads N sets it for one run
   LP_NATIVE_VECTOR_WIDTH=N   bits of a vector, 128, 256 or 512 [as the processor has]; the cache of kernels does not know
                              it, so set MESA_SHADER_CACHE_DISABLE=true beside it
