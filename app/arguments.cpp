@@ -13,6 +13,7 @@
 
 #include "core/suggest.h"
 #include "promin/error.h"
+#include "typed_words.h"
 
 namespace promin::app {
 namespace {
@@ -56,8 +57,10 @@ std::string nearest_of(const std::string& name, const std::vector<std::string>& 
   return std::string(nearest_name(name, known));
 }
 
-/// The command's option whose name is nearest to this one; empty where none is near.
+/// The command's option whose meaning or else whose name is nearest to this one; empty where none is near.
 std::string nearest_option(const std::string& name, const CLI::App& command) {
+  const std::string meant = find_by_meaning(command, name);
+  if (!meant.empty()) return meant;
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;
@@ -136,17 +139,17 @@ void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& 
 
 /// The words of a command line, with each alternative repeated until it is as many words as its option takes: CLI11
 /// gives an option the same number of words always.
-std::vector<const char*> fill_up_alternatives(std::span<const char* const> words,
+std::vector<const char*> fill_up_alternatives(const std::vector<std::string>& words,
                                               const std::map<std::string, Alternative>& alternatives) {
   std::vector<const char*> filled;
   for (size_t i = 0; i < words.size(); ++i) {
-    filled.push_back(words[i]);
-    const std::string word = words[i];
+    const std::string& word = words[i];
+    filled.push_back(word.c_str());
     for (const auto& [name, alternative] : alternatives) {
       const bool is_joined = word.starts_with(name + "=") && alternative.has(word.substr(name.size() + 1));
       const bool is_alone = i > 0 && words[i - 1] == name && alternative.has(word);
       if (is_alone || is_joined) {
-        filled.insert(filled.end(), alternative.count - 1, words[i] + (is_joined ? name.size() + 1 : 0));
+        filled.insert(filled.end(), alternative.count - 1, word.c_str() + (is_joined ? name.size() + 1 : 0));
       }
     }
   }
@@ -280,7 +283,8 @@ void add_common_options(CLI::App& app) {
 bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
   std::map<std::string, Alternative> alternatives;
   find_alternatives(program, alternatives);
-  const std::vector<const char*> words = fill_up_alternatives({argv, static_cast<size_t>(argc)}, alternatives);
+  const std::vector<std::string> spelt = spell_out(program, {argv, argv + argc});
+  const std::vector<const char*> words = fill_up_alternatives(spelt, alternatives);
   try {
     program.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::CallForHelp&) {

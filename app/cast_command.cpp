@@ -7,6 +7,7 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,18 +32,39 @@
 namespace promin::app {
 namespace {
 
+/// Whether the ray misses every scene (promin/ray.h).
+bool misses_all(const Ray& ray) {
+  const auto is_finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  return !is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == vec3(0.0F) ||
+         !(std::max(ray.tmin, 0.0F) < ray.tmax) || std::isnan(ray.tmin);
+}
+
 /// The rays of a file around a scene's center, chunk by chunk.
 struct RayChunks {
   RayReader& reader;
   dvec3 center;
+  /// How many that were read miss every scene, and the number of the first.
+  uint64_t idle_count = 0;
+  uint64_t first_idle = 0;
 
   /// The next, at most kChunkRays; none at the file's end.
-  std::vector<Ray> next(uint64_t done) const {
+  std::vector<Ray> next(uint64_t done) {
     std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
     reader.read(rays, center);
+    for (const Ray& ray : rays) {
+      if (!misses_all(ray)) continue;
+      if (idle_count++ == 0) first_idle = done + static_cast<uint64_t>(&ray - rays.data());
+    }
     return rays;
   }
 };
+
+void warn_of_idle_rays(const RayChunks& chunks, const Console& console) {
+  if (chunks.idle_count == 0) return;
+  console.warn(fmt::format(
+      "{} of {} cannot hit anything, the first is {}: a ray needs a direction that is not 0, tmin < tmax, and no NaN",
+      chunks.idle_count, count_of(chunks.reader.count(), "ray"), chunks.first_idle));
+}
 
 /// What a query makes of rays, chunk by chunk, and the files that it writes.
 class Answers {
@@ -152,8 +174,8 @@ std::unique_ptr<Answers> make_answers(const CastOptions& options, Caster& caster
 }
 
 /// `rays` is the first chunk. Throws Cancelled if a signal asks for the end.
-void answer_all(std::vector<Ray> rays, const RayChunks& chunks, Answers& answers, const CastOptions& options,
-                RunStats& stats, const Console& console, const DeferredSignals& signals) {
+void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, const CastOptions& options, RunStats& stats,
+                const Console& console, const DeferredSignals& signals) {
   const uint32_t repeats = options.tracing.repeat_count;
   stats.trace_ms.assign(repeats, 0.0);
   Progress progress(console.is_quiet());
@@ -205,7 +227,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
   CasterOptions caster_options;
   choose_tree(tracing, caster_options);
   Caster caster(*device, scene, caster_options);
-  const RayChunks chunks{reader, scene.center};
+  RayChunks chunks{reader, scene.center};
   std::vector<Ray> rays = chunks.next(0);
   caster.prepare(options.query(), rays);
   take_setup(caster.setup_stats(), stats, console);
@@ -224,6 +246,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
   answers->commit();
   stats.write_ms += commit.ms();
   stats.total_ms = total.ms();
+  warn_of_idle_rays(chunks, console);
   tell_end(stats, console);
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
   if (!console.is_quiet()) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <sstream>
 
 #include "core/utf8.h"
 #include "promin/error.h"
@@ -17,6 +18,11 @@ Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
   }
   if (is_quiet) return Verbosity::kQuiet;
   return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+}
+
+void Console::details(const std::string& lines) const {
+  std::istringstream text(lines);
+  for (std::string line; std::getline(text, line);) detail(line);
 }
 
 void Console::print(const std::string& text, Verbosity least) const {

@@ -23,6 +23,9 @@ class Console {
   /// Says something only when verbose.
   void detail(const std::string& text) const { print(text, Verbosity::kVerbose); }
 
+  /// The same of a text of several lines, each as a line of its own.
+  void details(const std::string& lines) const;
+
   bool is_quiet() const { return verbosity_ == Verbosity::kQuiet; }
 
  private:

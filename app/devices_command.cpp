@@ -33,6 +33,19 @@ void print_json(const std::vector<gpu::DeviceInfo>& devices) {
   fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+/// What the environment can ask of the driver that runs on the host's processor.
+constexpr const char* kOfLavapipe = R"(
+llvmpipe runs on the host's processor. Variables of the environment that change how fast it is:
+  LP_NUM_THREADS=N           its threads, at most 16 [as many as there are cores]; --threads N sets it for one run
+  LP_NATIVE_VECTOR_WIDTH=N   bits of a vector, 128, 256 or 512 [as the processor has]; the cache of kernels does not know
+                             it, so set MESA_SHADER_CACHE_DISABLE=true beside it
+  MESA_SHADER_CACHE_DIR=DIR  where compiled kernels are kept; MESA_SHADER_CACHE_DISABLE=true keeps none
+)";
+
+bool is_lavapipe(const gpu::DeviceInfo& device) {
+  return device.name.starts_with("llvmpipe");
+}
+
 void print_devices(bool is_json) {
   const std::vector<gpu::DeviceInfo> devices = gpu::list_devices();
   if (devices.empty()) {
@@ -62,6 +75,7 @@ void print_devices(bool is_json) {
     for (const std::string& obstacle : device.obstacles) fmt::print("       cannot be used: {}\n", obstacle);
     for (const std::string& lack : device.lacks) fmt::print("       lacks: {}\n", lack);
   }
+  if (std::ranges::any_of(devices, is_lavapipe)) fmt::print("{}", kOfLavapipe);
 }
 
 }  // namespace

@@ -30,8 +30,7 @@ void add_job_options(OptionTable& table, JobOptions& job, const std::string& pie
   table.add("--pieces", "N", pieces_help,
             [&job, most_pieces](const OptionValues& w) { job.pieces = w.whole(0, 1, most_pieces); });
   table.add("--piece", "I/N",
-            "Of a job: make only the pieces whose number is I more than a multiple of N, and no file of them; promin "
-            "merge makes it of all",
+            "With --job: make only every N-th piece, from I on, and no file; promin merge makes the file of all pieces",
             [&](const OptionValues& w) { job.share = read_share(w); });
 }
 

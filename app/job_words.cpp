@@ -65,6 +65,7 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
      .is_in_manifest = false,
      .is_kept = false,
      .said_elsewhere = "who makes the pieces chooses it"},
+    {.name = "--threads", .is_in_manifest = false, .is_kept = false},
     {.name = "--stats", .is_in_manifest = false, .is_kept = false},
     {.name = "--quiet", .is_in_manifest = false, .is_kept = false},
     {.name = "--verbose", .is_in_manifest = false, .is_kept = false},

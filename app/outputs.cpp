@@ -50,8 +50,8 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
 void check_pictures(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures) {
     if (!is_writable_format(picture)) {
-      throw UsageError(
-          {"unknown output ending \"" + picture.extension().string() + "\"", picture.string(), "use .exr or .png"});
+      throw UsageError({"unknown output ending \"" + picture.extension().string() + "\"", picture.string(),
+                        "use .exr, .png or .jpg"});
     }
   }
 }

@@ -27,6 +27,7 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "render/renderer_impl.h"
+#include "render_help.h"
 #include "render_job.h"
 #include "trace/refinement.h"
 #include "tracing_run.h"
@@ -394,6 +395,7 @@ Command add_render_command(CLI::App& program) {
   CLI::App& command = add_command(program, "render", "Render a picture of a scene");
   const auto options = std::make_shared<RenderOptions>();
   add_render_options(command, *options);
+  arrange_help(program, command);
   return {&command, [options, &command] { render(*options, command); }};
 }
 

@@ -16,6 +16,7 @@
 #include "camera_path.h"
 #include "core/count_of.h"
 #include "core/suggest.h"
+#include "image/picture_endings.h"
 #include "load_options.h"
 #include "promin/aovs.h"
 #include "promin/error.h"
@@ -23,6 +24,7 @@
 #include "promin/validate.h"
 #include "promin/view.h"
 #include "trace/refinement.h"
+#include "typed_words.h"
 
 namespace promin::app {
 namespace {
@@ -41,6 +43,9 @@ constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
 constexpr std::string_view kCryptomatte = "cryptomatte";
+/// --aov and --shading take either.
+constexpr std::string_view kNormal = "normal";
+constexpr std::string_view kNormals = "normals";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
 /// Reads names between commas.
@@ -48,6 +53,7 @@ AovSet read_aovs(const OptionValues& words) {
   AovSet choice;
   std::istringstream list(words.text() + ",");
   for (std::string name; std::getline(list, name, ',');) {
+    if (name == kNormals) name = kNormal;
     bool is_known = false;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
   if (name == #FIELD) is_known = choice.FIELD = true;
@@ -76,6 +82,22 @@ template <typename Enum>
 Enum read_name(const OptionValues& words, std::span<const std::string_view> names, size_t hidden = 0) {
   const auto place = std::find(names.begin(), names.end(), words.choice(names.subspan(hidden)));
   return static_cast<Enum>(place - names.begin());
+}
+
+/// Reads "640x480", "640" (the width), "x480" (the height) or a name. What is left open is 0.
+uvec2 read_size(const OptionValues& words) {
+  const std::string& text = words.text();
+  if (const std::optional<uvec2> named = find_named_size(text)) return *named;
+  const size_t by = text.find_first_of("xX,");
+  if (text.find_first_of("0123456789") == std::string::npos) {
+    words.refuse(
+        fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"", fmt::join(size_names(), " or "), text),
+        nearest_name(text, size_names()));
+  }
+  const std::string height = by == std::string::npos ? "" : text.substr(by + 1);
+  const OptionValues sides = words.with({text.substr(0, by), height});
+  const auto read_side = [&](size_t i) { return sides.all()[i].empty() ? 0 : sides.whole(i, 1, kMaxSide); };
+  return {read_side(0), read_side(1)};
 }
 
 BackgroundChoice read_background(const OptionValues& words) {
@@ -137,6 +159,12 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
   return numbers;
 }
 
+/// By the AOV's name as well.
+DebugView read_shading(const OptionValues& words) {
+  const OptionValues canonical = words.text() == kNormal ? words.with({std::string(kNormals)}) : words;
+  return read_name<DebugView>(canonical, debug_view_names());
+}
+
 void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
@@ -170,9 +198,10 @@ void add_look_options(OptionTable& table, LookOptions& look) {
 }  // namespace
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
-  table.add("--size", "W H",
-            "Picture size in pixels [what the file asks for, or height 720, width by the camera's aspect ratio]",
-            [&](const OptionValues& w) { view.size = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
+  table.add("--size", fmt::format("WxH|{}", fmt::join(size_names(), "|")),
+            "Picture size in pixels; 640 is a width, whose height follows from the camera's aspect ratio [what the "
+            "file asks for, or height 720]",
+            [&](const OptionValues& w) { view.size = read_size(w); });
   table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
             "How samples are weighed by their distance from the pixel's centre [box]",
             [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
@@ -188,7 +217,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
                         View{}.max_depth, kMaxDepthOfGlass),
             [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
   table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(debug_view_names(), ", ")),
-            [&](const OptionValues& w) { view.debug_view = read_name<DebugView>(w, debug_view_names()); });
+            [&](const OptionValues& w) { view.debug_view = read_shading(w); });
   table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
   table.add("--lights-off", "INDICES", "Lights to leave out, by their numbers from 0 with commas between",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
@@ -352,8 +381,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
   add_scene_argument(table, options.tracing);
   table.add_repeated("-o,--output", "FILE",
-                     "Picture to write: .exr (linear float) or .png (sRGB, 8 bit); repeatable [the scene's name with "
-                     "both endings, here]",
+                     "Picture to write: .exr (linear float), .png or .jpg (sRGB, 8 bit); repeatable [the scene's name "
+                     "with .exr and .png, here]",
                      [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
             [&](const OptionValues& w) {
@@ -543,7 +572,12 @@ void check_render_options(const RenderOptions& options) {
               "give -o with the ending .exr as well");
   }
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
-  if (options.aovs.alpha) refuse_beside("--alpha", {{is_debug, "--shading"}});
+  if (options.aovs.alpha) {
+    refuse_beside("--alpha", {{is_debug, "--shading"}});
+    refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
+                  "leave one out: --alpha makes the background transparent");
+    refuse_if(std::ranges::any_of(pictures, is_jpeg), "--alpha has no place in a JPEG", "write a .png or .exr");
+  }
 
   // What only a PNG shows.
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);

@@ -51,6 +51,7 @@ struct LookOptions {
 
 /// The part of a scene that is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
 struct ViewOptions {
+  /// A side of 0 follows from the camera's aspect ratio.
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
   /// View's where it is not given.

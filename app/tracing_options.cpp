@@ -12,6 +12,7 @@ namespace promin::app {
 namespace {
 
 constexpr uint32_t kMaxRepeats = 10000;
+constexpr uint32_t kMaxThreads = 1024;
 
 }  // namespace
 
@@ -32,6 +33,10 @@ void add_device_option(OptionTable& table, std::optional<std::string>& device) {
 
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   add_device_option(table, options.device);
+  table.add("--threads", "N",
+            fmt::format("Threads that work at a time, here and in a CPU device, 1 to {} [as many as there are cores]",
+                        kMaxThreads),
+            [&](const OptionValues& w) { options.threads = w.whole(0, 1, kMaxThreads); });
   table.add("--builder", "NAME",
             fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),
             [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });

@@ -25,6 +25,8 @@ struct TracingOptions {
   std::optional<std::string> device;
   std::optional<std::string> builder;
   std::optional<std::filesystem::path> bvh;
+  /// The program and a CPU device take so many; without it each takes as many as there are cores.
+  std::optional<uint32_t> threads;
   uint32_t repeat_count = 1;
   bool is_quiet = false;
   bool is_verbose = false;

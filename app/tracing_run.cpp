@@ -4,8 +4,11 @@
 
 #include <fmt/ranges.h>
 
+#include <cstdlib>
 #include <numeric>
+#include <string>
 
+#include "core/limit_threads.h"
 #include "core/stopwatch.h"
 #include "memory_use.h"
 #include "promin/error.h"
@@ -14,8 +17,19 @@
 
 namespace promin::app {
 
+namespace {
+
+/// For the program and, as drivers read it when they start, for a device that is the host's processor.
+void choose_threads(uint32_t count) {
+  limit_threads(count);
+  setenv("LP_NUM_THREADS", std::to_string(count).c_str(), 1);
+}
+
+}  // namespace
+
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources) {
+  if (options.threads) choose_threads(*options.threads);
   const Stopwatch load;
   Scene scene = load_scene(options.scene, options.load, sources);
   stats.load_ms = load.ms();

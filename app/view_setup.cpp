@@ -23,9 +23,20 @@ float aspect_ratio_of(const ViewOptions& options) {
   return size.x > 0 && size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : kDefaultAspectRatio;
 }
 
+/// The size with the side that the user has left open, by the aspect ratio of the size that the camera would have.
+std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2>& usual) {
+  if (sides.x > 0 && sides.y > 0) return sides;
+  if (!usual) return {};
+  const dvec2 ratio = dvec2(*usual) / dvec2(usual->y, usual->x);
+  const dvec2 size(sides.x > 0 ? sides.x : std::round(sides.y * ratio.x),
+                   sides.y > 0 ? sides.y : std::round(sides.x * ratio.y));
+  if (!(std::min(size.x, size.y) >= 1.0 && std::max(size.x, size.y) <= kMaxSide)) return {};
+  return uvec2(size);
+}
+
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
-  if (options.size) return *options.size;
-  const std::optional<uvec2> size = default_size(camera);
+  const std::optional<uvec2> usual = default_size(camera);
+  const std::optional<uvec2> size = options.size ? complete_size(*options.size, usual) : usual;
   if (size) return *size;
   throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
                     scene.file.string(), "give --size"});

@@ -204,7 +204,7 @@ void Viewer::update_answers() {
   try {
     if (std::optional<PixelText> answer = query_.take_text()) {
       explanation_ = std::move(*answer);
-      console_.detail(explanation_.text);
+      console_.details(explanation_.text);
       draw_again();
     }
     if (const std::optional<std::optional<dvec3>> middle = query_.take_middle()) {

@@ -12,11 +12,24 @@
 #include <vector>
 
 #include "core/address_space.h"
+#include "core/limit_threads.h"
 
 namespace promin {
 
+namespace {
+
+/// 0: as many as the machine has cores.
+std::atomic<unsigned> chosen_count = 0;
+
+}  // namespace
+
 unsigned core_count() {
-  return std::max(1U, std::thread::hardware_concurrency());
+  const unsigned count = chosen_count;
+  return std::max(1U, count > 0 ? count : std::thread::hardware_concurrency());
+}
+
+void limit_threads(unsigned count) {
+  chosen_count = count;
 }
 
 bool can_start_threads(size_t count) {

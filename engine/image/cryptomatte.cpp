@@ -57,8 +57,8 @@ void add_layer(const std::string& layer, const std::vector<std::string>& names,
   const size_t first = result.channels.size();
   for (size_t group = 0; group < kCoverageRanks / kRanksOfGroup; ++group) {
     for (const char letter : {'R', 'G', 'B', 'A'}) {
-      result.channels.push_back({layer + "0" + std::to_string(group) + "." + letter, false,
-                                 std::vector<uint32_t>(coverage.size())});
+      result.channels.push_back(
+          {layer + "0" + std::to_string(group) + "." + letter, false, std::vector<uint32_t>(coverage.size())});
     }
   }
   for_each_pixel(coverage.size(), [&](size_t pixel) {
@@ -90,8 +90,7 @@ void add_layer(const std::string& layer, const std::vector<std::string>& names,
   result.metadata.emplace_back(key + "name", layer);
   result.metadata.emplace_back(key + "hash", "MurmurHash3_32");
   result.metadata.emplace_back(key + "conversion", "uint32_to_float32");
-  result.metadata.emplace_back(key + "manifest",
-                               json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  result.metadata.emplace_back(key + "manifest", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace

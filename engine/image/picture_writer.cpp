@@ -12,8 +12,10 @@
 #include "core/parallel.h"
 #include "image/dither.h"
 #include "image/encode_exr.h"
+#include "image/encode_jpeg.h"
 #include "image/encode_png.h"
 #include "image/picture_bytes.h"
+#include "image/picture_endings.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -36,6 +38,12 @@ struct ShowingChannels {
       : alpha(find_channel(channels, "A")),
         unlit{find_channel(channels, "unlit.R"), find_channel(channels, "unlit.G"), find_channel(channels, "unlit.B"),
               find_channel(channels, "unlit.A")} {}
+
+  ShowingChannels without_alpha() const {
+    ShowingChannels result = *this;
+    result.alpha = nullptr;
+    return result;
+  }
 
   float alpha_at(size_t pixel) const { return alpha == nullptr ? 1.0F : std::bit_cast<float>(alpha->values[pixel]); }
   vec4 unlit_at(size_t pixel) const {
@@ -140,7 +148,7 @@ std::span<const std::string_view> exr_compression_names() {
 }
 
 bool is_writable_format(const fs::path& file) {
-  return has_named_channels(file) || lower_case_ending(file) == ".png";
+  return has_named_channels(file) || is_jpeg(file) || lower_case_ending(file) == ".png";
 }
 
 bool has_named_channels(const fs::path& file) {
@@ -154,6 +162,8 @@ class PictureWriter::Impl {
     encode([&] {
       if (has_named_channels(file)) {
         exr_.emplace(bytes_, header, file);
+      } else if (is_jpeg(file)) {
+        jpeg_.emplace(bytes_, header.size);
       } else {
         png_.emplace(bytes_, header.size, find_channel(header.channels, "A") != nullptr);
       }
@@ -176,15 +186,17 @@ class PictureWriter::Impl {
       }
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
-      const std::vector<uint8_t> pixels = encode_pixels(rows, ShowingChannels(channels), header_.display, lo);
-      encode([&] { png_->write_rows(pixels); });
+      // A JPEG holds what is covered before black.
+      const ShowingChannels showing = jpeg_ ? ShowingChannels(channels).without_alpha() : ShowingChannels(channels);
+      const std::vector<uint8_t> pixels = encode_pixels(rows, showing, header_.display, lo);
+      encode([&] { jpeg_ ? jpeg_->write_rows(pixels) : png_->write_rows(pixels); });
     }
     rows_written_ += rows.size.y;
   }
 
   void commit() {
     check(rows_written_ == header_.size.y, "rows of the picture are missing", "write all before the end");
-    encode([&] { exr_ ? exr_->finish() : png_->finish(); });
+    encode([&] { exr_ ? exr_->finish() : jpeg_ ? jpeg_->finish() : png_->finish(); });
     bytes_.close();
     output_.commit();
   }
@@ -198,7 +210,7 @@ class PictureWriter::Impl {
       throw;
     } catch (const std::runtime_error& error) {
       throw RunError({std::string("cannot encode the picture (") + error.what() + ")", file_.string(),
-                      "try the other format, .exr or .png"});
+                      "try another format, .exr, .png or .jpg"});
     }
   }
 
@@ -208,13 +220,14 @@ class PictureWriter::Impl {
   PictureBytes bytes_;
   // One of them has a value. It is destroyed before what it writes to.
   std::optional<ExrEncoder> exr_;
+  std::optional<JpegEncoder> jpeg_;
   std::optional<PngEncoder> png_;
   uint32_t rows_written_ = 0;
 };
 
 PictureWriter::PictureWriter(const fs::path& file, const PictureHeader& header) {
   if (!is_writable_format(file)) {
-    throw UsageError({"unknown picture format " + file.extension().string(), file.string(), "use .exr or .png"});
+    throw UsageError({"unknown picture format " + file.extension().string(), file.string(), "use .exr, .png or .jpg"});
   }
   check_header(header);
   impl_ = std::make_unique<Impl>(file, header);

@@ -63,8 +63,8 @@ class Frame:
         compression: str = "zip",
         multipart: bool = False,
     ) -> None:
-        """Writes an .exr with all AOVs, linear, or a .png as `display` shows it, None being the picture's own; whole or
-        not at all. Of an .exr: half: keep colours, normals and shares as halves; compression: "none", "rle", "zips",
+        """Writes an .exr with all AOVs, linear, or a .png or .jpg as `display` shows it, None being the picture's own;
+        whole or not at all. Of an .exr: half: keep colours, normals and shares as halves; compression: "none", "rle", "zips",
         "zip" or "piz", always without loss; multipart: give each AOV a part. Raises UsageError for another ending,
         RunError where it cannot be written."""
         file = os.fsdecode(path)

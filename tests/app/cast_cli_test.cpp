@@ -116,6 +116,41 @@ TEST_F(CastTest, ObjectsHaveTheFilesNumbers) {
   EXPECT_THAT(objects, ElementsAre(0, 0, 1, -1));
 }
 
+TEST_F(CastTest, RaysThatCannotHitAreCounted) {
+  std::vector<Ray> rays = kRays;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  rays.push_back({vec3(0, 0, 4), 0, vec3(0, 0, 0), kInfinity});
+  rays.push_back({vec3(0, 0, 4), 0, vec3(0, 0, -1), 0});
+  rays.push_back({vec3(0, 0, 4), -1, vec3(0, 0, -1), -0.5F});
+  rays.push_back({vec3(0, nan, 4), 0, vec3(0, 0, -1), kInfinity});
+  rays.push_back({vec3(0, 0, 4), nan, vec3(0, 0, -1), kInfinity});
+  rays.push_back({vec3(0, 0, 4), -kInfinity, vec3(0, 0, -1), kInfinity});
+  write_rays("rays.npy", rays);
+  const ProcessResult result = run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err,
+            "promin: warning: 5 of 9 rays cannot hit anything, the first is 3: a ray needs a direction that is not 0, "
+            "tmin < tmax, and no NaN\n");
+  const std::vector<Hit> hits = read_hits("hits.npy");
+  for (size_t i = 3; i < 8; ++i) EXPECT_EQ(hits[i].object, -1) << i;
+  EXPECT_EQ(hits[8].object, 0);
+}
+
+TEST_F(CastTest, TheSampleOfTheManualHits) {
+  std::ifstream manual(std::filesystem::path(PROMIN_TOOLS_DIR).parent_path() / "docs/usage.md");
+  const std::string text{std::istreambuf_iterator<char>(manual), {}};
+  const size_t begin = text.find("```python\nimport numpy\n") + 10;
+  ASSERT_GE(begin, 10U);
+  write("sample.py", text.substr(begin, text.find("```", begin) - begin));
+  ASSERT_EQ(Process(PROMIN_PYTHON, {"sample.py"}, options_).wait().exit_code, 0);
+  const ProcessResult result = run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, IsEmpty());
+  const std::vector<Hit> hits = read_hits("hits.npy");
+  ASSERT_EQ(hits.size(), 100U);
+  for (const Hit& hit : hits) EXPECT_EQ(hit.t, 4.0F);
+}
+
 TEST_F(CastTest, AnyTellsOnlyWhether) {
   write_rays("rays.npy", kRays);
   ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--any", "--quiet"}).exit_code, 0);

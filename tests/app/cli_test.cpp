@@ -91,9 +91,34 @@ TEST_F(CliTest, HelpAndVersionEverywhere) {
   }
 }
 
+TEST_F(CliTest, HelpHasExamplesAndGroups) {
+  const ProcessResult alone = run({});
+  EXPECT_EQ(alone.exit_code, 0);
+  EXPECT_THAT(alone.err, IsEmpty());
+  EXPECT_EQ(alone.out, run({"--help"}).out);
+  EXPECT_THAT(alone.out, HasSubstr("\nExamples:\n  promin model.glb\n"));
+  EXPECT_LE(std::ranges::count(alone.out, '\n'), 40) << "more than a page";
+  const std::string help = run({"render", "--help"}).out;
+  size_t at = 0;
+  for (const char* heading : {"Output", "Quality", "Camera", "Look", "Jobs", "Expert", "Examples"}) {
+    const size_t found = help.find(std::string("\n") + heading + ":\n");
+    ASSERT_NE(found, std::string::npos) << heading;
+    EXPECT_GT(found, at) << heading;
+    at = found;
+  }
+  EXPECT_THAT(help, Not(HasSubstr("--samples")));
+}
+
+TEST_F(CliTest, AFileAloneIsRendered) {
+  const ProcessResult result = run({"square.gltf", "--size", "8x8", "-o", "a.png", "--quiet"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  render({"square.gltf", "--size", "8", "8"}, "b.png");
+  EXPECT_EQ(read("a.png"), read("b.png"));
+  expect_failure(run({"nope.glb"}), 3, "file not found, nope.glb");
+}
+
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{}, "no command given, on the command line; see promin --help"},
       {{"rendr"}, "unknown command rendr, on the command line; did you mean render?"},
       {{"paint"}, "unknown command paint, on the command line; see promin --help"},
       {{"render", "square.gltf", "--aov", "depth,normel"}, "not \"normel\", on the command line; did you mean normal?"},
@@ -135,7 +160,9 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--min-spp 16 is more than --max-spp 8"},
       {{"render", "square.gltf", "--spq=3"}, "unknown option --spq,"},
       {{"render", "square.gltf", "triangle.obj", "-o", "a.exr"}, "unexpected argument triangle.obj"},
-      {{"render", "square.gltf", "-o", "a.jpg"}, "unknown output ending \".jpg\", a.jpg; use .exr or .png"},
+      {{"render", "square.gltf", "-o", "a.gif"}, "unknown output ending \".gif\", a.gif; use .exr, .png or .jpg"},
+      {{"render", "square.gltf", "-o", "a.jpg", "--alpha"}, "--alpha has no place in a JPEG"},
+      {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"}, "--aov has no picture to go to"},
       {{"render", "square.gltf", "-o", "a"}, "unknown output ending \"\", a;"},
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite an input"},
@@ -146,14 +173,20 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "-s", "4294967297"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "-1"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "2x"}, "--spp takes a whole number"},
-      {{"render", "square.gltf", "-o", "a.exr", "--size", "64"}, "too few values for --size"},
-      {{"render", "square.gltf", "--size", "64", "-o", "a.exr"}, "too few values for --size W H, on the command line;"},
+      {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values for --size WxH|hd|fullhd|4k, on"},
+      {{"render", "square.gltf", "--size", "large", "-o", "a.exr"},
+       "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"large\""},
+      {{"render", "square.gltf", "--size", "fulhd", "-o", "a.exr"}, "did you mean fullhd?"},
+      {{"render", "square.gltf", "--size", "64x48x32"}, "not \"48x32\" in \"64x48x32\""},
+      {{"square.gltf", "--gpu", "0"}, "unknown option --gpu, on the command line; did you mean --device?"},
+      {{"square.gltf", "--threads", "0"}, "--threads takes a whole number from 1 to 1024, not \"0\""},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values for --eye"},
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-inf"}, "--near takes a number from 0"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "foo"},
        "--exposure takes a number from -64 to 64, auto or average, not \"foo\""},
       {{"render", "square.gltf", "-o", "a.exr", "--fps", "foo"}, " or stored, not \"foo\""},
-      {{"render", "square.gltf", "-o", "a.exr", "--size", "64", "0"}, "--size takes a whole number"},
+      {{"render", "square.gltf", "-o", "a.exr", "--size", "64", "0"},
+       "--size takes a whole number from 1 to 32768, not \"0\" in \"64x0\""},
       {{"render", "square.gltf", "-o", "a.exr", "--max-depth", "1001"}, "--max-depth takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}, "--crop is empty"},
@@ -202,6 +235,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--background takes three numbers or environment, not \"sky\""},
       {{"render", "square.gltf", "--background", "envronment", "-o", "a.exr"}, "did you mean environment?"},
       {{"render", "square.gltf", "--exposure", "averge", "-o", "a.exr"}, "did you mean average?"},
+      {{"render", "square.gltf", "-o", "a.png", "--alpha", "--background", "1", "1", "1"},
+       "--alpha and --background contradict each other, on the command line; leave one out: --alpha makes"},
       {{"render", "square.gltf", "-o", "a.exr", "--dither"}, "--dither has no picture to go to"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "direct", "--shading", "normals"},
        "--aov of light and --shading"},
@@ -656,6 +691,8 @@ TEST_F(CliTest, DevicesNamesTheDefault) {
   EXPECT_EQ(devices.exit_code, 0) << devices.err;
   EXPECT_THAT(devices.out, StartsWith("index"));
   EXPECT_THAT(devices.out, HasSubstr("picked by default"));
+  EXPECT_EQ(devices.out.find("llvmpipe") != std::string::npos,
+            devices.out.find("--threads N sets it") != std::string::npos);
 }
 
 TEST_F(CliTest, ADeviceIsFoundByItsUuid) {
@@ -999,6 +1036,11 @@ TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {
   const Image by_three = render(arguments, "three.exr");
   ASSERT_EQ(by_one.size, by_three.size);
   for (size_t i = 0; i < by_one.pixels.size(); ++i) ASSERT_EQ(by_one.pixels[i], by_three.pixels[i]) << "pixel " << i;
+  // The same by the option, whose kernels come from the cache that the others have filled.
+  OptionValues with_threads = arguments;
+  with_threads.insert(with_threads.end(), {"--threads", "2"});
+  render(with_threads, "two.exr");
+  EXPECT_EQ(read("two.exr"), read("one.exr"));
 }
 
 TEST_F(CliTest, ACropHasTheBitsOfTheWholePicture) {

@@ -19,7 +19,7 @@ class ToolCliTest : public CliTest {
 
 TEST_F(ToolCliTest, HelpAndVersionEverywhere) {
   for (const char* program :
-       {"promin-bench", "promin-check-hits", "promin-compare", "promin-honesty", "promin-report"}) {
+       {"promin-bench", "promin-check-hits", "promin-peer-difference", "promin-honesty", "promin-report"}) {
     const ProcessResult help = run_tool(program, {"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr(std::string("Usage: ") + program));
@@ -77,11 +77,11 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {"promin-check-hits", {"square.gltf", "--builder", "none"}, 2, "--builder takes "},
       {"promin-check-hits", {"none.gltf"}, 3, "none.gltf"},
       {"promin-check-hits", {"square.gltf"}, 4, ";"},
-      {"promin-compare", {}, 2, "FIRST is required"},
-      {"promin-compare", {"a.exr"}, 2, "SECOND is required"},
-      {"promin-compare", {"a.exr", "b.exr", "--fail", "few"}, 2, "--fail takes a number"},
-      {"promin-compare", {"a.exr", "b.exr", "--file", "c"}, 2, "unknown option --file"},
-      {"promin-compare", {"a.exr", "b.exr"}, 3, "a.exr"},
+      {"promin-peer-difference", {}, 2, "FIRST is required"},
+      {"promin-peer-difference", {"a.exr"}, 2, "SECOND is required"},
+      {"promin-peer-difference", {"a.exr", "b.exr", "--fail", "few"}, 2, "--fail takes a number"},
+      {"promin-peer-difference", {"a.exr", "b.exr", "--file", "c"}, 2, "unknown option --file"},
+      {"promin-peer-difference", {"a.exr", "b.exr"}, 3, "a.exr"},
       {"promin-honesty", {}, 2, "SCENE is required"},
       {"promin-honesty", {"square.gltf", "--truth", "63"}, 2, "--truth takes a whole number"},
       {"promin-honesty", {"square.gltf"}, 4, ";"},

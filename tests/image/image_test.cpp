@@ -63,7 +63,9 @@ TEST(EncodeSrgbTest, ClampsAndTakesNanAsBlack) {
 TEST(ImageFormatTest, EndingsAreKnownInAnyCase) {
   EXPECT_TRUE(is_writable_format("a.exr"));
   EXPECT_TRUE(is_writable_format("folder.d/A.PNG"));
-  EXPECT_FALSE(is_writable_format("a.jpg"));
+  EXPECT_TRUE(is_writable_format("a.jpg"));
+  EXPECT_TRUE(is_writable_format("a.JPEG"));
+  EXPECT_FALSE(is_writable_format("a.gif"));
   EXPECT_FALSE(is_writable_format("exr"));
   EXPECT_FALSE(is_writable_format(""));
 }
@@ -108,6 +110,29 @@ TEST_F(ImageTest, PngIsSrgbOf8Bits) {
   ASSERT_EQ(back.size, image.size);
   EXPECT_EQ(glm::round(back.pixels[0] * 255.0F), vec3(0.0F, 118.0F, 188.0F));
   EXPECT_EQ(glm::round(back.pixels[1] * 255.0F), vec3(255.0F, 255.0F, 0.0F));
+}
+
+TEST_F(ImageTest, JpegIsNearSrgbWithWholeColours) {
+  Image image;
+  image.size = uvec2(40, 9);
+  for (uint32_t i = 0; i < 40 * 9; ++i) {
+    const float x = static_cast<float>(i % 40) / 39.0F;
+    image.pixels.emplace_back(x, 1.0F - x, 0.5F * x);
+  }
+  write_image(folder_ / "a.jpg", image);
+  write_image(folder_ / "b.JPEG", image);
+  EXPECT_EQ(read_file(folder_ / "a.jpg"), read_file(folder_ / "b.JPEG"));
+  const Image back = read_image(folder_ / "a.jpg");
+  ASSERT_EQ(back.size, image.size);
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.pixels[i][c], encode_srgb(image.pixels[i][c]), 0.04) << i;
+  }
+  const auto input = OIIO::ImageInput::open((folder_ / "a.jpg").string());
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->spec().get_string_attribute("jpeg:subsampling"), "4:4:4");
+  // More than the format holds.
+  EXPECT_THROW(write_image(folder_ / "wide.jpg", make_ramp(65501, 1)), RunError);
+  EXPECT_EQ(file_count(), 2);
 }
 
 TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {

@@ -104,7 +104,7 @@ class Session:
             f"the PNG is not what this renders: {command}",
         )
         exr = self.render(command, "view.exr")
-        done = run(self.bin / "promin-compare", self.folder / f"promin-{number:04}.exr", exr, "--fail", 0)
+        done = run(self.bin / "promin", "compare", self.folder / f"promin-{number:04}.exr", exr, "--fail", 0, "--json")
         expect(done.returncode == 0, done.stderr)
         expect(json.loads(done.stdout)["largest"] == 0, f"the EXR differs: {done.stdout}")
 
@@ -212,6 +212,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
         viewer.wait_for_line("pixel 140 90: ", 1, "explanation")
         lights = set(re.findall(r"\blight (\d)", viewer.err))
+        expect(re.search(r"^promin-view: (?:  )+camera ray from ", viewer.err, re.M), "the explanation has no lines")
         expect("2" in lights and not lights & {"1", "3"}, f"lights 1 and 3 are off, these are explained: {lights}")
         viewer.press("F1")
         wait_for(lambda: " --shading " not in session.print_command(), "light")

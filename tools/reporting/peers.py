@@ -156,7 +156,7 @@ def _first_row(promin):
 
 def _compare(programs, folder, peer):
     """How far the peer's picture is from promin's; None where that fails, which the peer then tells."""
-    output = peer.attempt(lambda: _run(programs / "promin-compare", "flake.exr", peer.picture, folder=folder)[0])
+    output = peer.attempt(lambda: _run(programs / "promin-peer-difference", "flake.exr", peer.picture, folder=folder)[0])
     return json.loads(output) if output is not None else None
 
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-compare: how far apart two pictures are, in linear light clamped to [0, 1] as every renderer can write it.
+// How far a picture of another renderer is from one of promin, in linear light clamped to [0, 1] as every one can
+// write.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -51,7 +52,7 @@ promin::app::Command add_compare_command(CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return promin::app::run_program("promin-compare",
+  return promin::app::run_program("promin-peer-difference",
                                   "Prints as JSON how two pictures of linear light differ; EXR, or 16-bit PPM.",
                                   {add_compare_command}, argc, argv);
 }

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace promin::app {
+
+/// Options that --help prints under one heading, by their long names in the order in which it prints them.
+struct OptionGroup {
+  std::string heading;
+  std::vector<std::string> options;
+};
+
+/// Has --help print the options of a command in groups, then those that are in none under the last heading. Names that
+/// the command lacks are left out, so that commands can share groups.
+void group_options(CLI::App& command, const std::vector<OptionGroup>& groups);
+
+/// A command line and what it does.
+struct Example {
+  std::string_view command;
+  std::string_view effect;
+};
+
+/// Has --help end with these examples.
+void add_examples(CLI::App& command, std::initializer_list<Example> examples);
+
+}  // namespace promin::app

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "typed_words.h"
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+namespace promin::app {
+namespace {
+
+constexpr const char* kRender = "render";
+constexpr std::string_view kSize = "--size";
+constexpr std::string_view kWidth = "--width";
+constexpr std::string_view kHeight = "--height";
+
+/// What another program calls an option.
+struct OtherName {
+  std::string_view typed;
+  std::string_view option;
+};
+
+/// Those that can mean nothing else, and take the same values.
+constexpr OtherName kSameOptions[] = {
+    {"--resolution", kSize}, {"--samples", "--spp"}, {"--transparent", "--alpha"}, {"--num-threads", "--threads"}};
+
+/// Those that may have other values, or mean a little more or less. Where a name has several rows, the first holds
+/// whose option the command has.
+constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
+                                      {"--animation", "--path"},
+                                      {"--antialiasing", "--spp"},
+                                      {"--aovs", "--aov"},
+                                      {"--aperture", "--fov"},
+                                      {"--background-color", "--background"},
+                                      {"--bg", "--background"},
+                                      {"--bounces", "--max-depth"},
+                                      {"--brightness", "--exposure"},
+                                      {"--camera-position", "--eye"},
+                                      {"--channels", "--aov"},
+                                      {"--cores", "--threads"},
+                                      {"--debug", "--shading"},
+                                      {"--dimensions", kSize},
+                                      {"--env", "--environment"},
+                                      {"--envmap", "--environment"},
+                                      {"--ev", "--exposure"},
+                                      {"--field-of-view", "--fov"},
+                                      {"--file", "--output"},
+                                      {"--format", "--output"},
+                                      {"--frame", "--frames"},
+                                      {"--framerate", "--fps"},
+                                      {"--gamma", "--tone-mapping"},
+                                      {"--geometry", kSize},
+                                      {"--gpu", "--device"},
+                                      {"--hdr", "--environment"},
+                                      {"--hdri", "--environment"},
+                                      {"--ibl", "--environment"},
+                                      {"--image-size", kSize},
+                                      {"--jobs", "--threads"},
+                                      {"--layers", "--aov"},
+                                      {"--lighting", "--light"},
+                                      {"--max-time", "--time-limit"},
+                                      {"--msaa", "--spp"},
+                                      {"--no-background", "--alpha"},
+                                      {"--noise", "--target-error"},
+                                      {"--normals", "--shading"},
+                                      {"--outfile", "--output"},
+                                      {"--output-file", "--output"},
+                                      {"--output-format", "--output"},
+                                      {"--passes", "--aov"},
+                                      {"--position", "--eye"},
+                                      {"--recursion", "--max-depth"},
+                                      {"--region", "--crop"},
+                                      {"--resume", "--job"},
+                                      {"--silent", "--quiet"},
+                                      {"--skybox", "--environment"},
+                                      {"--target", "--look-at"},
+                                      {"--threshold", "--fail"},
+                                      {"--threshold", "--target-error"},
+                                      {"--time", "--time-limit"},
+                                      {"--timeout", "--time-limit"},
+                                      {"--tolerance", "--fail"},
+                                      {"--tolerance", "--target-error"},
+                                      {"--tonemap", "--tone-mapping"},
+                                      {"--tonemapping", "--tone-mapping"},
+                                      {"--view", "--from"},
+                                      {"--viewpoint", "--from"},
+                                      {"--wireframe", "--shading"}};
+
+constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k"};
+constexpr uvec2 kNamedSizes[] = {{1280, 720}, {1920, 1080}, {3840, 2160}};
+
+bool has_option(const CLI::App& command, std::string_view name) {
+  return command.get_option_no_throw(std::string(name)) != nullptr;
+}
+
+bool is_command(const CLI::App& program, const std::string& word) {
+  return !program.get_subcommands([&](const CLI::App* each) { return each->get_name() == word; }).empty();
+}
+
+const CLI::App& find_command(const CLI::App& program, const std::vector<std::string>& words) {
+  const auto word = std::ranges::find_if(words, [&](const std::string& each) { return is_command(program, each); });
+  return word == words.end() ? program : *program.get_subcommand(*word);
+}
+
+bool is_number(const std::string& word) {
+  double number = 0.0;
+  return std::from_chars(word.data(), word.data() + word.size(), number).ptr == word.data() + word.size();
+}
+
+/// Takes "--name VALUE" or "--name=VALUE" out of the words; the last of several holds.
+std::optional<std::string> take_value(std::vector<std::string>& words, std::string_view name, size_t& place) {
+  std::optional<std::string> value;
+  for (size_t i = 1; i < words.size();) {
+    const bool is_alone = words[i] == name && i + 1 < words.size();
+    if (!is_alone && !words[i].starts_with(std::string(name) + "=")) {
+      ++i;
+      continue;
+    }
+    value = is_alone ? words[i + 1] : words[i].substr(name.size() + 1);
+    const auto begin = words.begin() + static_cast<std::ptrdiff_t>(i);
+    words.erase(begin, begin + (is_alone ? 2 : 1));
+    place = i;
+  }
+  return value;
+}
+
+/// --size of --width and --height.
+void join_sides(std::vector<std::string>& words) {
+  size_t place = 0;
+  const std::optional<std::string> width = take_value(words, kWidth, place);
+  const std::optional<std::string> height = take_value(words, kHeight, place);
+  if (!width && !height) return;
+  const std::string size = width.value_or("") + (height ? "x" + *height : "");
+  words.insert(words.begin() + static_cast<std::ptrdiff_t>(place), {std::string(kSize), size});
+}
+
+/// One word of the two of --size W H.
+void join_size(std::vector<std::string>& words) {
+  for (size_t i = 1; i + 2 < words.size(); ++i) {
+    if (words[i] != kSize || !is_number(words[i + 1]) || !is_number(words[i + 2])) continue;
+    words[i + 1] += "x" + words[i + 2];
+    words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+  }
+}
+
+/// Whether it must be a file, be it there or not.
+bool names_file(const std::string& word) {
+  std::error_code error;
+  return !word.starts_with('-') &&
+         (word.find_first_of("./") != std::string::npos || std::filesystem::is_regular_file(word, error));
+}
+
+void add_render(const CLI::App& program, std::vector<std::string>& words) {
+  if (!is_command(program, kRender) || words.size() < 2) return;
+  const auto is_one = [&](const std::string& each) { return is_command(program, each); };
+  const bool has_command = std::any_of(words.begin() + 1, words.end(), is_one);
+  const bool has_file = std::any_of(words.begin() + 1, words.end(), names_file);
+  const bool begins_with_option = words[1].starts_with('-') && has_file && !has_command;
+  if (!is_one(words[1]) && (names_file(words[1]) || begins_with_option)) words.insert(words.begin() + 1, kRender);
+}
+
+}  // namespace
+
+std::vector<std::string> spell_out(const CLI::App& program, const std::vector<std::string>& words) {
+  std::vector<std::string> spelt = words;
+  add_render(program, spelt);
+  const CLI::App& command = find_command(program, spelt);
+  for (const OtherName& other : kSameOptions) {
+    if (!has_option(command, other.option) || has_option(command, other.typed)) continue;
+    for (std::string& word : spelt) {
+      if (word.substr(0, word.find('=')) == other.typed) word.replace(0, other.typed.size(), other.option);
+    }
+  }
+  if (!has_option(command, kSize)) return spelt;
+  join_sides(spelt);
+  join_size(spelt);
+  return spelt;
+}
+
+std::string find_by_meaning(const CLI::App& command, std::string_view typed) {
+  const auto* const found = std::ranges::find_if(
+      kNearOptions, [&](const OtherName& other) { return other.typed == typed && has_option(command, other.option); });
+  return found == std::end(kNearOptions) ? "" : std::string(found->option);
+}
+
+std::optional<uvec2> find_named_size(std::string_view name) {
+  const auto* const found = std::ranges::find(kSizeNames, name);
+  return found == std::end(kSizeNames) ? std::nullopt : std::optional(kNamedSizes[found - kSizeNames]);
+}
+
+std::span<const std::string_view> size_names() {
+  return kSizeNames;
+}
+
+}  // namespace promin::app
