@@ -25,7 +25,7 @@ class GroupFormatter : public CLI::Formatter {
 
  private:
   std::string make_own_groups(const CLI::App& app) const {
-    const auto is_option = [](const CLI::Option* each) { return each->nonpositional(); };
+    const auto is_option = [](const CLI::Option* each) { return each->nonpositional() && !each->get_group().empty(); };
     std::vector<const CLI::Option*> left = app.get_options(is_option);
     std::string text;
     for (const OptionGroup& group : groups_) {
