@@ -92,7 +92,7 @@ class _Promin:
     def _render(self, name, side):
         """Device milliseconds of the tracing, and of the whole process by the clock on the wall; and the rays."""
         command = (self._program, "render", f"{name}.gltf", "-o", f"{name}.exr", "--size", side, side, *self._device)
-        settings = ("--max-depth", _MAX_DEPTH, "--quiet", "--stats", "stats.json")
+        settings = ("--spp", 1, "--max-depth", _MAX_DEPTH, "--quiet", "--stats", "stats.json")
         _, took_ms = _run(*command, *settings, folder=self._folder)
         stats = json.loads((self._folder / "stats.json").read_text(encoding="utf-8"))
         return stats["times_ms"]["trace"], took_ms, stats["rays"]
