@@ -11,6 +11,7 @@ from scenegen import features, fine
 from scenegen.colored_meshes import write_colored_meshes
 from scenegen.showcase import showcase
 from scenegen.sphereflake import sphereflake
+from scenegen.still_life import still_life
 from scenegen.wavefront import write_obj_scenes
 
 
@@ -24,6 +25,7 @@ def write_all(folder):
     write_each(features.SCENES, folder)
     sphereflake(2).write(folder / "sphereflake.gltf")
     showcase().write(folder / "showcase.gltf", separate_buffer=True)
+    still_life().write(folder / "still_life.gltf", separate_buffer=True)
     write_obj_scenes(folder)
     write_colored_meshes(folder)
 

@@ -588,7 +588,7 @@ def test_files_are_checked_before_the_work(scene: Path, rays: Path, tmp_path: Pa
         (casts, ["a.npy", "b.npy"], "the job's answers go to one file, not to 2"),
         (casts, ["a.exr"], ".npy"),
         (lists, ["a.npy"], "the job's answers go to two files"),
-        (pictures, ["a.jpg"], "unknown output ending"),
+        (pictures, ["a.bmp"], "unknown output ending"),
     ):
         with pytest.raises(promin.UsageError, match=sentence):
             job.check_outputs(files)

@@ -122,11 +122,11 @@ class Gltf:
         pbr = {"baseColorFactor": _numbers((*base_color, 1.0)), **factors}
         return self._append("materials", {"name": name, "pbrMetallicRoughness": pbr})
 
-    def textured(self, name, rows):
-        """Metallic-roughness, dull, in the colours of a repeated texture: rows of RGB bytes, codes of sRGB."""
+    def textured(self, name, rows, roughness=1.0):
+        """No metal, in the colours of a repeated texture: rows of RGB bytes, codes of sRGB."""
         uri = "data:image/png;base64," + base64.b64encode(png(rows)).decode()
         texture = self._append("textures", {"source": self._append("images", {"name": name, "uri": uri})})
-        index = self.metallic_roughness(name, (1.0, 1.0, 1.0), 0.0, 1.0)
+        index = self.metallic_roughness(name, (1.0, 1.0, 1.0), 0.0, roughness)
         self._root["materials"][index]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}
         return index
 
@@ -149,6 +149,17 @@ class Gltf:
         self._extensions.add(extension)
         self._root["materials"][index].setdefault("extensions", {})[extension] = parameters
         return index
+
+    def coat(self, index, roughness, factor=1.0):
+        """The same material under a layer of varnish."""
+        parameters = {"clearcoatFactor": shortest(factor), "clearcoatRoughnessFactor": shortest(roughness)}
+        return self._extend(index, "KHR_materials_clearcoat", parameters)
+
+    def velvet(self, name, base_color, sheen_color):
+        index = self.metallic_roughness(name, base_color, 0.0, 0.9)
+        self._root["materials"][index]["doubleSided"] = True
+        parameters = {"sheenColorFactor": _numbers(sheen_color), "sheenRoughnessFactor": shortest(0.45)}
+        return self._extend(index, "KHR_materials_sheen", parameters)
 
     def paper(self, name, base_color, share, color):
         """A matt wall that scatters a share of its light to the other side, in a colour of its own."""
