@@ -132,7 +132,7 @@ class SceneReader:
         return color, [a * (1 - share) + c * share for a, c in zip(ambient, color)]
 
     def camera(self, wanted):
-        """The camera of this name or number."""
+        """The camera of this name or number, as a square picture shows what it sees: at least all of its own."""
         found = [c for i, c in enumerate(self._cameras) if wanted in (c[0], str(i))]
         if not found:
             raise Unsupported(f"camera {wanted}: there is none of that name or number")
@@ -140,6 +140,11 @@ class SceneReader:
         right, up, back = (unit(transform(world, axis, 0.0)) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
         is_orthographic = lens["type"] == "orthographic"
         height = 2 * (lens["orthographic"]["ymag"] if is_orthographic else math.tan(lens["perspective"]["yfov"] / 2))
+        if is_orthographic:
+            aspect_ratio = lens["orthographic"]["xmag"] / lens["orthographic"]["ymag"]
+        else:
+            aspect_ratio = lens["perspective"].get("aspectRatio", 1.0)
+        height *= max(1.0, aspect_ratio)
         return Camera(is_orthographic, height, transform(world, (0, 0, 0)), right, up, [-x for x in back])
 
     def _read_buffer(self, uri):

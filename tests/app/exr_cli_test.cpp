@@ -107,11 +107,8 @@ TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
 }
 
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
-  const OptionValues background = {"--background", "0.5", "0.25", "1", "--spp", "16"};
-  const ReadExr with = render_exr(background);
-  OptionValues options = background;
-  options.push_back("--alpha");
-  const ReadExr without = render_exr(options);
+  const ReadExr with = render_exr({"--background", "0.5", "0.25", "1", "--spp", "16"});
+  const ReadExr without = render_exr({"--alpha", "--spp", "16"});
   const std::vector<float>& alpha = without.channels.at("A");
   size_t between = 0;
   for (size_t i = 0; i < alpha.size(); ++i) {

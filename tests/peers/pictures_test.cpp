@@ -21,9 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using OptionValues = std::vector<std::string>;
 
-/// Of 16:9: what promin shows of the scenes' cameras in a narrower picture is wider than what the peers show.
-constexpr const char* kWidth = "1024";
-constexpr const char* kHeight = "576";
+constexpr const char* kSize = "1024";
 /// Bounces, as promin counts them.
 constexpr const char* kMaxDepth = "6";
 
@@ -44,12 +42,12 @@ struct Peer {
 };
 
 Peer povray() {
+  const std::string size(kSize);
   return {"POV-Ray",
           PROMIN_POVRAY,
           "scene_to_pov.py",
           "scene.pov",
-          {"+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA", std::string("+W") + kWidth,
-           std::string("+H") + kHeight},
+          {"+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA", "+W" + size, "+H" + size},
           "povray.exr"};
 }
 
@@ -58,7 +56,7 @@ Peer tachyon() {
           PROMIN_TACHYON,
           "scene_to_tachyon.py",
           "scene.dat",
-          {"scene.dat", "-fullshade", "-shade_phong", "-format", "PPM48", "-res", kWidth, kHeight, "-o", "tachyon.ppm"},
+          {"scene.dat", "-fullshade", "-shade_phong", "-format", "PPM48", "-res", kSize, kSize, "-o", "tachyon.ppm"},
           "tachyon.ppm"};
 }
 
@@ -89,8 +87,8 @@ class PeerPictureTest : public testing::Test {
     if (peer.program.empty()) GTEST_SKIP() << peer.name << " was not installed when this was configured";
     ASSERT_NO_FATAL_FAILURE(run_tool(peer.converter, {scene, "-o", peer.scene, "--max-depth", kMaxDepth}));
     ASSERT_NO_FATAL_FAILURE(run(peer.program, peer.arguments));
-    ASSERT_NO_FATAL_FAILURE(run(PROMIN_EXECUTABLE, {"render", scene, "-o", "promin.exr", "--spp", "1", "--size", kWidth,
-                                                    kHeight, "--max-depth", kMaxDepth, "--quiet"}));
+    ASSERT_NO_FATAL_FAILURE(run(PROMIN_EXECUTABLE, {"render", scene, "-o", "promin.exr", "--spp", "1", "--size", kSize,
+                                                    kSize, "--max-depth", kMaxDepth, "--quiet"}));
     const ImageDifference difference = compare_images(clamp(read_image(folder_ / "promin.exr")),
                                                       clamp(read_image(folder_ / peer.picture)), kTolerance);
     std::cout << difference.summary() << '\n';
