@@ -110,7 +110,8 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
   std::optional<dvec3> direction = find_direction(pose, camera, scene.center);
   if (!direction) {
     direction = middle_of(scene) + scene.center - *pose.eye;
-    if (*direction == dvec3(0.0)) {
+    // The bounds of shapes are rounded to fp32.
+    if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(frame_of(scene).extent()))) {
       throw UsageError({"--eye is in the middle of the scene", kWhere, "give --look-at or --direction as well"});
     }
   }

@@ -28,6 +28,17 @@ def test_code_in_documents_works(document: str, tmp_path: Path, monkeypatch: pyt
     assert (tmp_path / "showcase.png").exists()
 
 
+def test_rays_of_the_manual_hit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = re.search(r"```python\n(import numpy\n.*?)```", (REPOSITORY / "docs/usage.md").read_text(), re.DOTALL)
+    assert found
+    monkeypatch.chdir(tmp_path)
+    exec(compile(found[1], "docs/usage.md", "exec"), {})
+    scene = promin.Scene.load(REPOSITORY / "scenes/sphere.gltf")
+    rays = np.load("rays.npy")
+    assert rays.shape == (100, 8) and (rays[:, 3] < rays[:, 7]).all()
+    assert (promin.Caster(scene).cast(rays)["object"] >= 0).any()
+
+
 def run_example(name: str, monkeypatch: pytest.MonkeyPatch, *words: object) -> None:
     monkeypatch.setattr(sys, "argv", [name, *map(str, words)])
     runpy.run_path(str(REPOSITORY / "python/examples" / name), run_name="__main__")

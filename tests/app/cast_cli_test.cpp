@@ -136,21 +136,6 @@ TEST_F(CastTest, RaysThatCannotHitAreCounted) {
   EXPECT_EQ(hits[8].object, 0);
 }
 
-TEST_F(CastTest, TheSampleOfTheManualHits) {
-  std::ifstream manual(std::filesystem::path(PROMIN_TOOLS_DIR).parent_path() / "docs/usage.md");
-  const std::string text{std::istreambuf_iterator<char>(manual), {}};
-  const size_t begin = text.find("```python\nimport numpy\n") + 10;
-  ASSERT_GE(begin, 10U);
-  write("sample.py", text.substr(begin, text.find("```", begin) - begin));
-  ASSERT_EQ(Process(PROMIN_PYTHON, {"sample.py"}, options_).wait().exit_code, 0);
-  const ProcessResult result = run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, IsEmpty());
-  const std::vector<Hit> hits = read_hits("hits.npy");
-  ASSERT_EQ(hits.size(), 100U);
-  for (const Hit& hit : hits) EXPECT_EQ(hit.t, 4.0F);
-}
-
 TEST_F(CastTest, AnyTellsOnlyWhether) {
   write_rays("rays.npy", kRays);
   ASSERT_EQ(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--any", "--quiet"}).exit_code, 0);

@@ -64,9 +64,9 @@ TEST(ViewSetupTest, WidthFollowsTheCamerasAspectRatio) {
   EXPECT_EQ(make_view(make_scene(), options, kSilent).size, uvec2(1280, 720));
   options.camera = "side";
   EXPECT_EQ(make_view(make_scene(), options, kSilent).size, uvec2(1440, 720));
-  options.size = uvec2(100, 100);
+  options.size = uvec2(400, 100);
   const View view = make_view(make_scene(), options, kSilent);
-  EXPECT_EQ(view.size, uvec2(100, 100));
+  EXPECT_EQ(view.size, uvec2(400, 100));
   EXPECT_EQ(view.camera.yfov, make_scene().cameras[1].yfov) << "the vertical field of view holds";
 }
 
