@@ -259,10 +259,11 @@ double read_seconds(const OptionValues& words) {
 }
 
 void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
-  table.add("--time-limit", "SECONDS",
-            "Instead of --spp: the best picture that is finished in this time, as 20, 20s or 2min, and the options that "
-            "give it again",
-            [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
+  table.add(
+      "--time-limit", "SECONDS",
+      "Instead of --spp: the best picture that is finished in this time, as 20, 20s or 2min, and the options that "
+      "give it again",
+      [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
 }
 
 }  // namespace
@@ -388,7 +389,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
-  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [{}, with --explain 1]", kMaxSamplesPerPixel, kDefaultSamples),
+  table.add("-s,--spp", "N",
+            fmt::format("Samples a pixel, 1 to {} [{}, with --explain 1]", kMaxSamplesPerPixel, kDefaultSamples),
             [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
             fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "

@@ -30,7 +30,7 @@ struct FinitePrimitives {
     const bool is_moved = !Placement(world_from_object).is_identity();
     constexpr size_t kTriangles = 16384;
     for (const Sum& part :
-         make_parts(mesh.triangles.size(), kTriangles, 0, sum.start_part(), [&](size_t begin, size_t end, Sum& some) {
+         make_parts(mesh.triangles.size(), kTriangles, 0, sum.start_part(), [&](size_t begin, size_t end, Sum&some) {
            for (size_t i = begin; i < end; ++i) add_triangle(some, mesh, mesh.triangles[i], is_moved);
          })) {
       sum.add_part(part);

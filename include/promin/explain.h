@@ -52,8 +52,8 @@ struct ExplainedRay {
   vec3 shading_normal{0.0F};
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Weight of what is seen at its end: the product of the mirrors and the glass so far, and of what surfaces that blend
-  /// and media on the way leave.
+  /// Weight of what is seen at its end: the product of the mirrors and the glass so far, and of what surfaces that
+  /// blend and media on the way leave.
   vec3 weight{1.0F};
   /// How much of what is behind it the hit covers, 0...1: the rest of the weight is the next ray's, which is this one
   /// from behind the hit on. 1 unless the material blends.
@@ -69,8 +69,8 @@ struct ExplainedRay {
 
 /// The path of one sample.
 struct ExplainedSample {
-  /// The camera's ray, then those that follow from it, in the order in which they are summed: of the two that leave glass
-  /// the mirror's with all that follows from it, then the refracted. At least one.
+  /// The camera's ray, then those that follow from it, in the order in which they are summed: of the two that leave
+  /// glass the mirror's with all that follows from it, then the refracted. At least one.
   std::vector<ExplainedRay> rays;
   /// Light that the path brings to the sample: the last ray's sum.
   const vec3& radiance() const { return rays.back().radiance; }
