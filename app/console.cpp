@@ -5,12 +5,23 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <ctime>
 #include <sstream>
 
+#include "core/stopwatch.h"
 #include "core/utf8.h"
 #include "promin/error.h"
 
 namespace promin::app {
+namespace {
+
+const Stopwatch since_start;
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+}  // namespace
 
 Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
   if (is_quiet && is_verbose) {
@@ -20,9 +31,14 @@ Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
   return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
 }
 
+void Console::detail(const std::string& text) const {
+  if (verbosity_ < Verbosity::kVerbose) return;
+  print(fmt::format("[{:.2f} s, CPU {:.2f} s] {}", 1e-3 * since_start.ms(), cpu_seconds(), text), Verbosity::kVerbose);
+}
+
 void Console::details(const std::string& lines) const {
   std::istringstream text(lines);
-  for (std::string line; std::getline(text, line);) detail(line);
+  for (std::string line; std::getline(text, line);) print(line, Verbosity::kVerbose);
 }
 
 void Console::print(const std::string& text, Verbosity least) const {

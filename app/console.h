@@ -20,10 +20,10 @@ class Console {
   /// Says what was assumed where the scene or the user did not say.
   void note(const std::string& text) const { print("note: " + text, Verbosity::kNormal); }
   void warn(const std::string& text) const { print("warning: " + text, Verbosity::kNormal); }
-  /// Says something only when verbose.
-  void detail(const std::string& text) const { print(text, Verbosity::kVerbose); }
+  /// Says something only when verbose, after the seconds since the program started and those of all CPU cores.
+  void detail(const std::string& text) const;
 
-  /// The same of a text of several lines, each as a line of its own.
+  /// Says the lines of a text only when verbose, each as a line of its own.
   void details(const std::string& lines) const;
 
   bool is_quiet() const { return verbosity_ == Verbosity::kQuiet; }
