@@ -7,6 +7,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "image/picture_endings.h"
+
 namespace promin {
 namespace {
 
@@ -27,7 +29,8 @@ void flush(png_structp) {}
 
 }  // namespace
 
-PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha) : bytes_(bytes) {
+PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene)
+    : bytes_(bytes) {
   png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error_, take_error, take_warning);
   if (png_ != nullptr) info_ = png_create_info_struct(png_);
   if (info_ == nullptr) {
@@ -36,7 +39,7 @@ PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha) :
   }
   png_set_write_fn(png_, &bytes_, take_bytes, flush);
   try {
-    write_header(size, has_alpha);
+    write_header(size, has_alpha, scene);
   } catch (...) {
     png_destroy_write_struct(&png_, &info_);
     throw;
@@ -52,7 +55,10 @@ void PngEncoder::fail() const {
   throw std::runtime_error(error_.data());
 }
 
-void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
+void PngEncoder::write_header(const uvec2& size, bool has_alpha, const std::string& scene) {
+  std::string scene_key(kSceneKey);
+  std::string scene_text = scene;
+  char none = '\0';
   if (setjmp(png_jmpbuf(png_)) != 0) fail();
   constexpr int kCompression = 6;
   constexpr int kBits = 8;
@@ -66,12 +72,17 @@ void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
   // As OpenImageIO wrote it, so that equal pictures stay equal files.
   std::array<char, 16> key{"oiio:ColorSpace"};
   std::array<char, 5> text{"sRGB"};
-  png_text note{};
-  note.compression = PNG_TEXT_COMPRESSION_NONE;
-  note.key = key.data();
-  note.text = text.data();
-  note.text_length = text.size() - 1;
-  png_set_text(png_, info_, &note, 1);
+  std::array<png_text, 2> notes{};
+  notes[0].compression = PNG_TEXT_COMPRESSION_NONE;
+  notes[0].key = key.data();
+  notes[0].text = text.data();
+  notes[0].text_length = text.size() - 1;
+  notes[1].compression = PNG_ITXT_COMPRESSION_NONE;
+  notes[1].key = scene_key.data();
+  notes[1].text = scene_text.data();
+  notes[1].itxt_length = scene_text.size();
+  notes[1].lang = notes[1].lang_key = &none;
+  png_set_text(png_, info_, notes.data(), scene.empty() ? 1 : 2);
   png_write_info(png_, info_);
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "image/picture_bytes.h"
 #include "promin/math.h"
@@ -14,12 +15,12 @@
 namespace promin {
 
 /// A PNG file of sRGB in 8 bits, on its way through libpng, which returns from errors by longjmp: nothing with a
-/// destructor may be made between setjmp and a call of libpng. Equal pixels give equal bytes.
+/// destructor may be made between setjmp and a call of libpng. Equal pixels of equal scenes give equal bytes.
 class PngEncoder {
  public:
   /// The bytes outlive it. Everything throws RunError where they cannot be written, std::runtime_error where libpng has
-  /// another reason.
-  PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha);
+  /// another reason. `scene` is told in an iTXt chunk named promin:scene, unless it is empty.
+  PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene = "");
   ~PngEncoder();
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
@@ -29,7 +30,7 @@ class PngEncoder {
   void finish();
 
  private:
-  void write_header(const uvec2& size, bool has_alpha);
+  void write_header(const uvec2& size, bool has_alpha, const std::string& scene);
   [[noreturn]] void fail() const;
 
   PictureBytes& bytes_;

@@ -151,8 +151,7 @@ void bind_scene(nb::module_& module) {
       .def("add_material", [](Scene& s, const nb::dict& record) { s.materials.push_back(read_material(record)); })
       .def("add_light", [](Scene& s, const nb::dict& record) { s.lights.push_back(read_light(record)); })
       .def("add_camera", [](Scene& s, const nb::dict& record) { s.cameras.push_back(read_camera(record)); })
-      .def("set_materials",
-           [](Scene& s, const nb::list& records) { replace_all(s.materials, records, read_material); })
+      .def("set_materials", [](Scene& s, const nb::list& records) { replace_all(s.materials, records, read_material); })
       .def("set_lights", [](Scene& s, const nb::list& records) { replace_all(s.lights, records, read_light); })
       .def("set_environment", [](Scene& s, const nb::dict& record) { s.environment = read_environment(record); })
       .def("materials", [](const Scene& s) { return write_all(s.materials); })
