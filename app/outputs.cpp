@@ -59,7 +59,7 @@ void check_pictures(const std::vector<fs::path>& pictures) {
 
 bool is_picture_of(const fs::path& file, std::string_view scene) {
   using std::string_literals::operator""s;
-  constexpr size_t kHeadBytes = size_t{64} << 10;
+  constexpr size_t kHeadBytes = size_t{1} << 20;
   std::string head(kHeadBytes, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));

@@ -324,7 +324,7 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
 
 /// Throws UsageError where a picture on the standard output would not be the only one there.
 void check_standard_output(const RenderOptions& options) {
-  const auto count = std::ranges::count(options.pictures, StandardOutput::kName);
+  const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
   if (count == 0) return;
   const auto refuse = [](const std::string& what) { throw UsageError({what, "on the command line", "name a file"}); };
   if (count > 1) refuse("-o - is given twice");

@@ -13,7 +13,7 @@
 namespace promin::app {
 
 StandardOutput::StandardOutput(std::vector<std::filesystem::path>& pictures) {
-  const auto found = std::ranges::find(pictures, kName);
+  const auto found = std::find(pictures.begin(), pictures.end(), kName);
   if (found == pictures.end()) return;
   // Nobody else can know the name before.
   std::random_device dice;

@@ -35,7 +35,7 @@ std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2
 }
 
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
-  if (const auto size = choose_size(options.size.value_or(uvec2(0)), camera)) return *size;
+  if (const auto size = size_for(options.size.value_or(uvec2(0)), camera)) return *size;
   throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
                     scene.file.string(), "give --size"});
 }
@@ -50,7 +50,7 @@ std::optional<uvec2> default_size(const Camera& camera) {
   return uvec2(static_cast<uint32_t>(width), kDefaultHeight);
 }
 
-std::optional<uvec2> choose_size(const uvec2& sides, const Camera& camera) {
+std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
   const std::optional<uvec2> usual = default_size(camera);
   return sides == uvec2(0) ? usual : complete_size(sides, usual);
 }

@@ -7,8 +7,6 @@
 #include <new>
 #include <stdexcept>
 
-#include "image/picture_endings.h"
-
 namespace promin {
 namespace {
 
@@ -30,7 +28,7 @@ void flush(png_structp) {}
 }  // namespace
 
 PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene)
-    : bytes_(bytes) {
+    : bytes_(bytes), scene_(scene) {
   png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error_, take_error, take_warning);
   if (png_ != nullptr) info_ = png_create_info_struct(png_);
   if (info_ == nullptr) {
@@ -39,7 +37,7 @@ PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, c
   }
   png_set_write_fn(png_, &bytes_, take_bytes, flush);
   try {
-    write_header(size, has_alpha, scene);
+    write_header(size, has_alpha);
   } catch (...) {
     png_destroy_write_struct(&png_, &info_);
     throw;
@@ -55,10 +53,7 @@ void PngEncoder::fail() const {
   throw std::runtime_error(error_.data());
 }
 
-void PngEncoder::write_header(const uvec2& size, bool has_alpha, const std::string& scene) {
-  std::string scene_key(kSceneKey);
-  std::string scene_text = scene;
-  char none = '\0';
+void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
   if (setjmp(png_jmpbuf(png_)) != 0) fail();
   constexpr int kCompression = 6;
   constexpr int kBits = 8;
@@ -78,11 +73,12 @@ void PngEncoder::write_header(const uvec2& size, bool has_alpha, const std::stri
   notes[0].text = text.data();
   notes[0].text_length = text.size() - 1;
   notes[1].compression = PNG_ITXT_COMPRESSION_NONE;
-  notes[1].key = scene_key.data();
-  notes[1].text = scene_text.data();
-  notes[1].itxt_length = scene_text.size();
-  notes[1].lang = notes[1].lang_key = &none;
-  png_set_text(png_, info_, notes.data(), scene.empty() ? 1 : 2);
+  notes[1].key = scene_key_.data();
+  notes[1].text = scene_.data();
+  notes[1].itxt_length = scene_.size();
+  // Empty.
+  notes[1].lang = notes[1].lang_key = scene_key_.data() + scene_key_.size();
+  png_set_text(png_, info_, notes.data(), scene_.empty() ? 1 : 2);
   png_write_info(png_, info_);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "image/picture_bytes.h"
+#include "image/picture_endings.h"
 #include "promin/math.h"
 
 namespace promin {
@@ -30,10 +31,12 @@ class PngEncoder {
   void finish();
 
  private:
-  void write_header(const uvec2& size, bool has_alpha, const std::string& scene);
+  void write_header(const uvec2& size, bool has_alpha);
   [[noreturn]] void fail() const;
 
   PictureBytes& bytes_;
+  std::string scene_;
+  std::string scene_key_{kSceneKey};
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   std::array<char, 256> error_{};

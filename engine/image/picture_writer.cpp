@@ -173,7 +173,7 @@ class PictureWriter::Impl {
       } else if (is_jpeg(file)) {
         jpeg_.emplace(bytes_, header.size);
       } else if (const std::string_view format = plugin_format_of(file); !format.empty()) {
-        const size_t pixel_bytes = is_radiance(file) ? sizeof(vec3) : has_alpha() ? 4 : 3;
+        const size_t pixel_bytes = is_radiance(file) ? sizeof(vec3) : size_t{has_alpha() ? 4U : 3U};
         plugin_.emplace(output_.temporary(), format, header.size, pixel_bytes);
       } else {
         png_.emplace(bytes_, header.size, has_alpha(), find_scene(header.metadata));

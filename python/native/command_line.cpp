@@ -111,24 +111,24 @@ using Size = std::pair<uint32_t, uint32_t>;
 
 /// Width and height of a camera's pictures of which these sides are asked, 0 being open; None where there are none.
 std::optional<Size> choose_size(const nb::dict& camera, const Size& sides) {
-  const std::optional<uvec2> size = app::choose_size({sides.first, sides.second}, read_camera(camera));
+  const std::optional<uvec2> size = app::size_for({sides.first, sides.second}, read_camera(camera));
   if (!size) return {};
   return Size(size->x, size->y);
 }
 
 /// The sides that a word of --size asks for, 0 being open.
 Size read_size(const std::string& word) {
-  const uvec2 size = *read_options({"--size", word}).view.size;
+  const uvec2 size = *read_options({"--size=" + word}).view.size;
   return {size.x, size.y};
 }
 
 double read_time_limit(const std::string& word) {
-  return *read_options({"--time-limit", word}).error.time_limit_s;
+  return *read_options({"--time-limit=" + word}).error.time_limit_s;
 }
 
 /// The fields of a view with this debug view that a word of --quality stands for.
 nb::dict read_quality(const std::string& word, const std::string& debug_view) {
-  app::RenderOptions options = read_options({"--quality", word, "--shading", debug_view});
+  app::RenderOptions options = read_options({"--quality=" + word, "--shading=" + debug_view});
   app::apply_quality(options);
   nb::dict fields;
   fields["spp"] = options.view.samples_per_pixel.value_or(app::kDefaultSamples);
@@ -179,7 +179,7 @@ app::RenderOptions read_options(const std::vector<std::string>& words) {
   } catch (const UsageError& error) {
     // Python has no command line, and its keywords no dashes.
     Problem problem = error.problems().front();
-    if (problem.what.starts_with("--")) problem.what.erase(0, 2);
+    if (const size_t dashes = problem.what.find("--"); dashes != std::string::npos) problem.what.erase(dashes, 2);
     if (!problem.cure.starts_with("did you mean")) problem.cure.clear();
     problem.where.clear();
     throw UsageError(problem);

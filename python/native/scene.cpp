@@ -89,8 +89,10 @@ LightChoice read_choice(const std::string& name) {
 Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& background) {
   app::LookOptions look;
   if (!background.empty()) {
-    std::vector<std::string> words{"--background"};
-    words.insert(words.end(), background.begin(), background.end());
+    std::vector<std::string> words = background;
+    // A word alone may begin with a dash.
+    if (words.size() == 1) words.front().insert(0, "--background=");
+    if (words.size() > 1) words.insert(words.begin(), "--background");
     look = read_options(words).view.look;
   }
   look.light = read_choice(choice);

@@ -68,7 +68,16 @@ def names_keywords(function: Function) -> Function:
     return call  # type: ignore[return-value]
 
 
-_OTHER_KEYWORDS = {"from": "from_", "framing": "from_", "shading": "debug_view", "aov": "aovs", "environment": "background"}
+_OTHER_KEYWORDS = {
+    "alpha": "aovs",
+    "aov": "aovs",
+    "framing": "from_",
+    "height": "size",
+    "shading": "debug_view",
+    "transparent": "aovs",
+    "width": "size",
+}
+"""What is called otherwise than in the programs."""
 
 
 @dataclass(frozen=True)
@@ -422,7 +431,10 @@ def _words_of(background: Background) -> list[str]:
     if background is None:
         return []
     if isinstance(background, str):
-        return background.split() or ["-"]
+        words = background.split() or ["-"]
+        if any(word.startswith("--") for word in words):
+            raise UsageError(f"background is {background!r:.80}; give three numbers or a word as \"environment\"")
+        return words
     try:
         return [repr(float(value)) for value in background]
     except (TypeError, ValueError):

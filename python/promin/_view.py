@@ -101,9 +101,9 @@ def settle_quality(view: View) -> View:
     for name in _NUMBERS_OF_SAMPLES:
         if getattr(view, name) != getattr(View, name):
             raise UsageError(f"quality and {name} contradict each other; leave one out")
-    fields = _promin.read_quality(str(view.quality), str(view.debug_view))
-    if fields["target_error"] is None and view.error_in == View.error_in:
-        fields["error_in"] = View.error_in
+    fields = _promin.read_quality(str(view.quality) or "-", str(view.debug_view) or "-")
+    if fields["target_error"] is None:
+        fields["error_in"] = view.error_in
     return dataclasses.replace(view, quality=None, **fields)
 
 

@@ -205,7 +205,7 @@ void write_picture(const char* file, const std::string& format, OIIO::ImageSpec 
   spec.attribute("compression", "zip");
   // Else the file would hold the time at which it is written, and equal pictures would be different files.
   spec.attribute("DateTime", "");
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  const auto output = OIIO::ImageOutput::create(format);
   if (!output) throw std::runtime_error(first_line(OIIO::geterror()));
   if (!output->open(file, spec) || !output->write_image(spec.format, pixels) || !output->close()) {
     throw std::runtime_error(first_line(output->geterror()));

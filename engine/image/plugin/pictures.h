@@ -98,11 +98,11 @@ int promin_pictures_describe_part(struct ProminPicturesReader* reader, uint32_t 
 int promin_pictures_read_rows(struct ProminPicturesReader* reader, uint32_t part, uint32_t first_row,
                               uint32_t row_count, void* pixels, struct ProminPicturesMessage* message);
 
-/// Writes a whole picture to a file that is there, of any name: "webp" without loss, or "tiff", of 8 bits in sRGB with
-/// three or, with unassociated alpha, four channels; or "hdr" of three floats of linear light. Equal pixels give equal
-/// bytes.
-int promin_pictures_write(const char* file, const char* format, uint32_t width, uint32_t height,
-                          uint32_t channel_count, const void* pixels, struct ProminPicturesMessage* message);
+/// Writes a whole picture to a file that is there, of any name: "webp", with loss but for alpha, or "tiff", of 8 bits
+/// in sRGB with three or, with unassociated alpha, four channels; or "hdr" of three floats of linear light. Equal
+/// pixels give equal bytes.
+int promin_pictures_write(const char* file, const char* format, uint32_t width, uint32_t height, uint32_t channel_count,
+                          const void* pixels, struct ProminPicturesMessage* message);
 
 /// Closes what promin_pictures_open gave; nothing happens to null.
 void promin_pictures_close(struct ProminPicturesReader* reader);
