@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/utf8.h"
 #include "deferred_signals.h"
+#include "image/picture_endings.h"
 #include "promin/error.h"
 #include "promin/image.h"
 
@@ -50,10 +51,32 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
 void check_pictures(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures) {
     if (!is_writable_format(picture)) {
-      throw UsageError({"unknown output ending \"" + picture.extension().string() + "\"", picture.string(),
-                        "use .exr, .png or .jpg"});
+      throw UsageError(
+          {"unknown output ending \"" + picture.extension().string() + "\"", picture.string(), kUseKnownEnding});
     }
   }
+}
+
+bool is_picture_of(const fs::path& file, std::string_view scene) {
+  using std::string_literals::operator""s;
+  constexpr size_t kHeadBytes = size_t{1} << 20;
+  std::string head(kHeadBytes, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<size_t>(stream.gcount()));
+  const auto size = static_cast<uint32_t>(scene.size());
+  const std::string key(kSceneKey);
+  const auto bytes_of = [](uint32_t number) {
+    return std::string{static_cast<char>(number), static_cast<char>(number >> 8), static_cast<char>(number >> 16),
+                       static_cast<char>(number >> 24)};
+  };
+  // An attribute of OpenEXR: name, type, size and value. An iTXt chunk of PNG: size, type, key, no compression, no
+  // language.
+  std::string chunk_size = bytes_of(size + static_cast<uint32_t>(key.size()) + 5);
+  std::ranges::reverse(chunk_size);
+  const std::string in_exr = key + "\0string\0"s + bytes_of(size) + std::string(scene);
+  const std::string in_png = chunk_size + "iTXt" + key + "\0\0\0\0\0"s + std::string(scene);
+  return head.find(in_exr) != std::string::npos || head.find(in_png) != std::string::npos;
 }
 
 void check_overwrites(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,

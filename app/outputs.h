@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace promin::app {
@@ -14,6 +15,9 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
 
 /// Throws UsageError for a picture of an ending that write_image does not know.
 void check_pictures(const std::vector<std::filesystem::path>& pictures);
+
+/// Whether the file is a PNG or EXR that promin has written of a scene of this file name.
+bool is_picture_of(const std::filesystem::path& file, std::string_view scene);
 
 /// Throws UsageError where an output is also an input. check_outputs does so with the inputs that are known before the
 /// work; a loaded scene tells of more (files_of).

@@ -29,6 +29,7 @@
 #include "render/renderer_impl.h"
 #include "render_help.h"
 #include "render_job.h"
+#include "standard_output.h"
 #include "trace/refinement.h"
 #include "tracing_run.h"
 
@@ -87,7 +88,7 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
   return fmt::format("{}x{}, {}, {}{:.1f} s, {:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}",
                      stats.view->size.x, stats.view->size.y, describe_samples(stats), frames, 1e-3 * stats.total_ms,
                      1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
-                     stats.mrays_per_s(), stats.device.name, fmt::join(names_of(options.pictures), ", "));
+                     stats.mrays_per_s(), stats.device.name, fmt::join(names_of(name_pictures(options)), ", "));
 }
 
 /// Where the picture tells its exposure itself, that of a path's first frame for all.
@@ -311,11 +312,24 @@ bool is_there(const PlannedFrame& frame) {
   });
 }
 
-/// Throws UsageError where a picture is there whose name the user has not given.
-void check_default_names(const std::vector<std::filesystem::path>& pictures) {
-  const auto found = std::ranges::find_if(pictures, is_file_there);
+/// Throws UsageError where a file is there whose name the user has not given, unless it is promin's picture of a scene
+/// of this name.
+void check_default_names(const std::vector<std::filesystem::path>& pictures, const std::string& scene) {
+  const auto found = std::ranges::find_if(
+      pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
-  throw UsageError({"the picture is there already", found->string(), "say by -o where to write"});
+  throw UsageError({"a file that is no picture of " + scene + " by promin is there already", found->string(),
+                    "say by -o where to write"});
+}
+
+/// Throws UsageError where a picture on the standard output would not be the only one there.
+void check_standard_output(const RenderOptions& options) {
+  const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
+  if (count == 0) return;
+  const auto refuse = [](const std::string& what) { throw UsageError({what, "on the command line", "name a file"}); };
+  if (count > 1) refuse("-o - is given twice");
+  if (options.path) refuse("-o - takes one picture, not the frames of --path");
+  if (options.job.folder) refuse("-o - and --job contradict each other");
 }
 
 /// Goes on with a job, and where it has all pieces writes its pictures. `begin` is called when nothing is wrong with
@@ -333,12 +347,14 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const Stopwatch total;
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
+  check_standard_output(given);
   RenderOptions options = given;
-  options.pictures = name_pictures(given);
+  const StandardOutput standard_output(options.pictures);
+  options.pictures = name_pictures(options);
   check_pictures(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);
   const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
-  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames));
+  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const Console console(tracing.verbosity());
@@ -386,7 +402,8 @@ void render(const RenderOptions& given, const CLI::App& command) {
   stats.total_ms = total.ms();
   tell_end(stats, console);
   if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
-  if (!console.is_quiet()) fmt::print("{}\n", summarize(stats, options));
+  if (!console.is_quiet()) fmt::print(standard_output.messages(), "{}\n", summarize(stats, given));
+  standard_output.write();
 }
 
 }  // namespace

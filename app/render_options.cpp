@@ -382,8 +382,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
   add_scene_argument(table, options.tracing);
   table.add_repeated("-o,--output", "FILE",
-                     "Picture to write: .exr (linear float), .png or .jpg (sRGB, 8 bit); repeatable [the scene's name "
-                     "with .exr and .png, here]",
+                     "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit), or - for a PNG on "
+                     "the standard output; repeatable [the scene's name with .exr and .png, here]",
                      [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
             [&](const OptionValues& w) {
@@ -579,6 +579,7 @@ void check_render_options(const RenderOptions& options) {
     refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
                   "leave one out: --alpha makes the background transparent");
     refuse_if(std::ranges::any_of(pictures, is_jpeg), "--alpha has no place in a JPEG", "write a .png or .exr");
+    refuse_if(std::ranges::any_of(pictures, is_radiance), "--alpha has no place in a .hdr", "write a .png or .exr");
   }
 
   // What only a PNG shows.

@@ -35,9 +35,7 @@ std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2
 }
 
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
-  const std::optional<uvec2> usual = default_size(camera);
-  const std::optional<uvec2> size = options.size ? complete_size(*options.size, usual) : usual;
-  if (size) return *size;
+  if (const auto size = size_for(options.size.value_or(uvec2(0)), camera)) return *size;
   throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
                     scene.file.string(), "give --size"});
 }
@@ -50,6 +48,11 @@ std::optional<uvec2> default_size(const Camera& camera) {
   const double width = std::round(static_cast<double>(kDefaultHeight) * static_cast<double>(aspect_ratio));
   if (!(width >= 1.0 && width <= kMaxSide)) return {};
   return uvec2(static_cast<uint32_t>(width), kDefaultHeight);
+}
+
+std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
+  const std::optional<uvec2> usual = default_size(camera);
+  return sides == uvec2(0) ? usual : complete_size(sides, usual);
 }
 
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console) {

@@ -21,6 +21,10 @@ inline constexpr float kDefaultAspectRatio = 16.0F / 9.0F;
 /// Empty where its aspect ratio gives no width that a picture may have.
 std::optional<uvec2> default_size(const Camera& camera);
 
+/// The size of this camera's pictures of which these sides are asked, where 0 follows from the camera. Empty as
+/// default_size.
+std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera);
+
 /// The view that the options ask of this scene (camera_choice.h). A scene without a camera gets one that frames it.
 /// Throws UsageError for an unknown camera, parallel directions, a crop outside the picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Console& console);

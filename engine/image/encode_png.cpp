@@ -27,7 +27,8 @@ void flush(png_structp) {}
 
 }  // namespace
 
-PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha) : bytes_(bytes) {
+PngEncoder::PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene)
+    : bytes_(bytes), scene_(scene) {
   png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error_, take_error, take_warning);
   if (png_ != nullptr) info_ = png_create_info_struct(png_);
   if (info_ == nullptr) {
@@ -66,12 +67,18 @@ void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
   // As OpenImageIO wrote it, so that equal pictures stay equal files.
   std::array<char, 16> key{"oiio:ColorSpace"};
   std::array<char, 5> text{"sRGB"};
-  png_text note{};
-  note.compression = PNG_TEXT_COMPRESSION_NONE;
-  note.key = key.data();
-  note.text = text.data();
-  note.text_length = text.size() - 1;
-  png_set_text(png_, info_, &note, 1);
+  std::array<png_text, 2> notes{};
+  notes[0].compression = PNG_TEXT_COMPRESSION_NONE;
+  notes[0].key = key.data();
+  notes[0].text = text.data();
+  notes[0].text_length = text.size() - 1;
+  notes[1].compression = PNG_ITXT_COMPRESSION_NONE;
+  notes[1].key = scene_key_.data();
+  notes[1].text = scene_.data();
+  notes[1].itxt_length = scene_.size();
+  // Empty.
+  notes[1].lang = notes[1].lang_key = scene_key_.data() + scene_key_.size();
+  png_set_text(png_, info_, notes.data(), scene_.empty() ? 1 : 2);
   png_write_info(png_, info_);
 }
 

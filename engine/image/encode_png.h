@@ -7,19 +7,21 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "image/picture_bytes.h"
+#include "image/picture_endings.h"
 #include "promin/math.h"
 
 namespace promin {
 
 /// A PNG file of sRGB in 8 bits, on its way through libpng, which returns from errors by longjmp: nothing with a
-/// destructor may be made between setjmp and a call of libpng. Equal pixels give equal bytes.
+/// destructor may be made between setjmp and a call of libpng. Equal pixels of equal scenes give equal bytes.
 class PngEncoder {
  public:
   /// The bytes outlive it. Everything throws RunError where they cannot be written, std::runtime_error where libpng has
-  /// another reason.
-  PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha);
+  /// another reason. `scene` is told in an iTXt chunk named promin:scene, unless it is empty.
+  PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene = "");
   ~PngEncoder();
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
@@ -33,6 +35,8 @@ class PngEncoder {
   [[noreturn]] void fail() const;
 
   PictureBytes& bytes_;
+  std::string scene_;
+  std::string scene_key_{kSceneKey};
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   std::array<char, 256> error_{};

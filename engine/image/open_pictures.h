@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// The plugin that reads picture files, by the functions of image/plugin/pictures.h.
+/// The plugin that reads picture files, and writes the rarer kinds, by the functions of image/plugin/pictures.h.
 struct PicturesPlugin {
   decltype(&promin_pictures_interface) interface = nullptr;
   decltype(&promin_pictures_open) open = nullptr;
@@ -15,6 +15,7 @@ struct PicturesPlugin {
   decltype(&promin_pictures_read_rgba) read_rgba = nullptr;
   decltype(&promin_pictures_describe_part) describe_part = nullptr;
   decltype(&promin_pictures_read_rows) read_rows = nullptr;
+  decltype(&promin_pictures_write) write = nullptr;
   decltype(&promin_pictures_close) close = nullptr;
 };
 

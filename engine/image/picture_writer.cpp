@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/parallel.h"
 #include "image/dither.h"
+#include "image/encode_by_plugin.h"
 #include "image/encode_exr.h"
 #include "image/encode_jpeg.h"
 #include "image/encode_png.h"
@@ -111,6 +112,12 @@ std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& ch
   return bytes;
 }
 
+/// The name of the scene that the picture is of; empty where the metadata does not have it.
+std::string find_scene(const Metadata& metadata) {
+  const auto found = std::ranges::find(metadata, kSceneKey, &Metadata::value_type::first);
+  return found == metadata.end() ? "" : found->second;
+}
+
 void check(bool is_so, const std::string& what, const char* cure) {
   if (!is_so) throw UsageError({what, "in the picture to write", cure});
 }
@@ -148,7 +155,8 @@ std::span<const std::string_view> exr_compression_names() {
 }
 
 bool is_writable_format(const fs::path& file) {
-  return has_named_channels(file) || is_jpeg(file) || lower_case_ending(file) == ".png";
+  return has_named_channels(file) || is_jpeg(file) || lower_case_ending(file) == ".png" ||
+         !plugin_format_of(file).empty();
 }
 
 bool has_named_channels(const fs::path& file) {
@@ -164,8 +172,11 @@ class PictureWriter::Impl {
         exr_.emplace(bytes_, header, file);
       } else if (is_jpeg(file)) {
         jpeg_.emplace(bytes_, header.size);
+      } else if (const std::string_view format = plugin_format_of(file); !format.empty()) {
+        const size_t pixel_bytes = is_radiance(file) ? sizeof(vec3) : size_t{has_alpha() ? 4U : 3U};
+        plugin_.emplace(output_.temporary(), format, header.size, pixel_bytes);
       } else {
-        png_.emplace(bytes_, header.size, find_channel(header.channels, "A") != nullptr);
+        png_.emplace(bytes_, header.size, has_alpha(), find_scene(header.metadata));
       }
     });
   }
@@ -184,24 +195,34 @@ class PictureWriter::Impl {
         const std::vector<uint32_t> words = interleave(rows, channels, y * width, end * width);
         encode([&] { exr_->write_rows(words); });
       }
+    } else if (plugin_ && is_radiance(file_)) {
+      plugin_->write_rows(std::as_bytes(std::span(rows.pixels)));
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
       // A JPEG holds what is covered before black.
       const ShowingChannels showing = jpeg_ ? ShowingChannels(channels).without_alpha() : ShowingChannels(channels);
       const std::vector<uint8_t> pixels = encode_pixels(rows, showing, header_.display, lo);
-      encode([&] { jpeg_ ? jpeg_->write_rows(pixels) : png_->write_rows(pixels); });
+      encode([&] {
+        if (plugin_) return plugin_->write_rows(std::as_bytes(std::span(pixels)));
+        jpeg_ ? jpeg_->write_rows(pixels) : png_->write_rows(pixels);
+      });
     }
     rows_written_ += rows.size.y;
   }
 
   void commit() {
     check(rows_written_ == header_.size.y, "rows of the picture are missing", "write all before the end");
-    encode([&] { exr_ ? exr_->finish() : jpeg_ ? jpeg_->finish() : png_->finish(); });
+    encode([&] {
+      if (plugin_) return plugin_->finish();
+      exr_ ? exr_->finish() : jpeg_ ? jpeg_->finish() : png_->finish();
+    });
     bytes_.close();
     output_.commit();
   }
 
  private:
+  bool has_alpha() const { return find_channel(header_.channels, "A") != nullptr; }
+
   template <typename Work>
   void encode(const Work& work) const {
     try {
@@ -210,7 +231,7 @@ class PictureWriter::Impl {
       throw;
     } catch (const std::runtime_error& error) {
       throw RunError({std::string("cannot encode the picture (") + error.what() + ")", file_.string(),
-                      "try another format, .exr, .png or .jpg"});
+                      "try another format, as .exr or .png"});
     }
   }
 
@@ -222,12 +243,13 @@ class PictureWriter::Impl {
   std::optional<ExrEncoder> exr_;
   std::optional<JpegEncoder> jpeg_;
   std::optional<PngEncoder> png_;
+  std::optional<PluginEncoder> plugin_;
   uint32_t rows_written_ = 0;
 };
 
 PictureWriter::PictureWriter(const fs::path& file, const PictureHeader& header) {
   if (!is_writable_format(file)) {
-    throw UsageError({"unknown picture format " + file.extension().string(), file.string(), "use .exr, .png or .jpg"});
+    throw UsageError({"unknown picture format " + file.extension().string(), file.string(), kUseKnownEnding});
   }
   check_header(header);
   impl_ = std::make_unique<Impl>(file, header);

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Real clusters of Dask on this machine, whose processes are killed."""
+"""Workers of this machine, and real clusters of Dask on it, whose processes are killed."""
 
 from __future__ import annotations
 
@@ -16,8 +16,6 @@ from pathlib import Path
 
 import pytest
 from conftest import Farm, wait_for
-
-pytest.importorskip("distributed")
 
 
 def kill_workers(farm: Farm, process: subprocess.Popen[str], mean_s: float, most: int) -> int:
@@ -87,32 +85,6 @@ def test_a_killed_command_is_resumed_beside_a_second_resume_and_work(farm: Farm)
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers), 60)
 
 
-IMPATIENT = """
-import sys
-from promin_farm import crews
-from promin_farm.command import main
-crews._LOST_S, crews._TOP_UP_S, crews._LOCAL_PATIENCE_S = 0, 3.0, 30.0
-if __name__ == "__main__":
-    sys.exit(main())
-"""
-
-
-@pytest.mark.long
-def test_a_seat_whose_nanny_is_given_up_is_filled_again(farm: Farm) -> None:
-    """As on a machine where a process takes longer to start than Dask waits."""
-    farm.write_scene(20, ms=300)
-    program = farm.root / "impatient.py"
-    program.write_text(IMPATIENT)
-    process = subprocess.Popen(
-        [sys.executable, program, "render", farm.scene, "-o", farm.out, "--job", farm.job, "--workers", "1"],
-        cwd=farm.root,
-        env=farm.environment(),
-    )
-    wait_for(lambda: farm.events("done"), 90)
-    os.kill(farm.worker_pids()[0], signal.SIGKILL)
-    assert process.wait(90) == 0 and farm.out.read_bytes() == farm.expected()
-
-
 @pytest.mark.parametrize("count", [1, 2])
 def test_ctrl_c_lets_pieces_be_made_and_a_second_one_leaves_them(farm: Farm, count: int) -> None:
     """As a terminal sends it, to the command and its workers alike."""
@@ -136,7 +108,7 @@ def test_a_worker_that_cannot_run_the_farm_says_so() -> None:
 
 
 def test_threads_and_devices_are_dealt_out() -> None:
-    from promin_farm.crews import Seat, count_cores, deal_seats
+    from promin_farm.processes import Seat, count_cores, deal_seats
 
     cores = count_cores()
     assert deal_seats([], None) == [Seat(None, None)]
@@ -192,6 +164,7 @@ class Cluster:
 
 @pytest.fixture
 def cluster(farm: Farm):  # type: ignore[no-untyped-def]
+    pytest.importorskip("distributed")
     cluster = Cluster(farm)
     yield cluster
     cluster.close()
@@ -268,7 +241,6 @@ def test_where_no_scheduler_answers(farm: Farm) -> None:
 
 @pytest.mark.long
 def test_many_small_pieces_take_little_memory(farm: Farm) -> None:
-    """The scheduler lives in the command's process."""
     farm.write_scene(20_000)
     process = farm.start("render", farm.scene, "-o", farm.out, "--job", farm.job, "--workers", 2)
     most_kib = 0
@@ -279,3 +251,15 @@ def test_many_small_pieces_take_little_memory(farm: Farm) -> None:
     process.communicate()
     assert process.returncode == 0 and farm.out.read_bytes() == farm.expected()
     assert 20_000 < most_kib < 500_000
+
+
+def test_workers_tell_what_they_are_at(farm: Farm) -> None:
+    farm.write_scene(4)
+    said = farm.render("--workers", 1)
+    lines = [line.split(" ", 2)[2] for line in said.splitlines() if line.startswith("promin-farm: ")]
+    assert lines[0].startswith("of 4 pieces to make, by 1 worker on this machine")
+    assert lines[1:5] == ["loads the scene", "compiles", "proves its device", "makes pieces"], said
+    Path(farm.create().pieces[0].file).unlink()
+    assert "this process compiles" in farm.run("work", farm.job)
+    Path(farm.create().pieces[0].file).unlink()
+    assert farm.run("resume", farm.job, "--quiet") == ""

@@ -171,7 +171,9 @@ def test_it_needs_no_dask(farm: Farm) -> None:
     paths = os.pathsep.join([str(farm.root / "blocked"), farm.environment()["PYTHONPATH"]])
     farm.run("work", farm.job, PYTHONPATH=paths)
     Path(farm.create().pieces[0].file).unlink()
-    assert "pip install 'promin[farm]'" in farm.run("resume", farm.job, code=2, PYTHONPATH=paths)
+    elsewhere = ("--scheduler", "tcp://127.0.0.1:1")
+    assert "pip install 'promin[farm]'" in farm.run("resume", farm.job, *elsewhere, code=2, PYTHONPATH=paths)
+    assert "3 pieces are in" in farm.run("resume", farm.job, PYTHONPATH=paths)
 
 
 def test_frames_of_two_kinds_of_devices_stay_apart(farm: Farm) -> None:

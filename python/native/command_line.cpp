@@ -8,16 +8,20 @@
 #include <nanobind/stl/vector.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "arguments.h"
 #include "bind.h"
 #include "picture_run.h"
+#include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/setup_stats.h"
 #include "records.h"
 #include "render_options.h"
+#include "typed_words.h"
 #include "view_setup.h"
 
 namespace nb = nanobind;
@@ -103,11 +107,46 @@ std::vector<std::string> list_options() {
   return names;
 }
 
-/// Width and height of a camera's pictures for which no size is asked; None where there are none.
-std::optional<std::pair<uint32_t, uint32_t>> default_size(const nb::dict& camera) {
-  const std::optional<uvec2> size = app::default_size(read_camera(camera));
+using Size = std::pair<uint32_t, uint32_t>;
+
+/// Width and height of a camera's pictures of which these sides are asked, 0 being open; None where there are none.
+std::optional<Size> choose_size(const nb::dict& camera, const Size& sides) {
+  const std::optional<uvec2> size = app::size_for({sides.first, sides.second}, read_camera(camera));
   if (!size) return {};
-  return std::pair(size->x, size->y);
+  return Size(size->x, size->y);
+}
+
+/// The sides that a word of --size asks for, 0 being open.
+Size read_size(const std::string& word) {
+  const uvec2 size = *read_options({"--size=" + word}).view.size;
+  return {size.x, size.y};
+}
+
+double read_time_limit(const std::string& word) {
+  return *read_options({"--time-limit=" + word}).error.time_limit_s;
+}
+
+/// The fields of a view with this debug view that a word of --quality stands for.
+nb::dict read_quality(const std::string& word, const std::string& debug_view) {
+  app::RenderOptions options = read_options({"--quality=" + word, "--shading=" + debug_view});
+  app::apply_quality(options);
+  nb::dict fields;
+  fields["spp"] = options.view.samples_per_pixel.value_or(app::kDefaultSamples);
+  fields["target_error"] = options.error.target;
+  fields["error_in"] = std::string(
+      app::error_space_names()[static_cast<size_t>(options.error.space.value_or(app::ErrorSpace::kLinear))]);
+  return fields;
+}
+
+/// The option that another program's name of one stands for, without dashes; empty where none is known.
+std::string find_option(const std::string& name) {
+  CLI::App command("", "promin");
+  app::RenderOptions options;
+  app::add_render_options(command, options);
+  const std::string typed = "--" + name;
+  const std::string same = app::spell_out(command, {"promin", typed}).back();
+  const std::string option = same == typed ? app::find_by_meaning(command, typed) : same;
+  return option.empty() ? option : option.substr(2);
 }
 
 /// The ErrorTarget of a view of which `asked` has the fields target_error, time_limit, min_spp, max_spp and error_in,
@@ -128,6 +167,26 @@ nb::object error_target(const nb::dict& asked, const nb::dict& display) {
 
 }  // namespace
 
+app::RenderOptions read_options(const std::vector<std::string>& words) {
+  CLI::App command("", "promin");
+  app::RenderOptions options;
+  app::add_common_options(command);
+  app::add_render_options(command, options);
+  std::vector<const char*> all{"promin", "SCENE"};
+  for (const std::string& word : words) all.push_back(word.c_str());
+  try {
+    app::parse_arguments(command, static_cast<int>(all.size()), all.data());
+  } catch (const UsageError& error) {
+    // Python has no command line, and its keywords no dashes.
+    Problem problem = error.problems().front();
+    if (const size_t dashes = problem.what.find("--"); dashes != std::string::npos) problem.what.erase(dashes, 2);
+    if (!problem.cure.starts_with("did you mean")) problem.cure.clear();
+    problem.where.clear();
+    throw UsageError(problem);
+  }
+  return options;
+}
+
 Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
                           const gpu::DeviceInfo& device, const std::string& scene_file, const Scene& named,
                           const AovSet& aovs) {
@@ -144,7 +203,11 @@ void bind_command_line(nb::module_& module) {
   module.def("list_choices", &list_choices);
   module.def("list_defaults", &list_defaults);
   module.def("list_options", &list_options);
-  module.def("default_size", &default_size, nb::arg("camera"));
+  module.def("choose_size", &choose_size, nb::arg("camera"), nb::arg("sides"));
+  module.def("read_size", &read_size);
+  module.def("read_time_limit", &read_time_limit);
+  module.def("read_quality", &read_quality, nb::arg("word"), nb::arg("debug_view"));
+  module.def("find_option", &find_option);
   module.def("error_target", &error_target, nb::arg("asked"), nb::arg("display"));
 }
 

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "promin/aovs.h"
 #include "promin/device_info.h"
@@ -14,8 +15,12 @@
 #include "promin/renderer.h"
 #include "promin/scene.h"
 #include "promin/view.h"
+#include "render_options.h"
 
 namespace promin::python {
+
+/// What options of `promin render` and their values come to, read as the command line reads them. Throws UsageError.
+app::RenderOptions read_options(const std::vector<std::string>& words);
 
 /// What the header of an EXR tells of a picture that `promin render` has written. `named` has the objects and materials
 /// whose names Cryptomatte tells.

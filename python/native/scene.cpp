@@ -11,12 +11,14 @@
 #include <cstring>
 
 #include "bind.h"
+#include "command_line.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/validate.h"
 #include "records.h"
+#include "view_setup.h"
 #include "watched.h"
 
 namespace nb = nanobind;
@@ -83,11 +85,27 @@ LightChoice read_choice(const std::string& name) {
   return static_cast<LightChoice>(find_name(light_choice_names(), name, "light"));
 }
 
-/// A copy with the light that the choice adds.
-Scene light(const Scene& scene, const std::string& choice) {
+/// A copy with the light that the choice adds, before the background that words of --background name, if there are any.
+Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& background) {
+  app::LookOptions look;
+  if (!background.empty()) {
+    std::vector<std::string> words = background;
+    // A word alone may begin with a dash.
+    if (words.size() == 1) words.front().insert(0, "--background=");
+    if (words.size() > 1) words.insert(words.begin(), "--background");
+    look = read_options(words).view.look;
+  }
+  look.light = read_choice(choice);
   Scene lit = scene;
-  light_scene(lit, read_choice(choice));
+  app::light_up(lit, look);
   return lit;
+}
+
+template <typename T, typename Read>
+void replace_all(std::vector<T>& values, const nb::list& records, const Read& read) {
+  std::vector<T> replaced;
+  for (const nb::handle record : records) replaced.push_back(read(nb::cast<nb::dict>(record)));
+  values = std::move(replaced);
 }
 
 nb::dict frame(const Scene& scene, float aspect_ratio, const std::string& name, float fit) {
@@ -135,6 +153,8 @@ void bind_scene(nb::module_& module) {
       .def("add_material", [](Scene& s, const nb::dict& record) { s.materials.push_back(read_material(record)); })
       .def("add_light", [](Scene& s, const nb::dict& record) { s.lights.push_back(read_light(record)); })
       .def("add_camera", [](Scene& s, const nb::dict& record) { s.cameras.push_back(read_camera(record)); })
+      .def("set_materials", [](Scene& s, const nb::list& records) { replace_all(s.materials, records, read_material); })
+      .def("set_lights", [](Scene& s, const nb::list& records) { replace_all(s.lights, records, read_light); })
       .def("set_environment", [](Scene& s, const nb::dict& record) { s.environment = read_environment(record); })
       .def("materials", [](const Scene& s) { return write_all(s.materials); })
       .def("lights", [](const Scene& s) { return write_all(s.lights); })
@@ -148,7 +168,7 @@ void bind_scene(nb::module_& module) {
       .def("bounds", &bounds)
       .def("problems", &find_problems)
       .def("copy", [](const Scene& s) { return Scene(s); })
-      .def("lit", &light, nb::arg("choice"))
+      .def("lit", &light, nb::arg("choice"), nb::arg("background"))
       .def_static("widen_camera", &widen, nb::arg("camera"), nb::arg("width"), nb::arg("height"))
       .def("frame", &frame, nb::arg("aspect_ratio"), nb::arg("framing"), nb::arg("fit"))
       .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })

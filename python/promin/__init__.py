@@ -4,13 +4,12 @@
 
     import promin
 
-    scene = promin.Scene.load("scene.gltf")
-    hits = promin.Caster(scene).cast((origins, directions))
-    promin.Renderer(scene).render(size=(640, 360)).save("picture.png")
+    promin.render("scene.gltf", size=640).save("picture.png")
+    hits = promin.Caster("scene.gltf").cast(origins, directions)
 
 Importing it needs no Vulkan driver. docs/python.md tells the rest."""
 
-from promin._arrays import HIT_DTYPE, RaysLike, positions
+from promin._arrays import HIT_DTYPE, Hits, RaysLike, positions
 from promin._caster import Caster, Progress
 from promin._device import Device, DeviceInfo, DeviceLike
 from promin._errors import Cancelled, DeviceError, DifferenceError, Error, InputError, RunError, UsageError
@@ -30,12 +29,13 @@ from promin._records import (
     TextureSlot,
     Unlit,
 )
-from promin._renderer import Renderer
-from promin._scene import ObjectInfo, Scene
-from promin._view import CameraLike, View
+from promin._renderer import Background, Renderer, render
+from promin._scene import ObjectInfo, Scene, SceneLike
+from promin._view import CameraLike, Size, View
 
 __all__ = [
     "HIT_DTYPE",
+    "Background",
     "Camera",
     "CameraLike",
     "Cancelled",
@@ -50,6 +50,7 @@ __all__ = [
     "Error",
     "Frame",
     "GradientSky",
+    "Hits",
     "InputError",
     "Light",
     "Material",
@@ -62,6 +63,8 @@ __all__ = [
     "Renderer",
     "RunError",
     "Scene",
+    "SceneLike",
+    "Size",
     "Studio",
     "TextureSlot",
     "Unlit",
@@ -71,5 +74,6 @@ __all__ = [
     "cryptomatte_id",
     "positions",
     "read_image",
+    "render",
     "write_image",
 ]

@@ -23,6 +23,25 @@ HIT_DTYPE = np.dtype(
 )
 """A hit, as `promin cast` writes it: see `Caster.cast`."""
 
+
+
+class Hits(np.ndarray[Any, np.dtype[Any]]):
+    """An array of HIT_DTYPE that shows itself in one line. Its fields are plain arrays."""
+
+    def __getitem__(self, key: Any) -> Any:
+        part = super().__getitem__(key)
+        return part.view(np.ndarray) if isinstance(part, Hits) and part.dtype != HIT_DTYPE else part
+
+    def __repr__(self) -> str:
+        if self.dtype != HIT_DTYPE:
+            return repr(self.view(np.ndarray))
+        t = self["t"][self["object"] >= 0]
+        near = f", t from {t.min():.6g} to {t.max():.6g}" if t.size else ""
+        return f"<promin.Hits {self.shape}: {t.size} of {self.size} rays hit{near}>"
+
+    __str__ = __repr__
+
+
 RaysLike: TypeAlias = Union[ArrayLike, "tuple[ArrayLike, ...]"]
 """Rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (..., 3))
 or (origins, directions, tmin, tmax), whose leading shapes are broadcast, with tmin 0 and tmax infinite by default."""
@@ -57,16 +76,43 @@ def round_once(array: NDArray[Any]) -> Float32s:
         return np.ascontiguousarray(array, dtype=np.float32)
 
 
+def join_rays(
+    rays: RaysLike, directions: ArrayLike | None, tmin: ArrayLike | None, tmax: ArrayLike | None
+) -> RaysLike:
+    """Rays in one of the forms of RaysLike, of arguments that may hold each part by itself. Raises UsageError."""
+    if directions is None and tmin is None and tmax is None:
+        return rays
+    if directions is None and isinstance(rays, tuple) and len(rays) == 2:
+        rays, directions = rays
+    if directions is None:
+        raise UsageError("tmin and tmax go with origins and directions; give (origins, directions, tmin=..., tmax=...)")
+    if isinstance(rays, tuple) and len(rays) != 3:
+        raise UsageError("rays is a tuple beside directions; give it alone, or origins (..., 3) and directions (..., 3)")
+    return rays, directions, 0.0 if tmin is None else tmin, np.inf if tmax is None else tmax
+
+
 def split_rays(rays: object) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
     """Origins, tmin, directions and tmax of rays in either form; the leading shapes may differ."""
-    if isinstance(rays, tuple) and 2 <= len(rays) <= 4:
+    if isinstance(rays, tuple) and 2 <= len(rays) <= 4 and not np.isscalar(rays[0]):
         origins = to_vectors(rays[0], "origins")
         directions = to_vectors(rays[1], "directions")
         tmin = to_numbers(rays[2] if len(rays) > 2 else 0.0, "tmin")
         tmax = to_numbers(rays[3] if len(rays) > 3 else np.inf, "tmax")
         return origins, tmin, directions, tmax
-    array = to_vectors(rays, "rays", 8)
+    array = to_whole_rays(rays)
     return array[..., 0:3], array[..., 3], array[..., 4:7], array[..., 7]
+
+
+def to_whole_rays(rays: object) -> NDArray[Any]:
+    """Numbers (..., 8). Raises UsageError."""
+    array = to_numbers(rays, "rays")
+    if array.ndim == 0 or array.shape[-1] != 8:
+        points = "these are points without directions; " if array.ndim and array.shape[-1] == 3 else ""
+        raise UsageError(
+            f"rays have the shape {array.shape}; {points}give origins and directions, as cast(origins, directions), or "
+            "(..., 8) of origin, tmin, direction, tmax"
+        )
+    return array
 
 
 def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]]:
@@ -74,7 +120,7 @@ def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]
     their leading shape. An array that is so already is not copied."""
     is_moved = bool(center.any())
     if isinstance(rays, np.ndarray) and rays.dtype == np.float32 and not is_moved:
-        array = to_vectors(rays, "rays", 8)
+        array = to_whole_rays(rays)
         return np.ascontiguousarray(array).reshape(-1, 8), array.shape[:-1]
     origins, tmin, directions, tmax = split_rays(rays)
     try:

@@ -10,13 +10,13 @@ from collections.abc import Callable, Iterator
 from typing import Any, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from promin import _promin
-from promin._arrays import HIT_DTYPE, RaysLike, pack_rays
+from promin._arrays import HIT_DTYPE, Hits, RaysLike, join_rays, pack_rays
 from promin._device import Device, DeviceLike, find_device
 from promin._errors import UsageError
-from promin._scene import Scene
+from promin._scene import Scene, SceneLike, to_scene
 
 _RAYS_AT_A_TIME = 2**20
 """As many as the library asks for at a time."""
@@ -38,7 +38,7 @@ class Caster:
 
     def __init__(
         self,
-        scene: Scene,
+        scene: SceneLike,
         device: DeviceLike = None,
         *,
         bvh: str | os.PathLike[str] | None = None,
@@ -48,9 +48,7 @@ class Caster:
         """device: a Device, a part of a name, an index, or None for the default one. bvh: a file of `promin-bvh build`
         to take the tree from. builder: "sah", "median" or "spatial"; hits are the same. Raises UsageError, InputError
         for a scene that is not valid, DeviceError, RunError, Cancelled."""
-        if not isinstance(scene, Scene):
-            raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
-        self._scene = scene.snapshot()
+        self._scene = to_scene(scene).snapshot()
         self._options = (str(builder), None if bvh is None else os.fsdecode(bvh))
         self._chosen = device
         self._make_private()
@@ -72,11 +70,21 @@ class Caster:
         warnings."""
         return self._open()[1].setup()
 
-    def cast(self, rays: RaysLike, *, out: NDArray[Any] | None = None, progress: Progress = None) -> NDArray[Any]:
+    def cast(
+        self,
+        rays: RaysLike,
+        directions: ArrayLike | None = None,
+        tmin: ArrayLike | None = None,
+        tmax: ArrayLike | None = None,
+        *,
+        out: NDArray[Any] | None = None,
+        progress: Progress = None,
+    ) -> NDArray[Any]:
         """The nearest hit of each ray.
 
-        rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (...,
-        3)) or (origins, directions, tmin, tmax), broadcast together. Any strides and real types; all is rounded to
+        rays, directions, tmin, tmax: origins (..., 3), directions (..., 3) and, where they are not 0 and infinity, tmin
+        and tmax (...), broadcast together; or one array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple
+        (origins, directions) or (origins, directions, tmin, tmax). Any strides and real types; all is rounded to
         float32 once, and C-contiguous float32 of the first form is not copied. Directions have any length but 0, t is
         in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses everything. out: the
         array to fill and return, C-contiguous, of the answer's shape and type; what is there is touched faster than
@@ -87,48 +95,77 @@ class Caster:
         wound or outward, never flipped to the ray; 0 on a miss). At equal t the lower (object, primitive) wins; a
         triangle's edges belong to it. Raises UsageError, RunError, Cancelled."""
         _, native, center, numbers = self._open()
-        packed, shape = pack_rays(rays, center)
+        packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         hits = prepare_answers(out, shape, HIT_DTYPE, packed)
         native.cast(packed, as_bytes(hits), progress)
         if len(numbers):
             number_as_in_file(hits.reshape(-1), numbers)
-        return hits
+        return hits if out is not None else hits.view(Hits)
 
     def occluded(
-        self, rays: RaysLike, *, out: NDArray[np.bool_] | None = None, progress: Progress = None
+        self,
+        rays: RaysLike,
+        directions: ArrayLike | None = None,
+        tmin: ArrayLike | None = None,
+        tmax: ArrayLike | None = None,
+        *,
+        out: NDArray[np.bool_] | None = None,
+        progress: Progress = None,
     ) -> NDArray[np.bool_]:
-        """Whether each ray hits anything, which is answered faster. rays and out as for `cast`; returns bool (...)."""
+        """Whether each ray hits anything, which is answered faster. rays to tmax and out as for `cast`; returns bool (...)."""
         _, native, center, _ = self._open()
-        packed, shape = pack_rays(rays, center)
+        packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         answers = prepare_answers(out, shape, np.dtype(np.bool_), packed)
         native.occluded(packed, answers.reshape(-1), progress)
         return answers
 
     def count(
-        self, rays: RaysLike, *, out: NDArray[np.int32] | None = None, progress: Progress = None
+        self,
+        rays: RaysLike,
+        directions: ArrayLike | None = None,
+        tmin: ArrayLike | None = None,
+        tmax: ArrayLike | None = None,
+        *,
+        out: NDArray[np.int32] | None = None,
+        progress: Progress = None,
     ) -> NDArray[np.int32]:
-        """How often each ray crosses the scene: int32 (...). rays and out as for `cast`.
+        """How often each ray crosses the scene: int32 (...). rays to tmax and out as for `cast`.
 
         A ray that meets an edge or a corner of a closed mesh crosses one of the triangles there, and a ray along a
         silhouette none or two, so the count is odd exactly where the ray begins inside (include/promin/caster.h has the
         rule). `cast` takes edges as the triangle's instead. Raises UsageError, RunError, Cancelled."""
         _, native, center, _ = self._open()
-        packed, shape = pack_rays(rays, center)
+        packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         counts = prepare_answers(out, shape, np.dtype(np.int32), packed)
         native.count(packed, counts.reshape(-1), progress)
         return counts
 
-    def list(self, rays: RaysLike, *, progress: Progress = None) -> tuple[NDArray[np.int64], NDArray[Any]]:
+    def list(
+        self,
+        rays: RaysLike,
+        directions: ArrayLike | None = None,
+        tmin: ArrayLike | None = None,
+        tmax: ArrayLike | None = None,
+        *,
+        progress: Progress = None,
+    ) -> tuple[NDArray[np.int64], NDArray[Any]]:
         """All crossings of each ray, by the rule of `count`: splits, int64 (n + 1) for the n rays in C order, and hits
         of `promin.HIT_DTYPE`, where those of ray i are hits[splits[i]:splits[i + 1]], by t, then by (object,
-        primitive). Memory is needed for all of them; see `iter_list`. rays as for `cast`; raises as it does."""
+        primitive). Memory is needed for all of them; see `iter_list`. rays to tmax as for `cast`; raises as it does."""
         _, native, center, numbers = self._open()
-        packed, _ = pack_rays(rays, center)
+        packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         splits, rows = native.list(packed, None, progress)
         return splits, _to_hits(rows, numbers)
 
     def iter_list(
-        self, rays: RaysLike, budget: int = 256 << 20, *, progress: Progress = None
+        self,
+        rays: RaysLike,
+        directions: ArrayLike | None = None,
+        tmin: ArrayLike | None = None,
+        tmax: ArrayLike | None = None,
+        *,
+        budget: int = 256 << 20,
+        progress: Progress = None,
     ) -> Iterator[tuple[int, NDArray[np.int64], NDArray[Any]]]:
         """`list` part by part, for more hits than memory holds: yields (first, splits, hits), where hits[splits[i]:
         splits[i + 1]] are those of ray first + i in C order, of as many rays as have hits of `budget` bytes together,
@@ -136,7 +173,7 @@ class Caster:
         if not isinstance(budget, (int, np.integer)) or not 0 < budget < 2**63:
             raise UsageError(f"budget is {budget!r:.80}; give a positive number of bytes")
         _, native, center, numbers = self._open()
-        packed, _ = pack_rays(rays, center)
+        packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         return _list_parts(native, packed, int(budget), numbers, progress)
 
     def _open(self, progress: Progress = None) -> tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]]:
@@ -192,7 +229,7 @@ def number_as_in_file(hits: NDArray[Any], numbers: NDArray[np.int32]) -> None:
 
 def _to_hits(rows: NDArray[np.uint8], numbers: NDArray[np.int32]) -> NDArray[Any]:
     """Bytes (n, 32) of the library as hits (n,)."""
-    hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1)
+    hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1).view(Hits)
     if len(numbers):
         number_as_in_file(hits, numbers)
     return hits

@@ -95,6 +95,12 @@ class Frame:
         shown = _promin.show(self.rgb, to_dict(display or self.display), self.unlit)
         return np.asarray(np.floor(shown * 255.0 + 0.5), np.uint8)
 
+    def __repr__(self) -> str:
+        words = [f"{self.size[0]}x{self.size[1]}"]
+        words += [f"aovs {', '.join(self.aovs)}"] if self.aovs else []
+        words += [f"{self.trace_ms / 1e3:.2f} s of tracing"] if self.trace_ms else []
+        return f"<promin.Frame {', '.join(words)}>"
+
     def _repr_png_(self) -> bytes:
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "frame.png"

@@ -7,6 +7,7 @@ Colours are linear RGB, angles radians, lengths in units of the world. Ranges ar
 from __future__ import annotations
 
 import dataclasses
+import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf
@@ -15,6 +16,9 @@ from typing import Any, TypeVar, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from promin._errors import UsageError
+
+Record = TypeVar("Record")
 Vec3 = tuple[float, float, float]
 """Three numbers; an array of three will do as well."""
 
@@ -292,6 +296,33 @@ class Display:
     """Whether the 8 bits get noise."""
 
 
+def change(record: Record, fields: Mapping[str, Any]) -> Record:
+    """The record with other values of some fields. Raises UsageError for a field that it does not have."""
+    assert dataclasses.is_dataclass(record)
+    known = [f.name for f in dataclasses.fields(record)]
+    for name in fields:
+        if name not in known:
+            raise UsageError(f"a {type(record).__name__} has no field {name!r}; {suggest(name, known)}")
+    return dataclasses.replace(record, **fields)  # type: ignore[type-var]
+
+
+def suggest(name: str, known: list[str]) -> str:
+    """The cure for an unknown name."""
+    near = [one for one in known if name in one.split("_") or name in one]
+    near = sorted(near, key=len)[:1] or difflib.get_close_matches(name, known, 1)
+    return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+
+
+def _refuse_assignment(record: object, name: str, value: object) -> None:
+    raise dataclasses.FrozenInstanceError(
+        f"cannot assign to field {name!r} of a {type(record).__name__}: it is a copy; change what a scene has by "
+        f"scene.set_material(name, {name}=...) or scene.set_light, and other records by dataclasses.replace"
+    )
+
+
+for _kind in (Light, Material, Phong, MetallicRoughness, Unlit, Camera, Environment):
+    _kind.__setattr__ = _refuse_assignment  # type: ignore[assignment, method-assign]
+
 _MODELS: dict[str, type[Material]] = {"phong": Phong, "metallic_roughness": MetallicRoughness, "unlit": Unlit}
 _SKIES: dict[str, type[Any]] = {"studio": Studio, "gradient": GradientSky, "panorama": Panorama}
 _NAMES = {kind: name for name, kind in (*_MODELS.items(), *_SKIES.items())}
@@ -303,8 +334,6 @@ _KEYS = {
     GradientSky: "kind",
     Panorama: "kind",
 }
-
-Record = TypeVar("Record")
 
 
 def to_dict(record: object) -> dict[str, Any]:

@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import os
 import threading
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from operator import index
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +22,11 @@ from promin._caster import Progress
 from promin._device import Device, DeviceLike, find_device
 from promin._errors import UsageError
 from promin._frame import Frame, to_mattes
-from promin._records import Camera, Display, Environment, Light, Material, from_dict, to_dict
-from promin._scene import Scene, move_camera, move_light, to_world
+from promin._records import Camera, Display, Environment, Light, Material, from_dict, suggest, to_dict
+from promin._scene import Scene, SceneLike, move_camera, move_light, replace_one, to_scene, to_world
 from promin._view import (
     CameraLike,
+    Size,
     View,
     change_view,
     check_shading,
@@ -31,6 +34,7 @@ from promin._view import (
     limit_of,
     mode_of,
     of_view,
+    settle_quality,
     shows_light,
     size_of,
     to_record,
@@ -40,6 +44,40 @@ _ASPECT_RATIO = 16 / 9
 """Of the camera that frames a scene where no size is asked, as `promin render` has it (test_tables.py)."""
 _NO_ID = np.uint32(2**32 - 1)
 """What the AOV `object` is on a miss."""
+
+
+Background = Union[Sequence[float], str, None]
+"""What `promin render --background` takes: three linear numbers, or a word as "environment"."""
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def names_keywords(function: Function) -> Function:
+    """The function, whose TypeError for an unknown keyword names the one that may be meant."""
+    known = [name for name in inspect.signature(function).parameters if name not in ("self", "view")]
+
+    @functools.wraps(function)
+    def call(*values: Any, **keywords: Any) -> Any:
+        for name in keywords:
+            if name not in known and name != "view":
+                meant = _OTHER_KEYWORDS.get(name) or _promin.find_option(name.replace("_", "-")).replace("-", "_")
+                cure = f"did you mean {meant}?" if meant in known else suggest(name, known)
+                raise TypeError(f"{function.__qualname__.removesuffix('.__init__')}() has no keyword {name!r}; {cure}")
+        return function(*values, **keywords)
+
+    return call  # type: ignore[return-value]
+
+
+_OTHER_KEYWORDS = {
+    "alpha": "aovs",
+    "aov": "aovs",
+    "framing": "from_",
+    "height": "size",
+    "shading": "debug_view",
+    "transparent": "aovs",
+    "width": "size",
+}
+"""What is called otherwise than in the programs."""
 
 
 @dataclass(frozen=True)
@@ -62,15 +100,17 @@ class Renderer:
 
     _opened: _Opened | None
 
+    @names_keywords
     def __init__(
         self,
-        scene: Scene,
+        scene: SceneLike,
         device: DeviceLike = None,
         *,
         aovs: Iterable[str] = (),
         view: View = View(),
         light: str = "auto",
-        framing: str = "auto",
+        background: Background = None,
+        from_: str = "auto",
         fit: float = 0.85,
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
@@ -80,26 +120,28 @@ class Renderer:
     ) -> None:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
-        is built anew. view: that of pictures which are given none; what it takes is compiled at once. light: what
-        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". framing: from where a scene
+        is built anew. scene: or the path of its file. view: that of pictures which are given none; what it takes is compiled at once. light: what
+        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". background: what lies behind all, as
+        --background of promin render has it: three linear numbers, or "environment" for what lights the scene; None: the
+        scene's, or a grey. from_: from where a scene
         is seen: "auto" (by its camera, without one from three quarters, or inside where one stands in it) or, whatever
         cameras it has, "three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside". fit: the share
         of the picture that a framed scene covers, 0.05 to 1. texture_memory: the most bytes that textures take.
         expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
         kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The rest as Caster.
         Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
-        if not isinstance(scene, Scene):
-            raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
-        self._scene = scene.snapshot()
+        self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
-        self._framing = "" if framing == "auto" else str(framing)
+        self._background = _words_of(background)
+        self._from = "" if from_ == "auto" else str(from_)
         self._fit = float(fit)
         self._builder = str(builder)
         self._bvh = None if bvh is None else os.fsdecode(bvh)
         self._texture_memory = texture_memory
         self._expected_samples = None if expected_samples is None else _count(expected_samples, "expected_samples")
         self._aovs = _names(aovs)
+        self._check_background(self._aovs)
         self._view = of_view(view)
         self._changes: dict[str, Any] = {}
         self._make_private()
@@ -149,8 +191,8 @@ class Renderer:
         if isinstance(camera, Camera):
             return camera
         cameras = self._scene.cameras
-        if camera is None and (self._framing or not cameras):
-            record = self._lit().frame(float(aspect_ratio), self._framing, self._fit)
+        if camera is None and (self._from or not cameras):
+            record = self._lit().frame(float(aspect_ratio), self._from, self._fit)
             framed: Camera = self._back(from_dict(Camera, record))
             return framed
         if camera is None:
@@ -164,6 +206,7 @@ class Renderer:
             raise UsageError(f"no camera {camera!r}; " + (f"choose one of: {names}" if names else "the scene has none"))
         return cameras[number]
 
+    @names_keywords
     def render(
         self,
         view: View | None = None,
@@ -171,12 +214,13 @@ class Renderer:
         aovs: Iterable[str] | None = None,
         progress: Progress = None,
         camera: CameraLike = None,
-        size: tuple[int, int] | None = None,
+        size: Size = None,
         crop: tuple[int, int, int, int] | None = None,
         spp: int | None = None,
+        quality: str | None = None,
         max_depth: int | None = None,
         target_error: float | None = None,
-        time_limit: float | None = None,
+        time_limit: float | str | None = None,
         min_spp: int | None = None,
         max_spp: int | None = None,
         error_in: str | None = None,
@@ -191,9 +235,10 @@ class Renderer:
         bits of `promin render` with the same options. Raises UsageError for what breaks the rules of
         include/promin/view.h or contradicts itself, RunError, Cancelled."""
         given = locals()  # each field of a view is a keyword of its name
-        whole = change_view(self._view if view is None else of_view(view), given)
+        whole = settle_quality(change_view(self._view if view is None else of_view(view), given))
         names = self._aovs if aovs is None else _names(aovs)
         check_shading(whole, names)
+        self._check_background(names)
         opened = self._open(names, whole, progress)
         record, shown = self._describe_view(whole)
         path = self._scene.path
@@ -244,15 +289,28 @@ class Renderer:
                 raise
             self._changes.update(new)
 
+    def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
+        """Changes a material of the pictures to come, as Scene.set_material does of a scene, without building a tree."""
+        self.update(materials=replace_one(self.materials, material, _one_of(new, Material), fields, "material"))
+
+    def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
+        """The same of a light of `lights`."""
+        self.update(lights=replace_one(self.lights, light, _one_of(new, Light), fields, "light"))
+
+    def _check_background(self, aovs: tuple[str, ...]) -> None:
+        if self._background and "alpha" in aovs:
+            raise UsageError("background and the AOV \"alpha\", which leaves it out, contradict each other; leave one out")
+
     def _describe_view(self, view: View) -> tuple[dict[str, Any], Display]:
         """The view for the native module, and how its picture is shown."""
         size = size_of(view)
-        aspect_ratio = size[0] / size[1] if size is not None and min(size) > 0 else _ASPECT_RATIO
+        aspect_ratio = size[0] / size[1] if min(size) > 0 else _ASPECT_RATIO
         chosen = self.camera(view.camera, aspect_ratio)
         camera = move_camera(chosen, self._scene.native_center)
-        if size is not None and min(size) > 0 and not isinstance(view.camera, Camera):
+        sides = _promin.choose_size(camera, size) if max(size) > 0 else None
+        if sides is not None and not isinstance(view.camera, Camera):
             # A camera of the file shows in any picture what it showed its author.
-            wider = _promin.Scene.widen_camera(to_dict(chosen), *size)
+            wider = _promin.Scene.widen_camera(to_dict(chosen), *sides)
             camera.update(yfov=wider["yfov"], ymag=wider["ymag"])
         shown = self.display if shows_light(view) else Display()
         return to_record(view, camera, shown, self._lit().default_max_depth()), shown
@@ -281,7 +339,8 @@ class Renderer:
             with self._lock:
                 opened = self._opened
                 if opened is None or aovs not in (None, opened.aovs):
-                    opened = self._make(self._aovs if aovs is None else aovs, view or self._view, progress)
+                    names = self._aovs if aovs is None else aovs
+                    opened = self._make(names, view or settle_quality(self._view), progress)
                     self._opened = opened
         # Without the lock where all is there: whoever changes the scene holds it while a picture is traced, of which
         # the function for progress may ask for the lights.
@@ -289,7 +348,7 @@ class Renderer:
 
     def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
         device = find_device(self._chosen)
-        lit = self._scene.native().lit(self._light)
+        lit = self._scene.native().lit(self._light, self._background)
         unasked = {"object"} if self._moves(aovs) else set()
         if lit.mixes_unlit():
             unasked.add("unlit")
@@ -367,6 +426,26 @@ def _names(aovs: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted({str(name) for name in aovs}))
 
 
+def _words_of(background: Background) -> list[str]:
+    """As the command line has them. Raises UsageError."""
+    if background is None:
+        return []
+    if isinstance(background, str):
+        words = background.split() or ["-"]
+        if any(word.startswith("--") for word in words):
+            raise UsageError(f"background is {background!r:.80}; give three numbers or a word as \"environment\"")
+        return words
+    try:
+        return [repr(float(value)) for value in background]
+    except (TypeError, ValueError):
+        raise UsageError(f"background is {background!r:.80}; give three numbers or a word as \"environment\"") from None
+
+
+def _one_of(record: Any, kind: type[Any]) -> Any:
+    """The record; None of none."""
+    return None if record is None else _all_of([record], kind)[0]
+
+
 def _all_of(records: Iterable[Any], kind: type[Any]) -> list[Any]:
     result = list(records)
     for record in result:
@@ -383,3 +462,58 @@ def _count(value: object, what: str) -> int:
     if not 0 <= result < 2**64:
         raise UsageError(f"{what} is {value!r:.80}; give a whole number from 0 on")
     return result
+
+
+def _count_samples(view: View) -> int:
+    """About how many samples a picture has, by which kernels are chosen."""
+    whole = settle_quality(view)
+    crop = whole.crop
+    if crop is not None and len(crop) == 4:
+        size = (crop[2] - crop[0], crop[3] - crop[1])
+    else:
+        size = _promin.choose_size(to_dict(Camera()), size_of(whole)) or (1, 1)
+    samples = whole.min_spp or 1 if has_target(whole) else whole.spp
+    return max(0, size[0] * size[1] * samples)
+
+
+@names_keywords
+def render(
+    scene: SceneLike,
+    device: DeviceLike = None,
+    *,
+    aovs: Iterable[str] = (),
+    light: str = "auto",
+    background: Background = None,
+    from_: str = "auto",
+    fit: float = 0.85,
+    builder: str = "sah",
+    progress: Progress = None,
+    camera: CameraLike = None,
+    size: Size = None,
+    crop: tuple[int, int, int, int] | None = None,
+    spp: int | None = None,
+    quality: str | None = None,
+    max_depth: int | None = None,
+    target_error: float | None = None,
+    time_limit: float | str | None = None,
+    debug_view: str | None = None,
+    shadows: bool | None = None,
+) -> Frame:
+    """One picture of a scene or a scene's file, as in promin.render("model.glb", size="hd").save("model.png"): what
+    `promin render` makes without a word, or with options of these names. Of several pictures of one scene make a
+    Renderer, whose __init__ and `render` have these keywords and say what they raise."""
+    view = change_view(View(), locals())
+    renderer = Renderer(
+        scene,
+        device,
+        aovs=aovs,
+        view=view,
+        light=light,
+        background=background,
+        from_=from_,
+        fit=fit,
+        builder=builder,
+        expected_samples=_count_samples(view),
+        progress=progress,
+    )
+    return renderer.render(progress=progress)

@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from promin import _promin
 from promin._arrays import RaysLike, check_hits, positions, round_once, split_rays, to_numbers, to_vectors
 from promin._errors import InputError, UsageError
-from promin._records import Camera, Environment, Light, Material, Phong, from_dict, to_dict
+from promin._records import Camera, Environment, Light, Material, Phong, change, from_dict, suggest, to_dict
 
 IDENTITY = np.eye(4)
 
@@ -110,6 +110,9 @@ class Scene:
         self._parts: list[_Mesh | _Shape] = []
         self._materials: list[Material] = []
         self._lights: list[Light] = []
+        # All materials or lights, those of the file too, once one of these is changed.
+        self._all_materials: list[Material] | None = None
+        self._all_lights: list[Light] | None = None
         self._cameras: list[Camera] = []
         self._environment: Environment | None = None
         self._center: NDArray[np.float64] | None = None
@@ -249,13 +252,15 @@ class Scene:
 
     def add_material(self, material: Material) -> int:
         """Adds a material and returns its number, those of a file being the first."""
-        self._materials.append(_of(material, Material))
+        materials = self._materials if self._all_materials is None else self._all_materials
+        materials.append(_of(material, Material))
         self._forget_native()
-        return self._base_material_count() + len(self._materials) - 1
+        return self._material_count() - 1
 
     def add_light(self, light: Light) -> int:
         """Adds a light and returns its number. A scene without lights and sky is lit by `Renderer(light=...)`."""
-        self._lights.append(_of(light, Light))
+        lights = self._lights if self._all_lights is None else self._all_lights
+        lights.append(_of(light, Light))
         self._forget_native()
         return len(self.lights) - 1
 
@@ -264,6 +269,19 @@ class Scene:
         self._cameras.append(_of(camera, Camera))
         self._forget_native()
         return len(self.cameras) - 1
+
+    # What is changed.
+
+    def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
+        """Changes a material by its name or number: `new` takes its place, or some of its fields get other values, as in
+        scene.set_material("Fabric", base_color=(1, 0, 0), base_color_texture=None). A texture multiplies its colour or
+        number; None takes it away. Raises UsageError where there is no such material or field, or where several
+        have the name."""
+        self.materials = replace_one(self.materials, material, _of(new, Material) if new else None, fields, "material")
+
+    def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
+        """Changes a light as set_material does, as in scene.set_light(0, is_on=False)."""
+        self.lights = replace_one(self.lights, light, _of(new, Light) if new else None, fields, "light")
 
     # What there is.
 
@@ -292,14 +310,26 @@ class Scene:
 
     @property
     def materials(self) -> list[Material]:
-        """Copies of its materials."""
+        """Copies of its materials. Assigning replaces them; see set_material."""
         return [from_dict(Material, record) for record in self.native().materials()]
+
+    @materials.setter
+    def materials(self, materials: Iterable[Material]) -> None:
+        self._all_materials = [_of(material, Material) for material in materials]
+        self._forget_native()
 
     @property
     def lights(self) -> list[Light]:
-        """Copies of its lights, without those that a Renderer adds."""
+        """Copies of its lights, without those that a Renderer adds. Assigning replaces them; see set_light."""
+        if self._all_lights is not None:
+            return list(self._all_lights)
         base = [] if self._file is None else [from_dict(Light, record) for record in self._load_base().lights()]
         return [to_world(light, self.center) for light in base] + list(self._lights)
+
+    @lights.setter
+    def lights(self, lights: Iterable[Light]) -> None:
+        self._all_lights = [_of(light, Light) for light in lights]
+        self._forget_native()
 
     @property
     def cameras(self) -> list[Camera]:
@@ -361,8 +391,13 @@ class Scene:
         return points
 
     def __repr__(self) -> str:
-        name = "" if self._file is None else f" {self._file.path}"
-        return f"<promin.Scene{name}, {len(self.objects)} objects>"
+        name = "" if self._file is None else f" {Path(self._file.path).name}"
+        objects = self.objects
+        primitives = sum(each.primitive_count for each in objects)
+        counts = [(len(objects), "object"), (primitives, "primitive"), (len(self.materials), "material")]
+        counts += [(len(self.lights), "light"), (len(self.cameras), "camera")]
+        words = [f"{number} {word}{'s' * (number != 1)}" for number, word in counts]
+        return f"<promin.Scene{name}: {', '.join(words)}>"
 
     # Native parts, made when they are first asked for.
 
@@ -385,6 +420,8 @@ class Scene:
         twin._lock = threading.RLock()
         twin._parts, twin._materials = list(self._parts), list(self._materials)
         twin._lights, twin._cameras = list(self._lights), list(self._cameras)
+        twin._all_materials = None if self._all_materials is None else list(self._all_materials)
+        twin._all_lights = None if self._all_lights is None else list(self._all_lights)
         return twin
 
     @property
@@ -397,13 +434,20 @@ class Scene:
         if self._file is not None and not self._has_additions():
             return self._load_base()
         scene = _promin.Scene() if self._file is None else self._load_base().copy()
-        is_bare = not self._materials and self._base_material_count() == 0
-        for material in [Phong()] if is_bare and self._parts else self._materials:
-            scene.add_material(to_dict(material))
+        if self._all_materials is not None:
+            scene.set_materials([to_dict(material) for material in self._all_materials])
+        elif self._materials:
+            for material in self._materials:
+                scene.add_material(to_dict(material))
+        elif self._parts and self._material_count() == 0:
+            scene.add_material(to_dict(Phong()))
         for part in self._parts:
             part.add_to(scene, center)
-        for light in self._lights:
-            scene.add_light(move_light(light, center))
+        if self._all_lights is not None:
+            scene.set_lights([move_light(light, center) for light in self._all_lights])
+        else:
+            for light in self._lights:
+                scene.add_light(move_light(light, center))
         for camera in self._cameras:
             scene.add_camera(move_camera(camera, center))
         if self._environment is not None:
@@ -412,7 +456,8 @@ class Scene:
 
     def _has_additions(self) -> bool:
         added = (self._parts, self._materials, self._lights, self._cameras)
-        return any(added) or self._environment is not None
+        replaced = (self._all_materials, self._all_lights, self._environment)
+        return any(added) or any(value is not None for value in replaced)
 
     def _load_base(self) -> _promin.Scene:
         assert self._file is not None
@@ -424,8 +469,10 @@ class Scene:
                 self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
             return self._base
 
-    def _base_material_count(self) -> int:
-        return 0 if self._file is None else len(self._load_base().materials())
+    def _material_count(self) -> int:
+        if self._all_materials is not None:
+            return len(self._all_materials)
+        return len(self._materials) + (0 if self._file is None else len(self._load_base().materials()))
 
     def _add(self, part: _Mesh | _Shape) -> int:
         self._parts.append(part)
@@ -463,6 +510,43 @@ class Scene:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._make_private()
+
+
+SceneLike = Union[Scene, str, "os.PathLike[str]"]
+"""A scene, or the path of its file."""
+
+Named = TypeVar("Named", Material, Light)
+
+
+def to_scene(scene: SceneLike) -> Scene:
+    """The scene, read where it is a file. Raises UsageError, and what Scene.load raises."""
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, (str, os.PathLike)):
+        return Scene.load(scene)
+    raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
+
+
+def replace_one(
+    records: list[Named], chosen: str | int, new: Named | None, fields: dict[str, Any], what: str
+) -> list[Named]:
+    """Materials or lights with one, by its name or number, in whose place there is `new`, with these fields."""
+    place = _find_one(records, chosen, what)
+    records[place] = change(records[place] if new is None else new, fields)
+    return records
+
+
+def _find_one(records: list[Named], chosen: str | int, what: str) -> int:
+    if isinstance(chosen, (int, np.integer)) and 0 <= chosen < len(records):
+        return int(chosen)
+    places = [i for i, record in enumerate(records) if record.name == chosen]
+    if len(places) == 1:
+        return places[0]
+    if places:
+        raise UsageError(f"{len(places)} {what}s are named {chosen!r}; give the number of one: {places}")
+    names = [record.name for record in records if record.name]
+    cure = suggest(str(chosen), names) if names else f"give a number below {len(records)}"
+    raise UsageError(f"no {what} {chosen!r:.80}; {cure if records else 'the scene has none'}")
 
 
 def meet_planes(

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from operator import index
@@ -20,6 +20,9 @@ from promin._records import Camera, Display, to_dict
 CameraLike = Union[Camera, str, int, None]
 """A camera, or the name or number of one of the scene's; None: its first, or one that frames the scene."""
 
+Size = Union[tuple[int, int], Sequence[int], int, str, None]
+"""Width and height in pixels; a width; or a word of `promin render --size`: "640x480", "640", "x480", "hd"."""
+
 _ERROR_SPACES = _promin.list_choices()["error_in"]
 
 
@@ -31,20 +34,22 @@ class View:
 
     camera: CameraLike = None
     """From where."""
-    size: tuple[int, int] | None = None
-    """Width and height in pixels; None: what the camera asks for, else a height of 720. The vertical field of view
-    holds."""
+    size: Size = None
+    """Width and height in pixels, a width alone, "640x480" or "hd", "fullhd", "4k"; None: what the camera asks for, else
+    a height of 720."""
     crop: tuple[int, int, int, int] | None = None
     """x0, y0, x1, y1: the pixels to trace, half-open."""
     spp: int = 8
     """Samples a pixel; 1 samples the centre."""
+    quality: str | None = None
+    """"draft", "normal", "high" or "best", in place of `spp` and `target_error`."""
     max_depth: int | None = None
     """Bounces; None: 5, or 8 with glass."""
     target_error: float | None = None
     """Each pixel takes samples until it claims to be this near (docs/model.md, "Error of a pixel"), in place of
     `spp`."""
-    time_limit: float | None = None
-    """Seconds: the best picture that is complete by then, compilation included."""
+    time_limit: float | str | None = None
+    """Seconds, or a word as "20s" or "2min": the best picture that is complete by then, compilation included."""
     min_spp: int | None = None
     """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
     max_spp: int | None = None
@@ -72,9 +77,34 @@ def of_view(view: object) -> View:
 
 
 def change_view(view: View, given: Mapping[str, Any]) -> View:
-    """The view with what of its fields is given and not None."""
+    """The view with what of its fields is given and not None. What is said of samples takes the place of a quality, and
+    a quality of all that the view says of samples."""
     names = [field.name for field in dataclasses.fields(View)]
-    return dataclasses.replace(view, **{name: given[name] for name in names if given[name] is not None})
+    changes = {name: given[name] for name in names if given.get(name) is not None}
+    if "quality" in changes:
+        beside = [name for name in _NUMBERS_OF_SAMPLES if name in changes]
+        if beside:
+            raise UsageError(f"quality and {beside[0]} contradict each other; leave one out")
+        changes = {**{name: getattr(View, name) for name in _NUMBERS_OF_SAMPLES}, **changes}
+    elif any(name in changes for name in _NUMBERS_OF_SAMPLES):
+        changes["quality"] = None
+    return dataclasses.replace(view, **changes)
+
+
+_NUMBERS_OF_SAMPLES = ("spp", "target_error", "time_limit")
+
+
+def settle_quality(view: View) -> View:
+    """The view with the numbers that its quality stands for."""
+    if view.quality is None:
+        return view
+    for name in _NUMBERS_OF_SAMPLES:
+        if getattr(view, name) != getattr(View, name):
+            raise UsageError(f"quality and {name} contradict each other; leave one out")
+    fields = _promin.read_quality(str(view.quality) or "-", str(view.debug_view) or "-")
+    if fields["target_error"] is None:
+        fields["error_in"] = view.error_in
+    return dataclasses.replace(view, quality=None, **fields)
 
 
 def shows_light(view: View) -> bool:
@@ -90,9 +120,15 @@ def mode_of(view: View) -> dict[str, Any]:
     return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
 
 
-def size_of(view: View) -> tuple[int, ...] | None:
-    """In pixels; None: as the camera asks."""
-    return None if view.size is None else _integers(view.size, 2, "size")
+def size_of(view: View) -> tuple[int, ...]:
+    """In pixels; 0 where the camera decides."""
+    if view.size is None:
+        return (0, 0)
+    if isinstance(view.size, str):
+        return _promin.read_size(view.size or "-")
+    if isinstance(view.size, (int, np.integer)):
+        return _integers((view.size, 0), 2, "size")
+    return _integers(view.size, 2, "size")
 
 
 def limit_of(view: View) -> float | None:
@@ -100,6 +136,8 @@ def limit_of(view: View) -> float | None:
     limit = view.time_limit
     if limit is None:
         return None
+    if isinstance(limit, str):
+        return _promin.read_time_limit(limit or "-")
     if isinstance(limit, (int, float)) and 0 < limit < inf:
         return float(limit)
     raise UsageError(f"time_limit is {limit!r:.80}; give a positive number of seconds")
@@ -107,7 +145,7 @@ def limit_of(view: View) -> float | None:
 
 def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_depth: int) -> dict[str, Any]:
     """The view as the native module takes it, from a camera that it takes, shown like this."""
-    size = size_of(view) or _promin.default_size(camera)
+    size = _promin.choose_size(camera, size_of(view))
     if size is None:
         raise UsageError(
             f"the camera's aspect_ratio of {camera['aspect_ratio']!r:.80} gives no sensible width; give size"

@@ -334,11 +334,18 @@ class Job:
         the bytes must be those that any other maker would write. Raises RunError."""
         return Receipt(**self._native.write(number, description, data, ms, made_on, fingerprint))
 
-    def runner(self, device: DeviceLike = None, make: Make | None = None, *, rays: RaySource | None = None) -> Runner:
+    def runner(
+        self,
+        device: DeviceLike = None,
+        make: Make | None = None,
+        *,
+        rays: RaySource | None = None,
+        tell: Callable[[str], object] = lambda words: None,
+    ) -> Runner:
         """What makes pieces here: the scene is read and the device opened once.
 
         device: a Device, a part of a name, an index, or None for the default one. make, rays: as `create_with` and
-        `create` were given them. The tree of a large scene is that of DIR/trees, where the first who needs it puts it.
+        `create` were given them. tell: is told what takes its time, as "loads the scene" or "compiles". The tree of a large scene is that of DIR/trees, where the first who needs it puts it.
         Raises UsageError where the job would be another one today, as a file or the program has changed, and says
         which; InputError where the folder does not say how pieces are made, or a file is gone; DeviceError,
         RunError."""
@@ -346,7 +353,9 @@ class Job:
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
             if self._kind not in ("render", "cast"):
                 raise UsageError(f"pieces of the kind {self._kind!r} are made by a function; give it as make")
+            tell("loads the scene")
             self._plan = _promin.PlannedJob.plan_again(self._native, rays or self._rays)
+        tell("compiles")
         return Runner(self, device, make)
 
     def check_outputs(self, outputs: Sequence[PathLike]) -> None:

@@ -53,7 +53,10 @@ class Alone:
     patience_s = 0.0
     most_at_once = 1
 
-    def __init__(self, folder: str, device: str | None, stop_piece: Callable[[], bool]) -> None:
+    def __init__(
+        self, folder: str, device: str | None, stop_piece: Callable[[], bool], say: Callable[[str], None]
+    ) -> None:
+        self._say = say
         self._folder = folder
         self._device = device
         self._stop_piece = stop_piece
@@ -70,7 +73,7 @@ class Alone:
             return None
         number = self._sent.popleft()
         if number == PROOF:
-            return _SELF, number, worker.prove(self._folder, self._device)
+            return _SELF, number, worker.prove(self._folder, self._device, self._say)
         return _SELF, number, worker.make(self._folder, number, self._stop_piece)
 
     def withdraw(self, member: str, number: int) -> None:
@@ -106,7 +109,7 @@ def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch
     settings = Settings.read(folder)
     survey = take_survey(job)
     claim_what_is_there(job, settings, survey.fingerprints)
-    crew = Alone(job.folder, device, signals.end_now)
+    crew = Alone(job.folder, device, signals.end_now, lambda words: watch.say(f"{_SELF} {words}"))
     whole = Tally()
 
     def run(numbers: list[int], survey: Survey) -> bool:

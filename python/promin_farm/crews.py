@@ -1,21 +1,18 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Crews by Dask distributed: processes of this machine, a cluster that there is, and those that a queue starts.
+"""Crews by Dask distributed: a cluster that there is, and workers that a queue starts.
 
 Of Dask is used what its versions from 2022 on have: Client, SpecCluster, Nanny. Its scheduler carries numbers and
 receipts between the foreman and the workers; where a piece is made the foreman says."""
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import logging
-import os
 import queue
 import secrets
-import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from promin import jobs
@@ -24,7 +21,6 @@ from promin_farm import worker
 from promin_farm.foreman import PROOF
 from promin_farm.watch import of_workers
 
-_LOCAL_PATIENCE_S = 180.0
 _LOST_S = 45
 """After this time without a worker a nanny is given up; another takes its seat then."""
 _PATIENCE_S = 600.0
@@ -42,35 +38,6 @@ def need(module: str, package: str) -> Any:
             f"{package} is not installed ({error}), in this Python; run: pip install 'promin[farm]', or take "
             "promin-farm work, which needs none"
         ) from error
-
-
-@dataclass(frozen=True)
-class Seat:
-    """A place for a worker: a device, and the threads that it has where the device is a processor."""
-
-    device: str | None
-    """What `--device` takes; None is the default."""
-    threads: int | None = None
-
-    @property
-    def environment(self) -> dict[str, str]:
-        """Of the worker's process: lavapipe reads it when the first device is opened."""
-        words = {"PROMIN_DEVICE": self.device} if self.device else {}
-        return words | ({"LP_NUM_THREADS": str(self.threads)} if self.threads else {})
-
-
-def count_cores() -> int:
-    """That this process may use."""
-    return len(os.sched_getaffinity(0))
-
-
-def deal_seats(devices: list[str], count: int | None) -> list[Seat]:
-    """A worker for each device, or `count` of them, which share the devices; workers of a machine share its cores.
-
-    devices: what `--device` takes; none: the default one, which may be a processor."""
-    count = count or max(1, len(devices))
-    threads = max(1, count_cores() // count) if count > 1 else None
-    return [Seat(devices[i % len(devices)] if devices else None, threads) for i in range(count)]
 
 
 class DaskCrew:
@@ -165,45 +132,6 @@ def _refusal_of(error: BaseException) -> worker.Answer | None:
         return None
     words = f"it cannot run this promin-farm ({type(error).__name__}: {error})"
     return {"refused": f"{words}; install the same package there", "exit_code": 1}
-
-
-def open_local(job: jobs.Job, seats: list[Seat], stack: Any) -> tuple[DaskCrew, str]:
-    """A cluster of this machine, which ends with the stack; and a sentence about it."""
-    quiet()
-    distributed = need("distributed", "Dask distributed")
-    has_dashboard = importlib.util.find_spec("bokeh") is not None
-    # The nannies' own folders: sockets and locks, nothing of the job.
-    scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="promin-farm-"))
-    options = {"nthreads": 1, "memory_limit": 0, "local_directory": scratch, "silence_logs": logging.CRITICAL}
-    specification = {
-        i: {
-            "cls": distributed.Nanny,
-            "options": {**options, "env": seat.environment, "preload": ["promin_farm.unattended"]},
-        }
-        for i, seat in enumerate(seats)
-    }
-    scheduler = {
-        "cls": distributed.Scheduler,
-        "options": {"dashboard": has_dashboard, "dashboard_address": "127.0.0.1:0", "host": "127.0.0.1", "port": 0},
-    }
-    try:
-        cluster = stack.enter_context(
-            distributed.SpecCluster(workers=specification, scheduler=scheduler, silence_logs=logging.CRITICAL)
-        )
-    except (RuntimeError, OSError) as error:
-        raise jobs.RunError(
-            f"Dask cannot start workers ({error}), on this machine; try again, or take promin-farm work"
-        ) from error
-    client = stack.enter_context(distributed.Client(cluster))
-    threads = f", LP_NUM_THREADS={seats[0].threads} each" if seats[0].threads else ""
-    dashboard = f"; {cluster.dashboard_link}" if has_dashboard else ""
-
-    def keep_up() -> None:
-        # The same number again fills seats whose nannies have failed, as they do where a process takes long to start.
-        cluster.scale(len(seats))
-
-    words = f"{of_workers(len(seats))} on this machine{threads}{dashboard}"
-    return DaskCrew(client, job, _LOCAL_PATIENCE_S, keep_up), words
 
 
 def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]:

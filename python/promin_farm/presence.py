@@ -9,12 +9,16 @@ import os
 import socket
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from promin_farm.files import read_json, write_whole
 
 BEAT_S = 10.0
+_LOOK_S = 0.5
+_MOST_TOLD = 8
+"""Processes of which what they are at is told; of more nobody reads it."""
 STALE_S = 60.0
 """A worker of another host that has not touched its file for so long is gone."""
 
@@ -78,6 +82,58 @@ class Heart:
                 self._write()
             except OSError:
                 pass
+
+
+class Start:
+    """Tells what a process that begins to work on a job is at: `farm/starts/HOST-PID` holds it, a few words a line."""
+
+    def __init__(self, folder: Path, also: Callable[[str], None]) -> None:
+        """also: gets the words too."""
+        self._file = folder / "farm" / "starts" / f"{socket.gethostname()}-{os.getpid()}"
+        self._also = also
+
+    def tell(self, words: str) -> None:
+        self._also(words)
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            with self._file.open("a") as stream:
+                stream.write(words + "\n")
+        except OSError:
+            pass  # As the heart.
+
+
+class Starts:
+    """What processes are at that begin to work on a job, for whoever waits for the first of them."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder / "farm" / "starts"
+        self._ends = {file.name: file.stat().st_size for file in self._folder.glob("*")}
+        """Of what is told, by the names of ledgers."""
+        self._told: set[str] = set()
+        self._read_at = 0.0
+
+    def tell_news(self, say: Callable[[str], None], now: float) -> None:
+        """Says what is new, of a few processes. now: seconds; it reads the folder at most twice a second."""
+        if now - self._read_at < _LOOK_S:
+            return
+        self._read_at = now
+        for file in sorted(self._folder.glob("*")):
+            if file.name in self._told or len(self._told) < _MOST_TOLD:
+                self._tell_of(file, say)
+
+    def _tell_of(self, file: Path, say: Callable[[str], None]) -> None:
+        end = self._ends.get(file.name, 0)
+        try:
+            with file.open("rb") as stream:
+                stream.seek(end)
+                text = stream.read()
+        except OSError:
+            return
+        whole = text[: text.rfind(b"\n") + 1]
+        self._ends[file.name] = end + len(whole)
+        for line in whole.decode(errors="replace").splitlines():
+            self._told.add(file.name)
+            say(f"{file.name} {line}")
 
 
 class Roll:

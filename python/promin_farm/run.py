@@ -6,21 +6,25 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from math import inf
 from pathlib import Path
 
 from promin import jobs
 
 from promin_farm.alone import Signals
 from promin_farm.assembly import Assembly
-from promin_farm.crews import DaskCrew, deal_seats, open_local, open_remote
-from promin_farm.foreman import Foreman, Tally
+from promin_farm.crews import open_remote
+from promin_farm.foreman import Crew, Foreman, Tally
 from promin_farm.page import Page
+from promin_farm.presence import Starts
+from promin_farm.processes import LocalCrew, deal_seats
 from promin_farm.queues import QUEUES, open_queue
 from promin_farm.settings import Settings, claim_what_is_there
 from promin_farm.survey import take_survey
-from promin_farm.watch import Progress
+from promin_farm.watch import Progress, of_workers
 
 _MOST_ROUNDS = 3
 """Pieces that are altered while the job goes on are made again; who alters them oftener than that is told."""
@@ -100,7 +104,13 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
     survey = take_survey(job)
     claim_what_is_there(job, settings, survey.fingerprints)
     page = Page(job)
-    watch = Progress(job, missing, is_quiet=options.is_quiet, on_tick=page.tick, on_piece=assembly.piece_done)
+    starts = Starts(Path(job.folder))
+
+    def tick() -> None:
+        page.tick()
+        starts.tell_news(watch.say, time.monotonic())
+
+    watch = Progress(job, missing, is_quiet=options.is_quiet, on_tick=tick, on_piece=assembly.piece_done)
     with Signals() as signals, assembly.writing(missing, signals.end_soon), ExitStack() as stack:
         crew, words = _open_crew(job, options, stack)
         watch.say(f"{len(missing)} of {len(job.pieces)} pieces to make, by {words}")
@@ -110,18 +120,21 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
         try:
             tally = foreman.run(missing)
         finally:
+            starts.tell_news(watch.say, inf)
             watch.close()
             page.write()
     return _conclude(job, tally)
 
 
-def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[DaskCrew, str]:
+def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew, str]:
     if options.scheduler in QUEUES:
         return open_queue(job, str(options.scheduler), options.workers or 1, options.queue_config, stack)
     if options.scheduler:
         return open_remote(job, options.scheduler, stack)
     # Each GPU has a worker; a processor has one that takes all of it.
-    return open_local(job, deal_seats(options.devices or jobs.list_gpus(), options.workers), stack)
+    seats = deal_seats(options.devices or jobs.list_gpus(), options.workers)
+    threads = f", LP_NUM_THREADS={seats[0].threads} each" if seats[0].threads else ""
+    return stack.enter_context(LocalCrew(job, seats)), f"{of_workers(len(seats))} on this machine{threads}"
 
 
 def _conclude(job: jobs.Job, tally: Tally) -> int | None:

@@ -24,7 +24,7 @@ from typing import Any
 from promin import jobs
 
 from promin_farm.errors import exit_code_of
-from promin_farm.presence import Heart
+from promin_farm.presence import Heart, Start
 from promin_farm.settings import Settings, claim_group, group_of
 
 Answer = dict[str, Any]
@@ -35,14 +35,18 @@ _DISK_FULL = ("No space left on device", "Disk quota exceeded", "File too large"
 class Bench:
     """A job opened in this process: its scene, its device, and the kernels that are compiled for it."""
 
-    def __init__(self, folder: str, device: str | None) -> None:
-        """Raises promin's errors."""
+    def __init__(self, folder: str, device: str | None, say: Callable[[str], None]) -> None:
+        """say: is told what it is at. Raises promin's errors."""
         self.folder = Path(folder)
         self.stamp = _stamp_of(self.folder)
         self.job = jobs.open(folder)
         self.settings = Settings.read(self.folder)
-        self.runner = self.job.runner(device)
-        self.heart = Heart(self.folder, self.runner.fingerprint, str(getattr(self.runner, "made_on", "")))
+        start = Start(self.folder, say)
+        self.runner = self.job.runner(device, tell=start.tell)
+        start.tell("proves its device")
+        fingerprint = self.runner.fingerprint
+        start.tell("makes pieces")
+        self.heart = Heart(self.folder, fingerprint, str(getattr(self.runner, "made_on", "")))
 
     def find_obstacle(self, number: int | None) -> Answer | None:
         """Whether other bits are wanted than those of this process, of the whole job or of a piece."""
@@ -69,13 +73,14 @@ _bench: Bench | None = None
 _using = threading.RLock()
 
 
-def prove(folder: str, device: str | None = None) -> Answer:
+def prove(folder: str, device: str | None = None, say: Callable[[str], None] = lambda words: None) -> Answer:
     """Opens the job, or keeps it open, and tells by a probe what bits this process gives.
 
-    device: what `--device` takes; None: PROMIN_DEVICE of the environment, else the default."""
+    device: what `--device` takes; None: PROMIN_DEVICE of the environment, else the default. say: is told what it is
+    at, as whoever sees the folder."""
     with _using:
         try:
-            bench = _open(folder, device)
+            bench = _open(folder, device, say)
             obstacle = bench.find_obstacle(None)
             if obstacle:
                 return obstacle
@@ -125,14 +130,14 @@ def close() -> None:
         _bench = None
 
 
-def _open(folder: str, device: str | None) -> Bench:
+def _open(folder: str, device: str | None, say: Callable[[str], None] = lambda words: None) -> Bench:
     global _bench
     if _bench and (str(_bench.folder) != folder or _stamp_of(_bench.folder) != _bench.stamp):
         close()  # Another job, or another in the same folder.
     if _bench:
         _bench.settings = Settings.read(_bench.folder)
     else:
-        _bench = Bench(folder, device or os.environ.get("PROMIN_DEVICE") or None)
+        _bench = Bench(folder, device or os.environ.get("PROMIN_DEVICE") or None, say)
     return _bench
 
 

@@ -236,7 +236,7 @@ def test_lists_come_part_by_part(box_caster: promin.Caster, monkeypatch: pytest.
     splits, hits = box_caster.list(rays)
     assert len(hits) > 100
     for budget, most_hits in ((1, 2), (32 * 7, 7), (10**6, 10**6)):
-        parts = list(box_caster.iter_list(rays.reshape(5, 100, 8), budget))
+        parts = list(box_caster.iter_list(rays.reshape(5, 100, 8), budget=budget))
         ends = [first + len(own) - 1 for first, own, _ in parts]
         assert [first for first, _, _ in parts] == [0, *ends[:-1]] and ends[-1] == 500
         assert max(len(own) for _, _, own in parts) <= most_hits
@@ -247,7 +247,7 @@ def test_lists_come_part_by_part(box_caster: promin.Caster, monkeypatch: pytest.
     assert list(box_caster.iter_list(np.empty((0, 8)))) == []
     for wrong in (0, 1.5, "1 GB"):
         with pytest.raises(promin.UsageError, match="budget is"):
-            box_caster.iter_list(rays, wrong)  # type: ignore[arg-type]
+            box_caster.iter_list(rays, budget=wrong)  # type: ignore[arg-type]
 
 
 def test_threads_open_a_caster_once(box: promin.Scene, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -209,15 +209,15 @@ def test_a_centre_moves_camera_light_and_positions() -> None:
 
 
 def test_a_scene_is_framed_from_any_side(box: promin.Scene) -> None:
-    left = promin.Renderer(box, framing="left").camera()
+    left = promin.Renderer(box, from_="left").camera()
     assert left.look == (1, 0, 0)
-    small = promin.Renderer(box, framing="left", fit=0.1).camera()
+    small = promin.Renderer(box, from_="left", fit=0.1).camera()
     assert small.eye[0] < left.eye[0] - 1
     with pytest.raises(promin.UsageError, match="0.05"):
-        promin.Renderer(box, framing="left", fit=2).camera()
+        promin.Renderer(box, from_="left", fit=2).camera()
     box.add_camera(promin.Camera(eye=(0, 0, 9)))
     assert promin.Renderer(box).camera().eye == (0, 0, 9)
-    assert promin.Renderer(box, framing="left").camera() == left, "whatever cameras there are"
+    assert promin.Renderer(box, from_="left").camera() == left, "whatever cameras there are"
 
 
 def test_a_hit_may_be_at_the_centre() -> None:

@@ -79,7 +79,7 @@ def test_a_view_has_the_defaults_of_the_library() -> None:
     assert (view.filter, view.depth) == (theirs["filter"], theirs["depth_kind"])
     assert _view.mode_of(view) == theirs["mode"]
     assert view.error_in == CHOICES["error_in"][0]
-    open_ones = {"camera", "size", "crop", "max_depth", "target_error", "time_limit", "min_spp", "max_spp"}
+    open_ones = {"camera", "size", "crop", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
     assert {f.name for f in dataclasses.fields(view) if f.default is None} == open_ones | {"filter_width"}
     told = told_fields(promin.View)
     target = DEFAULTS["ErrorTarget"]
@@ -135,7 +135,7 @@ def test_choices_are_told_whole() -> None:
         assert quoted(told_argument(function, name)) == CHOICES[name]
     assert sorted(quoted(told_argument(promin.Caster.__init__, "builder"))) == sorted(CHOICES["builder"])
     # "auto" is Python's word for what the command line says by saying nothing.
-    assert quoted(told_argument(promin.Renderer.__init__, "framing")) == ["auto", *CHOICES["framing"]]
+    assert quoted(told_argument(promin.Renderer.__init__, "from_")) == ["auto", *CHOICES["framing"]]
 
 
 def test_every_option_of_promin_render_is_in_python_or_told_of() -> None:

@@ -3,6 +3,9 @@
 #include "formats/gltf/parse_json.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
 
 namespace promin {
 namespace {
@@ -30,6 +33,40 @@ int depth_of(std::string_view text) {
   return deepest;
 }
 
+/// The text with the largest number of its sign in place of each that is beyond double, of which the parser makes
+/// nothing. Checks of ranges find it.
+std::string bound_numbers(std::string_view text) {
+  constexpr std::string_view kLargest = "1.7976931348623157e308";
+  constexpr std::string_view kOfNumbers = "0123456789+-.eE";
+  std::string bounded;
+  bool is_in_string = false;
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    const bool is_number = !is_in_string && (c == '-' || (c >= '0' && c <= '9'));
+    size_t end = i + 1;
+    if (is_in_string && c == '\\') end = i + 2;
+    if (is_number) end = text.find_first_not_of(kOfNumbers, i);
+    if (c == '"') is_in_string = !is_in_string;
+    const std::string part(text.substr(i, end - i));
+    if (is_number && std::isinf(std::strtod(part.c_str(), nullptr))) {
+      bounded += (c == '-' ? "-" : "") + std::string(kLargest);
+    } else {
+      bounded += part;
+    }
+    i = std::min(end, text.size());
+  }
+  return bounded;
+}
+
+/// Numbers beyond double are found by the parser, as hardly any file has them.
+json parse_bounded(std::string_view text) {
+  try {
+    return json::parse(text);
+  } catch (const json::out_of_range&) {
+    return json::parse(bound_numbers(text));
+  }
+}
+
 }  // namespace
 
 json parse_json(std::string_view text, LoadReport& report, const std::string& cure) {
@@ -41,7 +78,7 @@ json parse_json(std::string_view text, LoadReport& report, const std::string& cu
   report.throw_if_refused();
   json document;
   try {
-    document = json::parse(text);
+    document = parse_bounded(text);
   } catch (const json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
     std::string message = error.what();

@@ -71,6 +71,7 @@ struct Layout {
     }
   }
   bool has_all(uint32_t first) const { return is_there[first] && is_there[first + 1] && is_there[first + 2]; }
+  bool has_some(uint32_t first) const { return is_there[first] || is_there[first + 1] || is_there[first + 2]; }
   bool has_uvs() const { return is_there[kU] && is_there[kV]; }
 };
 
@@ -103,17 +104,24 @@ class BodyReader {
     const Layout vertices(*header_.find("vertex"));
     has_normals_ = vertices.has_all(kNx);
     has_colors_ = vertices.has_all(kRed);
+    warn_about_partial_colors(vertices, "vertices");
     has_uvs_ = vertices.has_uvs() && !header_.texture_files.empty();
     const PlyElement* face = header_.find("face");
     if (face == nullptr) return;
     const Layout faces(*face);
     has_face_colors_ = faces.has_all(kRed) && !has_colors_;
+    warn_about_partial_colors(faces, "faces");
     if (faces.has_all(kRed) && has_colors_) {
       report_.warn("colours of faces are ignored, as the vertices have colours");
     }
     has_corner_uvs_ = std::ranges::any_of(face->properties, &PlyProperty::lists_uvs) && !header_.texture_files.empty();
     if (has_corner_uvs_) has_uvs_ = false;
     has_face_textures_ = has_corner_uvs_ || (has_uvs_ && faces.is_there[kTexture]);
+  }
+
+  void warn_about_partial_colors(const Layout& layout, const std::string& owners) {
+    if (!layout.has_some(kRed) || layout.has_all(kRed)) return;
+    report_.warn("colours of " + owners + " are ignored, as red, green or blue is missing");
   }
 
   void read_element(const PlyElement& element) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 /// A format that is read from memory without OpenImageIO. Its functions throw std::runtime_error with the reason.
 struct OwnFormat {
@@ -24,6 +25,10 @@ const OwnFormat* find_own_format(std::string_view name);
 // (OpenImageIO#3917): libwebp itself keeps them apart.
 std::pair<uint32_t, uint32_t> read_webp_size(std::span<const unsigned char> file);
 void read_webp(std::span<const unsigned char> file, std::span<unsigned char> pixels);
+/// libwebp's, of 100.
+inline constexpr float kWebpQuality = 92.0F;
+/// The file of a picture of three or four bytes a pixel, with loss but for alpha. Throws as OwnFormat's functions.
+std::vector<unsigned char> make_webp(const unsigned char* pixels, uint32_t width, uint32_t height, uint32_t channels);
 
 // OpenImageIO reads AVIF where it is built with a libheif that does: libavif itself does everywhere.
 std::pair<uint32_t, uint32_t> read_avif_size(std::span<const unsigned char> file);

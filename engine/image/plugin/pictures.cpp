@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <span>
@@ -189,6 +190,28 @@ void spread_channels(std::span<unsigned char> pixels, int count) {
   }
 }
 
+void write_bytes(const char* file, std::span<const unsigned char> bytes) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!stream.flush()) throw std::runtime_error("cannot write the file");
+}
+
+/// `spec` has size and channels.
+void write_picture(const char* file, const std::string& format, OIIO::ImageSpec spec, const void* pixels) {
+  const bool is_light = format == "hdr";
+  spec.set_format(is_light ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", is_light ? "Linear" : "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("compression", "zip");
+  // Else the file would hold the time at which it is written, and equal pictures would be different files.
+  spec.attribute("DateTime", "");
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output) throw std::runtime_error(first_line(OIIO::geterror()));
+  if (!output->open(file, spec) || !output->write_image(spec.format, pixels) || !output->close()) {
+    throw std::runtime_error(first_line(output->geterror()));
+  }
+}
+
 }  // namespace
 
 uint32_t promin_pictures_interface() {
@@ -277,6 +300,20 @@ int promin_pictures_describe_part(ProminPicturesReader* reader, uint32_t part, P
 int promin_pictures_read_rows(ProminPicturesReader* reader, uint32_t part, uint32_t first_row, uint32_t row_count,
                               void* pixels, ProminPicturesMessage* message) {
   return guard(message, [&] { read_rows(*reader, part, first_row, row_count, static_cast<uint32_t*>(pixels)); });
+}
+
+int promin_pictures_write(const char* file, const char* format, uint32_t width, uint32_t height, uint32_t channel_count,
+                          const void* pixels, ProminPicturesMessage* message) {
+  return guard(message, [&] {
+    if (format == std::string_view("webp")) {
+      const auto bytes = make_webp(static_cast<const unsigned char*>(pixels), width, height, channel_count);
+      write_bytes(file, bytes);
+    } else {
+      write_picture(file, format,
+                    OIIO::ImageSpec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channel_count)),
+                    pixels);
+    }
+  });
 }
 
 void promin_pictures_close(ProminPicturesReader* reader) {

@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 7
+#define PROMIN_PICTURES_INTERFACE 8
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -97,6 +97,12 @@ int promin_pictures_describe_part(struct ProminPicturesReader* reader, uint32_t 
 /// floats of all else, without conversion of colours. EXRs are read fast by multiples of 32 rows.
 int promin_pictures_read_rows(struct ProminPicturesReader* reader, uint32_t part, uint32_t first_row,
                               uint32_t row_count, void* pixels, struct ProminPicturesMessage* message);
+
+/// Writes a whole picture to a file that is there, of any name: "webp", with loss but for alpha, or "tiff", of 8 bits
+/// in sRGB with three or, with unassociated alpha, four channels; or "hdr" of three floats of linear light. Equal
+/// pixels give equal bytes.
+int promin_pictures_write(const char* file, const char* format, uint32_t width, uint32_t height, uint32_t channel_count,
+                          const void* pixels, struct ProminPicturesMessage* message);
 
 /// Closes what promin_pictures_open gave; nothing happens to null.
 void promin_pictures_close(struct ProminPicturesReader* reader);

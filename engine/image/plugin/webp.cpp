@@ -3,8 +3,11 @@
 #include "image/plugin/own_formats.h"
 
 #include <webp/decode.h>
+#include <webp/encode.h>
 
+#include <memory>
 #include <stdexcept>
+#include <string>
 
 std::pair<uint32_t, uint32_t> read_webp_size(std::span<const unsigned char> file) {
   WebPBitstreamFeatures features;
@@ -22,4 +25,16 @@ void read_webp(std::span<const unsigned char> file, std::span<unsigned char> pix
           nullptr) {
     throw std::runtime_error("its pixels are damaged");
   }
+}
+
+std::vector<unsigned char> make_webp(const unsigned char* pixels, uint32_t width, uint32_t height, uint32_t channels) {
+  const auto encode = channels == 4 ? WebPEncodeRGBA : WebPEncodeRGB;
+  uint8_t* file = nullptr;
+  const size_t size = encode(pixels, static_cast<int>(width), static_cast<int>(height),
+                             static_cast<int>(channels * width), kWebpQuality, &file);
+  const std::unique_ptr<uint8_t, void (*)(void*)> owner(file, WebPFree);
+  if (size == 0) {
+    throw std::runtime_error("a WebP has sides of at most " + std::to_string(WEBP_MAX_DIMENSION) + " pixels");
+  }
+  return {file, file + size};
 }

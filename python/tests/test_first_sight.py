@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""What a new user types: a picture in one line, the words of the programs, materials by name, and cures for mistakes."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+import re
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+
+import promin
+from promin import _renderer, _view
+
+
+def test_one_line_makes_the_picture_of_promin_render(
+    scenes: Path, tmp_path: Path, run_promin: Callable[..., None]
+) -> None:
+    promin.render(scenes / "box.gltf", size="96x64", from_="left").save(tmp_path / "ours.png")
+    run_promin("render", scenes / "box.gltf", "-o", tmp_path / "theirs.png", "--size", "96x64", "--from", "left")
+    assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
+    promin.render(promin.Scene.load(scenes / "box.gltf"), size=48, quality="draft").save(tmp_path / "ours.jpg")
+    words = ["-o", tmp_path / "theirs.jpg", "--size", 48, "--quality", "draft"]
+    run_promin("render", scenes / "box.gltf", *words)
+    assert (tmp_path / "ours.jpg").read_bytes() == (tmp_path / "theirs.jpg").read_bytes()
+
+
+def test_a_background_is_that_of_promin_render(
+    box: promin.Scene, scenes: Path, tmp_path: Path, run_promin: Callable[..., None]
+) -> None:
+    for background, words in (((0.5, 0.25, 1), [0.5, 0.25, 1]), ("environment", ["environment"])):
+        promin.render(scenes / "box.gltf", size="32x24", background=background).save(tmp_path / "ours.png")
+        out = tmp_path / "theirs.png"
+        run_promin("render", scenes / "box.gltf", "-o", out, "--size", "32x24", "--background", *words)
+        assert (tmp_path / "ours.png").read_bytes() == out.read_bytes()
+    with pytest.raises(promin.UsageError, match="background .*environment"):
+        promin.render(box, size=8, background="enviroment")
+    with pytest.raises(promin.UsageError, match="^background is 5; give three numbers"):
+        promin.render(box, size=8, background=5)  # type: ignore[arg-type]
+    with pytest.raises(promin.UsageError, match="contradict each other"):
+        promin.render(box, size=8, background=(1, 1, 1), aovs=("alpha",))
+
+
+@pytest.mark.parametrize(
+    "size, sides",
+    [("hd", (1280, 720)), ("640", (640, 0)), ("x480", (0, 480)), (640, (640, 0)), ((64, 48), (64, 48)), (None, (0, 0))],
+)
+def test_sizes_are_those_of_the_command_line(size: Any, sides: tuple[int, int]) -> None:
+    assert tuple(_view.size_of(promin.View(size=size))) == sides
+
+
+def test_qualities_are_those_of_the_command_line() -> None:
+    def numbers(view: promin.View) -> tuple[Any, ...]:
+        whole = _view.settle_quality(view)
+        return whole.spp, whole.target_error, whole.error_in
+
+    assert numbers(promin.View()) == numbers(promin.View(quality="normal")) == (8, None, "linear")
+    assert numbers(promin.View(quality="draft")) == (1, None, "linear")
+    assert numbers(promin.View(quality="best"))[1:] == (1 / 256, "display")
+    assert numbers(promin.View(quality="best", debug_view="uv")) == (128, None, "linear")
+    best = promin.View(quality="best")
+    assert numbers(_view.change_view(best, {"spp": 3})) == (3, None, "linear")
+    assert numbers(_view.change_view(promin.View(target_error=0.5), {"quality": "draft"})) == (1, None, "linear")
+    for wrong, said in (("hihg", "did you mean high"), ("", "quality takes")):
+        with pytest.raises(promin.UsageError, match=said):
+            _view.settle_quality(promin.View(quality=wrong))
+    with pytest.raises(promin.UsageError, match="quality and spp contradict each other"):
+        _view.settle_quality(promin.View(quality="best", spp=2))
+    assert _view.limit_of(promin.View(time_limit="2min")) == 120.0
+
+
+def test_rays_have_many_forms(box_caster: promin.Caster) -> None:
+    origins = np.random.default_rng(5).normal(size=(50, 3))
+    along = (0.0, 0.1, -1.0)
+    whole = np.concatenate([origins, np.zeros((50, 1)), np.broadcast_to(along, (50, 3)), np.full((50, 1), 2.0)], axis=1)
+    expected = box_caster.cast(whole)
+    for rays in (
+        box_caster.cast(origins, along, tmax=2.0),
+        box_caster.cast(origins, along, 0, np.full(50, 2.0)),
+        box_caster.cast((origins, along), tmax=2.0),
+        box_caster.cast((origins, along, 0.0, 2.0)),
+    ):
+        assert (rays == expected).all()
+    assert (box_caster.count(origins, along) == box_caster.count((origins, along))).all()
+    assert (box_caster.occluded((0, 0, 0), origins) == box_caster.occluded(((0, 0, 0), origins))).all()
+    assert (box_caster.list(origins, along)[0] == box_caster.list((origins, along))[0]).all()
+    assert sum(len(hits) for _, _, hits in box_caster.iter_list(origins, along)) == len(box_caster.list(origins, along)[1])
+    for wrong in (origins, (0, 0, 1), np.float32(origins)):
+        with pytest.raises(promin.UsageError, match=r"points without directions; .* cast\(origins, directions\)"):
+            box_caster.cast(wrong)
+    with pytest.raises(promin.UsageError, match="tmin and tmax go with origins and directions"):
+        box_caster.cast(whole, tmax=1)
+
+
+def test_materials_and_lights_are_changed_by_name(scenes: Path) -> None:
+    scene = promin.Scene.load(scenes / "metallic_roughness.gltf")
+    name = next(m.name for m in scene.materials if isinstance(m, promin.MetallicRoughness) and m.name)
+    place = [m.name for m in scene.materials].index(name)
+    others = [m for m in scene.materials if m.name != name]
+    before = promin.render(scene, size="32x18", quality="draft")
+    renderer = promin.Renderer(scene)
+    for target in (scene, renderer):
+        target.set_material(name, base_color=(1, 0, 0), base_color_texture=None)
+        changed = target.materials[place]
+        assert isinstance(changed, promin.MetallicRoughness) and changed.base_color == (1, 0, 0)
+    assert [m for m in scene.materials if m.name != name] == others
+    frames = [promin.render(scene, size="32x18", quality="draft"), renderer.render(size="32x18", quality="draft")]
+    assert (frames[0].rgb == frames[1].rgb).all() and (frames[0].rgb != before.rgb).any()
+    twin = pickle.loads(pickle.dumps(scene))
+    assert twin.materials == scene.materials and twin.add_material(promin.Phong()) == len(scene.materials)
+    scene.set_material(place, promin.Phong(name="clay"))
+    assert isinstance(scene.materials[place], promin.Phong)
+    with pytest.raises(promin.UsageError, match=f"no material '{name}'"):
+        scene.set_material(name, ior=2)
+    with pytest.raises(promin.UsageError, match="a Phong has no field 'base_color'"):
+        scene.set_material("clay", base_color=(1, 1, 1))
+    with pytest.raises(dataclasses.FrozenInstanceError, match="scene.set_material"):
+        scene.materials[place].ior = 3  # type: ignore[attr-defined]
+
+
+def test_lights_are_changed_and_replaced(box: promin.Scene) -> None:
+    box.add_light(promin.Light(name="key", position=(4, 5, 6)))
+    box.set_light("key", diffuse=(0, 1, 0))
+    box.set_light(0, specular=(0, 0, 0))
+    assert box.lights == [promin.Light(name="key", position=(4, 5, 6), diffuse=(0, 1, 0), specular=(0, 0, 0))]
+    green = promin.render(box, size="16x12", quality="draft").rgb
+    assert (green[..., 1] > green[..., 0]).any()
+    box.lights = []
+    assert box.lights == [] and box.add_light(promin.Light()) == 0
+    box.materials = [promin.Unlit(color=(1, 0, 0)), promin.Unlit()]
+    with pytest.raises(promin.UsageError, match=r"2 materials are named ''; give the number of one: \[0, 1\]"):
+        box.set_material("", alpha=0.5)
+
+
+def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.Caster, scenes: Path) -> None:
+    assert repr(box) == "<promin.Scene: 1 object, 12 primitives, 1 material, 0 lights, 0 cameras>"
+    assert repr(promin.Scene.load(scenes / "box.gltf")).startswith("<promin.Scene box.gltf: ")
+    frame = promin.render(box, size="16x12", quality="draft", aovs=("depth",))
+    assert re.fullmatch(r"<promin.Frame 16x12, aovs depth, [0-9.]+ s of tracing>", repr(frame))
+    hits = box_caster.cast((0, 0, 5), [(0, 0, -1), (0, 1, 0)])
+    assert repr(hits) == str(hits) == "<promin.Hits (2,): 1 of 2 rays hit, t from 4 to 4>"
+    assert type(hits["t"]) is np.ndarray and isinstance(hits[:1], promin.Hits) and hits.dtype == promin.HIT_DTYPE
+    assert type(pickle.loads(pickle.dumps(hits))) is promin.Hits
+
+
+@pytest.mark.parametrize(
+    "keywords, cure",
+    [
+        ({"samples": 4}, "did you mean spp?"),
+        ({"resolution": 64}, "did you mean size?"),
+        ({"framing": "left"}, "did you mean from_?"),
+        ({"backgrund": "environment"}, "did you mean background?"),
+        ({"shading": "uv"}, "did you mean debug_view?"),
+    ],
+)
+def test_unknown_keywords_are_told_with_the_one_that_is_meant(
+    box: promin.Scene, keywords: dict[str, Any], cure: str
+) -> None:
+    with pytest.raises(TypeError, match=re.escape(f"render() has no keyword '{next(iter(keywords))}'; {cure}")):
+        promin.render(box, **keywords)
+
+
+def test_files_stand_for_scenes(scenes: Path) -> None:
+    hits = promin.Caster(scenes / "box.gltf").cast((0, 0, 9), (0, 0, -1))
+    assert hits["object"] == 0
+    with pytest.raises(promin.UsageError, match="is no promin.Scene"):
+        promin.Renderer(3)  # type: ignore[arg-type]
+    with pytest.raises(promin.InputError, match="file not found"):
+        promin.render("none.glb")
+    assert _renderer._count_samples(promin.View(size="100x50")) == 100 * 50 * 8
