@@ -160,8 +160,12 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--min-spp 16 is more than --max-spp 8"},
       {{"render", "square.gltf", "--spq=3"}, "unknown option --spq,"},
       {{"render", "square.gltf", "triangle.obj", "-o", "a.exr"}, "unexpected argument triangle.obj"},
-      {{"render", "square.gltf", "-o", "a.gif"}, "unknown output ending \".gif\", a.gif; use .exr, .png or .jpg"},
+      {{"render", "square.gltf", "-o", "a.gif"},
+       "unknown output ending \".gif\", a.gif; use .exr, .png, .jpg, .webp, .tif or .hdr"},
       {{"render", "square.gltf", "-o", "a.jpg", "--alpha"}, "--alpha has no place in a JPEG"},
+      {{"render", "square.gltf", "-o", "a.hdr", "--alpha"}, "--alpha has no place in a .hdr"},
+      {{"render", "square.gltf", "-o", "-", "-o", "-"}, "-o - is given twice"},
+      {{"render", "square.gltf", "-o", "-", "--job", "j"}, "-o - and --job contradict each other"},
       {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"}, "--aov has no picture to go to"},
       {{"render", "square.gltf", "-o", "a"}, "unknown output ending \"\", a;"},
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
@@ -867,18 +871,43 @@ TEST_F(CliTest, OfAMissingSceneNothingIsSaidToBeWritten) {
   EXPECT_THAT(result.err, testing::StartsWith("promin: error: "));
 }
 
-// Without -o the scene's name, here; what is there is kept.
+// Without -o the scene's name, here. Pictures by promin of a scene of this name are replaced, and nothing else.
 TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
   const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("promin: note: writing square.exr and square.png\n"));
   EXPECT_THAT(files(), testing::UnorderedElementsAre("square.exr", "square.png"));
   const std::string before = read("square.png");
-  fs::remove(folder() / "square.exr");
-  expect_failure(run({"render", "square.gltf", "--size", "9", "9"}), 2,
-                 "the picture is there already, square.png; say by -o where to write");
+  EXPECT_EQ(run({"render", "square.gltf", "--size", "9", "9"}).exit_code, 0);
+  EXPECT_EQ(read_image(folder() / "square.png").size, uvec2(9));
+  EXPECT_EQ(read_image(folder() / "square.exr").size, uvec2(9));
+  for (const char* name : {"square.png", "square.exr"}) {
+    // Of another scene, and of none.
+    run({"render", "triangle.obj", "-o", name, "--size", "8", "8"});
+    const std::string other = read(name);
+    expect_failure(run({"render", "square.gltf", "--size", "7", "7"}), 2,
+                   std::string("a file that is no picture of square.gltf by promin is there already, ") + name +
+                       "; say by -o where to write");
+    EXPECT_EQ(read(name), other);
+    write(name, "my notes");
+    expect_failure(run({"render", "square.gltf"}), 2, "is there already");
+    EXPECT_EQ(run({"render", "square.gltf", "-o", name, "--size", "8", "8"}).exit_code, 0) << "-o replaces";
+  }
   EXPECT_EQ(read("square.png"), before);
-  EXPECT_THAT(files(), testing::UnorderedElementsAre("square.png"));
+}
+
+TEST_F(CliTest, APictureGoesToTheStandardOutput) {
+  const OptionValues words = {"render", "square.gltf", "--size", "8", "8", "--quality", "draft"};
+  OptionValues to_file = words;
+  to_file.insert(to_file.end(), {"-o", "a.png"});
+  ASSERT_EQ(run(to_file).exit_code, 0);
+  OptionValues to_output = words;
+  to_output.insert(to_output.end(), {"-o", "-", "-o", "b.webp"});
+  const ProcessResult result = run(to_output);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, read("a.png"));
+  EXPECT_THAT(result.err, HasSubstr("8x8, 1 spp"));
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.png", "b.webp"));
 }
 
 TEST_F(CliTest, TheBackgroundIsTheUsers) {

@@ -106,7 +106,9 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
   EXPECT_THAT(files(), UnorderedElementsAre("path.json", "square.0000.exr", "square.0000.png", "square.0001.exr",
                                             "square.0001.png"));
   std::filesystem::remove(folder() / "square.0000.exr");
-  expect_failure(render_path({"--frames", "0-1"}), 2, "the picture is there already, square.0000.png");
+  write("square.0000.png", "notes");
+  expect_failure(render_path({"--frames", "0-1"}), 2,
+                 "a file that is no picture of square.gltf by promin is there already, square.0000.png");
   EXPECT_EQ(render_path({"--frames", "2", "--quiet"}).exit_code, 0) << "another frame";
 }
 

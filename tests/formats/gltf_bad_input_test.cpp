@@ -311,7 +311,6 @@ TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
 TEST_F(BadFileTest, BrokenJsonNamesTheLine) {
   EXPECT_THAT(refusal("a.gltf", "{\n\"asset\": ]}"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasSubstr("cannot be read"));
-  EXPECT_THAT(refusal("a.gltf", "{\"a\": 1e999}"), HasSubstr("cannot be read"));
   EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("no JSON object"));
 }
 

@@ -58,6 +58,29 @@ TEST_P(GltfRepairsTest, AreOneWarningAndStrictlyARefusal) {
   EXPECT_THAT(strict_refusal("bad.gltf", gltf.text()), HasSubstr("; ")) << "no cure";
 }
 
+/// The text of a file whose material has this number, of any length, as its metallic factor.
+std::string with_metallic_factor(const std::string& number) {
+  GltfBuilder gltf = rich_gltf();
+  gltf.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "NUMBER";
+  gltf.json["extras"] = R"(a "1e999" in a string \\ stays)";
+  std::string text = gltf.text();
+  return text.replace(text.find("\"NUMBER\""), 8, number);
+}
+
+TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
+  for (const std::string number : {"1e999", "123456789e400", "1" + std::string(400, '0')}) {
+    const LoadedScene scene = SceneFolder::load("scene.gltf", with_metallic_factor(number));
+    EXPECT_THAT(scene.warnings,
+                ElementsAre("a number is out of range (1.7976931348623157e+308), "
+                            "materials[0].pbrMetallicRoughness.metallicFactor; it is clamped to 0 to 1"))
+        << number;
+  }
+  EXPECT_THAT(SceneFolder::load("scene.gltf", with_metallic_factor("-1e999")).warnings,
+              ElementsAre(HasSubstr("out of range (-1.7976931348623157e+308)")));
+  EXPECT_THAT(SceneFolder::load("scene.gltf", with_metallic_factor("1e-999")).warnings, IsEmpty());
+  EXPECT_THAT(strict_refusal("strict.gltf", with_metallic_factor("1e999")), HasSubstr("is out of range"));
+}
+
 #define PROMIN_CLAMPED(VALUE, PLACE, RANGE) "a number is out of range (" VALUE "), " PLACE "; it is clamped to " RANGE
 #define PROMIN_LIGHT "extensions.KHR_lights_punctual.lights[0]"
 

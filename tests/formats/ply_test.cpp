@@ -259,6 +259,14 @@ TEST_F(PlyTest, AlphaAndOtherNamesOfColors) {
               IsEmpty());
 }
 
+TEST_F(PlyTest, ColorsThatLackAChannelAreWarnedOfOnce) {
+  const std::string properties = "property uchar green\nproperty uchar blue\nproperty uchar alpha\n";
+  const LoadedScene scene = load(triangle(properties, {"1 1 1", "1 1 1", "1 1 1"}));
+  EXPECT_THAT(mesh_of(scene).colors, IsEmpty());
+  EXPECT_THAT(scene.warnings, ElementsAre("colours of vertices are ignored, as red, green or blue is missing"));
+  EXPECT_THAT(load(triangle("property uchar alpha\n", {"1", "1", "1"})).warnings, IsEmpty());
+}
+
 TEST_F(PlyTest, ColorsOutOfRangeAreClamped) {
   const LoadedScene scene =
       load(triangle("property float red\nproperty float green\nproperty float blue\n", {"-1 2 nan", "0 0 0", "0 0 0"}));

@@ -65,6 +65,10 @@ TEST(ImageFormatTest, EndingsAreKnownInAnyCase) {
   EXPECT_TRUE(is_writable_format("folder.d/A.PNG"));
   EXPECT_TRUE(is_writable_format("a.jpg"));
   EXPECT_TRUE(is_writable_format("a.JPEG"));
+  EXPECT_TRUE(is_writable_format("a.webp"));
+  EXPECT_TRUE(is_writable_format("a.tif"));
+  EXPECT_TRUE(is_writable_format("a.TIFF"));
+  EXPECT_TRUE(is_writable_format("a.hdr"));
   EXPECT_FALSE(is_writable_format("a.gif"));
   EXPECT_FALSE(is_writable_format("exr"));
   EXPECT_FALSE(is_writable_format(""));
@@ -135,11 +139,69 @@ TEST_F(ImageTest, JpegIsNearSrgbWithWholeColours) {
   EXPECT_EQ(file_count(), 2);
 }
 
+/// Eight columns of one colour, of which the left half covers half of its pixels.
+struct Covered {
+  Image image;
+  Channel alpha{"A", false, std::vector<uint32_t>(8 * 8, std::bit_cast<uint32_t>(1.0F))};
+
+  Covered() {
+    image.size = uvec2(8);
+    image.pixels.assign(8 * 8, vec3(0.5F, 0.25F, 0.125F));
+    for (size_t i = 0; i < 8 * 8; ++i) {
+      if (i % 8 >= 4) continue;
+      image.pixels[i] *= 0.5F;
+      alpha.values[i] = std::bit_cast<uint32_t>(0.5F);
+    }
+  }
+};
+
+TEST_F(ImageTest, WebpAndTiffHoldShownColoursAndAlpha) {
+  const Covered covered;
+  for (const char* name : {"a.webp", "a.tif", "b.webp", "b.tif"}) {
+    write_image(folder_ / name, covered.image, {}, {}, std::span(&covered.alpha, 1));
+  }
+  for (const char* ending : {".webp", ".tif"}) {
+    const fs::path file = folder_ / (std::string("a") + ending);
+    EXPECT_EQ(read_file(file), read_file(folder_ / (std::string("b") + ending))) << "equal pictures are equal files";
+    OIIO::ImageSpec config;
+    config["oiio:UnassociatedAlpha"] = 1;
+    const auto input = OIIO::ImageInput::open(file.string(), &config);
+    ASSERT_TRUE(input) << file;
+    ASSERT_EQ(input->spec().nchannels, 4);
+    std::vector<float> pixels(8 * 8 * 4);
+    ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, pixels.data()));
+    EXPECT_NEAR(pixels[3], 0.5F, 0.003F);
+    EXPECT_EQ(pixels[4 * 7 + 3], 1.0F);
+    for (size_t c = 0; c < 3; ++c) {
+      const float shown = encode_srgb(vec3(0.5F, 0.25F, 0.125F)[static_cast<int>(c)]);
+      EXPECT_NEAR(pixels[4 * 7 + c], shown, 0.02F) << file;
+    }
+  }
+  const Image back = read_image(folder_ / "a.tif");
+  EXPECT_EQ(glm::round(255.0F * back.pixels[7]), vec3(188.0F, 137.0F, 99.0F));
+}
+
+TEST_F(ImageTest, RadianceFilesHoldLight) {
+  Image image;
+  image.size = uvec2(2, 1);
+  image.pixels = {vec3(0.5F, 0.25F, 0.125F), vec3(1000.0F, 500.0F, 0.0F)};
+  write_image(folder_ / "a.hdr", image);
+  const Image back = read_image(folder_ / "a.hdr");
+  ASSERT_EQ(back.size, image.size);
+  for (size_t i = 0; i < 2; ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.pixels[i][c], image.pixels[i][c], image.pixels[i].x / 128.0F);
+  }
+  EXPECT_THROW(write_image(folder_ / "wide.webp", make_ramp(16384, 1)), RunError);
+  EXPECT_EQ(file_count(), 1);
+}
+
 TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
   const Channel depth{"Z", false, std::vector<uint32_t>(40000, 0x3F800000U)};
   const std::tuple<const char*, std::vector<Channel>, ExrOptions> kinds[] = {
       {"a.exr", {}, {}},
       {"a.png", {}, {}},
+      {"a.webp", {}, {}},
+      {"a.tif", {}, {}},
       {"parts.exr", {depth}, {.compression = ExrCompression::kNone, .is_multipart = true}}};
   for (const auto& [name, channels, exr] : kinds) {
     const fs::path file = folder_ / name;
