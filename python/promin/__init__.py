@@ -17,6 +17,7 @@ from promin._errors import Cancelled, DeviceError, DifferenceError, Error, Input
 from promin._frame import Frame, cryptomatte_id, read_image, write_image
 from promin._promin import __version__
 from promin._records import (
+    Backdrop,
     Camera,
     Display,
     Environment,
@@ -36,6 +37,7 @@ from promin._view import CameraLike, View
 
 __all__ = [
     "HIT_DTYPE",
+    "Backdrop",
     "Camera",
     "CameraLike",
     "Cancelled",

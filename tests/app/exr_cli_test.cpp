@@ -107,7 +107,7 @@ TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
 }
 
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
-  const OptionValues background = {"--background", "0.5", "0.25", "1", "--spp", "16"};
+  const OptionValues background = {"--background", "linear:0.5,0.25,1", "--spp", "16"};
   const ReadExr with = render_exr(background);
   OptionValues options = background;
   options.push_back("--alpha");
@@ -232,7 +232,7 @@ TEST_F(ExrCliTest, TheHeaderTellsHowErrorsAreMeasured) {
 
 // What beauty is the sum of, in the file.
 TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
-  const ReadExr exr = render_exr({"--spp", "16", "--background", "0.5", "0.25", "1", "--aov",
+  const ReadExr exr = render_exr({"--spp", "16", "--background", "linear:0.5,0.25,1", "--aov",
                                   "emission,direct,indirect,reflection,transmission,background"});
   for (const char* letter : {"R", "G", "B"}) {
     for (size_t i = 0; i < exr.channels.at("R").size(); ++i) {
