@@ -109,7 +109,20 @@ struct Alternative {
   std::vector<std::string> words;
   size_t count = 0;
 
-  bool has(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
+  bool has(std::string_view word) const {
+    return std::ranges::find(words, word) != words.end() || (takes_any() && is_no_number(word));
+  }
+
+ private:
+  /// A placeholder stands for any word that is neither a number nor an option.
+  bool takes_any() const {
+    const auto is_upper = [](unsigned char c) { return std::isupper(c) != 0; };
+    return std::ranges::any_of(words, [&](const std::string& word) { return std::ranges::all_of(word, is_upper); });
+  }
+  static bool is_no_number(std::string_view word) {
+    double number = 0.0;
+    return !word.empty() && word.front() != '-' && !parse_number(std::string(word), number);
+  }
 };
 
 /// The parts of "R G B|WORD|OTHER" after its first.

@@ -73,8 +73,8 @@ class OptionTable {
 
   using Setter = std::function<void(const OptionValues&)>;
   /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
-  /// takes: "N", "W H". "R G B|WORD|OTHER" is three words, or one of the others alone, which the setter gets three
-  /// times.
+  /// takes: "N", "W H". "R G B|word|other" is three words, or one of the others alone, which the setter gets three
+  /// times; in capitals such a word stands for any that is no number.
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// Adds an argument that the command cannot do without.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);

@@ -60,8 +60,13 @@ std::string count_lights(const std::vector<Light>& lights) {
 
 std::string describe_background(const Environment& environment, const AssumedLight& assumed) {
   if (environment.shows_sky) return "the sky";
-  const vec3& color = environment.background;
-  return fmt::format("{:.4g} {:.4g} {:.4g}{}", color.r, color.g, color.b, assumed.has_background ? " (assumed)" : "");
+  const auto words_of = [](const vec3& color) {
+    return fmt::format("{:.4g} {:.4g} {:.4g}", color.r, color.g, color.b);
+  };
+  if (!environment.backdrop) return words_of(environment.background);
+  const Backdrop& backdrop = *environment.backdrop;
+  return fmt::format("{} above to {} below, as shown{}", words_of(backdrop.top), words_of(backdrop.bottom),
+                     assumed.has_background ? " (assumed)" : "");
 }
 
 std::string describe_display(const DisplayTransform& display) {

@@ -16,6 +16,7 @@
 #include "camera_path.h"
 #include "core/count_of.h"
 #include "core/suggest.h"
+#include "image/color_words.h"
 #include "image/picture_endings.h"
 #include "load_options.h"
 #include "promin/aovs.h"
@@ -40,6 +41,8 @@ constexpr double kMaxTimeLimit = 1e6;
 /// The largest number in a fraction that is an error.
 constexpr double kMostOfFraction = 1e9;
 constexpr std::string_view kEnvironment = "environment";
+constexpr std::string_view kLinear = "linear:";
+constexpr std::string_view kTransparent = "transparent";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
 constexpr std::string_view kCryptomatte = "cryptomatte";
@@ -48,11 +51,18 @@ constexpr std::string_view kNormal = "normal";
 constexpr std::string_view kNormals = "normals";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
+/// The parts between commas.
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream rest(list + ",");
+  for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
+  return parts;
+}
+
 /// Reads names between commas.
 AovSet read_aovs(const OptionValues& words) {
   AovSet choice;
-  std::istringstream list(words.text() + ",");
-  for (std::string name; std::getline(list, name, ',');) {
+  for (std::string name : split_list(words.text())) {
     if (name == kNormals) name = kNormal;
     bool is_known = false;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
@@ -100,17 +110,33 @@ uvec2 read_size(const OptionValues& words) {
   return {read_side(0), read_side(1)};
 }
 
+/// Three numbers of at most `most`.
+vec3 read_color(const OptionValues& words, double most) {
+  return vec3(dvec3(words.real(0, 0.0, most), words.real(1, 0.0, most), words.real(2, 0.0, most)));
+}
+
+[[noreturn]] void refuse_background(const OptionValues& words) {
+  std::vector<std::string_view> known = color_names();
+  known.push_back(kEnvironment);
+  const std::string_view near = words.text() == kTransparent ? "--alpha" : nearest_name(words.text(), known);
+  words.refuse(
+      fmt::format("--background takes the name of a colour, #rrggbb, three numbers from 0 to 1, {}R,G,B or {}, "
+                  "not \"{}\"",
+                  kLinear, kEnvironment, words.text()),
+      near);
+}
+
 BackgroundChoice read_background(const OptionValues& words) {
   const std::string& first = words.text();
   if (first == kEnvironment) return {.is_environment = true};
-  if (std::isalpha(static_cast<unsigned char>(first.front())) != 0) {
-    constexpr std::array kWords = {kEnvironment};
-    words.refuse(fmt::format("--background takes three numbers or {}, not \"{}\"", kEnvironment, first),
-                 nearest_name(first, kWords));
+  if (const std::optional<vec3> color = find_color(first)) return {.color = *color};
+  if (first.starts_with(kLinear)) {
+    const std::vector<std::string> parts = split_list(first.substr(kLinear.size()));
+    if (parts.size() != 3) refuse_background(words);
+    return {.is_linear = true, .color = read_color(words.with(parts), kMaxBackground)};
   }
-  const dvec3 color{words.real(0, 0.0, kMaxBackground), words.real(1, 0.0, kMaxBackground),
-                    words.real(2, 0.0, kMaxBackground)};
-  return {.color = vec3(color)};
+  if (first.front() == '#' || std::isalpha(static_cast<unsigned char>(first.front())) != 0) refuse_background(words);
+  return {.color = read_color(words, 1.0)};
 }
 
 /// Reads "0.02" or, as errors are spoken of, "1/64".
@@ -144,8 +170,7 @@ FrameRange read_frames(const OptionValues& words) {
 /// Reads numbers between commas, each once and in ascending order.
 std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
-  std::istringstream list(words.text() + ",");
-  for (std::string number; std::getline(list, number, ',');) {
+  for (const std::string& number : split_list(words.text())) {
     uint32_t value = 0;
     const char* end = number.data() + number.size();
     const auto parsed = std::from_chars(number.data(), end, value);
@@ -170,8 +195,9 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
             "What stands in for light that the scene lacks [studio; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
-  table.add("--background", fmt::format("R G B|{}", kEnvironment),
-            "What lies behind all: a linear colour, or what lights the scene [the scene's, or a grey of 0.25; classic "
+  table.add("--background", fmt::format("R G B|COLOR|{}", kEnvironment),
+            "What lies behind all, as it is shown: white, '#336699', three numbers from 0 to 1; linear:R,G,B is light "
+            "that is exposed; environment shows what lights the scene [the scene's, or a grey gradient; classic "
             "scenes: the scene's]",
             [&](const OptionValues& w) { look.background = read_background(w); });
   table.add("--exposure", fmt::format("EV|{}|{}", kAuto, kAverage),

@@ -28,7 +28,8 @@ namespace promin::app {
 struct BackgroundChoice {
   /// Whether they see what surrounds the scene; else the colour.
   bool is_environment = false;
-  /// Linear RGB.
+  /// Whether the colour is linear light, exposed and tone mapped as all light is; else it is sRGB, 0 to 1, as shown.
+  bool is_linear = false;
   vec3 color{0.0F};
 
   bool operator==(const BackgroundChoice&) const = default;

@@ -70,6 +70,9 @@ class JsonWriter {
     }
   }
   void field(const std::string& name, std::string& value) { json_[name] = value; }
+  void field(const std::string& name, std::optional<Backdrop>& backdrop) {
+    json_[name] = backdrop ? write(*backdrop) : Json();
+  }
   void field(const std::string& name, TextureSlot& slot) { json_[name] = slot.exists() ? write(slot) : Json(); }
   void field(const std::string& name, MaterialModel& model) {
     json_[name] = kModelNames[model.index()];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera_choice.h"
+#include "image/color_words.h"
 #include "promin/error.h"
 
 namespace promin::app {
@@ -83,8 +84,17 @@ AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentCh
   assumed.has_background = false;
   Environment& environment = scene.environment;
   environment.shows_sky = look.background->is_environment && environment.has_sky();
-  // Without a sky what surrounds the scene is its ambient light.
-  environment.background = look.background->is_environment ? environment.ambient : look.background->color;
+  environment.backdrop.reset();
+  if (look.background->is_environment) {
+    // Without a sky what surrounds the scene is its ambient light.
+    environment.background = environment.ambient;
+  } else if (look.background->is_linear) {
+    environment.background = look.background->color;
+  } else {
+    const vec3 light = linear_of_srgb(look.background->color);
+    environment.background = light;
+    environment.backdrop = Backdrop{light, light};
+  }
   return assumed;
 }
 

@@ -121,7 +121,7 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   }
   if (has(FEATURE_AOVS)) put_aovs(path.pixel, ray, hit, point);
   if (DEBUG_VIEW != DEBUG_VIEW_NONE) return debug_color(ray, hit, uintBitsToFloat(normal_and_depth(ray, hit)));
-  vec3 light = radiance_behind(path.direction);
+  vec3 light = radiance_behind(path.origin, path.direction, true);
   if (is_hit) {
     bool is_opaque = coverage_of(path, point) == 1.0;
     light = own_light(point, path.direction, is_opaque && leads_on(point, 0u));
@@ -291,7 +291,13 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on
   if (has(FEATURE_LIGHT_AOVS) && DEBUG_VIEW == DEBUG_VIEW_NONE) {
     add_parts(path, point, light, own, is_on_surface, coverage);
   }
-  if (has(FEATURE_UNLIT_SHARE) && is_on_surface) add_unlit(path, 0u, point, light, coverage);
+  if (has(FEATURE_UNLIT_SHARE)) {
+    if (is_on_surface) {
+      add_unlit(path, 0u, point, light, coverage);
+    } else {
+      add_backdrop(path, light);
+    }
+  }
   if (DEBUG_VIEW == DEBUG_VIEW_NONE) end_path_log(path.radiance, coverage);
   if (has(FEATURE_BLENDING) && coverage < 1.0) {
     path.cone_width = CAMERA.look.w;

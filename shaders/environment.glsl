@@ -107,14 +107,46 @@ float perfect_mirror_roughness() {
   return mix(0.0, NO_ENVIRONMENT, has_no_sky().x);
 }
 
-// What a ray brings that leaves the scene without any deflection; the background's w is 1 where it is the sky.
-vec3 radiance_behind(vec3 direction) {
-  if (!has(FEATURE_SHOWN_SKY)) return VIEW.background.xyz;
-  return mix(VIEW.background.xyz, environment_radiance(direction, 0.0), bvec3(VIEW.background.w != 0.0));
+// The distance from the upper edge of the picture to where a ray shows, over the picture's height. All samples of a
+// pixel have that of its middle, so that a backdrop has no errors.
+float height_on_backdrop(vec3 origin, vec3 direction) {
+  vec3 rise = CAMERA.backdrop_rise.xyz;
+  float rows = CAMERA.backdrop_bottom.w;
+  precise float along = max(dot3(direction, CAMERA.look.xyz), SMALLEST_NORMAL);
+  precise float by_direction = dot3(direction, rise) / along;
+  precise float by_origin = dot3(origin - CAMERA.eye.xyz, rise);
+  float up = CAMERA.backdrop_rise.w != 0.0 ? by_origin : by_direction;
+  // A sample on a row's upper edge may round to above it.
+  precise float row = floor((0.5 - up) * rows + 1.0 / 1024.0);
+  precise float height = (clamp(row, 0.0, rows - 1.0) + 0.5) / rows;
+  return height;
 }
 
-// What a ray brings that leaves the scene; `roughness` is the largest of those on its way, or NO_ENVIRONMENT.
-vec3 radiance_beyond(vec3 direction, float roughness) {
-  if (!SEES_ENVIRONMENT || roughness == NO_ENVIRONMENT) return radiance_behind(direction);
+// The backdrop as the camera sees it.
+vec3 backdrop_behind(vec3 origin, vec3 direction) {
+  vec3 top = VIEW.backdrop_top.xyz;
+  precise vec3 color = top + height_on_backdrop(origin, direction) * (VIEW.backdrop_bottom.xyz - top);
+  return color;
+}
+
+bool is_backdrop_shown() { return VIEW.background.w == SHOWS_BACKDROP; }
+
+// What a ray brings that leaves the scene without any deflection. `is_of_camera`: without mirrors or glass between.
+vec3 radiance_behind(vec3 origin, vec3 direction, bool is_of_camera) {
+  vec3 radiance = VIEW.background.xyz;
+  if (has(FEATURE_SHOWN_SKY)) {
+    radiance = mix(radiance, environment_radiance(direction, 0.0), bvec3(VIEW.background.w == SHOWS_SKY));
+  }
+  if (has(FEATURE_BACKDROP)) {
+    precise vec3 color = (is_of_camera ? 1.0 : VIEW.backdrop_top.w) * backdrop_behind(origin, direction);
+    radiance = mix(radiance, color, bvec3(is_backdrop_shown()));
+  }
+  return radiance;
+}
+
+// What a ray brings that leaves the scene behind mirrors or glass; `roughness` is the largest of those on its way, or
+// NO_ENVIRONMENT.
+vec3 radiance_beyond(vec3 origin, vec3 direction, float roughness) {
+  if (!SEES_ENVIRONMENT || roughness == NO_ENVIRONMENT) return radiance_behind(origin, direction, false);
   return environment_radiance(direction, roughness);
 }

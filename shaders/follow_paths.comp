@@ -231,8 +231,10 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     // While others wait the same ray may be traced several times.
     if (has_waiting && !begins_bounce(turn + 1u)) return ask_after_miss(number, path, ray);
     begin_path_log(ray, hit, bounces, path.weight, kind_of_ray(path));
-    vec3 beyond = has(FEATURE_BLENDING) && bounces == 0u ? radiance_behind(normalize3(ray.direction))
-                                                         : radiance_beyond(ray.direction, path.roughness);
+    bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
+    vec3 beyond = is_of_camera ? radiance_behind(ray.origin, normalize3(ray.direction), true)
+                               : radiance_beyond(ray.origin, ray.direction, path.roughness);
+    if (has(FEATURE_UNLIT_SHARE) && is_of_camera) add_backdrop(path, beyond);
     add_radiance(path, beyond, 1.0);
     add_beyond(path, beyond);
     log_own_light(beyond);

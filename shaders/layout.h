@@ -232,7 +232,11 @@ struct ViewConstants {
   vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = growth of that cone
   vec4 up;
   vec4 ambient;
-  vec4 background;  // w = 1 where rays from the camera see the sky instead, else 0
+  vec4 background;  // w = SHOWS_*: what rays from the camera see
+  vec4 backdrop_top;     // w = factor by which mirrors and glass see it
+  vec4 backdrop_bottom;  // w = rows of the picture
+  vec4 backdrop_rise;    // upwards, 1 over the picture's height at distance 1 (orthographic: in the world); w = 1 for an
+                         // orthographic camera
   vec4 tree_bounds;   // center and max-norm radius of everything in the tree
   vec4 film_center;   // x, y = half the picture's size in pixels
   uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
@@ -242,6 +246,10 @@ struct ViewConstants {
   uvec4 first_glass;    // x = GlassRecords; y, z = the media in which the camera is (glass.glsl)
   vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
 };
+
+LAYOUT_FLOAT SHOWS_BACKGROUND = 0.0f;
+LAYOUT_FLOAT SHOWS_SKY = 1.0f;
+LAYOUT_FLOAT SHOWS_BACKDROP = 2.0f;
 
 // The numbers that decide branches and loops, at the head of the buffer that is written. They are not in push constants
 // or a uniform buffer, because lavapipe compiles the shader anew for each value of those that control flow depends on.
@@ -340,8 +348,8 @@ LAYOUT_CONSTANT SAMPLE_IDS = 16u;
 LAYOUT_CONSTANT RANGE_LEAST = 0u;
 LAYOUT_CONSTANT RANGE_LARGEST = 1u;
 LAYOUT_CONSTANT RANGE_RECORDS = 2u;
-// With FEATURE_UNLIT_SHARE behind all of these one: what the camera sees of unlit surfaces, summed over samples; w = in
-// how many it sees them.
+// With FEATURE_UNLIT_SHARE behind all of these one: what the camera sees of unlit surfaces and of a backdrop, summed over
+// samples; w = in how many it sees them.
 
 // What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
 // its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is
@@ -371,7 +379,7 @@ LAYOUT_CONSTANT LOG_THROUGH = 3u;  // the same ray, behind a surface that blends
 static_assert(sizeof(RayLog) == 160);
 static_assert(sizeof(RayRecord) == 32 && sizeof(HitRecord) == 32);
 static_assert(sizeof(Node) == 64 && sizeof(Primitive) == 48 && sizeof(SurfaceRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 336);
+static_assert(sizeof(MaterialRecord) == 96 && sizeof(LightRecord) == 80 && sizeof(ViewConstants) == 384);
 static_assert(sizeof(Dispatch) == 80 && sizeof(StreamState) == 96);
 struct FilmHead {
   FILM_HEAD(dispatch, stream, ray_counts, pass_counts)

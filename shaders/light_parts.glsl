@@ -53,14 +53,26 @@ void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
   add_to_part(pixel, is_of_camera ? PART_DIRECT : part, light);
 }
 
-// With FEATURE_UNLIT_SHARE adds what the camera sees of a point to the pixel's unlit light, where the point is unlit.
-void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
-  if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
-  uint record = record_of_unlit(path.pixel);
-  precise vec3 weight = coverage * path.weight;
+// With FEATURE_UNLIT_SHARE adds to the pixel's unlit light what it shows as it is.
+void add_to_unlit(uint pixel, vec3 weight, vec3 seen) {
+  uint record = record_of_unlit(pixel);
   // As the whole sum counts it: where nothing else is seen they are the same.
   precise vec4 sum = load_sum(record) + vec4(weight * seen, weight.x);
   pixels[record] = floatBitsToUint(sum);
+}
+
+// What the camera sees of a point, where the point is unlit.
+void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
+  if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
+  precise vec3 weight = coverage * path.weight;
+  add_to_unlit(path.pixel, weight, seen);
+}
+
+// What the camera sees behind all, where that is a backdrop.
+void add_backdrop(Path path, vec3 seen) {
+  if (!has(FEATURE_BACKDROP)) return;
+  bvec3 is_shown = bvec3(is_backdrop_shown());
+  add_to_unlit(path.pixel, mix(vec3(0.0), path.weight, is_shown), mix(vec3(0.0), seen, is_shown));
 }
 
 // Whether the stream has rays of several parts. Else all of them come from mirrors.

@@ -14,7 +14,7 @@ bool is_followed(inout Path parent, ShadingPoint point, Path child) {
     return true;
   }
   if (!is_phong) {
-    vec3 beyond = radiance_beyond(child.direction, child.roughness);
+    vec3 beyond = radiance_beyond(child.origin, child.direction, child.roughness);
     precise vec3 sum = parent.radiance + child.weight * beyond;
     parent.radiance = sum;
     add_beyond(child, beyond);

@@ -37,6 +37,12 @@ std::string options_of(const EnvironmentOptions& environment) {
   return options;
 }
 
+std::string word_of(const BackgroundChoice& background) {
+  if (background.is_environment) return "environment";
+  const vec3& color = background.color;
+  return background.is_linear ? fmt::format("linear:{},{},{}", color.x, color.y, color.z) : words_of(color);
+}
+
 /// The options of a look; the framing is not among them, because the command has a pose.
 std::string options_of(const LookOptions& look) {
   std::string options;
@@ -44,8 +50,7 @@ std::string options_of(const LookOptions& look) {
     options += fmt::format(" --light {}", light_choice_names()[static_cast<size_t>(look.light)]);
   }
   if (look.background) {
-    options += fmt::format(" --background {}",
-                           look.background->is_environment ? "environment" : words_of(look.background->color));
+    options += " --background " + word_of(*look.background);
   }
   if (look.exposure_ev) options += fmt::format(" --exposure {}", *look.exposure_ev);
   if (look.tone_mapping) {

@@ -178,6 +178,7 @@ void DeviceScene::take_colors(const Environment& environment) {
   constants_.ambient = environment.ambient;
   constants_.background = environment.background;
   constants_.shows_sky = environment.shows_sky && environment.has_sky();
+  constants_.backdrop = environment.shows_backdrop() ? environment.backdrop : std::nullopt;
   environment_ = environment;
 }
 

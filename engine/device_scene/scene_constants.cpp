@@ -25,6 +25,11 @@ uvec2 media_around(const SceneConstants& scene, const vec3& eye) {
   return {static_cast<uint32_t>(media), static_cast<uint32_t>(media >> 32)};
 }
 
+float what_is_shown(const SceneConstants& scene) {
+  if (scene.backdrop) return layout::SHOWS_BACKDROP;
+  return scene.shows_sky ? layout::SHOWS_SKY : layout::SHOWS_BACKGROUND;
+}
+
 }  // namespace
 
 layout::ViewConstants make_view_constants(const SceneConstants& scene, const View& view) {
@@ -40,13 +45,17 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   const auto cone = static_cast<float>(pixel / std::sqrt(static_cast<double>(samples)));
   // A ray's interval is open, but what lies on the viewport itself is drawn.
   const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
+  const Backdrop backdrop = scene.backdrop.value_or(Backdrop());
   layout::ViewConstants constants{
       .eye = vec4(camera.eye, before_near),
       .look = vec4(camera.look, is_orthographic ? cone : 0.0F),
       .right = vec4(vec3(right), is_orthographic ? 0.0F : cone),
       .up = vec4(vec3(up), 0.0F),
       .ambient = vec4(scene.ambient, 0.0F),
-      .background = vec4(scene.background, scene.shows_sky ? 1.0F : 0.0F),
+      .background = vec4(scene.background, what_is_shown(scene)),
+      .backdrop_top = vec4(backdrop.top, backdrop.radiance),
+      .backdrop_bottom = vec4(backdrop.bottom, static_cast<float>(view.size.y)),
+      .backdrop_rise = vec4(vec3(dvec3(camera.up) / (2.0 * half_height)), is_orthographic ? 1.0F : 0.0F),
       .tree_bounds = scene.tree_bounds,
       .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y), 0.0F, 0.0F),
       .first_index = scene.first_index,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "layout.h"
@@ -38,6 +39,8 @@ struct SceneConstants {
   vec3 background{0.0F};
   /// Whether the sky is seen in place of the background.
   bool shows_sky = false;
+  /// What is seen in place of both, where there is one.
+  std::optional<Backdrop> backdrop;
   std::array<vec4, 9> irradiance{};
 };
 

@@ -65,15 +65,21 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
 }
 
 void PictureTracer::prepare_film(const RenderMode& mode) {
-  FeatureMask features = scene_.features(mode) | features_of_samples(mode);
+  FeatureMask features = features_of_scene(mode) | features_of_samples(mode);
   // With steps trace_middle tells of surfaces.
   if (wanted_.has_any(AovSource::kSurface) && !wanted_.steps) features |= layout::FEATURE_AOVS;
   if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
   prepare_film(features);
 }
 
+FeatureMask PictureTracer::features_of_scene(const RenderMode& mode) const {
+  const FeatureMask features = scene_.features(mode);
+  // A picture with alpha has no background, and so nothing in its place.
+  return wanted_.alpha ? features.without(layout::FEATURE_BACKDROP) : features;
+}
+
 bool PictureTracer::tells_unlit(const RenderMode& mode) const {
-  return wanted_.unlit && shows_unlit(scene_.features(mode), mode.debug_view);
+  return wanted_.unlit && shows_unlit(features_of_scene(mode), mode.debug_view);
 }
 
 FeatureMask PictureTracer::features_of_samples(const RenderMode& mode) const {
@@ -85,7 +91,7 @@ FeatureMask PictureTracer::features_of_samples(const RenderMode& mode) const {
 }
 
 void PictureTracer::prepare_refining_film(const RenderMode& mode) {
-  prepare_film(scene_.features(mode) | features_of_samples(mode) | layout::FEATURE_LISTED_SAMPLES);
+  prepare_film(features_of_scene(mode) | features_of_samples(mode) | layout::FEATURE_LISTED_SAMPLES);
 }
 
 void PictureTracer::prepare_film(FeatureMask features) {

@@ -68,6 +68,7 @@ class PictureTracer {
     return wanted_.has_any(AovSource::kParts) && mode.debug_view == DebugView::kNone;
   }
   /// Whether Aovs::unlit is wanted and there are unlit surfaces.
+  FeatureMask features_of_scene(const RenderMode& mode) const;
   bool tells_unlit(const RenderMode& mode) const;
   /// The film on which samples of a list are traced.
   void prepare_refining_film(const RenderMode& mode);

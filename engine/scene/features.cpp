@@ -170,8 +170,10 @@ FeatureMask light_features(std::span<const Light> lights) {
 }
 
 FeatureMask environment_features(const Environment& environment) {
-  if (!environment.has_sky()) return {};
-  FeatureMask features = FEATURE_SKY;
+  FeatureMask features;
+  if (environment.shows_backdrop()) features |= FEATURE_BACKDROP;
+  if (!environment.has_sky()) return features;
+  features |= FEATURE_SKY;
   if (environment.shows_sky) features |= FEATURE_SHOWN_SKY;
   return features;
 }
@@ -235,7 +237,7 @@ FeatureMask features_of(DebugView view) {
 }
 
 bool shows_unlit(FeatureMask features, DebugView view) {
-  return view == DebugView::kNone && features.has_any(FEATURE_UNLIT);
+  return view == DebugView::kNone && features.has_any(FEATURE_UNLIT | FEATURE_BACKDROP);
 }
 
 FeatureMask all_features() {

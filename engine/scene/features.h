@@ -39,7 +39,7 @@ FeatureMask features_of(const world::Scene& scene);
 /// The features that a pipeline for a debug view has beside the scene's.
 FeatureMask features_of(DebugView view);
 
-/// Whether a picture of these features shows unlit surfaces as such.
+/// Whether a picture of these features shows unlit surfaces or a backdrop as they are.
 bool shows_unlit(FeatureMask features, DebugView view);
 
 /// Everything that a scene may use.

@@ -112,8 +112,9 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
   const bool had_sky = is_surrounded(environment);
   const float unexposed = std::exp2(-exposure_of(scene));
 
-  if (!scene.is_classic && !had_sky && environment.background == vec3(0.0F)) {
-    environment.background = vec3(kStudioBackground * unexposed);
+  if (!scene.is_classic && !had_sky && environment.background == vec3(0.0F) && !environment.backdrop) {
+    environment.background = vec3(0.5F * (kStudioBackdropTop + kStudioBackdropBottom) * unexposed);
+    environment.backdrop = Backdrop{vec3(kStudioBackdropTop), vec3(kStudioBackdropBottom), unexposed};
     assumed.has_background = true;
   }
   if (choice == LightChoice::kHeadlight) {
@@ -171,7 +172,7 @@ DisplayTransform display_of(const Scene& scene, LightChoice choice) {
 }
 
 bool mixes_unlit(const Scene& scene) {
-  return has_any<Unlit>(scene.materials) && !is_all_unlit(scene);
+  return (has_any<Unlit>(scene.materials) || scene.environment.shows_backdrop()) && !is_all_unlit(scene);
 }
 
 }  // namespace promin

@@ -222,6 +222,15 @@ class Validation {
           "the intensity is negative, beyond 1e15 or not a number", "environment.intensity",
           "use a number from 0 to 1e15");
     std::visit([&](const auto& sky) { check_sky(sky); }, environment.sky);
+    if (environment.backdrop) check_backdrop(*environment.backdrop);
+  }
+
+  void check_backdrop(const Backdrop& backdrop) {
+    check_color(backdrop.top, "environment.backdrop.top");
+    check_color(backdrop.bottom, "environment.backdrop.bottom");
+    check(backdrop.radiance >= 0.0F && backdrop.radiance <= kMaxPower,
+          "the factor is negative, beyond 1e15 or not a number", "environment.backdrop.radiance",
+          "use a number from 0 to 1e15");
   }
 
   void check_sky(std::monostate) {}

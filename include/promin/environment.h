@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "promin/image.h"
@@ -55,6 +56,20 @@ struct Panorama {
   bool operator==(const Panorama&) const = default;
 };
 
+/// What the camera sees behind all: an even gradient over the height of the picture, which is shown as it is, without
+/// exposure and tone mapping (docs/model.md, "Backdrop").
+struct Backdrop {
+  /// The colour at the picture's upper edge, linear RGB, finite and not negative; 1 is the display's white.
+  vec3 top{1.0F};
+  /// The colour at its lower edge, likewise.
+  vec3 bottom{1.0F};
+  /// The factor by which mirrors and glass see it as light, finite and not negative.
+  float radiance = 1.0F;
+
+  /// Whether both look the same.
+  bool operator==(const Backdrop&) const = default;
+};
+
 /// What there is beside objects and lights.
 struct Environment {
   /// Linear RGB, finite and not negative. Where there is no sky it is the radiance of all directions, as materials see
@@ -71,8 +86,12 @@ struct Environment {
   float rotation = 0.0F;
   /// A factor of the sky's radiance, finite and not negative.
   float intensity = 1.0F;
+  /// Takes the background's place in pictures without Aovs::alpha.
+  std::optional<Backdrop> backdrop{};
 
   /// Whether a sky surrounds the scene.
   bool has_sky() const { return !std::holds_alternative<std::monostate>(sky); }
+  /// Whether the backdrop is what the camera sees.
+  bool shows_backdrop() const { return backdrop && !(shows_sky && has_sky()); }
 };
 }  // namespace promin

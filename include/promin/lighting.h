@@ -41,18 +41,19 @@ struct AssumedLight {
   bool has_headlight = false;
   /// Whether ambient light was added.
   bool has_ambient = false;
-  /// Whether the background was black and is grey now.
+  /// Whether the background was black and is a grey backdrop now.
   bool has_background = false;
 };
 
 /// Adds what the choice says where the scene has no sky (a sky of Environment or ambient light) or no lights. The
-/// background of a scene without a sky, unless it is classic or has a background, becomes the grey that after the
-/// exposure is kStudioBackground. In the studio Phong materials without ambient factors take their diffuse ones. Throws
-/// InputError as bounds_of() does.
+/// background of a scene without a sky, unless it is classic or has a background, becomes the studio's backdrop; behind
+/// glass, in mirrors and with Aovs::alpha it is as bright after the exposure. In the studio Phong materials without
+/// ambient factors take their diffuse ones. Throws InputError as bounds_of() does.
 PROMIN_EXPORT AssumedLight light_scene(Scene& scene, LightChoice choice = LightChoice::kAuto);
 
-/// Each component of the background of scenes that have none.
-inline constexpr float kStudioBackground = 0.25F;
+/// The backdrop of scenes without a background: a grey gradient, linear.
+inline constexpr float kStudioBackdropTop = 0.36F;
+inline constexpr float kStudioBackdropBottom = 0.17F;
 /// The illuminance of the studio's directional light on a surface that faces it, lux.
 inline constexpr float kStudioLightPower = 2.0F;
 /// The studio's intensity in a scene with lights, before the exposure is taken out of it.
@@ -78,8 +79,8 @@ PROMIN_EXPORT float exposure_of(const Scene& scene);
 /// as exposure_of() does.
 PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
 
-/// Whether a scene has unlit materials beside others. Exposure and tone mapping leave their colours alone in pictures
-/// with Aovs::unlit (promin/aovs.h).
+/// Whether a scene has unlit materials or a backdrop beside others. Exposure and tone mapping leave their colours alone
+/// in pictures with Aovs::unlit (promin/aovs.h).
 PROMIN_EXPORT bool mixes_unlit(const Scene& scene);
 
 }  // namespace promin

@@ -71,6 +71,9 @@ nb::object write_default_sky() {
 /// The library's structs as they are without a word of the user's, and what the command line takes in its place.
 nb::dict list_defaults() {
   nb::dict defaults;
+  Environment before_backdrop;
+  before_backdrop.backdrop.emplace();
+  defaults["Backdrop"] = write(before_backdrop)["backdrop"];
   defaults["Camera"] = write(Camera());
   defaults["Display"] = write(DisplayTransform());
   defaults["Environment"] = write(Environment());

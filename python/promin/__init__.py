@@ -16,6 +16,7 @@ from promin._errors import Cancelled, DeviceError, DifferenceError, Error, Input
 from promin._frame import Frame, cryptomatte_id, read_image, write_image
 from promin._promin import __version__
 from promin._records import (
+    Backdrop,
     Camera,
     Display,
     Environment,
@@ -35,6 +36,7 @@ from promin._view import CameraLike, Size, View
 
 __all__ = [
     "HIT_DTYPE",
+    "Backdrop",
     "Background",
     "Camera",
     "CameraLike",

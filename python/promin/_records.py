@@ -267,6 +267,16 @@ class Panorama:
 
 
 @dataclass(frozen=True)
+class Backdrop:
+    """What the camera sees behind all, from the picture's upper edge to its lower one: linear RGB, shown as it is."""
+
+    top: Vec3 = (1.0, 1.0, 1.0)
+    bottom: Vec3 = (1.0, 1.0, 1.0)
+    radiance: float = 1.0
+    """The factor by which mirrors and glass see it as light."""
+
+
+@dataclass(frozen=True)
 class Environment:
     """What there is beside objects and lights (promin/environment.h)."""
 
@@ -282,6 +292,8 @@ class Environment:
     """How far the sky is turned about +Y."""
     intensity: float = 1.0
     """A factor of the sky's radiance."""
+    backdrop: Union[Backdrop, None] = None
+    """Takes the background's place in pictures without alpha."""
 
 
 @dataclass(frozen=True)
@@ -357,6 +369,8 @@ def from_dict(kind: type[Record], values: Mapping[str, Any]) -> Record:
             fields[name] = _SKIES[sky.pop("kind")](**sky)
         elif name.endswith("_texture") and value is not None:
             fields[name] = TextureSlot(**value)
+        elif name == "backdrop" and value is not None:
+            fields[name] = Backdrop(**value)
     return kind(**fields)
 
 

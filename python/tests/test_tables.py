@@ -52,6 +52,7 @@ def default_of(function: Callable[..., object], name: str) -> Any:
 @pytest.mark.parametrize(
     "kind",
     [
+        promin.Backdrop,
         promin.Camera,
         promin.Display,
         promin.Environment,

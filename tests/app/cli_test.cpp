@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "cli_fixture.h"
+#include "image/color_words.h"
 #include "promin/aovs.h"
 #include "promin/device.h"
 #include "promin/framing.h"
@@ -233,10 +234,18 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "bright"}, "--exposure takes a number from -64 to 64"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "nan"}, "--exposure takes a number from -64 to 64"},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "-1", "0", "0"},
-       "--background takes a number from 0 to 1e+09, not \"-1\""},
+       "--background takes a number from 0 to 1, not \"-1\""},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0", "inf"}, "--background takes a number"},
       {{"render", "square.gltf", "--background", "sky", "-o", "a.exr"},
-       "--background takes three numbers or environment, not \"sky\""},
+       "--background takes the name of a colour, #rrggbb, three numbers from 0 to 1, linear:R,G,B or environment, not "
+       "\"sky\""},
+      {{"render", "square.gltf", "--background", "#12345", "-o", "a.exr"}, "or environment, not \"#12345\""},
+      {{"render", "square.gltf", "--background", "whit", "-o", "a.exr"}, "did you mean white?"},
+      {{"render", "square.gltf", "--background", "transparent", "-o", "a.exr"}, "did you mean --alpha?"},
+      {{"render", "square.gltf", "--background", "255", "0", "0", "-o", "a.exr"},
+       "--background takes a number from 0 to 1, not \"255\""},
+      {{"render", "square.gltf", "--background", "linear:1,2", "-o", "a.exr"}, "or environment, not \"linear:1,2\""},
+      {{"render", "square.gltf", "--background", "linear:1,x,2", "-o", "a.exr"}, "not \"x\" in \"linear:1,x,2\""},
       {{"render", "square.gltf", "--background", "envronment", "-o", "a.exr"}, "did you mean environment?"},
       {{"render", "square.gltf", "--exposure", "averge", "-o", "a.exr"}, "did you mean average?"},
       {{"render", "square.gltf", "-o", "a.png", "--alpha", "--background", "1", "1", "1"},
@@ -248,7 +257,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/65537"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "3/2"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"},
-       "too few values for --background R G B|environment"},
+       "too few values for --background R G B|COLOR|environment"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
   };
@@ -672,13 +681,13 @@ TEST_F(InfoJsonTest, HoldsTexelsByTheirHash) {
 TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   const std::string lit = run({"info", "square.gltf"}).out;
   EXPECT_THAT(lit, ContainsRegex("lights +1 \\(point: 1.*; assumed: a studio's weaker light around the scene's own\n"));
-  EXPECT_THAT(lit, ContainsRegex("background +0.0625 0.0625 0.0625 \\(assumed\\)\n")) << "0.25 / 2^2";
+  EXPECT_THAT(lit, ContainsRegex("background +0.36 0.36 0.36 above to 0.17 0.17 0.17 below, as shown \\(assumed\\)\n"));
   EXPECT_THAT(lit, ContainsRegex("display +exposure \\+2 EV, tone mapping neutral\n"));
 
   const std::string bare = run({"info", "triangle.obj"}).out;
   EXPECT_THAT(bare, ContainsRegex("lights +0; assumed: the light of a studio\n"));
   EXPECT_THAT(bare, ContainsRegex("cameras +0; assumed: a camera that frames the scene from three quarters\n"));
-  EXPECT_THAT(bare, ContainsRegex("background +0.25 0.25 0.25 \\(assumed\\)\n"));
+  EXPECT_THAT(bare, ContainsRegex("background +.* above to .* below, as shown \\(assumed\\)\n"));
   EXPECT_THAT(bare, ContainsRegex("display +exposure \\+0 EV, tone mapping neutral\n"));
   EXPECT_THAT(bare, ContainsRegex("features +.*a sky"));
 
@@ -747,7 +756,8 @@ TEST_F(CliTest, ATimeLimitHasUnitsAndNamesWhatGivesThePictureAgain) {
 }
 
 TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
-  const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-o", "a.png"});
+  const ProcessResult result = run({"render", "square.gltf", "--size", "64", "36", "--background",
+                                    "linear:0.0625,0.0625,0.0625", "-o", "a.exr", "-o", "a.png"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, StartsWith("64x36, 8 spp, "));
   EXPECT_THAT(result.out, HasSubstr(": a.exr, a.png\n"));
@@ -757,7 +767,7 @@ TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
   const Image exr = read_image(folder() / "a.exr");
   ASSERT_EQ(exr.size, uvec2(64, 36));
   // 3 candela at a distance of 2 are 0.75 lux, which 2 stops bring to about pi.
-  EXPECT_EQ(exr.at(0, 0), vec3(0.0625F)) << "the background is grey when it is exposed, and EXR files are not";
+  EXPECT_EQ(exr.at(0, 0), vec3(0.0625F)) << "EXR files are not exposed";
   EXPECT_NE(exr.at(32, 18), vec3(0.0625F)) << "the square is seen";
   expect_displayed(exr, read_image(folder() / "a.png"), {.exposure_ev = 2.0F, .tone_mapping = ToneMapping::kNeutral});
 }
@@ -772,7 +782,7 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
       {{"--exposure", "-1", "--shading", "normals"}, {}}};
   for (const auto& [options, display] : cases) {
     SCOPED_TRACE(testing::PrintToString(options));
-    OptionValues arguments = {"square.gltf", "--size", "32", "18", "-o", "a.png"};
+    OptionValues arguments = {"square.gltf", "--size", "32", "18", "--background", "linear:0.1,0.2,0.3", "-o", "a.png"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Image exr = render(arguments, "a.exr");
     expect_displayed(exr, read_image(folder() / "a.png"), display);
@@ -835,7 +845,7 @@ TEST_F(CliTest, UnlitColoursKeepClearOfExposureAndToneMapping) {
 }
 
 TEST_F(CliTest, ThePictureMayTellItsExposure) {
-  const OptionValues options = {"square.gltf", "--size", "32", "18", "--spp", "1", "--background", "9", "9", "9"};
+  const OptionValues options = {"square.gltf", "--size", "32", "18", "--spp", "1", "--background", "linear:9,9,9"};
   OptionValues with_ids = options;
   with_ids.insert(with_ids.end(),
                   {"--exposure", "average", "--tone-mapping", "none", "-o", "a.png", "--aov", "object"});
@@ -917,8 +927,12 @@ TEST_F(CliTest, TheBackgroundIsTheUsers) {
     arguments.insert(arguments.end(), options.begin(), options.end());
     return render(arguments, "a.exr").at(0, 0);
   };
-  EXPECT_EQ(corner({}), vec3(0.25F));
-  EXPECT_EQ(corner({"--background", "0.5", "0", "2"}), vec3(0.5F, 0.0F, 2.0F));
+  EXPECT_LT(kStudioBackdropTop - corner({}).x, 0.02F) << "the gradient's upper end";
+  EXPECT_EQ(corner({"--background", "linear:0.5,0,2"}), vec3(0.5F, 0.0F, 2.0F));
+  EXPECT_EQ(corner({"--background", "1", "0", "0.04045"}), vec3(1.0F, 0.0F, static_cast<float>(0.04045 / 12.92)))
+      << "sRGB";
+  EXPECT_EQ(corner({"--background", "lime", "--exposure", "-3"}), vec3(0.0F, 1.0F, 0.0F))
+      << "an EXR has what is shown without exposure";
   EXPECT_EQ(corner({"--light", "headlight", "--background", "environment"}), vec3(0.1F)) << "the ambient light";
   EXPECT_EQ(corner({"--light", "headlight", "--background=environment"}), vec3(0.1F));
   // One word, whatever follows it.
@@ -927,6 +941,47 @@ TEST_F(CliTest, TheBackgroundIsTheUsers) {
   arguments.insert(arguments.end(), {"-o", "b.exr"});
   EXPECT_EQ(run(arguments).exit_code, 0);
   EXPECT_EQ(read_image(folder() / "b.exr").at(0, 0), vec3(0.1F));
+}
+
+// Its codes are those of the picture, whatever makes codes of light, and at an edge it counts with its share.
+TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
+  const auto codes_at = [](const Image& image, uint32_t x, uint32_t y) {
+    return uvec3(glm::round(255.0F * image.at(x, y)));
+  };
+  const std::pair<const char*, uvec3> colors[] = {{"white", uvec3(255)},
+                                                  {"BLACK", uvec3(0)},
+                                                  {"#369", uvec3(0x33, 0x66, 0x99)},
+                                                  {"#336699", uvec3(0x33, 0x66, 0x99)}};
+  for (const auto& [word, codes] : colors) {
+    for (const std::string_view mapping : tone_mapping_names()) {
+      render({"triangle.obj", "--size", "32", "18", "--spp", "2", "--exposure", "1.5", "--background", word, "-o",
+              "a.png", "--tone-mapping", std::string(mapping), "--dither"},
+             "a.exr");
+      const uvec3 shown = codes_at(read_image(folder() / "a.png"), 0, 0);
+      const bool is_end = codes == uvec3(0) || codes == uvec3(255);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], codes[c], is_end ? 0 : 1) << word << ", " << mapping;
+    }
+  }
+  // Of a pixel the scene shows the same before any background, and that fills the rest, in linear light.
+  const auto show = [&](const char* word) {
+    render({"triangle.obj", "--size", "32", "18", "--spp", "16", "--tone-mapping", "aces", "--background", word, "-o",
+            "a.png"},
+           "a.exr");
+    std::vector<float> shown;
+    for (const vec3& pixel : read_image(folder() / "a.png").pixels) shown.push_back(linear_of_srgb(pixel).x);
+    return shown;
+  };
+  const std::vector<float> white = show("white");
+  const std::vector<float> black = show("black");
+  const std::vector<float> grey = show("gray");
+  const float of_grey = linear_of_srgb(vec3(128.0F / 255.0F)).x;
+  size_t edges = 0;
+  for (size_t i = 0; i < white.size(); ++i) {
+    const float share = white[i] - black[i];
+    EXPECT_NEAR(grey[i], black[i] + share * of_grey, 0.01F) << i;
+    if (share > 0.2F && share < 0.8F) ++edges;
+  }
+  EXPECT_GT(edges, 5U);
 }
 
 // The picture of a file's camera, headlight and black background, as pictures were before there was a studio.

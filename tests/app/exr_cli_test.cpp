@@ -107,7 +107,7 @@ TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
 }
 
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
-  const ReadExr with = render_exr({"--background", "0.5", "0.25", "1", "--spp", "16"});
+  const ReadExr with = render_exr({"--background", "linear:0.5,0.25,1", "--spp", "16"});
   const ReadExr without = render_exr({"--alpha", "--spp", "16"});
   const std::vector<float>& alpha = without.channels.at("A");
   size_t between = 0;
@@ -229,7 +229,7 @@ TEST_F(ExrCliTest, TheHeaderTellsHowErrorsAreMeasured) {
 
 // What beauty is the sum of, in the file.
 TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
-  const ReadExr exr = render_exr({"--spp", "16", "--background", "0.5", "0.25", "1", "--aov",
+  const ReadExr exr = render_exr({"--spp", "16", "--background", "linear:0.5,0.25,1", "--aov",
                                   "emission,direct,indirect,reflection,transmission,background"});
   for (const char* letter : {"R", "G", "B"}) {
     for (size_t i = 0; i < exr.channels.at("R").size(); ++i) {

@@ -224,10 +224,18 @@ TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
 TEST(LightUpTest, TheBackgroundIsTheUsers) {
   const BackgroundChoice environment{.is_environment = true};
   Scene scene = make_scene();
-  const AssumedLight assumed = light_up(scene, {.background = BackgroundChoice{.color = vec3(0.0F, 0.5F, 1.0F)}});
+  const BackgroundChoice linear{.is_linear = true, .color = vec3(0.0F, 0.5F, 1.0F)};
+  const AssumedLight assumed = light_up(scene, {.background = linear});
   EXPECT_FALSE(assumed.has_background);
   EXPECT_EQ(scene.environment.background, vec3(0.0F, 0.5F, 1.0F));
+  EXPECT_FALSE(scene.environment.backdrop);
   EXPECT_FALSE(scene.environment.shows_sky);
+
+  Scene before_color = make_scene();
+  light_up(before_color, {.background = BackgroundChoice{.color = vec3(0.0F, 0.04045F, 1.0F)}});
+  const vec3 light(0.0F, 0.04045F / 12.92F, 1.0F);
+  EXPECT_EQ(before_color.environment.backdrop, (Backdrop{light, light})) << "as it is shown";
+  EXPECT_EQ(before_color.environment.background, light);
 
   Scene studio = make_scene();
   light_up(studio, {.background = environment});

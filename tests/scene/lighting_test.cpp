@@ -64,7 +64,10 @@ TEST(LightSceneTest, ASceneWithoutLightStandsInTheStudio) {
   EXPECT_TRUE(has_studio(scene));
   EXPECT_EQ(scene.environment.intensity, 1.0F);
   EXPECT_EQ(scene.environment.ambient, vec3(0.0F));
-  EXPECT_EQ(scene.environment.background, vec3(0.25F));
+  EXPECT_EQ(scene.environment.backdrop, (Backdrop{vec3(kStudioBackdropTop), vec3(kStudioBackdropBottom), 1.0F}));
+  EXPECT_GT(scene.environment.background.x, kStudioBackdropBottom) << "between its ends";
+  EXPECT_LT(scene.environment.background.x, kStudioBackdropTop);
+  EXPECT_TRUE(mixes_unlit(scene)) << "it is shown as it is";
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_EQ(scene.lights[0].kind, LightKind::kDirectional);
   EXPECT_EQ(scene.lights[0].diffuse, vec3(2.0F));
@@ -101,6 +104,7 @@ TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
   EXPECT_EQ(scene.lights[0].kind, LightKind::kHeadlight);
   EXPECT_EQ(scene.environment.ambient, vec3(0.1F));
   EXPECT_EQ(scene.environment.background, vec3(0.0F));
+  EXPECT_FALSE(scene.environment.backdrop);
   EXPECT_FALSE(has_studio(scene));
   EXPECT_EQ(display_of(scene), DisplayTransform());
 
@@ -150,7 +154,7 @@ TEST(LightSceneTest, TheChoiceIsTheUsers) {
   ASSERT_EQ(headlight.lights.size(), 1U);
   EXPECT_EQ(headlight.lights[0].kind, LightKind::kHeadlight);
   EXPECT_EQ(headlight.environment.ambient, vec3(0.1F));
-  EXPECT_EQ(headlight.environment.background, vec3(0.25F)) << "the background is another choice";
+  EXPECT_TRUE(headlight.environment.backdrop) << "the background is another choice";
   EXPECT_EQ(display_of(headlight, LightChoice::kHeadlight).tone_mapping, ToneMapping::kNeutral);
   EXPECT_EQ(display_of(phong_scene(), LightChoice::kHeadlight).tone_mapping, ToneMapping::kNone) << "all is classic";
   EXPECT_EQ(display_of(phong_scene(), LightChoice::kStudio).tone_mapping, ToneMapping::kNeutral);
@@ -194,7 +198,9 @@ TEST(LightSceneTest, LightsWithoutASkyGetTheStudioWeaker) {
   EXPECT_FALSE(assumed.has_studio_light || assumed.has_headlight);
   EXPECT_EQ(scene.lights.size(), 1U);
   EXPECT_FLOAT_EQ(scene.environment.intensity, 0.3F * 64.0F);
-  EXPECT_FLOAT_EQ(scene.environment.background.x, 0.25F * 64.0F);
+  EXPECT_EQ(scene.environment.backdrop->top, vec3(kStudioBackdropTop)) << "as it is shown";
+  EXPECT_EQ(scene.environment.backdrop->radiance, 64.0F);
+  EXPECT_FLOAT_EQ(scene.environment.background.x, 32.0F * (kStudioBackdropTop + kStudioBackdropBottom));
   EXPECT_EQ(display_of(scene), (DisplayTransform{-6.0F, ToneMapping::kNeutral}));
 }
 
@@ -218,6 +224,7 @@ TEST(LightSceneTest, ASkyOfTheFilesOwnIsEnough) {
   light_scene(colored);
   EXPECT_TRUE(has_studio(colored));
   EXPECT_EQ(colored.environment.background, vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_FALSE(colored.environment.backdrop);
 }
 
 TEST(StudioTest, ItStandsByTheFirstCamera) {

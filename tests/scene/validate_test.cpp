@@ -122,6 +122,8 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
       {"object_numbers", [](Scene& s) { s.object_numbers.assign(s.objects.size() + 1, 0); }},
       {"environment.ambient", [](Scene& s) { s.environment.ambient.r = -1; }},
       {"environment.background", [](Scene& s) { s.environment.background.r = kNan; }},
+      {"environment.backdrop.bottom", [](Scene& s) { s.environment.backdrop.emplace().bottom.g = -1; }},
+      {"environment.backdrop.radiance", [](Scene& s) { s.environment.backdrop.emplace().radiance = kNan; }},
       {"geometries[0].normals[1]", [](Scene& s) { mesh_of(s).normals[1] = vec3(0); }},
       {"geometries[0].normals", [](Scene& s) { mesh_of(s).normals.pop_back(); }},
       {"geometries[0].colors[2]", [](Scene& s) { mesh_of(s).colors[2].r = -1; }},
