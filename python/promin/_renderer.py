@@ -47,7 +47,8 @@ _NO_ID = np.uint32(2**32 - 1)
 
 
 Background = Union[Sequence[float], str, None]
-"""What `promin render --background` takes: three linear numbers, or a word as "environment"."""
+"""What `promin render --background` takes: three sRGB numbers from 0 to 1, "white", "#80a0ff",
+"linear:0.2,0.4,1", "environment"."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -120,11 +121,12 @@ class Renderer:
     ) -> None:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
-        is built anew. scene: or the path of its file. view: that of pictures which are given none; what it takes is compiled at once. light: what
-        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". background: what lies behind all, as
-        --background of promin render has it: three linear numbers, or "environment" for what lights the scene; None: the
-        scene's, or a grey. from_: from where a scene
-        is seen: "auto" (by its camera, without one from three quarters, or inside where one stands in it) or, whatever
+        is built anew. scene: or the path of its file. view: that of pictures which are given none; what it takes is
+        compiled at once. light: what
+        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". background: what lies behind
+        all, as --background of promin render has it: three sRGB numbers from 0 to 1, a name as "white" or "#80a0ff",
+        which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed and tone mapped;
+        "environment" for what lights the scene; None: the scene's, or a grey gradient. from_: from where a scene is seen: "auto" (by its camera, without one from three quarters, or inside where one stands in it) or, whatever
         cameras it has, "three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside". fit: the share
         of the picture that a framed scene covers, 0.05 to 1. texture_memory: the most bytes that textures take.
         expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
