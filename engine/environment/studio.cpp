@@ -9,13 +9,19 @@
 namespace promin {
 namespace {
 
-// What the lamps add up to (docs/model.md, "Studio") makes a white wall that faces the viewer shine with .93: .53 from
-// the lamps and .40 from the light that casts shadows.
-constexpr double kHorizon = 0.36;
-constexpr double kRise = 0.04;
-constexpr double kFloor = 0.20;
-/// -y from which on the floor is all that there is.
-constexpr double kFloorDepth = 0.35;
+// White that faces the viewer is shown as 0.79 (sRGB): its radiance is .36 from all around and .27 from the light that
+// casts shadows (docs/model.md, "Studio"). In front of the viewer the floor is dark, so that metals, which mirror it,
+// show where they bend; behind the scene it is as bright as the backdrop, which glass shows.
+struct Ends {
+  double front;
+  double back;
+};
+constexpr Ends kHorizon = {0.20, 0.36};
+constexpr Ends kFloor = {0.05, 0.24};
+constexpr double kCeiling = 0.16;
+/// -y and y from which on floor and ceiling are all that there is.
+constexpr double kFloorDepth = 0.2;
+constexpr double kCeilingHeight = 0.6;
 /// The part of a lamp's half size within which its edge falls from all to nothing, to both sides of it.
 constexpr double kEdge = 0.15;
 
@@ -28,9 +34,10 @@ struct Lamp {
   double height_deg;
   double radiance;
 };
-constexpr Lamp kKey = {-45.0, 35.0, 44.0, 34.0, 2.0};
-constexpr Lamp kStrip = {65.0, 15.0, 14.0, 60.0, 2.4};
-constexpr Lamp kRim = {165.0, 30.0, 60.0, 18.0, 2.0};
+constexpr Lamp kKey = {-45.0, 38.0, 46.0, 36.0, 1.7};
+constexpr Lamp kFill = {70.0, 12.0, 30.0, 64.0, 0.8};
+constexpr Lamp kRim = {165.0, 32.0, 60.0, 16.0, 1.8};
+constexpr Lamp kTop = {0.0, 72.0, 60.0, 34.0, 0.7};
 
 double smoothstep(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -78,9 +85,13 @@ class HungLamp {
 }  // namespace
 
 double studio_radiance(const dvec3& direction) {
-  static const std::array<HungLamp, 3> kLamps = {HungLamp(kKey), HungLamp(kStrip), HungLamp(kRim)};
-  double sum = direction.y >= 0.0 ? kHorizon + kRise * direction.y
-                                  : kHorizon + (kFloor - kHorizon) * smoothstep(0.0, kFloorDepth, -direction.y);
+  static const std::array<HungLamp, 4> kLamps = {HungLamp(kKey), HungLamp(kFill), HungLamp(kRim), HungLamp(kTop)};
+  // From the front to the back.
+  const double way = 0.5 - 0.5 * direction.z;
+  const double horizon = std::lerp(kHorizon.front, kHorizon.back, way);
+  const double floor = std::lerp(kFloor.front, kFloor.back, way);
+  double sum = direction.y >= 0.0 ? std::lerp(horizon, kCeiling, smoothstep(0.0, kCeilingHeight, direction.y))
+                                  : std::lerp(horizon, floor, smoothstep(0.0, kFloorDepth, -direction.y));
   for (const HungLamp& lamp : kLamps) sum += lamp.radiance(direction);
   return sum;
 }

@@ -31,7 +31,7 @@ vec3 color_of_code(uint32_t code) {
   return vec3(dvec3(bytes) / 255.0);
 }
 
-/// Of the digits behind "#".
+/// Reads the digits behind "#".
 std::optional<uint32_t> read_code(std::string digits) {
   // Each digit of the short form stands for two.
   if (digits.size() == 3) digits = {digits[0], digits[0], digits[1], digits[1], digits[2], digits[2]};

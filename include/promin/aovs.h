@@ -81,9 +81,8 @@ struct AovSet {
 /// What blends with what is behind it counts with its share, and what is behind it with the rest.
 ///   - alpha: how much of the pixel shows the scene and not the background, 0...1. An image with it has no background:
 ///     its pixels are what is left of them without, premultiplied
-///   - unlit: of the image's pixel what the camera sees of unlit surfaces, without mirrors or glass between, and how
-///   much
-///     of the pixel shows them, 0...1: what apply() (promin/display.h) shows as it is
+///   - unlit: of the image's pixel what the camera sees of unlit surfaces and of a backdrop, without mirrors or glass
+///     between, and how much of the pixel shows them, 0...1: what apply() (promin/display.h) shows as it is
 ///   - samples: how many the pixel has taken
 ///   - error: by how much each channel may be off: with an error target the claim (promin/view.h, ErrorTarget), else an
 ///     estimate by the samples of the pixel and of those around it, which knows of edges alone; a debug view has none

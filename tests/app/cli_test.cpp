@@ -962,7 +962,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], codes[c], is_end ? 0 : 1) << word << ", " << mapping;
     }
   }
-  // Of a pixel the scene shows the same before any background, and that fills the rest, in linear light.
+  // The scene shows the same before any background, and the background fills the rest of a pixel, in linear light.
   const auto show = [&](const char* word) {
     render({"triangle.obj", "--size", "32", "18", "--spp", "16", "--tone-mapping", "aces", "--background", word, "-o",
             "a.png"},

@@ -336,8 +336,8 @@ TEST(SkyTest, TheStudioLightsAsItIsDescribed) {
   const struct {
     dvec3 normal;
     double lamps, source;
-  } walls[] = {{{s, 0, c}, 0.53, 0.40},  {{0, 1, 0}, 0.69, 0.41},  {{c, 0, -s}, 0.51, 0.0},
-               {{-c, 0, s}, 0.47, 0.28}, {{-s, 0, -c}, 0.47, 0.0}, {{0, -1, 0}, 0.21, 0.0}};
+  } walls[] = {{{s, 0, c}, 0.36, 0.27},  {{0, 1, 0}, 0.56, 0.28},  {{c, 0, -s}, 0.36, 0.0},
+               {{-c, 0, s}, 0.35, 0.19}, {{-s, 0, -c}, 0.35, 0.0}, {{0, -1, 0}, 0.15, 0.0}};
   const PackedSky sky = pack_sky(studio);
   for (const auto& wall : walls) {
     EXPECT_NEAR(integrate_irradiance(studio, wall.normal).x, wall.lamps, 0.006);

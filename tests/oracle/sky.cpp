@@ -38,7 +38,7 @@ struct Lamp {
   double height;
   double radiance;
 };
-constexpr Lamp kLamps[] = {{-45, 35, 44, 34, 2.0}, {65, 15, 14, 60, 2.4}, {165, 30, 60, 18, 2.0}};
+constexpr Lamp kLamps[] = {{-45, 38, 46, 36, 1.7}, {70, 12, 30, 64, 0.8}, {165, 32, 60, 16, 1.8}, {0, 72, 60, 34, 0.7}};
 
 /// Of an angle from a lamp's middle: 1 within, 0 beyond, by smoothstep within 15 % of the half size from its edge.
 double within(double angle, double size_deg) {
@@ -61,7 +61,12 @@ struct Radiance {
   }
 
   dvec3 operator()(const Studio& studio) const {
-    double sum = d.y >= 0 ? 0.36 + 0.04 * d.y : 0.36 + (0.20 - 0.36) * smoothstep(0, 0.35, -d.y);
+    // How far a direction lies to the back of the studio.
+    const double front = static_cast<double>(studio.front);
+    const double back = (1 - d.x * std::sin(front) - d.z * std::cos(front)) / 2;
+    const double horizon = 0.20 + 0.16 * back;
+    const double end = d.y >= 0 ? 0.16 : 0.05 + 0.19 * back;
+    double sum = horizon + (end - horizon) * (d.y >= 0 ? smoothstep(0, 0.6, d.y) : smoothstep(0, 0.2, -d.y));
     for (const Lamp& lamp : kLamps) {
       const double azimuth = static_cast<double>(studio.front) + radians(lamp.azimuth);
       const double elevation = radians(lamp.elevation);

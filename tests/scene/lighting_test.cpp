@@ -70,8 +70,8 @@ TEST(LightSceneTest, ASceneWithoutLightStandsInTheStudio) {
   EXPECT_TRUE(mixes_unlit(scene)) << "it is shown as it is";
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_EQ(scene.lights[0].kind, LightKind::kDirectional);
-  EXPECT_EQ(scene.lights[0].diffuse, vec3(2.0F));
-  EXPECT_EQ(scene.lights[0].specular, vec3(2.0F));
+  EXPECT_EQ(scene.lights[0].diffuse, vec3(kStudioLightPower));
+  EXPECT_EQ(scene.lights[0].specular, vec3(kStudioLightPower));
   EXPECT_TRUE(validate(scene).empty());
   EXPECT_EQ(display_of(scene), (DisplayTransform{0.0F, ToneMapping::kNeutral}));
 
@@ -85,14 +85,14 @@ TEST(LightSceneTest, PhongsMaterialsTakeTheStudiosLightOverPi) {
   Scene scene = phong_scene();
   light_scene(scene);
   ASSERT_EQ(scene.lights.size(), 1U);
-  EXPECT_FLOAT_EQ(scene.lights[0].diffuse.x, 2.0F / kPi);
-  EXPECT_FLOAT_EQ(scene.lights[0].specular.x, 2.0F / kPi);
+  EXPECT_FLOAT_EQ(scene.lights[0].diffuse.x, kStudioLightPower / kPi);
+  EXPECT_FLOAT_EQ(scene.lights[0].specular.x, kStudioLightPower / kPi);
   EXPECT_EQ(exposure_of(scene), 0.0F);
   // Among others they take it as it is.
   Scene mixed = phong_scene();
   mixed.materials.push_back({.name = "other", .model = MetallicRoughness{}});
   light_scene(mixed);
-  EXPECT_EQ(mixed.lights[0].diffuse, vec3(2.0F));
+  EXPECT_EQ(mixed.lights[0].diffuse, vec3(kStudioLightPower));
 }
 
 TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
