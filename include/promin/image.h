@@ -53,7 +53,7 @@ struct CropPlacement {
   uvec2 full_size{0};
 };
 
-/// Whether write_image knows the file's ending: .exr, .png, .jpg or .jpeg.
+/// Whether write_image knows the file's ending: .exr, .png, .jpg, .jpeg, .webp, .tif, .tiff or .hdr.
 PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 
 /// Whether a file of this ending holds channels beside R, G and B: .exr.
@@ -81,8 +81,9 @@ struct ExrOptions {
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
 /// picture's display window), .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for one named
 /// "A", by which the pixels are taken as multiplied, and those of Aovs::unlit, which are shown as they are; a crop is a
-/// picture of its own) or .jpg and .jpeg (the same without "A", by libjpeg-turbo, quality 92, 4:4:4). Equal arguments
-/// give equal bytes.
+/// picture of its own; it names the scene of `metadata`), .jpg and .jpeg (the same without "A", by libjpeg-turbo, quality
+/// 92, 4:4:4), .webp (with "A", by libwebp, quality 92), .tif and .tiff (with "A") or .hdr (R, G, B linear). Equal
+/// arguments give equal bytes. The last three kinds are written by the plugin for pictures.
 /// Atomic: the picture is written to a temporary file beside the target and renamed; on failure the target is as it
 /// was. Any thread may call it. Throws UsageError for another ending, for a picture without pixels and where the
 /// pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be written.

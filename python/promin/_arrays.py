@@ -78,7 +78,7 @@ def round_once(array: NDArray[Any]) -> Float32s:
 
 def join_rays(
     rays: RaysLike, directions: ArrayLike | None, tmin: ArrayLike | None, tmax: ArrayLike | None
-) -> RaysLike:
+) -> object:
     """Rays in one of the forms of RaysLike, of arguments that may hold each part by itself. Raises UsageError."""
     if directions is None and tmin is None and tmax is None:
         return rays

@@ -63,10 +63,10 @@ class Frame:
         compression: str = "zip",
         multipart: bool = False,
     ) -> None:
-        """Writes an .exr with all AOVs, linear, or a .png or .jpg as `display` shows it, None being the picture's own;
-        whole or not at all. Of an .exr: half: keep colours, normals and shares as halves; compression: "none", "rle", "zips",
-        "zip" or "piz", always without loss; multipart: give each AOV a part. Raises UsageError for another ending,
-        RunError where it cannot be written."""
+        """Writes an .exr with all AOVs or a .hdr, linear, or a .png, .jpg, .webp or .tif as `display` shows it, None being
+        the picture's own; whole or not at all. Of an .exr: half: keep colours, normals and shares as halves;
+        compression: "none", "rle", "zips", "zip" or "piz", always without loss; multipart: give each AOV a part. Raises
+        UsageError for another ending, RunError where it cannot be written."""
         file = os.fsdecode(path)
         if _promin.has_named_channels(file):
             channels = list_channels(self.aovs)
@@ -153,7 +153,8 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
 
 
 def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: Display = Display()) -> None:
-    """Writes linear light (rows, columns, 3) as .exr, or as .png as `display` shows it. Raises UsageError, RunError."""
+    """Writes linear light (rows, columns, 3) as .exr or .hdr, or as .png, .jpg, .webp or .tif as `display`
+    shows it. Raises UsageError, RunError."""
     file = os.fsdecode(path)
     unlit = None if _promin.has_named_channels(file) else unlit_of(rgb)
     channels = [] if unlit is None else list_channels({"unlit": unlit})

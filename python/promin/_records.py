@@ -333,7 +333,7 @@ def _refuse_assignment(record: object, name: str, value: object) -> None:
 
 
 for _kind in (Light, Material, Phong, MetallicRoughness, Unlit, Camera, Environment):
-    _kind.__setattr__ = _refuse_assignment  # type: ignore[assignment, method-assign]
+    _kind.__setattr__ = _refuse_assignment  # type: ignore[method-assign]
 
 _MODELS: dict[str, type[Material]] = {"phong": Phong, "metallic_roughness": MetallicRoughness, "unlit": Unlit}
 _SKIES: dict[str, type[Any]] = {"studio": Studio, "gradient": GradientSky, "panorama": Panorama}

@@ -65,7 +65,7 @@ def test_qualities_are_those_of_the_command_line() -> None:
     best = promin.View(quality="best")
     assert numbers(_view.change_view(best, {"spp": 3})) == (3, None, "linear")
     assert numbers(_view.change_view(promin.View(target_error=0.5), {"quality": "draft"})) == (1, None, "linear")
-    for wrong, said in (("hihg", "did you mean high"), ("", "quality takes")):
+    for wrong, said in (("hihh", "did you mean high"), ("", "quality takes")):
         with pytest.raises(promin.UsageError, match=said):
             _view.settle_quality(promin.View(quality=wrong))
     with pytest.raises(promin.UsageError, match="quality and spp contradict each other"):
@@ -165,8 +165,10 @@ def test_unknown_keywords_are_told_with_the_one_that_is_meant(
 
 
 def test_files_stand_for_scenes(scenes: Path) -> None:
-    hits = promin.Caster(scenes / "box.gltf").cast((0, 0, 9), (0, 0, -1))
-    assert hits["object"] == 0
+    bounds = promin.Scene.load(scenes / "sphere.gltf").bounds
+    assert bounds is not None
+    hits = promin.Caster(scenes / "sphere.gltf").cast(bounds.mean(axis=0), [(0, 0, -1), (0, 1, 0)])
+    assert hits["object"].tolist() == [0, 0]
     with pytest.raises(promin.UsageError, match="is no promin.Scene"):
         promin.Renderer(3)  # type: ignore[arg-type]
     with pytest.raises(promin.InputError, match="file not found"):

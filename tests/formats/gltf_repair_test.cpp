@@ -68,7 +68,7 @@ std::string with_metallic_factor(const std::string& number) {
 }
 
 TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
-  for (const std::string number : {"1e999", "123456789e400", "1" + std::string(400, '0')}) {
+  for (const std::string& number : {std::string("1e999"), std::string("123456789e400"), "1" + std::string(400, '0')}) {
     const LoadedScene scene = SceneFolder::load("scene.gltf", with_metallic_factor(number));
     EXPECT_THAT(scene.warnings,
                 ElementsAre("a number is out of range (1.7976931348623157e+308), "
