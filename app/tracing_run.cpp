@@ -17,7 +17,6 @@
 
 namespace promin::app {
 
-
 void choose_threads(const TracingOptions& options) {
   if (!options.threads) return;
   limit_threads(*options.threads);

@@ -10,8 +10,8 @@
 namespace promin::app {
 
 /// Moves the free camera. Either it flies: all angles are about the camera's own axes and no direction of the world is
-/// up, so that no pose is special and there is no gimbal to lock. Or it orbits a point, which it faces. The pointer takes
-/// it around what it looks at, in either case.
+/// up, so that no pose is special and there is no gimbal to lock. Or it orbits a point, which it faces. The pointer
+/// takes it around what it looks at, in either case.
 class CameraControl {
  public:
   /// `bounds` is of the scene, and `up` its direction, of any length but 0.

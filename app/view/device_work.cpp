@@ -15,15 +15,13 @@ DeviceWork::DeviceWork(std::shared_ptr<const gpu::Device> device)
   const vk::CommandBufferAllocateInfo allocation(*pool_, vk::CommandBufferLevel::ePrimary, 1);
   commands_ = std::move(vk::raii::CommandBuffers(device_->handle(), allocation).front());
   if (device_->timestamp_period_ns() == 0.0) return;
-  queries_ =
-      vk::raii::QueryPool(device_->handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMostMarks));
+  queries_ = vk::raii::QueryPool(device_->handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMostMarks));
 }
 
 DeviceWork::~DeviceWork() {
   try {
     if (!is_busy_) return;
-    const vk::Result result =
-        device_->handle().waitForFences({*fence_}, VK_TRUE, std::numeric_limits<uint64_t>::max());
+    const vk::Result result = device_->handle().waitForFences({*fence_}, VK_TRUE, std::numeric_limits<uint64_t>::max());
     static_cast<void>(result);
   } catch (const vk::SystemError&) {
     // A lost device: what threw before says so.

@@ -31,10 +31,9 @@ float scaled(float length) {
 }
 
 /// Where Debian and others have a font without serifs; the first that is there is taken, else ImGui's own.
-constexpr std::array kFonts = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                               "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
-                               "/usr/share/fonts/TTF/DejaVuSans.ttf",
-                               "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"};
+constexpr std::array kFonts = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+    "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"};
 
 template <typename... Arguments>
 void show_text(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -140,13 +139,13 @@ void choose_exposure(const OverlayContent& content, std::optional<float>& exposu
 }
 
 void show_switches(const OverlayContent& content, Switches& switches) {
-  choose_debug_view(switches.debug_view);
-  choose_exposure(content, switches.exposure_ev);
   ImGui::Checkbox("shadows", &switches.has_shadows);
   ImGui::SameLine();
   ImGui::Checkbox("mirrors", &switches.has_mirrors);
   ImGui::SameLine();
   ImGui::Checkbox("pause", &switches.is_paused);
+  choose_debug_view(switches.debug_view);
+  choose_exposure(content, switches.exposure_ev);
   if (ImGui::TreeNode("lights")) {
     choose_lights(*content.scene, switches.scene.lights_off);
     ImGui::TreePop();
@@ -201,7 +200,8 @@ void scale_overlay(const OverlayScale& scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.Fonts->Clear();
   const float size = kFontSize * static_cast<float>(scale.content);
-  const auto font = std::find_if(kFonts.begin(), kFonts.end(), [](const char* file) { return std::filesystem::exists(file); });
+  const auto font =
+      std::find_if(kFonts.begin(), kFonts.end(), [](const char* file) { return std::filesystem::exists(file); });
   if (font == kFonts.end() || io.Fonts->AddFontFromFileTTF(*font, size) == nullptr) {
     ImFontConfig config;
     config.SizePixels = size;

@@ -24,8 +24,7 @@ Explanation PixelQuery::explain(Place& place, const ShownScene& scene, const Vie
   const FeatureMask features = on_device.features({.has_shadows = view.mode.has_shadows});
   Explanation explanation;
   gpu::translate_vulkan_errors([&] {
-    explanation =
-        explain_pixel(*place.apart.device, place.apart.scene, on_device.numbers(), features, view, pixel);
+    explanation = explain_pixel(*place.apart.device, place.apart.scene, on_device.numbers(), features, view, pixel);
   });
   return explanation;
 }

@@ -69,9 +69,9 @@ SceneOn ShownScene::set_apart() const {
   if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
   SceneOn apart{open_same_device(*first.device), nullptr};
   const world::Scene& in_world = host->scene;
-  apart.scene = upload_scene(*apart.device, host->packed,
-                             {in_world.materials, in_world.textures, lights_on(*scene, choice), in_world.environment,
-                              host->glass_solids});
+  apart.scene = upload_scene(
+      *apart.device, host->packed,
+      {in_world.materials, in_world.textures, lights_on(*scene, choice), in_world.environment, host->glass_solids});
   return apart;
 }
 
@@ -81,9 +81,9 @@ void ReadyPicture::take_lights() {
   picture->picture().take_scene_change();
 }
 
-ScenePreparer::ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                             std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
-                             View first_view)
+ScenePreparer::ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
+                             LoadOptions load, std::vector<SourceFile> sources, LookOptions look,
+                             EnvironmentChoice environment, View first_view)
     : device_(std::move(device)),
       budget_ms_(budget_ms),
       file_(std::move(file)),
@@ -138,8 +138,7 @@ void ScenePreparer::read() {
 
 void ScenePreparer::pack(std::shared_ptr<const Scene> scene) {
   step_ = Step::kBuilding;
-  work_.start(
-      [this, scene = std::move(scene), request = asked_] { return make_first(scene, request); });
+  work_.start([this, scene = std::move(scene), request = asked_] { return make_first(scene, request); });
 }
 
 void ScenePreparer::compile(std::shared_ptr<const ShownScene> scene) {

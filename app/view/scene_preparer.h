@@ -88,10 +88,11 @@ struct PictureRequest {
 /// no picture waiting.
 class ScenePreparer {
  public:
-  /// Takes a device of which it opens others, a scene's file and how it is read, the files that it was read from, how it
-  /// is lit and shown, what is changed about its surroundings, and the view by which an average exposure goes.
-  ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment, View first_view);
+  /// Takes a device of which it opens others, a scene's file and how it is read, the files that it was read from, how
+  /// it is lit and shown, what is changed about its surroundings, and the view by which an average exposure goes.
+  ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
+                LoadOptions load, std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
+                View first_view);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 

@@ -100,7 +100,8 @@ std::optional<ImVec2> project(const vec3& point, const FreeCamera& camera, const
   const double ahead = glm::dot(way, camera.look());
   if (!(ahead > 0.0)) return std::nullopt;
   const bool is_perspective = camera.camera().projection == Projection::kPerspective;
-  const double half = is_perspective ? ahead * std::tan(0.5 * double{camera.camera().yfov}) : double{camera.camera().ymag};
+  const double half =
+      is_perspective ? ahead * std::tan(0.5 * double{camera.camera().yfov}) : double{camera.camera().ymag};
   const double scale = 0.5 * double{size.y} / half;
   return ImVec2(static_cast<float>(0.5 * double{size.x} + scale * glm::dot(way, camera.right())),
                 static_cast<float>(0.5 * double{size.y} - scale * glm::dot(way, camera.up())));

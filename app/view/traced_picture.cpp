@@ -34,10 +34,9 @@ gpu::Buffer make_exposure_buffer(const gpu::Device& device) {
 
 gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
                                   const gpu::Buffer& exposure, const DisplayTransform& display, bool has_unlit) {
-  const std::array constants{
-      gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
-      gpu::SpecializationConstant{kDithers, display.dithers ? 1U : 0U},
-      gpu::SpecializationConstant{kHasUnlit, has_unlit ? 1U : 0U}};
+  const std::array constants{gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
+                             gpu::SpecializationConstant{kDithers, display.dithers ? 1U : 0U},
+                             gpu::SpecializationConstant{kHasUnlit, has_unlit ? 1U : 0U}};
   constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
   const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, &film},
                            gpu::BoundBuffer{kEncodedBinding, kStorage, &encoded},
@@ -70,8 +69,8 @@ void TracedPicture::resize(const uvec2& size) {
     words_.emplace(gpu::Buffer::make_readback(*scene_.device, bytes));
   }
   for (size_t i = 0; i < kFilmCount; ++i) {
-    encoders_[i].emplace(make_encoder(*scene_.device, picture_.film(i), *encoded_, exposure_, display_,
-                                      picture_.has_unlit()));
+    encoders_[i].emplace(
+        make_encoder(*scene_.device, picture_.film(i), *encoded_, exposure_, display_, picture_.has_unlit()));
   }
   encoded_count_ = 0;
   has_encoded_ = false;

@@ -58,7 +58,7 @@ class TracedPicture {
   /// Whether a frame is under way.
   bool is_busy() const { return work_.is_busy() || (refining_ && refining_->is_busy()); }
   /// Whether it may be destroyed without waiting.
-  bool is_idle() const { return !is_busy() && !picture_.is_compiling(); }
+  bool is_idle() const { return !is_busy() && !picture_.is_busy_beside(); }
   /// Whether there is anything to trace or to encode now.
   bool has_work() const;
 

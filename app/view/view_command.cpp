@@ -195,8 +195,10 @@ void view(const WindowOptions& options) {
   gpu::translate_vulkan_errors([&] {
     Viewer viewer(*window, device, console, std::move(start), std::move(opening));
     viewer.run();
-    // A driver does not give up what it compiles; nobody waits for that.
+    // A driver does not give up what it compiles; nobody waits for that. On a machine that is busy its threads of low
+    // priority take a while to end, and the process with them.
     if (viewer.is_busy()) {
+      window->hide();
       std::fflush(nullptr);
       std::_Exit(0);
     }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -81,8 +82,9 @@ void Viewer::run() {
 
 bool Viewer::is_busy() const {
   const auto is_idle = [](const std::unique_ptr<TracedPicture>& picture) { return picture->is_idle(); };
-  return opening_.is_busy() || query_.is_busy() || framing_.is_busy() || (preparer_ && preparer_->is_busy()) ||
-         (traced_ && !traced_->is_idle()) || !std::all_of(retired_.begin(), retired_.end(), is_idle);
+  return !disposals_.empty() || opening_.is_busy() || query_.is_busy() || framing_.is_busy() ||
+         (preparer_ && preparer_->is_busy()) || (traced_ && !traced_->is_idle()) ||
+         !std::all_of(retired_.begin(), retired_.end(), is_idle);
 }
 
 bool Viewer::is_at_rest() const {
@@ -154,10 +156,10 @@ void Viewer::show_scene(OpenedScene opened) {
 }
 
 PictureRequest Viewer::request() const {
-  // What is to be shown as it is from the start is not begun with a draft.
-  const bool shows_scene = scene_ && scene_->scene == opened_.scene;
+  // What is to be shown as it is from the start is not begun with a draft. Nothing else is compiled before it is seen.
   const bool has_draft = asked_mode().debug_view == DebugView::kNone && !opened_.replay && !start_.record;
-  return {switches_.scene, asked_mode(), glm::max(swapchain_.size(), uvec2(1)), has_draft && !traced_ && !shows_scene};
+  const bool needs_draft = !traced_ || (is_draft_ && !traced_->picture().shown());
+  return {switches_.scene, asked_mode(), glm::max(swapchain_.size(), uvec2(1)), has_draft && needs_draft};
 }
 
 void Viewer::move_camera(bool is_of_flight) {
@@ -197,8 +199,19 @@ void Viewer::update_screenshot() {
   }
 }
 
+void Viewer::dispose() {
+  std::erase_if(disposals_, [](const std::future<void>& disposal) {
+    return disposal.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  for (std::unique_ptr<TracedPicture>& picture : retired_) {
+    if (!picture->is_idle()) continue;
+    disposals_.push_back(std::async(std::launch::async, [gone = std::move(picture)]() mutable { gone.reset(); }));
+  }
+  std::erase(retired_, nullptr);
+}
+
 void Viewer::update_picture() {
-  std::erase_if(retired_, [](const std::unique_ptr<TracedPicture>& picture) { return picture->is_idle(); });
+  dispose();
   if (!preparer_) return;
   // A question uses the lights that would change. So does what is compiled where the scene is not set apart.
   const bool is_free = !traced_ || !traced_->picture().is_compiling() || sets_apart(*device_);
@@ -327,9 +340,8 @@ void Viewer::begin_frame() {
   picture.want(current_view());
   // While paused, tracing goes on only as far as a screenshot needs.
   picture.pause(switches_.is_paused && !(wants_screenshot_ && !picture.is_complete()));
-  traced_->begin_frame(is_of_flight, Window::now(), [this](const vk::raii::CommandBuffer& commands) {
-    record_screenshot(commands);
-  });
+  traced_->begin_frame(is_of_flight, Window::now(),
+                       [this](const vk::raii::CommandBuffer& commands) { record_screenshot(commands); });
 }
 
 void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {

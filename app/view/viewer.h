@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -100,6 +101,8 @@ class Viewer {
   /// Takes over a scene that has been opened.
   void update_opening();
   void show_scene(OpenedScene opened);
+  /// Destroys pictures that are no longer needed, which may take a while.
+  void dispose();
   /// Takes over a picture that is ready, and asks for those that changed switches and files need.
   void update_picture();
   void show_picture(ReadyPicture ready);
@@ -161,6 +164,7 @@ class Viewer {
   /// None before the first; those before it end beside it.
   std::unique_ptr<TracedPicture> traced_;
   std::vector<std::unique_ptr<TracedPicture>> retired_;
+  std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
   /// Whether an orbit begins when its center is found.

@@ -54,7 +54,8 @@ void Viewer::frame_from(std::optional<Framing> from) {
   const auto aspect_ratio = static_cast<float>(size.x / size.y);
   // It looks at every vertex.
   framing_.start([scene = opened_.scene, camera = control_.camera(), up = start_.up, from, aspect_ratio] {
-    return from ? frame_scene(*scene, aspect_ratio, {.from = from, .up = up}) : fit_camera(*scene, camera, aspect_ratio);
+    return from ? frame_scene(*scene, aspect_ratio, {.from = from, .up = up})
+                : fit_camera(*scene, camera, aspect_ratio);
   });
 }
 

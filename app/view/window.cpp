@@ -78,10 +78,9 @@ struct Window::Callbacks {
 
   static void set(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) { of(w).on_key(key, action); });
-    glfwSetMouseButtonCallback(window,
-                               [](GLFWwindow* w, int button, int action, int modifiers) {
-                                 of(w).on_button(button, action, modifiers);
-                               });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
+      of(w).on_button(button, action, modifiers);
+    });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).on_pointer({x, y}); });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).on_wheel(y); });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
@@ -94,6 +93,10 @@ struct Window::Callbacks {
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).is_active_ = true; });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).change_place(); });
     glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).change_place(); });
+    glfwSetWindowIconifyCallback(window, [](GLFWwindow* w, int is_minimised) {
+      of(w).is_minimised_ = is_minimised != GLFW_FALSE;
+      of(w).change_place();
+    });
     glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { of(w).change_place(); });
   }
 };
@@ -115,6 +118,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   }
   glfwSetWindowUserPointer(window_, this);
   Callbacks::set(window_);
+  ask_display();
   last_wait_s_ = now();
 }
 
@@ -134,25 +138,17 @@ gpu::Presentation Window::presentation() const {
           }};
 }
 
-uvec2 Window::framebuffer_size() const {
+void Window::ask_display() {
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
-  const bool is_minimised = glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0;
-  return is_minimised ? uvec2(0) : uvec2(width, height);
-}
-
-double Window::pixel_ratio() const {
-  int width = 0;
-  glfwGetWindowSize(window_, &width, nullptr);
-  return width > 0 ? static_cast<double>(framebuffer_size().x) / width : 1.0;
-}
-
-OverlayScale Window::overlay_scale() const {
+  framebuffer_size_ = uvec2(width, height);
+  int units = 0;
+  glfwGetWindowSize(window_, &units, nullptr);
   float scale = 1.0F;
   glfwGetWindowContentScale(window_, &scale, nullptr);
-  // A minimised window has no pixels.
-  return {scale > 0.0F ? static_cast<double>(scale) : 1.0, std::max(pixel_ratio(), 0.1)};
+  const double ratio = units > 0 && width > 0 ? static_cast<double>(width) / units : 1.0;
+  overlay_scale_ = {scale > 0.0F ? static_cast<double>(scale) : 1.0, ratio};
 }
 
 double Window::refresh_interval_ms() const {
@@ -191,6 +187,11 @@ void Window::resize(const uvec2& size) {
   glfwGetWindowSize(window_, &width, &height);
   if (size == first_size_ || uvec2(width, height) != first_size_) return;
   glfwSetWindowSize(window_, static_cast<int>(size.x), static_cast<int>(size.y));
+}
+
+void Window::hide() {
+  glfwHideWindow(window_);
+  glfwPollEvents();
 }
 
 void Window::toggle_fullscreen() {
@@ -288,6 +289,7 @@ void Window::on_pointer(const dvec2& place) {
 }
 
 void Window::change_place() {
+  ask_display();
   is_active_ = true;
   may_have_moved_ = true;
 }

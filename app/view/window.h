@@ -29,11 +29,11 @@ class Window {
   GLFWwindow* handle() const { return window_; }
 
   /// The size in pixels; 0 while minimised.
-  uvec2 framebuffer_size() const;
+  uvec2 framebuffer_size() const { return is_minimised_ ? uvec2(0) : framebuffer_size_; }
   /// The number of pixels of the framebuffer in a unit of screen coordinates.
-  double pixel_ratio() const;
+  double pixel_ratio() const { return overlay_scale_.pixel_ratio; }
   /// The scale that the overlay is to have.
-  OverlayScale overlay_scale() const;
+  const OverlayScale& overlay_scale() const { return overlay_scale_; }
   /// The refresh interval of the display that most of the window is on, in milliseconds.
   double refresh_interval_ms() const;
   /// The time in seconds, by a clock of the window.
@@ -51,6 +51,8 @@ class Window {
   /// Makes it as large, in screen coordinates, where the user has left it as it was made.
   void resize(const uvec2& size);
   void toggle_fullscreen();
+  /// Takes it off the display at once.
+  void hide();
 
   // These return what happened since they were last called.
   Motion take_motion() { return motion_.take(now()); }
@@ -84,6 +86,8 @@ class Window {
   void on_click();
   void on_pointer(const dvec2& place);
   void change_place();
+  /// Asks the display, which takes a while, for what changes with the place.
+  void ask_display();
   void release();
   void capture_pointer(bool is_captured);
 
@@ -99,6 +103,9 @@ class Window {
   std::vector<std::string> dropped_;
   bool is_active_ = true;
   bool may_have_moved_ = true;
+  bool is_minimised_ = false;
+  uvec2 framebuffer_size_{0};
+  OverlayScale overlay_scale_;
   double last_wait_s_ = 0.0;
   double longest_turn_s_ = 0.0;
   bool wants_keys_ = false;

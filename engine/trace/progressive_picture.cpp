@@ -55,6 +55,7 @@ ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_pt
       pacer_(budget_ms, TileScheduler::kMinBlocks) {
   films_.reserve(kFilmCount);
   for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
+  works_beside_ = static_cast<bool>(set_apart);
   make_list_film_ = [&device, scene, features, set_apart = std::move(set_apart)] {
     ListFilm list;
     std::shared_ptr<const DeviceScene> listed = scene;
@@ -107,9 +108,13 @@ bool ProgressivePicture::is_compiling() const {
   return list_film_to_come_.valid() && !is_ready(list_film_to_come_);
 }
 
+bool ProgressivePicture::is_busy_beside() const {
+  return is_compiling() || (refined_to_come_.valid() && !is_ready(refined_to_come_));
+}
+
 bool ProgressivePicture::awaits_samples() const {
   if (picture_ || next_view() || !is_refining()) return false;
-  return is_compiling() || (refined_ && refined_->is_under_way());
+  return is_busy_beside() || (refined_ && refined_->is_under_way());
 }
 
 double ProgressivePicture::fraction_done() const {
@@ -195,14 +200,32 @@ double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& comm
   // Frames go on meanwhile.
   if (!refining_device()) return 0.0;
   if (refined_ && refined_->is_under_way()) return 0.0;
-  if (!refined_ || refined_version_ != wanted_version_) {
-    refined_.emplace(*list_film_.film, wanted_);
-    refined_version_ = wanted_version_;
-  }
+  if (!prepare_refined()) return 0.0;
   const double units = refined_->record(commands, pacer_.units(), most_units);
   has_recorded_list_ = units > 0.0;
   if (!has_recorded_list_) show_refined();
   return units;
+}
+
+bool ProgressivePicture::prepare_refined() {
+  const auto is_wanted = [&] { return refined_ && refined_version_ == wanted_version_; };
+  if (refined_to_come_.valid()) {
+    if (!is_ready(refined_to_come_)) return false;
+    refined_ = refined_to_come_.get();
+    refined_version_ = version_to_come_;
+  }
+  if (is_wanted()) return true;
+  const auto make = [film = list_film_.film.get(), view = wanted_](std::unique_ptr<RefiningPicture> last) {
+    last.reset();
+    return std::make_unique<RefiningPicture>(*film, view);
+  };
+  version_to_come_ = wanted_version_;
+  const std::launch policy = works_beside_ ? std::launch::async : std::launch::deferred;
+  refined_to_come_ = std::async(policy, make, std::move(refined_));
+  if (works_beside_) return false;
+  refined_ = refined_to_come_.get();
+  refined_version_ = version_to_come_;
+  return true;
 }
 
 void ProgressivePicture::show_refined() {

@@ -75,6 +75,8 @@ class ProgressivePicture {
   double fraction_done() const;
   /// Whether the pipeline that refines pictures to an error is being compiled.
   bool is_compiling() const;
+  /// Whether the destructor would wait for another thread.
+  bool is_busy_beside() const;
 
   /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace, or
   /// nothing yet: see awaits_samples(). The commands are for the picture's device, or where refines_next() for
@@ -124,6 +126,8 @@ class ProgressivePicture {
   /// Whether that is yet to be done.
   bool is_refining() const;
   double record_refinement(const vk::raii::CommandBuffer& commands, double most_units);
+  /// Makes refined_ that of the wanted view. False where it is still being made.
+  bool prepare_refined();
   void show_refined();
   uvec2 first_size() const;
   void begin(const vk::raii::CommandBuffer& commands, const View& view);
@@ -140,9 +144,14 @@ class ProgressivePicture {
   std::function<ListFilm()> make_list_film_;
   ListFilm list_film_;
   std::future<ListFilm> list_film_to_come_;
+  /// Whether what takes the host long is done on other threads: only for callers with frames of their own.
+  bool works_beside_ = false;
   /// Of the view of refined_version_. While a list is under way it stays, however old that is.
-  std::optional<RefiningPicture> refined_;
+  std::unique_ptr<RefiningPicture> refined_;
   uint64_t refined_version_ = 0;
+  /// The next one, which needs much memory, and the version that it is for.
+  std::future<std::unique_ptr<RefiningPicture>> refined_to_come_;
+  uint64_t version_to_come_ = 0;
   bool has_recorded_list_ = false;
   /// The buffer that trace() takes the counts into.
   std::optional<gpu::Buffer> counters_;

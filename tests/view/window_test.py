@@ -178,15 +178,21 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         expect(" --max-depth 1 --no-shadows --lights-off 1,3 " in command, f"not what is shown: {command}")
         session.expect_same_picture(1, command)
 
+        def has_shadows_soon():
+            try:
+                return wait_for(lambda: " --no-shadows" not in session.print_command(), "shadows", 60.0)
+            except Failure:
+                return False
+
         # The overlay's first switch is for shadows: what it changes is traced.
         size = f"--size {SIZE[0]} {SIZE[1]}"
         viewer.press("Tab")
         viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
         wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
         # Where it is depends on how many lines the message takes that a screenshot was written.
-        for y in range(100, 190, 12):
-            viewer.xdotool("mousemove", "--window", viewer.window, 28, y, "sleep", 0.2, "click", 1, "sleep", 0.5)
-            if " --no-shadows" not in session.print_command():
+        for y in (113, 96, 130, 79):
+            viewer.xdotool("mousemove", "--window", viewer.window, 28, y, "sleep", 0.2, "click", 1)
+            if has_shadows_soon():
                 break
         viewer.xdotool("windowsize", "--sync", viewer.window, *SIZE, "mousemove", "--window", viewer.window, 150, 5)
         viewer.press("Tab")
