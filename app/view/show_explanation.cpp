@@ -15,7 +15,7 @@
 namespace promin::app {
 namespace {
 
-/// Of the window's width and height.
+/// The shares of the width and the height of the window that the panel takes.
 constexpr float kPanelShare = 0.32F;
 constexpr float kHeightShare = 0.9F;
 /// How far a ray that hits nothing is drawn, in the way of the camera's ray.
@@ -108,7 +108,7 @@ std::optional<ImVec2> project(const vec3& point, const FreeCamera& camera, const
 }
 
 void draw_rays(const ExplainedPixel& explained, const Camera& pose) {
-  // Of the camera's ray, the mirrored, the refracted, and the same from behind a surface.
+  // By the kind of the ray: from the camera, mirrored, refracted, the same from behind a surface.
   static constexpr std::array<ImU32, 4> kColors = {IM_COL32(255, 255, 255, 220), IM_COL32(90, 200, 255, 220),
                                                    IM_COL32(120, 255, 140, 220), IM_COL32(255, 255, 255, 120)};
   constexpr ImU32 kSeen = IM_COL32(255, 220, 90, 200);

@@ -78,7 +78,7 @@ void TracedPicture::resize(const uvec2& size) {
 
 void TracedPicture::warm_up() {
   picture_.warm_up();
-  // Of the pixel that has just been traced.
+  // It encodes the pixel that has just been traced.
   scene_.device->run([&](const vk::raii::CommandBuffer& commands) { encoders_[0]->dispatch(commands, uvec2(1)); });
 }
 

@@ -67,7 +67,7 @@ class Viewer {
   /// SIGINT, SIGTERM and SIGHUP end it as the user does, and the program when what was recorded is written. Throws
   /// InputError where the scene is not one, RunError where the flight cannot be written, vk::SystemError.
   void run();
-  /// Whether anything goes on that the destructor would wait for.
+  /// Whether there is work that the destructor would wait for.
   bool is_busy() const;
   const RunStats& stats() const { return opened_.stats; }
 

@@ -71,7 +71,7 @@ class Window {
 
   /// Whether a key is down that moves the camera.
   bool is_moving() const { return motion_.is_held(); }
-  /// Whether take_motion() has anything to tell.
+  /// Whether the pointer has moved the camera since the last take_motion().
   bool has_turned() const { return motion_.has_any(); }
 
   /// Whether the overlay wants keys and pointer for itself just now.

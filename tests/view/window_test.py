@@ -387,6 +387,17 @@ def survives_its_window(bin_folder, scenes, folder):
         session.quit()
 
 
+def quits_while_it_compiles(bin_folder, scenes, folder):
+    """With nothing in the driver's cache; the first time as soon as there is a window."""
+    for awaited in (None, "loaded showcase"):
+        session = Session(bin_folder, scenes, folder, "-v", MESA_SHADER_CACHE_DIR=str(folder / "no cache"))
+        with session as viewer:
+            if awaited:
+                viewer.wait_for_line(awaited, 1, "scene")
+            session.quit()
+            expect("no input waited longer than" in viewer.err, f"it did not end as it should: {viewer.err}")
+
+
 def reads_a_changed_scene(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, PROMIN_VALIDATION="sync")
     with session as viewer:
