@@ -144,6 +144,10 @@ void show_switches(const OverlayContent& content, Switches& switches) {
   ImGui::Checkbox("mirrors", &switches.has_mirrors);
   ImGui::SameLine();
   ImGui::Checkbox("pause", &switches.is_paused);
+  auto depth = static_cast<int>(switches.max_depth);
+  if (ImGui::SliderInt("mirrors in mirrors", &depth, 0, 20)) {
+    switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
+  }
   choose_debug_view(switches.debug_view);
   choose_exposure(content, switches.exposure_ev);
   if (ImGui::TreeNode("lights")) {
@@ -154,8 +158,6 @@ void show_switches(const OverlayContent& content, Switches& switches) {
 
 void show_details(const OverlayContent& content, Switches& switches, OverlayAnswer& answer) {
   if (!ImGui::TreeNode("details")) return;
-  auto depth = static_cast<int>(switches.max_depth);
-  if (ImGui::SliderInt("depth", &depth, 0, 20)) switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
   choose_scale(switches.scale);
   choose_builder(switches.scene);
   auto speed = static_cast<float>(content.speed);

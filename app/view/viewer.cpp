@@ -314,6 +314,12 @@ void Viewer::trace() {
   for (const std::unique_ptr<TracedPicture>& retired : retired_) static_cast<void>(retired->poll(Window::now()));
   if (!traced_) return;
   while (const std::optional<FinishedFrame> finished = traced_->poll(Window::now())) take_finished(*finished);
+  // What is encoded is taken over before the next frame encodes again.
+  if (!frames_.is_idle()) return;
+  if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
+    display_.take(*encoded);
+    frames_to_draw_ = std::max(frames_to_draw_, 1);
+  }
   // The ready picture takes its place, so no new frame may begin.
   if (preparer_->is_ready() && !on_copied_) return;
   if (traced_->size() != swapchain_.size()) {
@@ -378,12 +384,6 @@ void Viewer::take_finished(const FinishedFrame& finished) {
 }
 
 void Viewer::draw() {
-  if (traced_ && frames_.is_idle()) {
-    if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
-      display_.take(*encoded);
-      frames_to_draw_ = std::max(frames_to_draw_, 1);
-    }
-  }
   if (frames_to_draw_ == 0 || Window::now() < next_draw_s_) return;
   const vk::raii::CommandBuffer* commands = frames_.begin();
   if (commands == nullptr) return;
